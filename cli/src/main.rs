@@ -1,0 +1,2 @@
+//! The program armgen.
+fn main() {}

@@ -1,0 +1,3 @@
+//! What uses a robot: manipulability, trajectories, closed-loop inverse kinematics, control, stability, simulation.
+#![cfg_attr(not(feature = "std"), no_std)]
+pub mod robot;

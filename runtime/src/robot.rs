@@ -1,0 +1,102 @@
+//! What a robot is to the rest of this crate: three traits, from kinematics alone to the regressor.
+//!
+//! The emitted module of a robot comes with implementations of these traits (feature `runtime` of the crate that holds it):
+//! a unit struct for the nominal robot, and `WithParameters` for the same robot with parameters chosen at run time.
+//! The methods take `&self` so that a robot may carry data.
+//!
+//! Frames and signs, for all methods: the base frame is the frame of the description's first row, the end effector is the
+//! last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of motion is
+//!
+//! ```text
+//! B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                       (the book, Sect. 7.2, eq. 7.42 without contact)
+//! ```
+//!
+//! with `g` on the left: the torque that holds the arm at rest is `tau = g(q)`.
+//! "The book" is Siciliano, Sciavicco, Villani, Oriolo, *Robotics: Modelling, Planning and Control*.
+
+use nalgebra::{Matrix4, RealField, SMatrix, SVector};
+
+/// The matrices of the equation of motion at one state, computed together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquationsOfMotion<T, const N: usize> {
+    /// Inertia matrix B(q): symmetric, positive definite.
+    pub inertia: SMatrix<T, N, N>,
+    /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.
+    pub coriolis: SMatrix<T, N, N>,
+    /// Gravity term g(q), on the left of the equation of motion.
+    pub gravity: SVector<T, N>,
+}
+
+/// Kinematics of an arm with `N` joints.
+pub trait Kinematics<const N: usize> {
+    /// The scalar of the emitted module: `f64` or `f32`.
+    type Real: RealField + Copy;
+
+    /// End-effector frame in the base frame, T_e(q), 4 x 4; translation in m.
+    fn direct_kinematics(&self, q: &SVector<Self::Real, N>) -> Matrix4<Self::Real>;
+
+    /// Frame of each link in the base frame, T_i(q), as the description defines link frames; translations in m.
+    fn link_frames(&self, q: &SVector<Self::Real, N>) -> [Matrix4<Self::Real>; N];
+
+    /// Geometric Jacobian J(q) of the end effector: (v_e, omega_e) = J dq, rows linear then angular, base frame.
+    fn geometric_jacobian(&self, q: &SVector<Self::Real, N>) -> SMatrix<Self::Real, 6, N>;
+
+    /// Time derivative of the geometric Jacobian along `dq`.
+    fn geometric_jacobian_dot(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SMatrix<Self::Real, 6, N>;
+}
+
+/// Dynamics of an arm with `N` joints.
+pub trait Dynamics<const N: usize>: Kinematics<N> {
+    /// Inertia matrix B(q), rotors included.
+    fn inertia_matrix(&self, q: &SVector<Self::Real, N>) -> SMatrix<Self::Real, N, N>;
+
+    /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric.
+    fn coriolis_matrix(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SMatrix<Self::Real, N, N>;
+
+    /// Gravity term g(q) = dU/dq, on the left of the equation of motion.
+    fn gravity(&self, q: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
+
+    /// Friction torque at the joints, viscous and Coulomb, on the left of the equation of motion: of the sign of `dq`.
+    fn friction(&self, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
+
+    /// B, C and g at one state, sharing their work.
+    fn equations_of_motion(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> EquationsOfMotion<Self::Real, N>;
+
+    /// tau = B ddq + C dq + F(dq) + g.
+    fn inverse_dynamics(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>, ddq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
+
+    /// ddq = B^-1 (tau - C dq - F(dq) - g).
+    fn forward_dynamics(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>, tau: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
+
+    /// Kinetic energy of links and rotors, T = 1/2 dq' B dq, J.
+    fn kinetic_energy(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> Self::Real;
+
+    /// Potential energy of gravity U(q), J; zero where all masses lie at the origin of the base frame.
+    fn potential_energy(&self, q: &SVector<Self::Real, N>) -> Self::Real;
+}
+
+/// The dynamics as a linear function of `P` parameters pi.
+pub trait Regressor<const N: usize, const P: usize>: Dynamics<N> {
+    /// Y(q, dq, dqr, ddqr), `N` x `P`: B(q) ddqr + C(q, dq) dqr + F + g(q) = Y pi + tau_known.
+    ///
+    /// Viscous friction acts on `dqr`, Coulomb friction on the sign of `dq`.
+    fn regressor(
+        &self,
+        q: &SVector<Self::Real, N>,
+        dq: &SVector<Self::Real, N>,
+        dqr: &SVector<Self::Real, N>,
+        ddqr: &SVector<Self::Real, N>,
+    ) -> SMatrix<Self::Real, N, P>;
+
+    /// The torque of what is not among the parameters: tau_known of the equation above.
+    fn known_torque(
+        &self,
+        q: &SVector<Self::Real, N>,
+        dq: &SVector<Self::Real, N>,
+        dqr: &SVector<Self::Real, N>,
+        ddqr: &SVector<Self::Real, N>,
+    ) -> SVector<Self::Real, N>;
+
+    /// The parameters of this robot, in the order of the columns of Y.
+    fn parameters(&self) -> SVector<Self::Real, P>;
+}
