@@ -1,1 +1,4 @@
 //! From the description of a robot arm to its equations of motion, and from these to plain `no_std` Rust.
+
+pub mod exact;
+pub mod manipulator;

@@ -63,10 +63,20 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     fn equations_of_motion(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> EquationsOfMotion<Self::Real, N>;
 
     /// tau = B ddq + C dq + F(dq) + g.
-    fn inverse_dynamics(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>, ddq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
+    fn inverse_dynamics(
+        &self,
+        q: &SVector<Self::Real, N>,
+        dq: &SVector<Self::Real, N>,
+        ddq: &SVector<Self::Real, N>,
+    ) -> SVector<Self::Real, N>;
 
     /// ddq = B^-1 (tau - C dq - F(dq) - g).
-    fn forward_dynamics(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>, tau: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
+    fn forward_dynamics(
+        &self,
+        q: &SVector<Self::Real, N>,
+        dq: &SVector<Self::Real, N>,
+        tau: &SVector<Self::Real, N>,
+    ) -> SVector<Self::Real, N>;
 
     /// Kinetic energy of links and rotors, T = 1/2 dq' B dq, J.
     fn kinetic_energy(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> Self::Real;

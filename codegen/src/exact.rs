@@ -1,0 +1,459 @@
+//! Numbers exactly as written: no float until emission.
+//!
+//! A [`Number`] is a polynomial with rational coefficients in *atoms*: square roots of integers, pi, and sines and cosines of
+//! angles that are not multiples of pi/12. Products are reduced at once by
+//!
+//! ```text
+//! sqrt(n)² = n,    sin(a)² = 1 - cos(a)²,    pi^i pi^j = pi^(i+j)
+//! ```
+//!
+//! so that a constant has one form: equal numbers are equal values, and `sqrt(2)·sqrt(3)` is `sqrt(6)`.
+//! (Relations beyond these, say between cos(0.7) and cos(1.4), are not known here. Nothing wrong follows: two ways to write one
+//! number may then stay two numbers, two numbers never become one.)
+//!
+//! Emission asks [`Number::to_f64`] and [`Number::to_f32`] for the nearest float; they enclose the number ever more tightly until
+//! both ends of the enclosure round alike (`enclosure.rs`).
+
+mod enclosure;
+mod polynomial;
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::Arc;
+
+use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
+use dashu_int::{IBig, UBig};
+
+pub use polynomial::Polynomial;
+
+/// An exact fraction in lowest terms.
+pub type Rational = dashu_ratio::RBig;
+
+/// What a [`Number`] is made of, besides fractions.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Atom {
+    /// The positive square root of a prime (or of an integer without a square factor that trial division finds).
+    Root(UBig),
+    /// The positive square root of a positive number that is not rational.
+    RootOf(Arc<Number>),
+    /// The number pi.
+    Pi,
+    /// Sine of an angle in (0, pi/4], rad.
+    Sine(Arc<Number>),
+    /// Cosine of an angle in (0, pi/4], rad.
+    Cosine(Arc<Number>),
+    /// One over a number that has no simpler inverse.
+    Inverse(Arc<Number>),
+}
+
+/// A product of powers of atoms, sorted; empty for the number 1.
+pub type Monomial = Vec<(Atom, i32)>;
+
+/// An exact real constant.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Number {
+    terms: BTreeMap<Monomial, Rational>,
+}
+
+/// Integers are searched for square factors up to this prime.
+const TRIAL_DIVISION: u32 = 10_000;
+
+static ZERO: Rational = Rational::ZERO;
+
+impl Number {
+    /// 0.
+    pub fn zero() -> Number {
+        Number::default()
+    }
+
+    /// 1.
+    pub fn one() -> Number {
+        Number::from(1)
+    }
+
+    /// pi.
+    pub fn pi() -> Number {
+        Number::atom(Atom::Pi)
+    }
+
+    fn atom(atom: Atom) -> Number {
+        Number { terms: BTreeMap::from([(vec![(atom, 1)], Rational::ONE)]) }
+    }
+
+    /// The terms: coefficient by monomial, in a fixed order.
+    pub fn terms(&self) -> impl Iterator<Item = (&Monomial, &Rational)> {
+        self.terms.iter()
+    }
+
+    /// Whether this is 0.
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// Whether this is 1.
+    pub fn is_one(&self) -> bool {
+        self.as_rational().is_some_and(|r| r.is_one())
+    }
+
+    /// The fraction, if this is one.
+    pub fn as_rational(&self) -> Option<&Rational> {
+        match self.terms.len() {
+            0 => Some(&ZERO),
+            1 => self.terms.get(&Vec::new() as &Monomial),
+            _ => None,
+        }
+    }
+
+    /// Sign of the number: its order against 0.
+    pub fn sign(&self) -> Ordering {
+        let of = |r: &Rational| {
+            if r.is_zero() {
+                Ordering::Equal
+            } else if r.is_negative() {
+                Ordering::Less
+            } else {
+                Ordering::Greater
+            }
+        };
+        if let Some(r) = self.as_rational() {
+            return of(r);
+        }
+        for bits in enclosure::PRECISIONS {
+            let (low, high) = self.enclose(bits);
+            if of(&low) == of(&high) {
+                return of(&low);
+            }
+        }
+        // Beyond the last precision the number is a zero that the reductions do not see.
+        Ordering::Equal
+    }
+
+    /// Whether the leading coefficient is negative: a sign that costs nothing and that negation flips.
+    pub fn leads_negative(&self) -> bool {
+        self.terms.values().next().is_some_and(|c| c.is_negative())
+    }
+
+    /// The quotient, or `None` if `divisor` is 0.
+    pub fn checked_div(&self, divisor: &Number) -> Option<Number> {
+        Some(self * &divisor.inverse()?)
+    }
+
+    fn inverse(&self) -> Option<Number> {
+        let mut terms = self.terms.iter();
+        let (monomial, coefficient) = terms.next()?;
+        if terms.next().is_none() {
+            let mut inverse = Number::from(Rational::ONE / coefficient);
+            for (atom, power) in monomial {
+                inverse = &inverse * &invert_power(atom, *power);
+            }
+            return Some(inverse);
+        }
+        // a + b sqrt(n), with sqrt(n) in neither a nor b: multiply by the conjugate until no root is left.
+        let root =
+            self.terms.keys().flatten().find(|(a, _)| matches!(a, Atom::Root(_) | Atom::RootOf(_))).map(|(a, _)| a.clone());
+        if let Some(root) = root {
+            let mut conjugate = self.clone();
+            for (monomial, coefficient) in &mut conjugate.terms {
+                if monomial.iter().any(|(a, _)| *a == root) {
+                    *coefficient = -coefficient.clone();
+                }
+            }
+            let norm = self * &conjugate;
+            if !norm.is_zero() {
+                return Some(&conjugate * &norm.inverse()?);
+            }
+        }
+        if self.sign() == Ordering::Equal {
+            return None;
+        }
+        Some(Number::atom(Atom::Inverse(Arc::new(self.clone()))))
+    }
+
+    /// The positive square root, or `None` of a negative number.
+    pub fn sqrt(&self) -> Option<Number> {
+        match self.sign() {
+            Ordering::Less => return None,
+            Ordering::Equal => return Some(Number::zero()),
+            Ordering::Greater => {}
+        }
+        let mut terms = self.terms.iter();
+        let (monomial, coefficient) = terms.next().expect("a positive number has a term");
+        if terms.next().is_some() || monomial.iter().any(|(_, power)| power % 2 != 0) || coefficient.is_negative() {
+            return Some(Number::atom(Atom::RootOf(Arc::new(self.clone()))));
+        }
+        // sqrt(p/q · Π a^2k) = sqrt(p q)/q · Π a^k: the atoms with an even power are positive (pi; sines and cosines of first-octant angles).
+        let (p, q) = (coefficient.numerator().unsigned_abs(), coefficient.denominator().clone());
+        let half: Monomial = monomial.iter().map(|(a, power)| (a.clone(), power / 2)).collect();
+        let mut root = Number { terms: BTreeMap::from([(half, Rational::from_parts(IBig::ONE, q.clone()))]) };
+        let mut rest = p * q;
+        let mut divide_out = |prime: UBig, rest: &mut UBig| {
+            while (&*rest % &prime).is_zero() {
+                *rest = &*rest / &prime;
+                root = &root * &Number::atom(Atom::Root(prime.clone()));
+            }
+        };
+        let mut divisor = 2u32;
+        while divisor <= TRIAL_DIVISION && UBig::from(divisor) * divisor <= rest {
+            divide_out(UBig::from(divisor), &mut rest);
+            divisor += if divisor == 2 { 1 } else { 2 };
+        }
+        if !rest.is_one() {
+            let whole = rest.sqrt();
+            root = if &whole * &whole == rest {
+                &root * &Number::from(Rational::from(whole))
+            } else {
+                &root * &Number::atom(Atom::Root(rest))
+            };
+        }
+        Some(root)
+    }
+
+    /// The nearest f64 (ties to even); infinite beyond its range.
+    pub fn to_f64(&self) -> f64 {
+        self.round(|r| r.to_f64().value())
+    }
+
+    /// The nearest f32 (ties to even), rounded once; infinite beyond its range.
+    pub fn to_f32(&self) -> f32 {
+        self.round(|r| r.to_f32().value())
+    }
+
+    fn round<T: PartialEq>(&self, nearest: impl Fn(&Rational) -> T) -> T {
+        if let Some(r) = self.as_rational() {
+            return nearest(r);
+        }
+        let mut last = None;
+        for bits in enclosure::PRECISIONS {
+            let (low, high) = self.enclose(bits);
+            let (low, high) = (nearest(&low), nearest(&high));
+            if low == high {
+                return low;
+            }
+            last = Some(low);
+        }
+        last.expect("at least one precision is tried")
+    }
+}
+
+fn invert_power(atom: &Atom, power: i32) -> Number {
+    let of = |power: i32| Number { terms: BTreeMap::from([(vec![(atom.clone(), power)], Rational::ONE)]) };
+    match atom {
+        Atom::Pi => of(-power),
+        Atom::Root(n) => &of(1) * &Number::from(Rational::from_parts(IBig::ONE, n.clone())),
+        Atom::Inverse(n) => (0..power).fold(Number::one(), |product, _| &product * n),
+        Atom::RootOf(n) => &of(1) * &n.inverse().expect("a root that stands is not zero"),
+        Atom::Sine(_) | Atom::Cosine(_) => {
+            let inverse = Number::atom(Atom::Inverse(Arc::new(of(1))));
+            (0..power).fold(Number::one(), |product, _| &product * &inverse)
+        }
+    }
+}
+
+/// The product of two monomials, reduced; a sum where a sine is squared.
+fn multiply_monomials(a: &Monomial, b: &Monomial) -> Number {
+    let mut powers: BTreeMap<&Atom, i32> = BTreeMap::new();
+    for (atom, power) in a.iter().chain(b) {
+        *powers.entry(atom).or_default() += power;
+    }
+    let mut coefficient = Rational::ONE;
+    let mut monomial: Monomial = Vec::with_capacity(powers.len());
+    let mut factors: Vec<Number> = Vec::new();
+    for (atom, power) in powers {
+        match atom {
+            _ if power == 0 => {}
+            Atom::Root(n) if power == 2 => coefficient *= Rational::from(n.clone()),
+            Atom::RootOf(n) if power == 2 => factors.push(Number::clone(n)),
+            Atom::Sine(angle) if power == 2 => {
+                let cosine = Number { terms: BTreeMap::from([(vec![(Atom::Cosine(angle.clone()), 2)], Rational::ONE)]) };
+                factors.push(&Number::one() - &cosine);
+            }
+            _ => monomial.push((atom.clone(), power)),
+        }
+    }
+    let product = Number { terms: BTreeMap::from([(monomial, coefficient)]) };
+    factors.iter().fold(product, |product, factor| &product * factor)
+}
+
+impl From<i64> for Number {
+    fn from(value: i64) -> Number {
+        Number::from(Rational::from(value))
+    }
+}
+
+impl From<Rational> for Number {
+    fn from(value: Rational) -> Number {
+        if value.is_zero() {
+            return Number::zero();
+        }
+        Number { terms: BTreeMap::from([(Vec::new(), value)]) }
+    }
+}
+
+impl Add for &Number {
+    type Output = Number;
+    fn add(self, other: &Number) -> Number {
+        let mut sum = self.clone();
+        for (monomial, coefficient) in &other.terms {
+            let entry = sum.terms.entry(monomial.clone()).or_insert(Rational::ZERO);
+            *entry += coefficient;
+            if entry.is_zero() {
+                sum.terms.remove(monomial);
+            }
+        }
+        sum
+    }
+}
+
+impl Neg for &Number {
+    type Output = Number;
+    fn neg(self) -> Number {
+        Number { terms: self.terms.iter().map(|(m, c)| (m.clone(), -c)).collect() }
+    }
+}
+
+impl Sub for &Number {
+    type Output = Number;
+    fn sub(self, other: &Number) -> Number {
+        self + &-other
+    }
+}
+
+impl Mul for &Number {
+    type Output = Number;
+    fn mul(self, other: &Number) -> Number {
+        if let (Some(a), Some(b)) = (self.as_rational(), other.as_rational()) {
+            return Number::from(a * b);
+        }
+        let mut product = Number::zero();
+        for (a, ca) in &self.terms {
+            for (b, cb) in &other.terms {
+                let mut term = multiply_monomials(a, b);
+                let coefficient = ca * cb;
+                for c in term.terms.values_mut() {
+                    *c *= &coefficient;
+                }
+                product = &product + &term;
+            }
+        }
+        product
+    }
+}
+
+/// A plain formula: `1/2*sqrt(3) - 2*pi`.
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_zero() {
+            return f.write_str("0");
+        }
+        for (i, (monomial, coefficient)) in self.terms.iter().enumerate() {
+            match (i, coefficient.is_negative()) {
+                (0, true) => f.write_str("-")?,
+                (0, false) => {}
+                (_, true) => f.write_str(" - ")?,
+                (_, false) => f.write_str(" + ")?,
+            }
+            let size = coefficient.clone().abs();
+            let mut factors: Vec<String> = Vec::new();
+            if !size.is_one() || monomial.is_empty() {
+                factors.push(size.to_string());
+            }
+            for (atom, power) in monomial {
+                let text = match atom {
+                    Atom::Root(n) => format!("sqrt({n})"),
+                    Atom::RootOf(n) => format!("sqrt({n})"),
+                    Atom::Pi => "pi".into(),
+                    Atom::Sine(angle) => format!("sin({angle})"),
+                    Atom::Cosine(angle) => format!("cos({angle})"),
+                    Atom::Inverse(n) => format!("(1/({n}))"),
+                };
+                factors.push(if *power == 1 {
+                    text
+                } else {
+                    format!("{text}^{power}").replace("^-", "^(-") + if *power < 0 { ")" } else { "" }
+                });
+            }
+            f.write_str(&factors.join("*"))?;
+        }
+        Ok(())
+    }
+}
+
+/// An exact angle, rad.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Angle(Number);
+
+impl Angle {
+    /// The angle of so many radians.
+    pub fn new(radians: Number) -> Angle {
+        Angle(radians)
+    }
+
+    /// Its exact sine.
+    pub fn sin(&self) -> Number {
+        self.sine_cosine().0
+    }
+
+    /// Its exact cosine.
+    pub fn cos(&self) -> Number {
+        self.sine_cosine().1
+    }
+
+    /// Sine and cosine: exact roots for multiples of pi/12, a pair of atoms for the rest, brought to the first octant.
+    fn sine_cosine(&self) -> (Number, Number) {
+        let eighth = Rational::from_parts(1.into(), 4u8.into());
+        // angle = turns · pi/2 + rest with |rest| ≤ pi/4: exactly by the multiple of pi where there is one, else by enclosure.
+        let multiple = self.0.terms.get(&vec![(Atom::Pi, 1)]).cloned().unwrap_or(Rational::ZERO);
+        let rest = &self.0 - &(&Number::from(multiple.clone()) * &Number::pi());
+        let turns = if rest.is_zero() {
+            (multiple.clone() * Rational::from(2)).round()
+        } else {
+            let (low, high) = (&self.0 * &Number::from(2)).checked_div(&Number::pi()).expect("pi is not zero").enclose(256);
+            ((low + high) / Rational::from(2)).round()
+        };
+        let reduced = &self.0
+            - &(&Number::from(Rational::from(turns.clone()) * Rational::from_parts(1.into(), 2u8.into())) * &Number::pi());
+        let (sine, cosine) = if rest.is_zero() {
+            let part = multiple - Rational::from(turns.clone()) / Rational::from(2);
+            debug_assert!(part.clone().abs() <= eighth);
+            first_octant(&part, &reduced)
+        } else {
+            atoms(&reduced)
+        };
+        match i64::try_from(turns % IBig::from(4)).expect("a remainder of 4 is small").rem_euclid(4) {
+            0 => (sine, cosine),
+            1 => (cosine, -&sine),
+            2 => (-&sine, -&cosine),
+            _ => (-&cosine, sine),
+        }
+    }
+}
+
+/// Sine and cosine of `part · pi`, |part| ≤ 1/4.
+fn first_octant(part: &Rational, angle: &Number) -> (Number, Number) {
+    let fraction = |n: i64, d: i64| Number::from(Rational::from(n) / Rational::from(d));
+    let root = |n: i64| Number::from(n).sqrt().expect("the integer is positive");
+    let twelfths = part * Rational::from(12);
+    let (sine, cosine) = if twelfths.is_int() {
+        match i64::try_from(twelfths.numerator().clone().abs()).expect("at most 3") {
+            0 => (Number::zero(), Number::one()),
+            1 => (&(&root(6) - &root(2)) * &fraction(1, 4), &(&root(6) + &root(2)) * &fraction(1, 4)),
+            2 => (fraction(1, 2), &root(3) * &fraction(1, 2)),
+            _ => (&root(2) * &fraction(1, 2), &root(2) * &fraction(1, 2)),
+        }
+    } else {
+        return atoms(angle);
+    };
+    (if part.is_negative() { -&sine } else { sine }, cosine)
+}
+
+fn atoms(angle: &Number) -> (Number, Number) {
+    let negative = angle.sign() == Ordering::Less;
+    let positive = Arc::new(if negative { -angle } else { angle.clone() });
+    let sine = Number::atom(Atom::Sine(positive.clone()));
+    (if negative { -&sine } else { sine }, Number::atom(Atom::Cosine(positive)))
+}
+
+#[cfg(test)]
+mod tests;

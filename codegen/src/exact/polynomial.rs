@@ -1,0 +1,126 @@
+//! Polynomials in the named parameters of a description, with exact coefficients.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::{Add, Mul, Neg, Sub};
+
+use super::Number;
+use crate::manipulator::ParameterId;
+
+/// Powers of parameters, sorted; empty for the constant term.
+pub(super) type Powers = BTreeMap<ParameterId, u32>;
+
+/// A polynomial in parameters.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Polynomial {
+    terms: BTreeMap<Powers, Number>,
+}
+
+impl Polynomial {
+    /// 0.
+    pub fn zero() -> Polynomial {
+        Polynomial::default()
+    }
+
+    /// The parameter itself.
+    pub fn variable(parameter: ParameterId) -> Polynomial {
+        Polynomial { terms: BTreeMap::from([(Powers::from([(parameter, 1)]), Number::one())]) }
+    }
+
+    /// Coefficients by powers, in a fixed order.
+    pub fn terms(&self) -> impl Iterator<Item = (&Powers, &Number)> {
+        self.terms.iter()
+    }
+
+    /// Whether this is 0.
+    pub fn is_zero(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// The number, if no parameter occurs.
+    pub fn as_number(&self) -> Option<Number> {
+        match self.terms.len() {
+            0 => Some(Number::zero()),
+            1 => self.terms.get(&Powers::new()).cloned(),
+            _ => None,
+        }
+    }
+
+    /// The value where each parameter has the value `of` says.
+    pub fn evaluate(&self, of: &dyn Fn(ParameterId) -> Number) -> Number {
+        self.terms.iter().fold(Number::zero(), |sum, (powers, coefficient)| {
+            let term = powers.iter().fold(coefficient.clone(), |term, (&parameter, &power)| {
+                let value = of(parameter);
+                (0..power).fold(term, |term, _| &term * &value)
+            });
+            &sum + &term
+        })
+    }
+
+    /// The parameters that occur.
+    pub fn variables(&self) -> BTreeSet<ParameterId> {
+        self.terms.keys().flat_map(|powers| powers.keys().copied()).collect()
+    }
+
+    /// Whether each term holds at most one of `parameters`, to the first power.
+    pub fn is_affine_in(&self, parameters: &BTreeSet<ParameterId>) -> bool {
+        self.terms
+            .keys()
+            .all(|powers| powers.iter().filter(|(p, _)| parameters.contains(p)).map(|(_, power)| power).sum::<u32>() <= 1)
+    }
+}
+
+impl From<Number> for Polynomial {
+    fn from(value: Number) -> Polynomial {
+        if value.is_zero() {
+            return Polynomial::zero();
+        }
+        Polynomial { terms: BTreeMap::from([(Powers::new(), value)]) }
+    }
+}
+
+impl Add for &Polynomial {
+    type Output = Polynomial;
+    fn add(self, other: &Polynomial) -> Polynomial {
+        let mut sum = self.clone();
+        for (powers, coefficient) in &other.terms {
+            let total = sum.terms.get(powers).map_or_else(|| coefficient.clone(), |c| c + coefficient);
+            if total.is_zero() {
+                sum.terms.remove(powers);
+            } else {
+                sum.terms.insert(powers.clone(), total);
+            }
+        }
+        sum
+    }
+}
+
+impl Neg for &Polynomial {
+    type Output = Polynomial;
+    fn neg(self) -> Polynomial {
+        Polynomial { terms: self.terms.iter().map(|(powers, c)| (powers.clone(), -c)).collect() }
+    }
+}
+
+impl Sub for &Polynomial {
+    type Output = Polynomial;
+    fn sub(self, other: &Polynomial) -> Polynomial {
+        self + &-other
+    }
+}
+
+impl Mul for &Polynomial {
+    type Output = Polynomial;
+    fn mul(self, other: &Polynomial) -> Polynomial {
+        let mut product = Polynomial::zero();
+        for (a, ca) in &self.terms {
+            for (b, cb) in &other.terms {
+                let mut powers = a.clone();
+                for (&parameter, &power) in b {
+                    *powers.entry(parameter).or_default() += power;
+                }
+                product = &product + &Polynomial { terms: BTreeMap::from([(powers, ca * cb)]) };
+            }
+        }
+        product
+    }
+}

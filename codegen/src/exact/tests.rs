@@ -1,0 +1,91 @@
+use super::*;
+
+fn rational(n: i64, d: i64) -> Number {
+    Number::from(Rational::from(n) / Rational::from(d))
+}
+
+fn degrees(n: i64) -> Angle {
+    Angle::new(&Number::pi() * &rational(n, 180))
+}
+
+#[test]
+fn multiples_of_15_degrees_have_exact_sines() {
+    for k in -48..48 {
+        let angle = degrees(15 * k);
+        let (s, c) = (angle.sin(), angle.cos());
+        assert_eq!(&(&s * &s) + &(&c * &c), Number::one(), "{k}");
+        let expected = (15.0 * k as f64).to_radians().sin();
+        assert!((s.to_f64() - expected).abs() < 1e-13, "{k}: {s} = {} is not {expected}", s.to_f64());
+    }
+    assert_eq!(degrees(90).cos(), Number::zero());
+    assert_eq!(degrees(75).sin().to_string(), "1/4*sqrt(2) + 1/4*sqrt(2)*sqrt(3)");
+}
+
+#[test]
+fn general_angles_are_points_of_the_circle_with_the_nearest_floats() {
+    for n in [-70i64, -7, 1, 7, 14, 157, 1_000, 123_456] {
+        let angle = Angle::new(rational(n, 10));
+        let (s, c) = (angle.sin(), angle.cos());
+        assert_eq!(&(&s * &s) + &(&c * &c), Number::one());
+        // The standard library's sine is within an ulp or two of the nearest f64 of the exact argument's rounding.
+        assert!((s.to_f64() - (n as f64 / 10.0).sin()).abs() < 1e-11, "{n}");
+        assert!((c.to_f64() - (n as f64 / 10.0).cos()).abs() < 1e-11, "{n}");
+    }
+    let mixed = Angle::new(&rational(7, 10) + &(&Number::pi() * &rational(1, 2)));
+    assert_eq!(mixed.sin(), Angle::new(rational(7, 10)).cos());
+    assert_eq!(mixed.cos(), -&Angle::new(rational(7, 10)).sin());
+}
+
+#[test]
+fn roots_are_reduced() {
+    let root = |n: i64| Number::from(n).sqrt().unwrap();
+    assert_eq!(root(36), Number::from(6));
+    assert_eq!(&root(2) * &root(3), root(6));
+    assert_eq!(root(12), &Number::from(2) * &root(3));
+    assert_eq!(rational(1, 2).sqrt().unwrap(), &root(2) * &rational(1, 2));
+    assert_eq!(Number::from(-1).sqrt(), None);
+    assert_eq!(&root(1_000_003) * &root(1_000_003), Number::from(1_000_003));
+    let nested = (&Number::from(3) + &root(5)).sqrt().unwrap();
+    assert_eq!(&nested * &nested, &Number::from(3) + &root(5));
+    assert!((nested.to_f64() - (3.0 + 5.0f64.sqrt()).sqrt()).abs() < 1e-15);
+}
+
+#[test]
+fn quotients_are_exact() {
+    let root = |n: i64| Number::from(n).sqrt().unwrap();
+    for divisor in
+        [Number::from(7), root(2), &root(2) + &root(3), &Number::pi() * &root(5), &Number::one() + &(&root(2) - &root(6))]
+    {
+        let quotient = Number::from(5).checked_div(&divisor).unwrap();
+        assert_eq!(&quotient * &divisor, Number::from(5), "{divisor}");
+    }
+    assert_eq!(Number::one().checked_div(&Number::zero()), None);
+    let opaque = Number::one().checked_div(&(&Number::one() + &Number::pi())).unwrap();
+    assert!((opaque.to_f64() - 1.0 / (1.0 + std::f64::consts::PI)).abs() < 1e-16);
+}
+
+#[test]
+fn floats_are_the_nearest() {
+    assert_eq!(Number::pi().to_f64(), std::f64::consts::PI);
+    assert_eq!(Number::pi().to_f32(), std::f32::consts::PI);
+    assert_eq!(Number::from(2).sqrt().unwrap().to_f64(), std::f64::consts::SQRT_2);
+    for text in ["0.1", "9.81", "1e-320", "1.7976931348623157e308", "4.9e-324", "0.000244140625", "1e22", "123456789.123456789"] {
+        let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
+        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+        let digits = Rational::from(format!("{whole}{fraction}").parse::<IBig>().unwrap());
+        let power = exponent.parse::<i32>().unwrap() - fraction.len() as i32;
+        let ten = Rational::from(UBig::from(10u8).pow(power.unsigned_abs() as usize));
+        let exact = Number::from(if power < 0 { digits / ten } else { digits * ten });
+        assert_eq!(exact.to_f64(), text.parse::<f64>().unwrap(), "{text}");
+        assert_eq!(exact.to_f32(), text.parse::<f32>().unwrap(), "{text}");
+    }
+}
+
+#[test]
+fn signs_are_exact() {
+    let close = &Number::from(2).sqrt().unwrap() - &rational(665857, 470832);
+    assert_eq!(close.sign(), Ordering::Less);
+    assert_eq!((&Number::pi() - &rational(355, 113)).sign(), Ordering::Less);
+    assert_eq!((&Number::pi() - &rational(22, 7)).sign(), Ordering::Less);
+    assert_eq!((&Number::pi() - &rational(333, 106)).sign(), Ordering::Greater);
+}
