@@ -1,0 +1,393 @@
+//! Expressions: an exact ring with shared nodes and fingerprints.
+//!
+//! Every quantity of an arm is a polynomial in sines and cosines of joint variables, joint variables of prismatic joints, rates,
+//! accelerations and parameters, with exact constants as coefficients; forward dynamics adds reciprocals of pivots. So a node is
+//!
+//! ```text
+//! Constant | Symbol | Add(a, b) | Mul(a, b) | Reciprocal(a)
+//! ```
+//!
+//! Sine and cosine are inputs, and d sin/dq = cos, d cos/dq = -sin is all of calculus.
+//!
+//! **Signs are edges.** An [`ExprId`] is a node and a sign, so that x and -x share their node and a sign change costs nothing.
+//!
+//! **Fingerprints.** Each node carries its value at two fixed points of a prime field ([`field`]), where each (sine, cosine) is a
+//! point of the circle. Two polynomials of degree d that differ agree at a random point with odds d/p, at two with (d/p)²,
+//! which is below 2^-110 here: equal fingerprints mean equal expressions. A new node equal to an old one (or to its negative) *is*
+//! the old one: that finds sin² + cos² = 1, distributivity and the addition theorems without a rewrite rule, and it makes every
+//! identity between expressions an exact test. Constants are interned by their exact value, never by fingerprint. The points are
+//! fixed: the same expressions on every machine, in every run.
+
+pub mod field;
+pub mod matrix;
+pub mod normal_form;
+pub mod print;
+
+mod calculus;
+mod evaluate;
+
+use std::collections::{BTreeMap, HashMap};
+use std::rc::Rc;
+
+use crate::exact::{Number, Polynomial};
+use field::{scramble, Element, Field};
+
+/// What the arguments of an emitted function are; joint i has index i - 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Symbol {
+    /// sin(q_i).
+    Sine(u16),
+    /// cos(q_i).
+    Cosine(u16),
+    /// q_i itself (prismatic joints).
+    Position(u16),
+    /// dq_i.
+    Rate(u16),
+    /// sign(dq_i), with sign(0) = 0.
+    RateSign(u16),
+    /// ddq_i.
+    Acceleration(u16),
+    /// dqr_i, the reference rate.
+    ReferenceRate(u16),
+    /// ddqr_i, the reference acceleration.
+    ReferenceAcceleration(u16),
+    /// tau_i.
+    Torque(u16),
+    /// A named parameter of the description, or an entry of the parameter vector pi.
+    Parameter(u16),
+}
+
+/// A node and a sign.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ExprId(u32);
+
+/// A node. Operands always stand before it in the pool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Node {
+    /// An exact constant, not negative in its leading coefficient.
+    Constant(ConstantId),
+    /// An input.
+    Symbol(Symbol),
+    /// a + b; at most the second is negated.
+    Add(ExprId, ExprId),
+    /// a b; neither is negated.
+    Mul(ExprId, ExprId),
+    /// 1/a; a is not negated.
+    Reciprocal(ExprId),
+}
+
+/// Index of an exact constant in its pool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ConstantId(u32);
+
+/// Values at the two points of the field.
+pub type Fingerprint = [Element; 2];
+
+/// The arena of expressions.
+#[derive(Clone)]
+pub struct Pool {
+    field: Field,
+    nodes: Vec<Node>,
+    fingerprints: Vec<Fingerprint>,
+    constants: Vec<Rc<Number>>,
+    constant_nodes: BTreeMap<Rc<Number>, ExprId>,
+    /// Look-up only: its order reaches nothing.
+    known: HashMap<Fingerprint, ExprId>,
+    at_origin: Vec<Option<Rc<Number>>>,
+}
+
+impl ExprId {
+    /// 0, in every pool.
+    pub const ZERO: ExprId = ExprId(0);
+    /// 1, in every pool.
+    pub const ONE: ExprId = ExprId(2);
+
+    fn new(index: usize) -> ExprId {
+        ExprId(u32::try_from(index << 1).expect("a pool holds less than 2^31 nodes"))
+    }
+
+    /// Index of the node.
+    pub fn index(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    /// Whether the node is negated.
+    pub fn is_negated(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// The node without the sign.
+    pub fn unsigned(self) -> ExprId {
+        ExprId(self.0 & !1)
+    }
+
+    /// Negated if `negate`.
+    pub fn signed(self, negate: bool) -> ExprId {
+        if self == ExprId::ZERO {
+            self
+        } else {
+            ExprId(self.0 ^ u32::from(negate))
+        }
+    }
+}
+
+impl std::ops::Neg for ExprId {
+    type Output = ExprId;
+    fn neg(self) -> ExprId {
+        self.signed(true)
+    }
+}
+
+impl std::fmt::Debug for ExprId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}#{}", if self.is_negated() { "-" } else { "" }, self.index())
+    }
+}
+
+impl Pool {
+    /// An empty pool over a field that has the roots its constants need.
+    pub fn new(field: Field) -> Pool {
+        let mut pool = Pool {
+            field,
+            nodes: Vec::new(),
+            fingerprints: Vec::new(),
+            constants: Vec::new(),
+            constant_nodes: BTreeMap::new(),
+            known: HashMap::new(),
+            at_origin: Vec::new(),
+        };
+        assert_eq!((pool.constant(&Number::zero()), pool.constant(&Number::one())), (ExprId::ZERO, ExprId::ONE));
+        pool
+    }
+
+    /// The node behind an expression; its sign is the caller's to add.
+    pub fn node(&self, expr: ExprId) -> Node {
+        self.nodes[expr.index()]
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there are no nodes: never, since 0 and 1 are always there.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The field of the fingerprints.
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+
+    /// The fingerprint, sign included: equal fingerprints mean equal expressions, across pools over the same field too.
+    pub fn fingerprint(&self, expr: ExprId) -> Fingerprint {
+        let fingerprint = self.fingerprints[expr.index()];
+        if expr.is_negated() {
+            self.negated(fingerprint)
+        } else {
+            fingerprint
+        }
+    }
+
+    fn negated(&self, fingerprint: Fingerprint) -> Fingerprint {
+        fingerprint.map(|x| self.field.neg(x))
+    }
+
+    /// The exact value, if the expression is a constant.
+    pub fn as_constant(&self, expr: ExprId) -> Option<Number> {
+        match self.node(expr) {
+            Node::Constant(id) => {
+                let value = &*self.constants[id.0 as usize];
+                Some(if expr.is_negated() { -value } else { value.clone() })
+            }
+            _ => None,
+        }
+    }
+
+    /// An exact constant.
+    pub fn constant(&mut self, value: &Number) -> ExprId {
+        let negative = value.leads_negative();
+        let size = Rc::new(if negative { -value } else { value.clone() });
+        if let Some(&expr) = self.constant_nodes.get(&size) {
+            return expr.signed(negative);
+        }
+        let fingerprint = [self.field.number(&size); 2];
+        let id = ConstantId(self.constants.len() as u32);
+        let expr = self.push(Node::Constant(id), fingerprint);
+        self.constants.push(size.clone());
+        self.constant_nodes.insert(size, expr);
+        expr.signed(negative)
+    }
+
+    /// An exact integer.
+    pub fn integer(&mut self, value: i64) -> ExprId {
+        self.constant(&Number::from(value))
+    }
+
+    /// An exact fraction.
+    pub fn fraction(&mut self, numerator: i64, denominator: i64) -> ExprId {
+        let value = crate::exact::Rational::from(numerator) / crate::exact::Rational::from(denominator);
+        self.constant(&Number::from(value))
+    }
+
+    /// An input.
+    pub fn symbol(&mut self, symbol: Symbol) -> ExprId {
+        let fingerprint = [0, 1].map(|point| self.symbol_value(symbol, point));
+        if let Some(&expr) = self.known.get(&fingerprint) {
+            return expr;
+        }
+        self.push(Node::Symbol(symbol), fingerprint)
+    }
+
+    fn symbol_value(&self, symbol: Symbol, point: u64) -> Element {
+        let value = |kind: u64, index: u16| self.field.from_u64(scramble(scramble(kind << 20 | u64::from(index)) ^ (point + 1)));
+        match symbol {
+            Symbol::Sine(i) => self.field.circle(value(1, i)).0,
+            Symbol::Cosine(i) => self.field.circle(value(1, i)).1,
+            Symbol::Position(i) => value(2, i),
+            Symbol::Rate(i) => value(3, i),
+            Symbol::RateSign(i) => value(4, i),
+            Symbol::Acceleration(i) => value(5, i),
+            Symbol::ReferenceRate(i) => value(6, i),
+            Symbol::ReferenceAcceleration(i) => value(7, i),
+            Symbol::Torque(i) => value(8, i),
+            Symbol::Parameter(i) => value(9, i),
+        }
+    }
+
+    /// A polynomial of the description: its parameters become what `parameter` says.
+    pub fn polynomial(&mut self, polynomial: &Polynomial, parameter: &dyn Fn(&mut Pool, u32) -> ExprId) -> ExprId {
+        let mut sum = ExprId::ZERO;
+        for (powers, coefficient) in polynomial.terms() {
+            let mut term = self.constant(coefficient);
+            for (id, &power) in powers {
+                let base = parameter(self, id.0);
+                for _ in 0..power {
+                    term = self.mul(term, base);
+                }
+            }
+            sum = self.add(sum, term);
+        }
+        sum
+    }
+
+    /// a + b.
+    pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        if a == ExprId::ZERO {
+            return b;
+        }
+        if b == ExprId::ZERO {
+            return a;
+        }
+        if let (Some(x), Some(y)) = (self.as_constant(a), self.as_constant(b)) {
+            return self.constant(&(&x + &y));
+        }
+        // The node holds the sum with its first operand positive: x - y, never -x + y or -x - y.
+        let (a, b) = if a.is_negated() && !b.is_negated() { (b, a) } else { (a, b) };
+        let negate = a.is_negated();
+        let (a, b) = (a.signed(negate), b.signed(negate));
+        let (fa, fb) = (self.fingerprint(a), self.fingerprint(b));
+        let fingerprint = [0, 1].map(|i| self.field.add(fa[i], fb[i]));
+        self.find_or_push(Node::Add(a, b), fingerprint).signed(negate)
+    }
+
+    /// a - b.
+    pub fn sub(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        self.add(a, -b)
+    }
+
+    /// a b.
+    pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        let negate = a.is_negated() != b.is_negated();
+        let (a, b) = (a.unsigned(), b.unsigned());
+        if a == ExprId::ZERO || b == ExprId::ZERO {
+            return ExprId::ZERO;
+        }
+        if a == ExprId::ONE {
+            return b.signed(negate);
+        }
+        if b == ExprId::ONE {
+            return a.signed(negate);
+        }
+        match (self.as_constant(a), self.as_constant(b)) {
+            (Some(x), Some(y)) => return self.constant(&(&x * &y)).signed(negate),
+            (None, Some(_)) => return self.mul(b, a).signed(negate),
+            // Two constant factors in a row are one.
+            (Some(x), None) => {
+                if let Node::Mul(c, rest) = self.node(b) {
+                    if let Some(y) = self.as_constant(c) {
+                        let factor = self.constant(&(&x * &y));
+                        return self.mul(factor, rest).signed(negate);
+                    }
+                }
+            }
+            (None, None) => {}
+        }
+        let (fa, fb) = (self.fingerprint(a), self.fingerprint(b));
+        let fingerprint = [0, 1].map(|i| self.field.mul(fa[i], fb[i]));
+        self.find_or_push(Node::Mul(a, b), fingerprint).signed(negate)
+    }
+
+    /// 1/a. The caller knows that a is not identically zero.
+    pub fn reciprocal(&mut self, a: ExprId) -> ExprId {
+        let negate = a.is_negated();
+        let a = a.unsigned();
+        if let Some(value) = self.as_constant(a) {
+            let inverse = Number::one().checked_div(&value).expect("the divisor is not zero");
+            return self.constant(&inverse).signed(negate);
+        }
+        let fingerprint = self.fingerprint(a).map(|x| self.field.inverse(x));
+        self.find_or_push(Node::Reciprocal(a), fingerprint).signed(negate)
+    }
+
+    /// Whether two expressions are equal: an exact test with the odds of a miss given above.
+    pub fn equal(&self, a: ExprId, b: ExprId) -> bool {
+        self.fingerprint(a) == self.fingerprint(b)
+    }
+
+    fn find_or_push(&mut self, node: Node, fingerprint: Fingerprint) -> ExprId {
+        if fingerprint.iter().all(|&x| x == self.field.zero()) {
+            return ExprId::ZERO;
+        }
+        if let Some(&expr) = self.known.get(&fingerprint) {
+            return expr;
+        }
+        if let Some(&expr) = self.known.get(&self.negated(fingerprint)) {
+            return -expr;
+        }
+        // The two points differ in every symbol: where both give the same, no symbol is left in the polynomial.
+        if fingerprint[0] == fingerprint[1] {
+            let value = self.value_at_origin(node);
+            if self.field.number(&value) == fingerprint[0] {
+                return self.constant(&value);
+            }
+        }
+        self.push(node, fingerprint)
+    }
+
+    fn push(&mut self, node: Node, fingerprint: Fingerprint) -> ExprId {
+        let expr = ExprId::new(self.nodes.len());
+        self.nodes.push(node);
+        self.fingerprints.push(fingerprint);
+        self.at_origin.push(None);
+        self.known.entry(fingerprint).or_insert(expr);
+        expr
+    }
+
+    /// a + b + ...
+    pub fn sum(&mut self, terms: impl IntoIterator<Item = ExprId>) -> ExprId {
+        terms.into_iter().fold(ExprId::ZERO, |sum, term| self.add(sum, term))
+    }
+
+    /// a_1 b_1 + a_2 b_2 + ...
+    pub fn dot(&mut self, a: &[ExprId], b: &[ExprId]) -> ExprId {
+        a.iter().zip(b).fold(ExprId::ZERO, |sum, (&x, &y)| {
+            let product = self.mul(x, y);
+            self.add(sum, product)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

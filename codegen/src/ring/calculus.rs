@@ -1,0 +1,84 @@
+//! Differentiation: the sum, product and reciprocal rules over the shared graph, each node once.
+
+use std::collections::HashMap;
+
+use super::{ExprId, Node, Pool, Symbol};
+
+impl Pool {
+    /// The derivative of each expression, where `of` gives the derivative of each symbol.
+    pub fn differentiate(&mut self, exprs: &[ExprId], of: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId) -> Vec<ExprId> {
+        let mut done: HashMap<usize, ExprId> = HashMap::new();
+        exprs.iter().map(|&expr| self.differentiate_one(expr, of, &mut done)).collect()
+    }
+
+    fn differentiate_one(
+        &mut self,
+        expr: ExprId,
+        of: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId,
+        done: &mut HashMap<usize, ExprId>,
+    ) -> ExprId {
+        // A stack of its own: expressions of long arms are deep.
+        let mut stack = vec![(expr.unsigned(), false)];
+        while let Some((expr, ready)) = stack.pop() {
+            if done.contains_key(&expr.index()) {
+                continue;
+            }
+            let node = self.node(expr);
+            if !ready {
+                stack.push((expr, true));
+                match node {
+                    Node::Add(a, b) | Node::Mul(a, b) => stack.extend([(b.unsigned(), false), (a.unsigned(), false)]),
+                    Node::Reciprocal(a) => stack.push((a, false)),
+                    Node::Constant(_) | Node::Symbol(_) => {}
+                }
+                continue;
+            }
+            let derivative = |x: ExprId| done[&x.index()].signed(x.is_negated());
+            let value = match node {
+                Node::Constant(_) => ExprId::ZERO,
+                Node::Symbol(symbol) => of(self, symbol),
+                Node::Add(a, b) => {
+                    let (da, db) = (derivative(a), derivative(b));
+                    self.add(da, db)
+                }
+                Node::Mul(a, b) => {
+                    let (da, db) = (derivative(a), derivative(b));
+                    let (left, right) = (self.mul(da, b), self.mul(a, db));
+                    self.add(left, right)
+                }
+                Node::Reciprocal(a) => {
+                    let (da, square) = (derivative(a), self.mul(expr, expr));
+                    -self.mul(da, square)
+                }
+            };
+            done.insert(expr.index(), value);
+        }
+        done[&expr.index()].signed(expr.is_negated())
+    }
+
+    /// ∂/∂q_joint of each expression.
+    pub fn partial_derivative(&mut self, exprs: &[ExprId], joint: u16) -> Vec<ExprId> {
+        self.differentiate(exprs, &mut |pool, symbol| match symbol {
+            Symbol::Sine(i) if i == joint => pool.symbol(Symbol::Cosine(i)),
+            Symbol::Cosine(i) if i == joint => -pool.symbol(Symbol::Sine(i)),
+            Symbol::Position(i) if i == joint => ExprId::ONE,
+            _ => ExprId::ZERO,
+        })
+    }
+
+    /// d/dt of expressions in q alone, along dq: Σ_i ∂/∂q_i · dq_i.
+    pub fn time_derivative(&mut self, exprs: &[ExprId]) -> Vec<ExprId> {
+        self.differentiate(exprs, &mut |pool, symbol| match symbol {
+            Symbol::Sine(i) => {
+                let (c, rate) = (pool.symbol(Symbol::Cosine(i)), pool.symbol(Symbol::Rate(i)));
+                pool.mul(c, rate)
+            }
+            Symbol::Cosine(i) => {
+                let (s, rate) = (pool.symbol(Symbol::Sine(i)), pool.symbol(Symbol::Rate(i)));
+                -pool.mul(s, rate)
+            }
+            Symbol::Position(i) => pool.symbol(Symbol::Rate(i)),
+            _ => ExprId::ZERO,
+        })
+    }
+}

@@ -1,0 +1,121 @@
+//! Exact evaluation: over exact constants and, through the fingerprints, over the prime field.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::{ExprId, Node, Pool, Symbol};
+use crate::exact::Number;
+
+impl Pool {
+    /// The exact values of expressions where each symbol has the value `of` says. `None` where a reciprocal meets 0.
+    pub fn evaluate(&self, exprs: &[ExprId], of: &dyn Fn(Symbol) -> Number) -> Option<Vec<Number>> {
+        let mut needed = vec![false; self.len()];
+        exprs.iter().for_each(|e| needed[e.index()] = true);
+        for index in (0..self.len()).rev() {
+            if needed[index] {
+                match self.nodes[index] {
+                    Node::Add(a, b) | Node::Mul(a, b) => {
+                        needed[a.index()] = true;
+                        needed[b.index()] = true;
+                    }
+                    Node::Reciprocal(a) => needed[a.index()] = true,
+                    Node::Constant(_) | Node::Symbol(_) => {}
+                }
+            }
+        }
+        let mut values: Vec<Number> = vec![Number::zero(); self.len()];
+        for index in 0..self.len() {
+            if needed[index] {
+                values[index] = self.combine(self.nodes[index], of, |e| values[e.index()].clone())?;
+            }
+        }
+        Some(exprs.iter().map(|e| if e.is_negated() { -&values[e.index()] } else { values[e.index()].clone() }).collect())
+    }
+
+    fn combine(&self, node: Node, of: &dyn Fn(Symbol) -> Number, value: impl Fn(ExprId) -> Number) -> Option<Number> {
+        let signed = |e: ExprId| if e.is_negated() { -&value(e) } else { value(e) };
+        Some(match node {
+            Node::Constant(id) => (*self.constants[id.0 as usize]).clone(),
+            Node::Symbol(symbol) => of(symbol),
+            Node::Add(a, b) => &signed(a) + &signed(b),
+            Node::Mul(a, b) => &signed(a) * &signed(b),
+            Node::Reciprocal(a) => Number::one().checked_div(&signed(a))?,
+        })
+    }
+
+    /// The value of a node of constant value: where all angles are 0 and everything else is 0 too.
+    pub(super) fn value_at_origin(&mut self, node: Node) -> Number {
+        let origin = |symbol| match symbol {
+            Symbol::Cosine(_) => Number::one(),
+            _ => Number::zero(),
+        };
+        let operands = match node {
+            Node::Add(a, b) | Node::Mul(a, b) => vec![a, b],
+            Node::Reciprocal(a) => vec![a],
+            Node::Constant(_) | Node::Symbol(_) => vec![],
+        };
+        let mut stack: Vec<usize> = operands.iter().map(|e| e.index()).collect();
+        while let Some(&index) = stack.last() {
+            if self.at_origin[index].is_some() {
+                stack.pop();
+                continue;
+            }
+            let pending: Vec<usize> = match self.nodes[index] {
+                Node::Add(a, b) | Node::Mul(a, b) => vec![a.index(), b.index()],
+                Node::Reciprocal(a) => vec![a.index()],
+                Node::Constant(_) | Node::Symbol(_) => vec![],
+            }
+            .into_iter()
+            .filter(|&i| self.at_origin[i].is_none())
+            .collect();
+            if pending.is_empty() {
+                let value = self.combine(self.nodes[index], &origin, |e| self.origin_value(e));
+                // A pole at the origin: no constant; any value will do, since the caller checks it against the fingerprint.
+                self.at_origin[index] = Some(Rc::new(value.unwrap_or_default()));
+                stack.pop();
+            } else {
+                stack.extend(pending);
+            }
+        }
+        self.combine(node, &origin, |e| self.origin_value(e)).unwrap_or_default()
+    }
+
+    fn origin_value(&self, expr: ExprId) -> Number {
+        Number::clone(self.at_origin[expr.index()].as_ref().expect("operands come first"))
+    }
+
+    /// Rational points of the circle and small rational numbers for all other symbols: a state to evaluate at, by number.
+    pub fn rational_state(number: u64) -> impl Fn(Symbol) -> Number {
+        let cache = std::cell::RefCell::new(HashMap::<Symbol, Number>::new());
+        move |symbol| cache.borrow_mut().entry(symbol).or_insert_with(|| rational_value(symbol, number)).clone()
+    }
+}
+
+fn rational_value(symbol: Symbol, number: u64) -> Number {
+    let draw = |kind: u64, index: u16| super::scramble(super::scramble(number.wrapping_mul(64) + kind) ^ u64::from(index));
+    let small = |kind: u64, index: u16| {
+        let bits = draw(kind, index);
+        crate::exact::Rational::from((bits % 41) as i64 - 20) / crate::exact::Rational::from((bits >> 32) as i64 % 5 + 1)
+    };
+    // (sin, cos) = (2t, 1 - t²)/(1 + t²)
+    let circle = |index: u16| {
+        let t = small(1, index);
+        let square = &t * &t;
+        let scale = crate::exact::Rational::ONE / (crate::exact::Rational::ONE + &square);
+        (t * crate::exact::Rational::from(2) * &scale, (crate::exact::Rational::ONE - square) * scale)
+    };
+    Number::from(match symbol {
+        Symbol::Sine(i) => circle(i).0,
+        Symbol::Cosine(i) => circle(i).1,
+        Symbol::Position(i) => small(2, i),
+        Symbol::Rate(i) => small(3, i),
+        Symbol::RateSign(i) => {
+            crate::exact::Rational::from(if draw(3, i) % 41 < 20 { -1 } else { i64::from(draw(3, i) % 41 != 20) })
+        }
+        Symbol::Acceleration(i) => small(5, i),
+        Symbol::ReferenceRate(i) => small(6, i),
+        Symbol::ReferenceAcceleration(i) => small(7, i),
+        Symbol::Torque(i) => small(8, i),
+        Symbol::Parameter(i) => small(9, i),
+    })
+}

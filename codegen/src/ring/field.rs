@@ -1,0 +1,306 @@
+//! The prime field in which expressions have their fingerprints.
+//!
+//! Arithmetic modulo p = 2^64 - 2^32 + 1, in which -1, 2 and 3 have square roots (p = 1 mod 24), in Montgomery form. Every
+//! exact constant has a value here: a fraction by division, a root by a square root of the field, pi and the angles that are
+//! no multiples of pi/12 by fixed values on which nothing is known, with every (sine, cosine) a point of the circle. If the
+//! constants of a robot hold a root that the field lacks, the next smaller prime = 1 mod 24 that has it is taken instead.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use dashu_base::{Signed, UnsignedAbs};
+use dashu_int::UBig;
+
+use crate::exact::{Atom, Number, Rational};
+
+/// 2^64 - 2^32 + 1.
+const FIRST_PRIME: u64 = 0xffff_ffff_0000_0001;
+
+/// How many primes are tried before a root is left without its algebraic value.
+const PRIMES_TRIED: usize = 4096;
+
+/// An element of the field, in Montgomery form: equal elements have equal representations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Element(u64);
+
+/// The field, with the values of the atoms met so far.
+#[derive(Clone, Debug)]
+pub struct Field {
+    p: u64,
+    /// -1/p mod 2^64.
+    minus_inverse: u64,
+    /// 2^128 mod p.
+    r_squared: u64,
+    atoms: BTreeMap<Atom, Element>,
+}
+
+impl Field {
+    /// A field in which the roots of `numbers` exist.
+    pub fn for_constants<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Field {
+        let mut roots = BTreeSet::new();
+        for number in numbers {
+            collect_roots(number, &mut roots);
+        }
+        let mut candidates = std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24)).filter(|&p| is_prime(p));
+        (0..PRIMES_TRIED)
+            .filter_map(|_| candidates.next().map(Field::modulo))
+            .find(|field| roots.iter().all(|root| field.clone().root_atom(root).is_some()))
+            .unwrap_or_else(|| Field::modulo(FIRST_PRIME))
+    }
+
+    fn modulo(p: u64) -> Field {
+        // Newton's iteration doubles the correct bits of the inverse modulo 2^64.
+        let inverse = (0..6).fold(p, |x, _| x.wrapping_mul(2u64.wrapping_sub(p.wrapping_mul(x))));
+        let r = (u128::MAX % u128::from(p) + 1) % u128::from(p);
+        Field { p, minus_inverse: inverse.wrapping_neg(), r_squared: r as u64, atoms: BTreeMap::new() }
+    }
+
+    /// The prime.
+    pub fn prime(&self) -> u64 {
+        self.p
+    }
+
+    /// 0.
+    pub fn zero(&self) -> Element {
+        Element(0)
+    }
+
+    /// 1.
+    pub fn one(&self) -> Element {
+        self.from_u64(1)
+    }
+
+    /// An integer modulo p.
+    #[allow(clippy::wrong_self_convention)]
+    pub fn from_u64(&self, value: u64) -> Element {
+        self.reduce(u128::from(value % self.p) * u128::from(self.r_squared))
+    }
+
+    /// The representative in 0..p.
+    pub fn to_u64(&self, a: Element) -> u64 {
+        self.reduce(u128::from(a.0)).0
+    }
+
+    fn reduce(&self, t: u128) -> Element {
+        let m = (t as u64).wrapping_mul(self.minus_inverse);
+        let (sum, overflow) = t.overflowing_add(u128::from(m) * u128::from(self.p));
+        let high = (sum >> 64) | (u128::from(overflow) << 64);
+        Element(if high >= u128::from(self.p) { (high - u128::from(self.p)) as u64 } else { high as u64 })
+    }
+
+    /// a + b.
+    pub fn add(&self, a: Element, b: Element) -> Element {
+        let sum = u128::from(a.0) + u128::from(b.0);
+        Element(if sum >= u128::from(self.p) { (sum - u128::from(self.p)) as u64 } else { sum as u64 })
+    }
+
+    /// -a.
+    pub fn neg(&self, a: Element) -> Element {
+        Element(if a.0 == 0 { 0 } else { self.p - a.0 })
+    }
+
+    /// a - b.
+    pub fn sub(&self, a: Element, b: Element) -> Element {
+        self.add(a, self.neg(b))
+    }
+
+    /// a b.
+    pub fn mul(&self, a: Element, b: Element) -> Element {
+        self.reduce(u128::from(a.0) * u128::from(b.0))
+    }
+
+    /// a^n.
+    pub fn pow(&self, a: Element, n: u64) -> Element {
+        let mut result = self.one();
+        for bit in (0..64).rev() {
+            result = self.mul(result, result);
+            if n >> bit & 1 == 1 {
+                result = self.mul(result, a);
+            }
+        }
+        result
+    }
+
+    /// 1/a; 0 for 0.
+    pub fn inverse(&self, a: Element) -> Element {
+        self.pow(a, self.p - 2)
+    }
+
+    /// A square root, the one with the smaller representative, if there is one (Tonelli and Shanks).
+    pub fn sqrt(&self, a: Element) -> Option<Element> {
+        if a.0 == 0 {
+            return Some(a);
+        }
+        let (one, minus_one) = (self.one(), self.neg(self.one()));
+        if self.pow(a, (self.p - 1) / 2) != one {
+            return None;
+        }
+        let twos = (self.p - 1).trailing_zeros();
+        let odd = (self.p - 1) >> twos;
+        let non_residue =
+            (2..).map(|n| self.from_u64(n)).find(|&n| self.pow(n, (self.p - 1) / 2) == minus_one).expect("half of the field");
+        let (mut m, mut c) = (twos, self.pow(non_residue, odd));
+        let (mut t, mut r) = (self.pow(a, odd), self.pow(a, odd.div_ceil(2)));
+        while t != one {
+            let mut i = 0;
+            let mut square = t;
+            while square != one {
+                square = self.mul(square, square);
+                i += 1;
+            }
+            let b = (0..m - i - 1).fold(c, |b, _| self.mul(b, b));
+            m = i;
+            c = self.mul(b, b);
+            t = self.mul(t, c);
+            r = self.mul(r, b);
+        }
+        Some(if self.to_u64(r) <= self.p / 2 { r } else { self.neg(r) })
+    }
+
+    /// The value of an exact constant.
+    pub fn number(&mut self, number: &Number) -> Element {
+        let mut sum = self.zero();
+        for (monomial, coefficient) in number.terms() {
+            let mut product = self.rational(coefficient);
+            for (atom, power) in monomial {
+                let value = self.atom(atom);
+                let value = if *power < 0 { self.inverse(value) } else { value };
+                product = self.mul(product, self.pow(value, u64::from(power.unsigned_abs())));
+            }
+            sum = self.add(sum, product);
+        }
+        sum
+    }
+
+    fn rational(&self, value: &Rational) -> Element {
+        let modulo = |n: &UBig| self.from_u64(u64::try_from(n % UBig::from(self.p)).expect("a remainder of p"));
+        let size = self.mul(modulo(&value.numerator().unsigned_abs()), self.inverse(modulo(value.denominator())));
+        if value.is_negative() {
+            self.neg(size)
+        } else {
+            size
+        }
+    }
+
+    fn atom(&mut self, atom: &Atom) -> Element {
+        if let Some(&value) = self.atoms.get(atom) {
+            return value;
+        }
+        let value = match atom {
+            Atom::Root(_) | Atom::RootOf(_) => self.root_atom(atom).unwrap_or_else(|| self.unrelated(atom)),
+            Atom::Pi => self.unrelated(atom),
+            Atom::Sine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).0,
+            Atom::Cosine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).1,
+            Atom::Inverse(number) => {
+                let value = self.number(number);
+                self.inverse(value)
+            }
+        };
+        self.atoms.insert(atom.clone(), value);
+        value
+    }
+
+    fn root_atom(&mut self, atom: &Atom) -> Option<Element> {
+        let square = match atom {
+            // A root of a product that was not factored or nested might be tied to others, with a sign that
+            // the field does not know: only roots of primes get their algebraic value.
+            Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime) => self.rational(&Rational::from(n.clone())),
+            _ => return None,
+        };
+        self.sqrt(square)
+    }
+
+    /// (sine, cosine) = (2t, 1 - t²)/(1 + t²): a point of the circle.
+    pub fn circle(&self, t: Element) -> (Element, Element) {
+        let square = self.mul(t, t);
+        let scale = self.inverse(self.add(self.one(), square));
+        (self.mul(self.add(t, t), scale), self.mul(self.sub(self.one(), square), scale))
+    }
+
+    /// A value on which nothing is known, fixed by the atom's text.
+    fn unrelated(&self, atom: &Atom) -> Element {
+        let text = format!("{atom:?}");
+        self.from_u64(text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| scramble(hash ^ u64::from(byte))))
+    }
+}
+
+fn collect_roots(number: &Number, roots: &mut BTreeSet<Atom>) {
+    for (atom, _) in number.terms().flat_map(|(monomial, _)| monomial) {
+        match atom {
+            Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime) => {
+                roots.insert(atom.clone());
+            }
+            Atom::Inverse(inner) | Atom::RootOf(inner) => collect_roots(inner, roots),
+            _ => {}
+        }
+    }
+}
+
+/// A fixed bijection of 64 bits that leaves no visible pattern (the finaliser of splitmix64, Steele, Lea and Flood 2014).
+pub(crate) fn scramble(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// Whether n is prime: Miller and Rabin with the first twelve primes as bases, which decides below 3.3e24 (Sorenson and Webster 2015).
+fn is_prime(n: u64) -> bool {
+    const BASES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+    if n < 2 || BASES.iter().any(|&b| n % b == 0) {
+        return BASES.contains(&n);
+    }
+    let mul = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(n)) as u64;
+    let twos = (n - 1).trailing_zeros();
+    BASES.iter().all(|&base| {
+        let mut exponent = (n - 1) >> twos;
+        let (mut x, mut square) = (1, base);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                x = mul(x, square);
+            }
+            square = mul(square, square);
+            exponent >>= 1;
+        }
+        if x == 1 || x == n - 1 {
+            return true;
+        }
+        (1..twos).any(|_| {
+            x = mul(x, x);
+            x == n - 1
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::Angle;
+
+    #[test]
+    fn the_first_field_has_the_roots_of_minus_one_two_and_three() {
+        let field = Field::for_constants([]);
+        assert_eq!(field.prime(), FIRST_PRIME);
+        for n in [field.neg(field.one()), field.from_u64(2), field.from_u64(3)] {
+            let root = field.sqrt(n).expect("has a root");
+            assert_eq!(field.mul(root, root), n);
+        }
+        assert_eq!(field.sqrt(field.from_u64(7)), None);
+        assert_eq!(field.mul(field.from_u64(3), field.inverse(field.from_u64(3))), field.one());
+        assert_eq!(field.to_u64(field.sub(field.from_u64(3), field.from_u64(5))), FIRST_PRIME - 2);
+    }
+
+    #[test]
+    fn constants_keep_their_relations() {
+        let seven = Number::from(7).sqrt().unwrap();
+        let mut field = Field::for_constants([&seven]);
+        assert_ne!(field.prime(), FIRST_PRIME);
+        let root = field.number(&seven);
+        assert_eq!(field.mul(root, root), field.from_u64(7));
+        let angle = Angle::new(Number::from(Rational::from(7) / Rational::from(10)));
+        let (s, c) = (field.number(&angle.sin()), field.number(&angle.cos()));
+        assert_eq!(field.add(field.mul(s, s), field.mul(c, c)), field.one());
+        let fifteen = Angle::new(&Number::pi() * &Number::from(Rational::from(1) / Rational::from(12)));
+        let (s, c) = (field.number(&fifteen.sin()), field.number(&fifteen.cos()));
+        assert_eq!(field.add(field.mul(s, s), field.mul(c, c)), field.one());
+    }
+}

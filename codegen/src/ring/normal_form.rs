@@ -1,0 +1,331 @@
+//! The normal form for people: a sum of sines and cosines of integer combinations of the joint angles.
+//!
+//! Every polynomial in the sines and cosines of angles is one such sum, in exactly one way, because products of waves are sums of
+//! waves:
+//!
+//! ```text
+//! 2 cos a cos b = cos(a - b) + cos(a + b),   2 sin a sin b = cos(a - b) - cos(a + b),   2 sin a cos b = sin(a + b) + sin(a - b)
+//! ```
+//!
+//! The coefficients are polynomials in the remaining symbols. The form grows exponentially with the joints that take part, so it is
+//! computed up to a number of terms and given up beyond.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use super::{ExprId, Node, Pool, Symbol};
+use crate::exact::{Number, Rational};
+
+/// cos or sin of an integer combination of joint angles; the first coefficient that is not 0 is positive.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Wave {
+    /// Angle index and its coefficient, by index; empty for the constant wave 1 (= cos 0).
+    pub angles: Vec<(u16, i32)>,
+    /// Whether this is a sine.
+    pub sine: bool,
+}
+
+/// Powers of the symbols that are no sines or cosines, by symbol.
+pub type Factors = Vec<(Symbol, u32)>;
+
+/// A sum of terms: coefficient · factors · wave.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct NormalForm {
+    terms: BTreeMap<(Wave, Factors), Number>,
+}
+
+impl Wave {
+    /// The constant 1.
+    pub fn one() -> Wave {
+        Wave { angles: Vec::new(), sine: false }
+    }
+
+    /// Sum of the absolute values of the coefficients.
+    pub fn order(&self) -> i32 {
+        self.angles.iter().map(|(_, k)| k.abs()).sum()
+    }
+}
+
+impl NormalForm {
+    /// The terms, in a fixed order.
+    pub fn terms(&self) -> impl Iterator<Item = (&Wave, &Factors, &Number)> {
+        self.terms.iter().map(|((wave, factors), coefficient)| (wave, factors, coefficient))
+    }
+
+    /// Number of terms.
+    pub fn len(&self) -> usize {
+        self.terms.len()
+    }
+
+    /// Whether this is 0.
+    pub fn is_empty(&self) -> bool {
+        self.terms.is_empty()
+    }
+
+    /// The terms gathered by wave, those of the highest order first: what a reader expects of `10 cos q2 + 10763/500`.
+    pub fn by_wave(&self) -> Vec<(&Wave, Vec<(&Factors, &Number)>)> {
+        let mut groups: BTreeMap<&Wave, Vec<(&Factors, &Number)>> = BTreeMap::new();
+        for (wave, factors, coefficient) in self.terms() {
+            groups.entry(wave).or_default().push((factors, coefficient));
+        }
+        let mut groups: Vec<_> = groups.into_iter().collect();
+        groups.sort_by_key(|(wave, _)| (Reverse(wave.order()), wave.sine));
+        groups
+    }
+
+    /// The angles that occur in a wave.
+    pub fn angles(&self) -> Vec<u16> {
+        let mut angles: Vec<u16> = self.terms.keys().flat_map(|(wave, _)| wave.angles.iter().map(|(i, _)| *i)).collect();
+        angles.sort_unstable();
+        angles.dedup();
+        angles
+    }
+
+    /// The form of a single term.
+    pub fn term(wave: Wave, factors: Factors, coefficient: Number) -> NormalForm {
+        let mut form = NormalForm::default();
+        form.add_term(wave, factors, coefficient);
+        form
+    }
+
+    /// Adds a term; `wave` is in its canonical form.
+    pub fn add_term(&mut self, wave: Wave, factors: Factors, coefficient: Number) {
+        let key = (wave, factors);
+        let sum = self.terms.get(&key).map_or_else(|| coefficient.clone(), |c| c + &coefficient);
+        if sum.is_zero() {
+            self.terms.remove(&key);
+        } else {
+            self.terms.insert(key, sum);
+        }
+    }
+
+    /// self + sign · other.
+    fn plus(&self, other: &NormalForm, negate: bool) -> NormalForm {
+        let mut sum = self.clone();
+        for ((wave, factors), c) in &other.terms {
+            sum.add_term(wave.clone(), factors.clone(), if negate { -c } else { c.clone() });
+        }
+        sum
+    }
+
+    fn negated(&self) -> NormalForm {
+        NormalForm { terms: self.terms.iter().map(|(key, c)| (key.clone(), -c)).collect() }
+    }
+
+    /// The product, or `None` beyond `limit` terms.
+    pub fn times(&self, other: &NormalForm, limit: usize) -> Option<NormalForm> {
+        let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
+        let mut product = NormalForm::default();
+        for ((wave_a, factors_a), ca) in &self.terms {
+            for ((wave_b, factors_b), cb) in &other.terms {
+                let factors = merge(factors_a, factors_b);
+                let c = ca * cb;
+                if wave_a.angles.is_empty() || wave_b.angles.is_empty() {
+                    let wave = if wave_a.angles.is_empty() { wave_b } else { wave_a };
+                    product.add_term(wave.clone(), factors, c);
+                    continue;
+                }
+                let c = &c * &half;
+                // A product with one sine is a sum of sines, with none or two a sum of cosines.
+                let (a, b) = if !wave_a.sine && wave_b.sine { (wave_b, wave_a) } else { (wave_a, wave_b) };
+                let sine = a.sine != b.sine;
+                for (sign, plus) in [(1, true), (-1, false)] {
+                    let negative = a.sine && b.sine && plus;
+                    add_wave(&mut product, combine(a, b, sign), sine, factors.clone(), if negative { -&c } else { c.clone() });
+                }
+            }
+            if product.len() > limit {
+                return None;
+            }
+        }
+        Some(product)
+    }
+}
+
+/// Adds c · sin or cos(angles), whatever the sign of the leading coefficient.
+fn add_wave(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, factors: Factors, c: Number) {
+    let negative = angles.first().is_some_and(|(_, k)| *k < 0);
+    if negative {
+        angles.iter_mut().for_each(|(_, k)| *k = -*k);
+    }
+    if angles.is_empty() && sine {
+        return;
+    }
+    form.add_term(Wave { angles, sine }, factors, if negative && sine { -&c } else { c });
+}
+
+fn combine(a: &Wave, b: &Wave, sign: i32) -> Vec<(u16, i32)> {
+    let mut sum: BTreeMap<u16, i32> = a.angles.iter().copied().collect();
+    for (i, k) in &b.angles {
+        *sum.entry(*i).or_default() += sign * k;
+    }
+    sum.into_iter().filter(|(_, k)| *k != 0).collect()
+}
+
+fn merge(a: &Factors, b: &Factors) -> Factors {
+    let mut powers: BTreeMap<Symbol, u32> = a.iter().copied().collect();
+    for (symbol, power) in b {
+        *powers.entry(*symbol).or_default() += power;
+    }
+    // sign(dq)² is not 1 at rest, but sign(dq)³ is sign(dq).
+    for (symbol, power) in &mut powers {
+        if matches!(symbol, Symbol::RateSign(_)) && *power > 2 {
+            *power = 2 - *power % 2;
+        }
+    }
+    powers.into_iter().collect()
+}
+
+impl Pool {
+    /// The normal forms of expressions; `None` for one that needs, on the way or at the end, more than `limit` terms or a reciprocal.
+    pub fn normal_forms(&self, exprs: &[ExprId], limit: usize) -> Vec<Option<NormalForm>> {
+        let mut needed = vec![false; self.len()];
+        exprs.iter().for_each(|e| needed[e.index()] = true);
+        for index in (0..self.len()).rev() {
+            if needed[index] {
+                if let Node::Add(a, b) | Node::Mul(a, b) = self.nodes[index] {
+                    needed[a.index()] = true;
+                    needed[b.index()] = true;
+                }
+            }
+        }
+        let mut forms: Vec<Option<Rc<NormalForm>>> = vec![None; self.len()];
+        for index in (0..self.len()).filter(|&i| needed[i]) {
+            let of = |e: ExprId| forms[e.index()].clone();
+            let form = match self.nodes[index] {
+                Node::Constant(id) => {
+                    let value = &self.constants[id.0 as usize];
+                    (!value.is_zero())
+                        .then(|| NormalForm::term(Wave::one(), Vec::new(), (**value).clone()))
+                        .or(Some(NormalForm::default()))
+                }
+                Node::Symbol(symbol) => Some(symbol_form(symbol)),
+                Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.len() <= limit),
+                Node::Mul(a, b) => of(a).zip(of(b)).and_then(|(a, b)| a.times(&b, limit)),
+                Node::Reciprocal(_) => None,
+            };
+            forms[index] = form.map(Rc::new);
+        }
+        exprs
+            .iter()
+            .map(|e| forms[e.index()].as_ref().map(|f| if e.is_negated() { f.negated() } else { NormalForm::clone(f) }))
+            .collect()
+    }
+}
+
+fn symbol_form(symbol: Symbol) -> NormalForm {
+    let (wave, factors) = match symbol {
+        Symbol::Sine(i) => (Wave { angles: vec![(i, 1)], sine: true }, vec![]),
+        Symbol::Cosine(i) => (Wave { angles: vec![(i, 1)], sine: false }, vec![]),
+        other => (Wave::one(), vec![(other, 1)]),
+    };
+    NormalForm::term(wave, factors, Number::one())
+}
+
+/// How a normal form becomes shared products again; which order is cheapest depends on what else is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrangement {
+    /// Each term as ((coefficient · wave) · factors): waves scaled by numbers are shared.
+    ScaledWaves,
+    /// Each wave once, times the sum of its coefficients and factors.
+    ByWave,
+    /// Each term as ((wave · factors) · coefficient).
+    BareProducts,
+}
+
+impl Arrangement {
+    /// All of them.
+    pub const ALL: [Arrangement; 3] = [Arrangement::ScaledWaves, Arrangement::ByWave, Arrangement::BareProducts];
+}
+
+impl Pool {
+    /// The expression of a normal form.
+    pub fn from_normal_form(&mut self, form: &NormalForm, arrangement: Arrangement) -> ExprId {
+        let mut sum = ExprId::ZERO;
+        for (wave, group) in form.by_wave() {
+            let wave = self.wave(wave);
+            let mut inner = ExprId::ZERO;
+            for (factors, coefficient) in group {
+                let coefficient = self.constant(coefficient);
+                let start = match arrangement {
+                    Arrangement::ScaledWaves => self.mul(coefficient, wave),
+                    Arrangement::ByWave => coefficient,
+                    Arrangement::BareProducts => wave,
+                };
+                let mut term = start;
+                for &(symbol, power) in factors {
+                    let symbol = self.symbol(symbol);
+                    for _ in 0..power {
+                        term = self.mul(term, symbol);
+                    }
+                }
+                if arrangement == Arrangement::BareProducts {
+                    term = self.mul(coefficient, term);
+                }
+                inner = self.add(inner, term);
+            }
+            if arrangement == Arrangement::ByWave {
+                inner = self.mul(inner, wave);
+            }
+            sum = self.add(sum, inner);
+        }
+        sum
+    }
+
+    /// sin or cos of a combination of angles, by the addition theorems from the sines and cosines of single angles.
+    pub fn wave(&mut self, wave: &Wave) -> ExprId {
+        let (sine, cosine) = self.sine_cosine_of(&wave.angles);
+        if wave.sine {
+            sine
+        } else {
+            cosine
+        }
+    }
+
+    fn sine_cosine_of(&mut self, angles: &[(u16, i32)]) -> (ExprId, ExprId) {
+        let Some((&(index, k), rest)) = angles.split_last() else { return (ExprId::ZERO, ExprId::ONE) };
+        let (s, c) = (self.symbol(Symbol::Sine(index)).signed(k < 0), self.symbol(Symbol::Cosine(index)));
+        let mut before = rest.to_vec();
+        if k.abs() > 1 {
+            before.push((index, k - k.signum()));
+        }
+        let (sb, cb) = self.sine_cosine_of(&before);
+        (self.dot(&[sb, cb], &[c, s]), self.dot(&[cb, sb], &[c, -s]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ring::field::Field;
+
+    #[test]
+    fn products_of_waves_become_sums_and_back() {
+        let mut p = Pool::new(Field::for_constants([]));
+        let mut expr = p.fraction(3, 7);
+        for i in 0..3 {
+            let (s, c, x) = (p.symbol(Symbol::Sine(i)), p.symbol(Symbol::Cosine(i)), p.symbol(Symbol::Rate(i)));
+            let cx = p.mul(c, x);
+            let sum = p.sub(s, cx);
+            let square = p.mul(sum, sum);
+            let product = p.mul(expr, square);
+            expr = p.add(product, s);
+        }
+        let form = p.normal_forms(&[expr], 10_000)[0].clone().expect("short enough");
+        for arrangement in Arrangement::ALL {
+            assert_eq!(p.from_normal_form(&form, arrangement), expr);
+        }
+        assert_eq!(p.normal_forms(&[expr], 20)[0], None);
+    }
+
+    #[test]
+    fn equal_expressions_have_one_form() {
+        let mut p = Pool::new(Field::for_constants([]));
+        let (s, c) = (p.symbol(Symbol::Sine(0)), p.symbol(Symbol::Cosine(0)));
+        let (ss, cc) = (p.mul(s, s), p.mul(c, c));
+        let difference = p.sub(cc, ss);
+        let double = Wave { angles: vec![(0, 2)], sine: false };
+        assert_eq!(p.normal_forms(&[difference], 10)[0], Some(NormalForm::term(double, vec![], Number::one())));
+    }
+}

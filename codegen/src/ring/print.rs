@@ -1,0 +1,262 @@
+//! Expressions as formulas: plain text and LaTeX.
+//!
+//! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1)` and parameter names, with
+//! numbers as exact fractions: a formula that a computer-algebra system reads.
+
+use dashu_base::{Abs, Signed};
+
+use super::normal_form::{Factors, NormalForm, Wave};
+use super::{ExprId, Node, Pool, Symbol};
+use crate::exact::{Atom, Number, Rational};
+
+/// The notation of a formula.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notation {
+    /// Plain text.
+    Text,
+    /// LaTeX, in mathematics mode.
+    Latex,
+}
+
+/// Prints expressions in one notation, with the parameters' names.
+#[derive(Clone, Copy, Debug)]
+pub struct Printer<'a> {
+    /// The notation.
+    pub notation: Notation,
+    /// Names of parameters, by index.
+    pub parameters: &'a [String],
+}
+
+impl Printer<'_> {
+    /// The name of a symbol.
+    pub fn symbol(&self, symbol: Symbol) -> String {
+        let text = self.notation == Notation::Text;
+        let (word, latex, index) = match symbol {
+            Symbol::Sine(i) | Symbol::Cosine(i) => {
+                let name = if matches!(symbol, Symbol::Sine(_)) { "sin" } else { "cos" };
+                return if text { format!("{name}(q{})", i + 1) } else { format!("\\{name} q_{{{}}}", i + 1) };
+            }
+            Symbol::RateSign(i) => {
+                return if text { format!("sign(dq{})", i + 1) } else { format!("\\operatorname{{sign}} \\dot q_{{{}}}", i + 1) };
+            }
+            Symbol::Parameter(i) => {
+                let name = &self.parameters[usize::from(i)];
+                return if text { name.clone() } else { latex_name(name) };
+            }
+            Symbol::Position(i) => ("q", "q", i),
+            Symbol::Rate(i) => ("dq", "\\dot q", i),
+            Symbol::Acceleration(i) => ("ddq", "\\ddot q", i),
+            Symbol::ReferenceRate(i) => ("dqr", "\\dot q_{r", i),
+            Symbol::ReferenceAcceleration(i) => ("ddqr", "\\ddot q_{r", i),
+            Symbol::Torque(i) => ("tau", "\\tau", i),
+        };
+        match (text, latex.contains('{')) {
+            (true, _) => format!("{word}{}", index + 1),
+            (false, true) => format!("{latex}{}}}", index + 1),
+            (false, false) => format!("{latex}_{{{}}}", index + 1),
+        }
+    }
+
+    /// A formula.
+    pub fn form(&self, form: &NormalForm) -> String {
+        let mut sum = Sum::default();
+        for (wave, group) in form.by_wave() {
+            if let [(factors, coefficient)] = group[..] {
+                self.term(&mut sum, coefficient, factors, Some(wave));
+            } else if wave.angles.is_empty() {
+                group.iter().for_each(|(factors, coefficient)| self.term(&mut sum, coefficient, factors, None));
+            } else {
+                let content = content(&group);
+                let mut inner = Sum::default();
+                for (factors, coefficient) in &group {
+                    let rest = *coefficient * &Number::from(Rational::ONE / &content);
+                    self.term(&mut inner, &rest, factors, None);
+                }
+                let inner = format!("({})", inner.text);
+                self.product(&mut sum, &Number::from(content), [inner, self.wave(wave)]);
+            }
+        }
+        if sum.text.is_empty() {
+            "0".into()
+        } else {
+            sum.text
+        }
+    }
+
+    fn term(&self, sum: &mut Sum, coefficient: &Number, factors: &Factors, wave: Option<&Wave>) {
+        let mut parts: Vec<String> = Vec::new();
+        if let Some(wave) = wave.filter(|w| !w.angles.is_empty()) {
+            parts.push(self.wave(wave));
+        }
+        for &(symbol, power) in factors {
+            let name = self.symbol(symbol);
+            parts.push(if power == 1 { name } else { self.power(&name, power as i32) });
+        }
+        self.product(sum, coefficient, parts);
+    }
+
+    fn power(&self, base: &str, power: i32) -> String {
+        match (self.notation, power < 0) {
+            (Notation::Text, false) => format!("{base}^{power}"),
+            (Notation::Text, true) => format!("{base}^({power})"),
+            (Notation::Latex, _) if base.contains(['^', ' ']) => format!("{{\\left({base}\\right)}}^{{{power}}}"),
+            (Notation::Latex, _) => format!("{{{base}}}^{{{power}}}"),
+        }
+    }
+
+    fn product(&self, sum: &mut Sum, coefficient: &Number, parts: impl IntoIterator<Item = String>) {
+        let negative = coefficient.leads_negative();
+        let size = if negative { -coefficient } else { coefficient.clone() };
+        let mut parts: Vec<String> = parts.into_iter().collect();
+        if !size.is_one() || parts.is_empty() {
+            let several = size.terms().count() > 1;
+            let text = self.number(&size);
+            parts.insert(0, if several && !parts.is_empty() { format!("({text})") } else { text });
+        }
+        sum.push(negative, &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
+    }
+
+    /// An exact constant.
+    pub fn number(&self, number: &Number) -> String {
+        let mut sum = Sum::default();
+        for (monomial, coefficient) in number.terms() {
+            let size = coefficient.clone().abs();
+            let mut parts: Vec<String> = Vec::new();
+            if !size.is_one() || monomial.is_empty() {
+                parts.push(match self.notation {
+                    Notation::Text => size.to_string(),
+                    Notation::Latex if size.is_int() => size.to_string(),
+                    Notation::Latex => format!("\\frac{{{}}}{{{}}}", size.numerator(), size.denominator()),
+                });
+            }
+            for (atom, power) in monomial {
+                let name = self.atom(atom);
+                parts.push(if *power == 1 { name } else { self.power(&name, *power) });
+            }
+            sum.push(coefficient.is_negative(), &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
+        }
+        if sum.text.is_empty() {
+            "0".into()
+        } else {
+            sum.text
+        }
+    }
+
+    fn atom(&self, atom: &Atom) -> String {
+        let call = |name: &str, inside: String| match self.notation {
+            Notation::Text => format!("{name}({inside})"),
+            Notation::Latex if name == "sqrt" => format!("\\sqrt{{{inside}}}"),
+            Notation::Latex => format!("\\{name}\\left({inside}\\right)"),
+        };
+        match atom {
+            Atom::Root(n) => call("sqrt", n.to_string()),
+            Atom::RootOf(n) => call("sqrt", self.number(n)),
+            Atom::Pi => if self.notation == Notation::Text { "pi" } else { "\\pi" }.into(),
+            Atom::Sine(angle) => call("sin", self.number(angle)),
+            Atom::Cosine(angle) => call("cos", self.number(angle)),
+            Atom::Inverse(n) => match self.notation {
+                Notation::Text => format!("(1/({}))", self.number(n)),
+                Notation::Latex => format!("\\frac{{1}}{{{}}}", self.number(n)),
+            },
+        }
+    }
+
+    fn wave(&self, wave: &Wave) -> String {
+        let mut sum = Sum::default();
+        for (index, k) in &wave.angles {
+            let name = match self.notation {
+                Notation::Text => format!("q{}", index + 1),
+                Notation::Latex => format!("q_{{{}}}", index + 1),
+            };
+            let size = k.unsigned_abs();
+            let text = match (size, self.notation) {
+                (1, _) => name,
+                (_, Notation::Text) => format!("{size}*{name}"),
+                (_, Notation::Latex) => format!("{size} {name}"),
+            };
+            sum.push(*k < 0, &text);
+        }
+        let name = if wave.sine { "sin" } else { "cos" };
+        match self.notation {
+            Notation::Text => format!("{name}({})", sum.text),
+            Notation::Latex if wave.order() == 1 => format!("\\{name} {}", sum.text),
+            Notation::Latex => format!("\\{name}\\left({}\\right)", sum.text),
+        }
+    }
+
+    /// The operation of one node in terms of its operands' names: a step of a program for people.
+    pub fn step(&self, pool: &Pool, expr: ExprId, name: &dyn Fn(ExprId) -> String) -> String {
+        let times = if self.notation == Notation::Text { "*" } else { "\\," };
+        match pool.node(expr) {
+            Node::Constant(_) => self.number(&pool.as_constant(expr.unsigned()).expect("a constant")),
+            Node::Symbol(symbol) => self.symbol(symbol),
+            Node::Add(a, b) => format!("{} {} {}", name(a), if b.is_negated() { '-' } else { '+' }, name(b.unsigned())),
+            Node::Mul(a, b) => {
+                let factor = |e: ExprId| {
+                    let text = name(e);
+                    if text.contains(" + ") || text.contains(" - ") {
+                        format!("({text})")
+                    } else {
+                        text
+                    }
+                };
+                format!("{}{times}{}", factor(a), factor(b))
+            }
+            Node::Reciprocal(a) => format!("1/{}", name(a)),
+        }
+    }
+}
+
+/// A sum in the making.
+#[derive(Default)]
+struct Sum {
+    text: String,
+}
+
+impl Sum {
+    fn push(&mut self, negative: bool, term: &str) {
+        self.text += match (self.text.is_empty(), negative) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        self.text += term;
+    }
+}
+
+/// The common rational factor of coefficients, with the sign of the first: 1 unless all are rational and share their size.
+fn content(group: &[(&Factors, &Number)]) -> Rational {
+    let first = group[0].1.as_rational().cloned();
+    match first {
+        Some(first) if group.iter().all(|(_, c)| c.as_rational().is_some_and(|r| r.clone().abs() == first.clone().abs())) => {
+            first
+        }
+        Some(first) if group.iter().all(|(_, c)| c.leads_negative()) && first.is_negative() => Rational::from(-1),
+        _ => Rational::ONE,
+    }
+}
+
+/// `m_l1` as m_{l1}; `Ixx1` as I_{xx1}; other names upright.
+fn latex_name(name: &str) -> String {
+    let mut parts = name.splitn(2, '_');
+    let head = parts.next().unwrap_or_default();
+    let (head, tail) = match parts.next() {
+        Some(tail) if !head.is_empty() && !tail.is_empty() => (head.to_string(), tail.replace('_', "\\_")),
+        _ => {
+            let plain = name.replace('_', "\\_");
+            let digits =
+                plain.find(|c: char| c.is_ascii_digit()).filter(|&at| at > 0 && plain[at..].chars().all(|c| c.is_ascii_digit()));
+            match digits {
+                Some(at) => (plain[..at].to_string(), plain[at..].to_string()),
+                None => (plain, String::new()),
+            }
+        }
+    };
+    let head = if head.chars().count() > 1 { format!("\\mathit{{{head}}}") } else { head };
+    if tail.is_empty() {
+        head
+    } else {
+        format!("{head}_{{{tail}}}")
+    }
+}

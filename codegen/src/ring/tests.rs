@@ -1,0 +1,75 @@
+use super::*;
+
+fn pool() -> Pool {
+    Pool::new(Field::for_constants([]))
+}
+
+#[test]
+fn equal_polynomials_are_one_node() {
+    let mut p = pool();
+    let (s, c) = (p.symbol(Symbol::Sine(0)), p.symbol(Symbol::Cosine(0)));
+    let (x, y, z) = (p.symbol(Symbol::Rate(0)), p.symbol(Symbol::Rate(1)), p.symbol(Symbol::Rate(2)));
+    let (ss, cc) = (p.mul(s, s), p.mul(c, c));
+    assert_eq!(p.add(ss, cc), ExprId::ONE);
+    let (xz, yz) = (p.mul(x, z), p.mul(y, z));
+    let (sum, expanded) = (p.add(x, y), p.add(xz, yz));
+    assert_eq!(p.mul(z, sum), expanded);
+    let (difference, reverse) = (p.sub(x, y), p.sub(y, x));
+    assert_eq!(difference, -reverse);
+    assert_eq!(p.add(difference, reverse), ExprId::ZERO);
+    let seven = p.integer(7);
+    let (seven_ss, seven_cc) = (p.mul(seven, ss), p.mul(seven, cc));
+    assert_eq!(p.add(seven_ss, seven_cc), seven, "a constant is found where no symbol is left");
+    let reciprocal = p.reciprocal(sum);
+    assert_eq!(p.mul(reciprocal, sum), ExprId::ONE);
+}
+
+#[test]
+fn near_misses_stay_apart() {
+    let mut p = pool();
+    let (s, c) = (p.symbol(Symbol::Sine(0)), p.symbol(Symbol::Cosine(0)));
+    let (s2, c2) = (p.symbol(Symbol::Sine(1)), p.symbol(Symbol::Cosine(1)));
+    let (ss, cc) = (p.mul(s, s), p.mul(c2, c2));
+    assert_ne!(p.add(ss, cc), ExprId::ONE);
+    let (a, b) = (p.mul(s, c2), p.mul(c, s2));
+    assert!(!p.equal(a, b));
+    // A constant of the size of the prime is not 0: constants are told apart by value.
+    let prime = p.field().prime();
+    let big = p.constant(&Number::from(crate::exact::Rational::from(prime)));
+    assert_ne!(big, ExprId::ZERO);
+}
+
+#[test]
+fn derivatives_of_the_addition_theorem() {
+    let mut p = pool();
+    let (s1, c1) = (p.symbol(Symbol::Sine(0)), p.symbol(Symbol::Cosine(0)));
+    let (s2, c2) = (p.symbol(Symbol::Sine(1)), p.symbol(Symbol::Cosine(1)));
+    let sine = p.dot(&[s1, c1], &[c2, s2]);
+    let cosine = p.dot(&[c1, s1], &[c2, -s2]);
+    assert_eq!(p.partial_derivative(&[sine, cosine], 1), [cosine, -sine]);
+    let rates = [p.symbol(Symbol::Rate(0)), p.symbol(Symbol::Rate(1))];
+    let rate = p.add(rates[0], rates[1]);
+    let expected = p.mul(cosine, rate);
+    assert_eq!(p.time_derivative(&[sine]), [expected]);
+    let reciprocal = p.reciprocal(sine);
+    let derivative = p.partial_derivative(&[reciprocal], 0)[0];
+    let product = p.mul(derivative, sine);
+    let back = p.mul(product, sine);
+    assert_eq!(back, -cosine);
+}
+
+#[test]
+fn exact_values_follow_the_identities() {
+    let mut p = pool();
+    let (s, c, x) = (p.symbol(Symbol::Sine(3)), p.symbol(Symbol::Cosine(3)), p.symbol(Symbol::Position(1)));
+    let (sx, half) = (p.mul(s, x), p.fraction(1, 2));
+    let sum = p.add(sx, half);
+    for number in 0..20 {
+        let state = Pool::rational_state(number);
+        let v = p.evaluate(&[s, c, x, sum], &state).unwrap();
+        assert_eq!(&(&v[0] * &v[0]) + &(&v[1] * &v[1]), Number::one());
+        assert_eq!(v[3], &(&v[0] * &v[2]) + &Number::from(crate::exact::Rational::from_parts(1.into(), 2u8.into())));
+    }
+    let pole = p.reciprocal(s);
+    assert_eq!(p.evaluate(&[pole], &|_| Number::zero()), None);
+}
