@@ -165,6 +165,12 @@ impl Pool {
         self.nodes[expr.index()]
     }
 
+    /// The node of an index, positive.
+    pub fn expr(&self, index: usize) -> ExprId {
+        debug_assert!(index < self.nodes.len());
+        ExprId::new(index)
+    }
+
     /// Number of nodes.
     pub fn len(&self) -> usize {
         self.nodes.len()

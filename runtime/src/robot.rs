@@ -14,7 +14,7 @@
 //! with `g` on the left: the torque that holds the arm at rest is `tau = g(q)`.
 //! "The book" is Siciliano, Sciavicco, Villani, Oriolo, *Robotics: Modelling, Planning and Control*.
 
-use nalgebra::{Matrix4, RealField, SMatrix, SVector};
+use nalgebra::{Matrix4, RealField, SMatrix, SVector, Scalar};
 
 /// The matrices of the equation of motion at one state, computed together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +25,16 @@ pub struct EquationsOfMotion<T, const N: usize> {
     pub coriolis: SMatrix<T, N, N>,
     /// Gravity term g(q), on the left of the equation of motion.
     pub gravity: SVector<T, N>,
+}
+
+/// The entries of a vector as the array that emitted functions take.
+pub fn array<T, const N: usize>(vector: &SVector<T, N>) -> &[T; N] {
+    &vector.data.0[0]
+}
+
+/// The matrix of an emitted array `m[row][column]`. nalgebra stores columns: this is the one place that knows both orders.
+pub fn matrix<T: Scalar, const R: usize, const C: usize>(rows: &[[T; C]; R]) -> SMatrix<T, R, C> {
+    SMatrix::from_fn(|i, j| rows[i][j].clone())
 }
 
 /// Kinematics of an arm with `N` joints.

@@ -1,0 +1,351 @@
+//! The arm as the derivations see it: joint frames, bodies, rotors, friction, all as expressions of one pool.
+//!
+//! All recursions run in joint frames, whose z axis is the joint axis, whatever convention the description uses: a vector then turns
+//! by Rz(q) alone, and the parameters of a body fall into those that joint i feels and those that it hands on.
+//!
+//! ```text
+//! R_i = fixed_i · Rz(theta_i),   fixed_i = Rx(alpha) for Denavit-Hartenberg rows,   theta_i = q_i + offset
+//! x_parent = R_i x_i + origin_i
+//! ```
+//!
+//! A body is its mass m, first moment h = ∫ r dm and second moments S = ∫ r r' dm: with these, moving a body to another frame is
+//! one congruence, and the inertia tensor is tr(S) 1 - S.
+
+use super::parameters::{second_moments, StandardParameter, View};
+use crate::exact::Number;
+use crate::manipulator::{JointKind, Manipulator, Placement};
+use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// A rigid body in a frame: mass, first moment, second moments xx xy yy xz yz zz.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    /// m, kg.
+    pub mass: ExprId,
+    /// ∫ r dm, kg m.
+    pub first: Vector,
+    /// ∫ r r' dm, kg m²: xx xy yy xz yz zz.
+    pub second: [ExprId; 6],
+}
+
+/// A rotor: its coupling to the motion of the parent link.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotor {
+    /// I_m, kg m².
+    pub inertia: ExprId,
+    /// k_r.
+    pub ratio: ExprId,
+    /// Unit vector of the spin axis in the parent's joint frame (base frame without parent).
+    pub axis: Vector,
+}
+
+/// A joint and the link it moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Joint {
+    /// Revolute or prismatic.
+    pub kind: JointKind,
+    /// Index of the link that carries it.
+    pub parent: Option<usize>,
+    /// The fixed part of the rotation.
+    pub fixed: Matrix,
+    /// sin(theta): of the joint angle with its offset; a constant for a prismatic joint.
+    pub sine: ExprId,
+    /// cos(theta).
+    pub cosine: ExprId,
+    /// Origin of the joint frame in the parent's joint frame.
+    pub origin: Vector,
+    /// Rotation of the user's link frame in the joint frame.
+    pub link_rotation: Matrix,
+    /// Origin of the user's link frame in the joint frame.
+    pub link_origin: Vector,
+    /// The link, in the joint frame, with the rotors that ride on it (their masses, and their inertia as far as it moves with the link).
+    pub body: Body,
+    /// The rotor that drives this joint.
+    pub rotor: Option<Rotor>,
+    /// Viscous friction seen at the joint: ratio² · rotor's + joint's.
+    pub viscous: ExprId,
+    /// Coulomb friction.
+    pub coulomb: ExprId,
+}
+
+/// The arm.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    /// Joints, parents first.
+    pub joints: Vec<Joint>,
+    /// Acceleration of gravity in the base frame.
+    pub gravity: Vector,
+    /// Index of the link that carries the end effector.
+    pub tip: usize,
+    /// End-effector frame in the tip's joint frame: rotation.
+    pub tool_rotation: Matrix,
+    /// End-effector frame in the tip's joint frame: origin.
+    pub tool_origin: Vector,
+}
+
+impl Body {
+    /// Nothing.
+    pub const EMPTY: Body = Body { mass: ExprId::ZERO, first: ZERO, second: [ExprId::ZERO; 6] };
+
+    /// The body in a parallel frame in which its own frame has the origin p: x_outer = x + p.
+    pub fn moved(&self, pool: &mut Pool, origin: &Vector) -> Body {
+        // S' = S + h p' + p h' + m p p', computed as S + (h + m p) p' + p h'.
+        let weighted = pool.scale(self.mass, origin);
+        let first = pool.add_vectors(&self.first, &weighted);
+        let mut second = self.second;
+        for (entry, (i, j)) in second.iter_mut().zip(PAIRS) {
+            let (a, b) = (pool.mul(first[i], origin[j]), pool.mul(origin[i], self.first[j]));
+            let sum = pool.add(a, b);
+            *entry = pool.add(*entry, sum);
+        }
+        Body { mass: self.mass, first, second }
+    }
+
+    /// The sum of two bodies in one frame.
+    pub fn plus(&self, pool: &mut Pool, other: &Body) -> Body {
+        let mut second = self.second;
+        for (a, b) in second.iter_mut().zip(other.second) {
+            *a = pool.add(*a, b);
+        }
+        Body { mass: pool.add(self.mass, other.mass), first: pool.add_vectors(&self.first, &other.first), second }
+    }
+
+    /// Turned by a matrix of constants.
+    fn turned(&self, pool: &mut Pool, rotation: &Matrix) -> Body {
+        Body { mass: self.mass, first: pool.transform(rotation, &self.first), second: turn_second(pool, rotation, &self.second) }
+    }
+}
+
+/// Index pairs of the six entries of a symmetric matrix, in the order xx xy yy xz yz zz.
+pub const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
+
+/// A symmetric matrix from its six entries.
+pub fn symmetric(s: &[ExprId; 6]) -> Matrix {
+    [[s[0], s[1], s[3]], [s[1], s[2], s[4]], [s[3], s[4], s[5]]]
+}
+
+fn turn_second(pool: &mut Pool, rotation: &Matrix, second: &[ExprId; 6]) -> [ExprId; 6] {
+    let half = pool.product(rotation, &symmetric(second));
+    let full = pool.product(&half, &transpose(rotation));
+    PAIRS.map(|(i, j)| full[i][j])
+}
+
+impl Joint {
+    /// A vector of this joint frame in the parent's: R v.
+    pub fn outward(&self, pool: &mut Pool, v: &Vector) -> Vector {
+        let (s, c) = (self.sine, self.cosine);
+        let turned = [pool.dot(&[c, -s], &[v[0], v[1]]), pool.dot(&[s, c], &[v[0], v[1]]), v[2]];
+        pool.transform(&self.fixed, &turned)
+    }
+
+    /// A vector of the parent's joint frame in this one: R' v.
+    pub fn inward(&self, pool: &mut Pool, v: &Vector) -> Vector {
+        let (s, c) = (self.sine, self.cosine);
+        let turned = pool.transform_back(&self.fixed, v);
+        [pool.dot(&[c, s], &[turned[0], turned[1]]), pool.dot(&[c, -s], &[turned[1], turned[0]]), turned[2]]
+    }
+
+    /// A body of this joint frame in the parent's.
+    ///
+    /// The turn about z uses u = c (Sxx - Syy) - 2 s Sxy: Sxx' = Syy + c u, Syy' = Sxx - c u, Sxy' = Sxy + s u.
+    pub fn body_outward(&self, pool: &mut Pool, body: &Body) -> Body {
+        let (s, c) = (self.sine, self.cosine);
+        let [xx, xy, yy, xz, yz, zz] = body.second;
+        let difference = pool.sub(xx, yy);
+        let two = pool.integer(2);
+        let twice = pool.mul(two, xy);
+        let u = pool.dot(&[c, -s], &[difference, twice]);
+        let (cu, su) = (pool.mul(c, u), pool.mul(s, u));
+        let about_z = [
+            pool.add(yy, cu),
+            pool.add(xy, su),
+            pool.sub(xx, cu),
+            pool.dot(&[c, -s], &[xz, yz]),
+            pool.dot(&[s, c], &[xz, yz]),
+            zz,
+        ];
+        let first = self.outward(pool, &body.first);
+        let rotated = Body { mass: body.mass, first, second: turn_second(pool, &self.fixed, &about_z) };
+        rotated.moved(pool, &self.origin)
+    }
+
+    /// The joint's rotation matrix R.
+    pub fn rotation(&self, pool: &mut Pool) -> Matrix {
+        let (s, c) = (self.sine, self.cosine);
+        let about_z = [[c, -s, ExprId::ZERO], [s, c, ExprId::ZERO], [ExprId::ZERO, ExprId::ZERO, ExprId::ONE]];
+        pool.product(&self.fixed, &about_z)
+    }
+
+    /// Whether the joint turns.
+    pub fn is_revolute(&self) -> bool {
+        self.kind == JointKind::Revolute
+    }
+}
+
+impl Arm {
+    /// The arm in a pool, its quantities as `view` says.
+    pub fn new(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>) -> Arm {
+        let joints = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
+        let gravity = manipulator.gravity.clone().map(|g| view.polynomial(pool, manipulator, &g));
+        let tip = super::parameters::tip(manipulator);
+        let mut arm = Arm { joints, gravity, tip, tool_rotation: crate::ring::matrix::IDENTITY, tool_origin: ZERO };
+        let (rotation, origin) = placement(pool, manipulator, view, &manipulator.tool);
+        let last = arm.joints[tip];
+        arm.tool_rotation = pool.product(&last.link_rotation, &rotation);
+        let turned = pool.transform(&last.link_rotation, &origin);
+        arm.tool_origin = pool.add_vectors(&turned, &last.link_origin);
+        if manipulator.payload.is_some() {
+            let payload = inertial_body(pool, manipulator, view, StandardParameter::Payload);
+            let payload = payload.turned(pool, &arm.tool_rotation);
+            let payload = payload.moved(pool, &arm.tool_origin);
+            arm.joints[tip].body = arm.joints[tip].body.plus(pool, &payload);
+        }
+        for i in 0..arm.joints.len() {
+            add_rotor(pool, manipulator, view, &mut arm, i);
+        }
+        arm
+    }
+
+    /// Number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// Symbols of one kind, joint by joint.
+    pub fn symbols(&self, pool: &mut Pool, symbol: impl Fn(u16) -> Symbol) -> Vec<ExprId> {
+        (0..self.dof() as u16).map(|i| pool.symbol(symbol(i))).collect()
+    }
+
+    /// Hands on to the parent what a joint does not feel, exactly (Gautier and Khalil 1990, "Direct calculation of minimum set of
+    /// inertial parameters of serial robots", in second-moment form).
+    ///
+    /// A mass on the axis of a revolute joint, its moment and second moment along the axis, look the same to the parent whatever the
+    /// joint angle, and joint i does not feel them: m, hz and Szz move to the parent. The second moments of a link behind a prismatic
+    /// joint never change their direction: all six move. What reaches the base is dropped.
+    pub fn group_towards_base(&mut self, pool: &mut Pool) {
+        for i in (0..self.dof()).rev() {
+            let joint = self.joints[i];
+            let mut handed = Body::EMPTY;
+            let body = &mut self.joints[i].body;
+            if joint.is_revolute() {
+                handed.mass = std::mem::replace(&mut body.mass, ExprId::ZERO);
+                handed.first[2] = std::mem::replace(&mut body.first[2], ExprId::ZERO);
+                handed.second[5] = std::mem::replace(&mut body.second[5], ExprId::ZERO);
+            } else {
+                handed.second = std::mem::replace(&mut body.second, [ExprId::ZERO; 6]);
+            }
+            if let Some(parent) = joint.parent {
+                let moved = if joint.is_revolute() {
+                    // About z nothing of it turns.
+                    let turned = handed.turned(pool, &joint.fixed);
+                    turned.moved(pool, &joint.origin)
+                } else {
+                    let rotation = joint.rotation(pool);
+                    handed.turned(pool, &rotation)
+                };
+                self.joints[parent].body = self.joints[parent].body.plus(pool, &moved);
+            }
+        }
+    }
+}
+
+fn numbers(pool: &mut Pool, matrix: &[[Number; 3]; 3]) -> Matrix {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| pool.constant(&matrix[i][j])))
+}
+
+fn placement(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, placement: &Placement) -> (Matrix, Vector) {
+    let translation = placement.translation.clone().map(|t| view.polynomial(pool, manipulator, &t));
+    (numbers(pool, &placement.rotation), translation)
+}
+
+/// The ten parameters of a body as mass, first and second moments.
+fn inertial_body(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, of: impl Fn(u8) -> StandardParameter) -> Body {
+    let value = std::array::from_fn::<ExprId, 10, _>(|k| view.standard(pool, manipulator, of(k as u8)));
+    let [mass, x, y, z, inertia @ ..] = value;
+    Body { mass, first: [x, y, z], second: second_moments(pool, &inertia) }
+}
+
+fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -> Joint {
+    let joint = &manipulator.joints[i];
+    let index = i as u16;
+    let (rotation, mut origin) = placement(pool, manipulator, view, &joint.placement);
+    let (link_rotation, link_origin) = placement(pool, manipulator, view, &joint.link_frame);
+    let (mut fixed, mut sine, mut cosine) = (rotation, ExprId::ZERO, ExprId::ONE);
+    if joint.kind == JointKind::Prismatic {
+        let position = pool.symbol(Symbol::Position(index));
+        let slide = pool.scale(position, &[rotation[0][2], rotation[1][2], rotation[2][2]]);
+        origin = pool.add_vectors(&origin, &slide);
+    } else {
+        let (s, c) = (pool.symbol(Symbol::Sine(index)), pool.symbol(Symbol::Cosine(index)));
+        (sine, cosine) = (s, c);
+        if rotation[0][2] == ExprId::ZERO {
+            // The rotation is Rx(alpha) Rz(offset): the offset joins the joint angle.
+            let (zy, zz) = (rotation[1][2], rotation[2][2]);
+            fixed = [[ExprId::ONE, ExprId::ZERO, ExprId::ZERO], [ExprId::ZERO, zz, zy], [ExprId::ZERO, -zy, zz]];
+            let offset = pool.product(&transpose(&fixed), &rotation);
+            (sine, cosine) =
+                (pool.dot(&[s, c], &[offset[0][0], offset[1][0]]), pool.dot(&[c, s], &[offset[0][0], -offset[1][0]]));
+        }
+    }
+    let link = inertial_body(pool, manipulator, view, |k| StandardParameter::Link(index, k));
+    let turned = link.turned(pool, &link_rotation);
+    let body = turned.moved(pool, &link_origin);
+    let friction = |pool: &mut Pool, parameter| view.standard(pool, manipulator, parameter);
+    let mut viscous = friction(pool, StandardParameter::Viscous(index));
+    let coulomb = friction(pool, StandardParameter::Coulomb(index));
+    if let Some(motor) = &joint.motor {
+        let ratio = view.polynomial(pool, manipulator, &motor.ratio);
+        let at_rotor = friction(pool, StandardParameter::RotorViscous(index));
+        let square = pool.mul(ratio, ratio);
+        let seen = pool.mul(square, at_rotor);
+        viscous = pool.add(viscous, seen);
+    }
+    Joint {
+        kind: joint.kind,
+        parent: joint.parent.map(|parent| parent.0 as usize),
+        fixed,
+        sine,
+        cosine,
+        origin,
+        link_rotation,
+        link_origin,
+        body,
+        rotor: None,
+        viscous,
+        coulomb,
+    }
+}
+
+/// Adds the rotor of joint i: mass and inertia as they move with the parent link, and the coupling.
+///
+/// A rotor of inertia I_m about its axis z that turns with omega_p + k dq z has the kinetic energy
+/// `½ I_m (z·omega_p)² + I_m k dq (z·omega_p) + ½ I_m k² dq²`: the first part is an inertia I_m z z' of the parent link, the others are the
+/// coupling.
+fn add_rotor(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, arm: &mut Arm, i: usize) {
+    let Some(motor) = &manipulator.joints[i].motor else { return };
+    let parent = arm.joints[i].parent;
+    let axis = motor.axis.clone().map(|a| pool.constant(&a));
+    let (axis, position) = match parent {
+        Some(p) => {
+            let position = motor.position.clone().map(|x| view.polynomial(pool, manipulator, &x));
+            let link = arm.joints[p];
+            let turned = pool.transform(&link.link_rotation, &position);
+            (pool.transform(&link.link_rotation, &axis), pool.add_vectors(&turned, &link.link_origin))
+        }
+        None => (axis, ZERO),
+    };
+    let inertia = view.standard(pool, manipulator, StandardParameter::RotorInertia(i as u16));
+    let ratio = view.polynomial(pool, manipulator, &motor.ratio);
+    arm.joints[i].rotor = Some(Rotor { inertia, ratio, axis });
+    if let Some(p) = parent {
+        let tensor = PAIRS.map(|(a, b)| {
+            let product = pool.mul(axis[a], axis[b]);
+            pool.mul(inertia, product)
+        });
+        let carried = Body { second: second_moments(pool, &tensor), ..Body::EMPTY };
+        let mass = Body { mass: view.polynomial(pool, manipulator, &motor.mass), ..Body::EMPTY };
+        let mass = mass.moved(pool, &position);
+        let body = arm.joints[p].body.plus(pool, &carried);
+        arm.joints[p].body = body.plus(pool, &mass);
+    }
+}

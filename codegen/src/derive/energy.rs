@@ -1,0 +1,57 @@
+//! Kinetic energy of links and rotors.
+//!
+//! ```text
+//! T = Σ_i ½ m v·v + v·(omega × h) + ½ omega' (tr(S) 1 - S) omega + rotors                   (the book, Sect. 7.1.1)
+//! ```
+
+use super::arm::{symmetric, Arm};
+use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// T(q, dq), J.
+pub fn kinetic_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
+    let rates = arm.symbols(pool, Symbol::Rate);
+    let half = pool.fraction(1, 2);
+    let mut motions: Vec<(Vector, Vector)> = Vec::with_capacity(arm.dof());
+    let mut twice = ExprId::ZERO;
+    for (i, joint) in arm.joints.iter().enumerate() {
+        let (outer_omega, outer_v) = joint.parent.map_or((ZERO, ZERO), |p| motions[p]);
+        let carried = pool.cross(&outer_omega, &joint.origin);
+        let origin = pool.add_vectors(&outer_v, &carried);
+        let (mut omega, mut v) = (joint.inward(pool, &outer_omega), joint.inward(pool, &origin));
+        let moving = if joint.is_revolute() { &mut omega } else { &mut v };
+        moving[2] = pool.add(moving[2], rates[i]);
+        motions.push((omega, v));
+
+        let body = &joint.body;
+        let square = pool.dot3(&v, &v);
+        let linear = pool.mul(body.mass, square);
+        let swept = pool.cross(&omega, &body.first);
+        let two_v = v.map(|x| {
+            let two = pool.integer(2);
+            pool.mul(two, x)
+        });
+        let mixed = pool.dot3(&two_v, &swept);
+        let second = symmetric(&body.second);
+        let trace = pool.sum([second[0][0], second[1][1], second[2][2]]);
+        let mut inertia = second.map(|row| row.map(|x| -x));
+        for k in 0..3 {
+            inertia[k][k] = pool.add(trace, inertia[k][k]);
+        }
+        let momentum = pool.transform(&inertia, &omega);
+        let angular = pool.dot3(&omega, &momentum);
+        twice = pool.sum([twice, linear, mixed, angular]);
+        if let Some(rotor) = joint.rotor {
+            // I_m k dq (2 z·omega_p + k dq)
+            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+            let along = pool.dot3(&rotor.axis, &outer_omega);
+            let two = pool.integer(2);
+            let (carried, own) = (pool.mul(two, along), pool.mul(rotor.ratio, rates[i]));
+            let speed = pool.add(carried, own);
+            let momentum = pool.mul(coupling, speed);
+            let energy = pool.mul(momentum, rates[i]);
+            twice = pool.add(twice, energy);
+        }
+    }
+    pool.mul(half, twice)
+}

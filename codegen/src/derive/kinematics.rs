@@ -1,0 +1,140 @@
+//! Direct kinematics and the geometric Jacobian.
+//!
+//! ```text
+//! R_0i = R_0p R_i,   p_0i = p_0p + R_0p origin_i                                     (the book, Sect. 2.8)
+//! J_Pi = z_i × (p_e - p_i), J_Oi = z_i (revolute);   J_Pi = z_i, J_Oi = 0 (prismatic)   (the book, eq. 3.30)
+//! dz_i/dt = omega_i × z_i,   d(p_e - p_i)/dt = v_e - v_i
+//! ```
+
+use super::arm::Arm;
+use crate::ring::matrix::{Matrix, Vector, IDENTITY, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// Frames in the base frame.
+#[derive(Clone, Debug)]
+pub struct Frames {
+    /// Joint frames: rotation and origin.
+    pub joints: Vec<(Matrix, Vector)>,
+}
+
+/// Joint frames of all links.
+pub fn frames(pool: &mut Pool, arm: &Arm) -> Frames {
+    let mut joints: Vec<(Matrix, Vector)> = Vec::with_capacity(arm.dof());
+    for joint in &arm.joints {
+        let (outer, base) = joint.parent.map_or((IDENTITY, ZERO), |p| joints[p]);
+        let rotation = joint.rotation(pool);
+        let shift = pool.transform(&outer, &joint.origin);
+        let frame = (pool.product(&outer, &rotation), pool.add_vectors(&base, &shift));
+        joints.push(frame);
+    }
+    Frames { joints }
+}
+
+/// A frame fixed in joint frame i, in the base frame.
+fn fixed_in(pool: &mut Pool, frame: &(Matrix, Vector), rotation: &Matrix, origin: &Vector) -> (Matrix, Vector) {
+    let shift = pool.transform(&frame.0, origin);
+    (pool.product(&frame.0, rotation), pool.add_vectors(&frame.1, &shift))
+}
+
+fn homogeneous((rotation, origin): &(Matrix, Vector)) -> Vec<Vec<ExprId>> {
+    let mut rows: Vec<Vec<ExprId>> = (0..3).map(|i| [rotation[i].to_vec(), vec![origin[i]]].concat()).collect();
+    rows.push(vec![ExprId::ZERO, ExprId::ZERO, ExprId::ZERO, ExprId::ONE]);
+    rows
+}
+
+/// T_e(q).
+pub fn direct_kinematics(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
+    let frames = frames(pool, arm);
+    homogeneous(&fixed_in(pool, &frames.joints[arm.tip], &arm.tool_rotation, &arm.tool_origin))
+}
+
+/// T_i(q) of every link frame.
+pub fn link_frames(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
+    let frames = frames(pool, arm);
+    (0..arm.dof())
+        .map(|i| {
+            let joint = &arm.joints[i];
+            homogeneous(&fixed_in(pool, &frames.joints[i], &joint.link_rotation, &joint.link_origin))
+        })
+        .collect()
+}
+
+/// The links from the base to the tip.
+pub fn path_to_tip(arm: &Arm) -> Vec<usize> {
+    let mut path: Vec<usize> = std::iter::successors(Some(arm.tip), |&i| arm.joints[i].parent).collect();
+    path.reverse();
+    path
+}
+
+fn z(frame: &(Matrix, Vector)) -> Vector {
+    [0, 1, 2].map(|row| frame.0[row][2])
+}
+
+/// J(q): six rows, linear then angular.
+pub fn geometric_jacobian(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
+    let frames = frames(pool, arm);
+    let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
+    let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
+    let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
+    for i in path_to_tip(arm) {
+        let axis = z(&frames.joints[i]);
+        if arm.joints[i].is_revolute() {
+            let arm_to_end = pool.sub_vectors(&end, &frames.joints[i].1);
+            let linear = pool.cross(&axis, &arm_to_end);
+            set_column(&mut jacobian, i, &linear, &axis);
+        } else {
+            set_column(&mut jacobian, i, &axis, &ZERO);
+        }
+    }
+    jacobian
+}
+
+fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angular: &Vector) {
+    for row in 0..3 {
+        jacobian[row][column] = linear[row];
+        jacobian[row + 3][column] = angular[row];
+    }
+}
+
+/// dJ/dt(q, dq): six rows, linear then angular.
+pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
+    let frames = frames(pool, arm);
+    let rates = arm.symbols(pool, Symbol::Rate);
+    let path = path_to_tip(arm);
+    let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
+    let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
+    // Angular velocity of each link on the path, and linear velocity of the end effector relative to each joint's origin, from the tip down.
+    let mut omega = vec![ZERO; arm.dof()];
+    let mut before = ZERO;
+    for &i in &path {
+        let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &z(&frames.joints[i])) } else { ZERO };
+        omega[i] = pool.add_vectors(&before, &spin);
+        before = omega[i];
+    }
+    let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
+    let mut outer: Option<usize> = None;
+    let mut velocity = ZERO;
+    for &i in path.iter().rev() {
+        // v_e - v_i grows by what link i carries: omega_i × (to the next origin), and the next joint's slide.
+        let next = outer.map_or(end, |k| frames.joints[k].1);
+        let reach = pool.sub_vectors(&next, &frames.joints[i].1);
+        let carried = pool.cross(&omega[i], &reach);
+        velocity = pool.add_vectors(&velocity, &carried);
+        if let Some(k) = outer.filter(|&k| !arm.joints[k].is_revolute()) {
+            let slide = pool.scale(rates[k], &z(&frames.joints[k]));
+            velocity = pool.add_vectors(&velocity, &slide);
+        }
+        let axis = z(&frames.joints[i]);
+        let axis_rate = pool.cross(&omega[i], &axis);
+        if arm.joints[i].is_revolute() {
+            let to_end = pool.sub_vectors(&end, &frames.joints[i].1);
+            let (turning, moving) = (pool.cross(&axis_rate, &to_end), pool.cross(&axis, &velocity));
+            let linear = pool.add_vectors(&turning, &moving);
+            set_column(&mut jacobian, i, &linear, &axis_rate);
+        } else {
+            set_column(&mut jacobian, i, &axis_rate, &ZERO);
+        }
+        outer = Some(i);
+    }
+    jacobian
+}

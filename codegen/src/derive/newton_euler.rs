@@ -1,0 +1,213 @@
+//! Inverse dynamics by Newton and Euler's equations in joint frames, and friction.
+//!
+//! The acceleration field of link i is a + U r, with U = [domega] + [omega]²; force and moment follow from m, h and S alone:
+//!
+//! ```text
+//! f = m a + U h,   n = h × a + vee(U S - (U S)')                                     (the book, Sect. 7.5, in second-moment form)
+//! ```
+//!
+//! With a reference rate dqr beside dq the quadratic terms are polarised, x² -> ½ (x y + y x). As Christoffel's C(q, dq) dqr is the
+//! symmetric bilinear form of the quadratic C(q, dq) dq, the recursion then yields B ddqr + C(q, dq) dqr + g exactly.
+//!
+//! The rotor of joint i has, beyond what turns with the parent link, the angular momentum I_m k dq z_m, whose change acts on the
+//! parent, and feels I_m k (k ddq + z_m · domega_p) itself.
+
+use super::arm::Arm;
+use super::inertia::{along, wrench_outward};
+use crate::derive::arm::symmetric;
+use crate::ring::matrix::{Matrix, Vector, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// What drives the recursion: rates, reference rates (the rates themselves for plain inverse dynamics) and accelerations.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// dq.
+    pub rates: Vec<ExprId>,
+    /// dqr.
+    pub reference: Vec<ExprId>,
+    /// ddq or ddqr.
+    pub accelerations: Vec<ExprId>,
+}
+
+impl Motion {
+    /// (dq, dq, ddq).
+    pub fn plain(pool: &mut Pool, arm: &Arm) -> Motion {
+        let rates = arm.symbols(pool, Symbol::Rate);
+        Motion { reference: rates.clone(), rates, accelerations: arm.symbols(pool, Symbol::Acceleration) }
+    }
+
+    /// (dq, dq, 0): the bias C dq + g.
+    pub fn unaccelerated(pool: &mut Pool, arm: &Arm) -> Motion {
+        Motion { accelerations: vec![ExprId::ZERO; arm.dof()], ..Motion::plain(pool, arm) }
+    }
+
+    /// (dq, dqr, ddqr).
+    pub fn with_reference(pool: &mut Pool, arm: &Arm) -> Motion {
+        Motion {
+            rates: arm.symbols(pool, Symbol::Rate),
+            reference: arm.symbols(pool, Symbol::ReferenceRate),
+            accelerations: arm.symbols(pool, Symbol::ReferenceAcceleration),
+        }
+    }
+}
+
+/// Motion of a link in its joint frame.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkMotion {
+    /// Angular velocity.
+    pub omega: Vector,
+    /// Angular velocity of the reference rates.
+    pub omega_r: Vector,
+    /// Angular acceleration, polarised.
+    pub domega: Vector,
+    /// Acceleration of the origin less gravity.
+    pub acceleration: Vector,
+    /// U: acceleration of a point r is `acceleration` + U r.
+    pub field: Matrix,
+}
+
+/// ½ (a × b' + a' × b), the polarised form of a × b.
+fn polarised_cross(pool: &mut Pool, a: &Vector, b_r: &Vector, a_r: &Vector, b: &Vector) -> Vector {
+    let half = pool.fraction(1, 2);
+    let (left, right) = (pool.cross(a, b_r), pool.cross(a_r, b));
+    if left == right {
+        return left;
+    }
+    let sum = pool.add_vectors(&left, &right);
+    pool.scale(half, &sum)
+}
+
+/// U = [domega] + ½ ([omega][omega_r] + [omega_r][omega]): entries domega_k and products of rates.
+fn acceleration_field(pool: &mut Pool, w: &Vector, wr: &Vector, dw: &Vector) -> Matrix {
+    let half = pool.fraction(1, 2);
+    let mut products = [[ExprId::ZERO; 3]; 3];
+    for i in 0..3 {
+        for j in 0..=i {
+            let product = if w == wr {
+                pool.mul(w[i], w[j])
+            } else {
+                let (a, b) = (pool.mul(w[i], wr[j]), pool.mul(wr[i], w[j]));
+                let sum = pool.add(a, b);
+                pool.mul(half, sum)
+            };
+            products[i][j] = product;
+            products[j][i] = product;
+        }
+    }
+    let mut field = products;
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        field[i][i] = -pool.add(products[j][j], products[k][k]);
+        // [domega]_ij = -domega_k, [domega]_ji = domega_k
+        field[i][j] = pool.sub(products[i][j], dw[k]);
+        field[j][i] = pool.add(products[j][i], dw[k]);
+    }
+    field
+}
+
+/// Motion of every link.
+pub fn link_motions(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) -> Vec<LinkMotion> {
+    let base = LinkMotion {
+        omega: ZERO,
+        omega_r: ZERO,
+        domega: ZERO,
+        acceleration: if gravity { arm.gravity.map(|g| -g) } else { ZERO },
+        field: [ZERO; 3],
+    };
+    let mut motions: Vec<LinkMotion> = Vec::with_capacity(arm.dof());
+    for (i, joint) in arm.joints.iter().enumerate() {
+        let outer = joint.parent.map_or(base, |p| motions[p]);
+        let carried = pool.transform(&outer.field, &joint.origin);
+        let origin = pool.add_vectors(&outer.acceleration, &carried);
+        let mut acceleration = joint.inward(pool, &origin);
+        let [mut omega, mut omega_r, mut domega] = [outer.omega, outer.omega_r, outer.domega].map(|v| joint.inward(pool, &v));
+        let (rate, reference) = (along_z(motion.rates[i]), along_z(motion.reference[i]));
+        let turning = polarised_cross(pool, &omega, &reference, &omega_r, &rate);
+        if joint.is_revolute() {
+            domega = pool.add_vectors(&domega, &turning);
+            domega[2] = pool.add(domega[2], motion.accelerations[i]);
+            omega[2] = pool.add(omega[2], motion.rates[i]);
+            omega_r[2] = pool.add(omega_r[2], motion.reference[i]);
+        } else {
+            let two = pool.integer(2);
+            let coriolis = pool.scale(two, &turning);
+            acceleration = pool.add_vectors(&acceleration, &coriolis);
+            acceleration[2] = pool.add(acceleration[2], motion.accelerations[i]);
+        }
+        let field = acceleration_field(pool, &omega, &omega_r, &domega);
+        motions.push(LinkMotion { omega, omega_r, domega, acceleration, field });
+    }
+    motions
+}
+
+fn along_z(x: ExprId) -> Vector {
+    [ExprId::ZERO, ExprId::ZERO, x]
+}
+
+/// B ddqr + C(q, dq) dqr + g: the torques without friction.
+pub fn newton_euler(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) -> Vec<ExprId> {
+    let motions = link_motions(pool, arm, motion, gravity);
+    let mut wrench: Vec<(Vector, Vector)> = Vec::with_capacity(arm.dof());
+    for (joint, LinkMotion { acceleration, field, .. }) in arm.joints.iter().zip(&motions) {
+        let body = &joint.body;
+        let (weighted, turned) = (pool.scale(body.mass, acceleration), pool.transform(field, &body.first));
+        let force = pool.add_vectors(&weighted, &turned);
+        let lever = pool.cross(&body.first, acceleration);
+        let second = symmetric(&body.second);
+        let own = [(2, 1), (0, 2), (1, 0)].map(|(i, j)| {
+            // vee(M - M')_z = M_yx - M_xy, M = U S
+            let (a, b) = (pool.dot(&field[i], &second[j]), pool.dot(&field[j], &second[i]));
+            pool.sub(a, b)
+        });
+        wrench.push((force, pool.add_vectors(&lever, &own)));
+    }
+    let mut tau = vec![ExprId::ZERO; arm.dof()];
+    for i in (0..arm.dof()).rev() {
+        let (force, moment) = wrench[i];
+        tau[i] = along(arm, i, &force, &moment);
+        let parent = arm.joints[i].parent;
+        let mut spin = ZERO;
+        if let Some(rotor) = arm.joints[i].rotor {
+            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+            let outer = parent.map(|p| motions[p]);
+            let of_link = outer.map_or(ExprId::ZERO, |m| pool.dot3(&rotor.axis, &m.domega));
+            let own = pool.mul(rotor.ratio, motion.accelerations[i]);
+            let sum = pool.add(own, of_link);
+            let felt = pool.mul(coupling, sum);
+            tau[i] = pool.add(tau[i], felt);
+            if let Some(m) = outer {
+                let (rate, reference) = (motion.rates[i], motion.reference[i]);
+                let (axis_rate, axis_reference) = (pool.scale(rate, &rotor.axis), pool.scale(reference, &rotor.axis));
+                let turning = polarised_cross(pool, &m.omega, &axis_reference, &m.omega_r, &axis_rate);
+                let accelerated = pool.scale(motion.accelerations[i], &rotor.axis);
+                let change = pool.add_vectors(&accelerated, &turning);
+                spin = pool.scale(coupling, &change);
+            }
+        }
+        if let Some(p) = parent {
+            let (force, moment) = wrench_outward(pool, arm, i, &force, &moment);
+            let moment = pool.add_vectors(&moment, &spin);
+            wrench[p] = (pool.add_vectors(&wrench[p].0, &force), pool.add_vectors(&wrench[p].1, &moment));
+        }
+    }
+    tau
+}
+
+/// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42).
+pub fn friction(pool: &mut Pool, arm: &Arm, rates: &[ExprId]) -> Vec<ExprId> {
+    (0..arm.dof())
+        .map(|i| {
+            let viscous = pool.mul(arm.joints[i].viscous, rates[i]);
+            let sign = pool.symbol(Symbol::RateSign(i as u16));
+            let coulomb = pool.mul(arm.joints[i].coulomb, sign);
+            pool.add(viscous, coulomb)
+        })
+        .collect()
+}
+
+/// The torques with friction.
+pub fn inverse_dynamics(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Vec<ExprId> {
+    let tau = newton_euler(pool, arm, motion, true);
+    let friction = friction(pool, arm, &motion.reference);
+    (0..arm.dof()).map(|i| pool.add(tau[i], friction[i])).collect()
+}

@@ -1,0 +1,282 @@
+//! The parameter vector pi: what the regressor's columns are, and what each entry of the model is in terms of it.
+
+use crate::exact::{Number, Polynomial, Rational};
+use crate::manipulator::{Body, LinkId, Manipulator, ParameterId, RegressorChoice};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// One of the parameters in which the dynamics of every arm are linear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StandardParameter {
+    /// One of the ten of a link, in its link frame, inertia about the origin: m mcx mcy mcz Ixx Ixy Iyy Ixz Iyz Izz.
+    Link(u16, u8),
+    /// Inertia of the rotor of a joint about its axis.
+    RotorInertia(u16),
+    /// Viscous friction at the rotor of a joint.
+    RotorViscous(u16),
+    /// Viscous friction at a joint.
+    Viscous(u16),
+    /// Coulomb friction at a joint.
+    Coulomb(u16),
+    /// One of the ten of the payload, in the end-effector frame.
+    Payload(u8),
+}
+
+/// Names of the ten inertial parameters of a body, without the link's number.
+pub const INERTIAL_NAMES: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz"];
+
+impl StandardParameter {
+    /// All that a description gives, in the order of the regressor `standard`.
+    pub fn all(manipulator: &Manipulator) -> Vec<StandardParameter> {
+        let mut all = Vec::new();
+        for i in 0..manipulator.joints.len() as u16 {
+            all.extend((0..10).map(|k| StandardParameter::Link(i, k)));
+        }
+        for (i, joint) in manipulator.joints.iter().enumerate() {
+            let i = i as u16;
+            if joint.motor.as_ref().is_some_and(|m| m.inertia.is_some()) {
+                all.push(StandardParameter::RotorInertia(i));
+            }
+            if joint.motor.as_ref().is_some_and(|m| m.viscous.is_some()) {
+                all.push(StandardParameter::RotorViscous(i));
+            }
+            if joint.viscous.is_some() {
+                all.push(StandardParameter::Viscous(i));
+            }
+            if joint.coulomb.is_some() {
+                all.push(StandardParameter::Coulomb(i));
+            }
+        }
+        if manipulator.payload.is_some() {
+            all.extend((0..10).map(StandardParameter::Payload));
+        }
+        all
+    }
+
+    /// Its name: `m1`, `Ixx1`, `Im1`, `Fm1`, `Fv1`, `Fc1`, `mp`.
+    pub fn name(self) -> String {
+        match self {
+            StandardParameter::Link(i, k) => format!("{}{}", INERTIAL_NAMES[usize::from(k)], i + 1),
+            StandardParameter::RotorInertia(i) => format!("Im{}", i + 1),
+            StandardParameter::RotorViscous(i) => format!("Fm{}", i + 1),
+            StandardParameter::Viscous(i) => format!("Fv{}", i + 1),
+            StandardParameter::Coulomb(i) => format!("Fc{}", i + 1),
+            StandardParameter::Payload(k) => format!("{}p", INERTIAL_NAMES[usize::from(k)]),
+        }
+    }
+
+    /// Its value in terms of the description's names.
+    pub fn value(self, manipulator: &Manipulator) -> Polynomial {
+        let joint = |i: u16| &manipulator.joints[usize::from(i)];
+        let motor = |i: u16| joint(i).motor.as_ref();
+        match self {
+            StandardParameter::Link(i, k) => inertial(&joint(i).link)[usize::from(k)].clone(),
+            StandardParameter::RotorInertia(i) => motor(i).and_then(|m| m.inertia.clone()).unwrap_or_default(),
+            StandardParameter::RotorViscous(i) => motor(i).and_then(|m| m.viscous.clone()).unwrap_or_default(),
+            StandardParameter::Viscous(i) => joint(i).viscous.clone().unwrap_or_default(),
+            StandardParameter::Coulomb(i) => joint(i).coulomb.clone().unwrap_or_default(),
+            StandardParameter::Payload(k) => {
+                manipulator.payload.as_ref().map_or(Polynomial::zero(), |p| inertial(p)[usize::from(k)].clone())
+            }
+        }
+    }
+}
+
+/// The ten inertial parameters of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c').
+pub fn inertial(body: &Body) -> [Polynomial; 10] {
+    let (m, c) = (&body.mass, &body.com);
+    let moment: [Polynomial; 3] = [0, 1, 2].map(|i| m * &c[i]);
+    let square = |i: usize, j: usize| &moment[i] * &c[j];
+    let [xx, xy, yy, xz, yz, zz] = &body.inertia;
+    [
+        m.clone(),
+        moment[0].clone(),
+        moment[1].clone(),
+        moment[2].clone(),
+        &(xx + &square(1, 1)) + &square(2, 2),
+        xy - &square(0, 1),
+        &(yy + &square(0, 0)) + &square(2, 2),
+        xz - &square(0, 2),
+        yz - &square(1, 2),
+        &(zz + &square(0, 0)) + &square(1, 1),
+    ]
+}
+
+/// The columns of the regressor.
+#[derive(Clone, Debug)]
+pub struct ParameterVector {
+    /// One entry per column.
+    pub entries: Vec<Entry>,
+    /// What an entry stands for.
+    pub kind: ParameterKind,
+}
+
+/// An entry of the parameter vector.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// Its value in the description.
+    pub nominal: Number,
+    /// What it is, for people.
+    pub meaning: String,
+}
+
+/// What the entries stand for.
+#[derive(Clone, Debug)]
+pub enum ParameterKind {
+    /// The standard parameters themselves.
+    Standard(Vec<StandardParameter>),
+    /// Independent ones among the standard parameters; the others are set to zero and their effect is carried by these.
+    Base(Vec<StandardParameter>),
+    /// Names of the description.
+    Names(Vec<ParameterId>),
+}
+
+/// How the quantities of a description enter the equations.
+#[derive(Clone, Copy, Debug)]
+pub enum View<'a> {
+    /// Everything a number.
+    Nominal,
+    /// Every name of the description a symbol.
+    Symbolic,
+    /// The entries of the parameter vector symbols, everything else a number.
+    Vector(&'a ParameterVector),
+    /// The entries of the parameter vector zero, everything else a number: what remains is the known part.
+    Known(&'a ParameterVector),
+}
+
+/// The value of a standard parameter at the nominal values of all names.
+pub fn nominal(manipulator: &Manipulator, value: &Polynomial) -> Number {
+    value.evaluate(&|id| manipulator.parameters[id.0 as usize].nominal.clone())
+}
+
+impl View<'_> {
+    /// A quantity of the description as an expression.
+    pub fn polynomial(self, pool: &mut Pool, manipulator: &Manipulator, value: &Polynomial) -> ExprId {
+        let number = |pool: &mut Pool, id: u32| pool.constant(&manipulator.parameters[id as usize].nominal);
+        match self {
+            View::Nominal => pool.constant(&nominal(manipulator, value)),
+            View::Symbolic => pool.polynomial(value, &|pool, id| pool.symbol(Symbol::Parameter(id as u16))),
+            View::Vector(vector) | View::Known(vector) => {
+                let ParameterKind::Names(names) = &vector.kind else { return pool.constant(&nominal(manipulator, value)) };
+                pool.polynomial(value, &|pool, id| match names.iter().position(|name| name.0 == id) {
+                    Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
+                    Some(_) => ExprId::ZERO,
+                    None => number(pool, id),
+                })
+            }
+        }
+    }
+
+    /// A standard parameter as an expression.
+    pub fn standard(self, pool: &mut Pool, manipulator: &Manipulator, parameter: StandardParameter) -> ExprId {
+        let (View::Vector(vector) | View::Known(vector)) = self else {
+            return self.polynomial(pool, manipulator, &parameter.value(manipulator));
+        };
+        match &vector.kind {
+            ParameterKind::Names(_) => self.polynomial(pool, manipulator, &parameter.value(manipulator)),
+            ParameterKind::Standard(columns) | ParameterKind::Base(columns) => {
+                match columns.iter().position(|&column| column == parameter) {
+                    Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
+                    _ => ExprId::ZERO,
+                }
+            }
+        }
+    }
+}
+
+impl ParameterVector {
+    /// The vector of `regressor: standard` or of a list of names; base parameters are found in `derive::base`.
+    pub fn standard_or_names(manipulator: &Manipulator) -> ParameterVector {
+        match &manipulator.regressor {
+            RegressorChoice::Names(names) => {
+                let entries = names
+                    .iter()
+                    .map(|id| {
+                        let parameter = &manipulator.parameters[id.0 as usize];
+                        Entry {
+                            name: parameter.name.clone(),
+                            nominal: parameter.nominal.clone(),
+                            meaning: "named in the description".into(),
+                        }
+                    })
+                    .collect();
+                ParameterVector { entries, kind: ParameterKind::Names(names.clone()) }
+            }
+            RegressorChoice::Standard | RegressorChoice::Base => ParameterVector::standard(manipulator),
+        }
+    }
+
+    /// All standard parameters.
+    pub fn standard(manipulator: &Manipulator) -> ParameterVector {
+        let columns = StandardParameter::all(manipulator);
+        let entries = columns
+            .iter()
+            .map(|&p| Entry {
+                name: p.name(),
+                nominal: nominal(manipulator, &p.value(manipulator)),
+                meaning: p.meaning(manipulator),
+            })
+            .collect();
+        ParameterVector { entries, kind: ParameterKind::Standard(columns) }
+    }
+
+    /// Number of entries.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether there are no entries.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+}
+
+impl StandardParameter {
+    /// What it is, with unit and frame.
+    pub fn meaning(self, manipulator: &Manipulator) -> String {
+        const INERTIAL: [&str; 10] = [
+            "mass, kg",
+            "first moment m cx, kg m",
+            "first moment m cy, kg m",
+            "first moment m cz, kg m",
+            "inertia Ixx about the frame's origin, kg m²",
+            "inertia Ixy = -∫xy dm about the frame's origin, kg m²",
+            "inertia Iyy about the frame's origin, kg m²",
+            "inertia Ixz = -∫xz dm about the frame's origin, kg m²",
+            "inertia Iyz = -∫yz dm about the frame's origin, kg m²",
+            "inertia Izz about the frame's origin, kg m²",
+        ];
+        let name = |i: u16| &manipulator.joints[usize::from(i)].name;
+        match self {
+            StandardParameter::Link(i, k) => format!("link {} ({}): {}", i + 1, name(i), INERTIAL[usize::from(k)]),
+            StandardParameter::RotorInertia(i) => {
+                format!("rotor of joint {} ({}): inertia about its axis, kg m²", i + 1, name(i))
+            }
+            StandardParameter::RotorViscous(i) => {
+                format!("rotor of joint {} ({}): viscous friction at the rotor, N m s", i + 1, name(i))
+            }
+            StandardParameter::Viscous(i) => format!("joint {} ({}): viscous friction, N m s or N s/m", i + 1, name(i)),
+            StandardParameter::Coulomb(i) => format!("joint {} ({}): Coulomb friction, N m or N", i + 1, name(i)),
+            StandardParameter::Payload(k) => format!("payload, in the end-effector frame: {}", INERTIAL[usize::from(k)]),
+        }
+    }
+}
+
+/// Second moments ∫ r r' dm (xx xy yy xz yz zz) from an inertia tensor: ½ tr(I) 1 - I.
+pub fn second_moments(pool: &mut Pool, inertia: &[ExprId; 6]) -> [ExprId; 6] {
+    let [xx, xy, yy, xz, yz, zz] = *inertia;
+    let half = pool.constant(&Number::from(Rational::from_parts(1.into(), 2u8.into())));
+    let mut diagonal = |plus: [ExprId; 2], minus: ExprId| {
+        let sum = pool.add(plus[0], plus[1]);
+        let twice = pool.sub(sum, minus);
+        pool.mul(half, twice)
+    };
+    [diagonal([yy, zz], xx), -xy, diagonal([xx, zz], yy), -xz, -yz, diagonal([xx, yy], zz)]
+}
+
+/// The link that carries the end effector, as an index.
+pub fn tip(manipulator: &Manipulator) -> usize {
+    let LinkId(tip) = manipulator.tip;
+    tip as usize
+}

@@ -1,0 +1,7 @@
+//! From programs to text. Absent from here on: mathematics.
+
+pub mod rust;
+
+mod documentation;
+mod literal;
+mod runtime;

@@ -1,0 +1,150 @@
+//! The documentation of emitted functions: formula, arguments, result, frames, units and signs, cost. Written for readers who never saw the
+//! generator.
+
+use crate::equations::{Argument, Quantity};
+use crate::program::{Cost, Function};
+
+/// What a function is, the formula, and the result with its frame, unit and sign.
+struct Text {
+    title: &'static str,
+    formula: &'static str,
+    result: &'static str,
+}
+
+fn text(quantity: Quantity) -> Text {
+    let (title, formula, result) = match quantity {
+        Quantity::DirectKinematics => (
+            "End-effector frame in the base frame, T_e(q).",
+            "T_e = A_1(q_1) ... A_n(q_n) T_tool                                (Siciliano et al., Sect. 2.8)",
+            "4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
+             frame, the last column is its origin in m.",
+        ),
+        Quantity::LinkFrames => (
+            "Frame of every link in the base frame, T_i(q).",
+            "T_i = A_1(q_1) ... A_i(q_i)                                       (Siciliano et al., Sect. 2.8)",
+            "one 4 x 4 homogeneous transformation per link, `t[link][row][column]`, the frames as the description's convention defines them; \
+             translations in m.",
+        ),
+        Quantity::GeometricJacobian => (
+            "Geometric Jacobian J(q) of the end effector, in the base frame.",
+            "(v_e, omega_e) = J(q) dq                                          (Siciliano et al., Sect. 3.1)",
+            "6 rows, `j[row][joint]`: three linear (velocity of the end-effector frame's origin, m/s), then three angular (rad/s).",
+        ),
+        Quantity::GeometricJacobianDot => (
+            "Time derivative of the geometric Jacobian along dq.",
+            "d/dt (v_e, omega_e) = J ddq + (dJ/dt) dq",
+            "6 rows, `j[row][joint]`: three linear, then three angular, in the base frame.",
+        ),
+        Quantity::InertiaMatrix => (
+            "Inertia matrix B(q) of links and rotors.",
+            "B(q) = sum_i m_i J_Pi' J_Pi + J_Oi' R_i I_i R_i' J_Oi + rotors    (Siciliano et al., eq. 7.32)",
+            "symmetric, all entries filled, `b[row][column]`; kg m² between revolute joints, kg m for a revolute and a prismatic one, kg between \
+             prismatic ones.",
+        ),
+        Quantity::CoriolisMatrix => (
+            "Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric.",
+            "C_ij = sum_k 1/2 (dB_ij/dq_k + dB_ik/dq_j - dB_jk/dq_i) dq_k       (Siciliano et al., eq. 7.45)",
+            "`c[row][column]`, on the left of the equation of motion: C dq is part of the torque.",
+        ),
+        Quantity::Gravity => (
+            "Gravity term g(q) on the left of the equation of motion: the torque that holds the arm at rest.",
+            "g(q) = dU/dq                                                      (Siciliano et al., eq. 7.39)",
+            "N m (revolute) or N (prismatic) by joint.",
+        ),
+        Quantity::Friction => (
+            "Friction torque F(dq) on the left of the equation of motion: it has the sign of dq.",
+            "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
+            "N m (revolute) or N (prismatic) by joint.",
+        ),
+        Quantity::EquationsOfMotion => (
+            "B(q), C(q, dq) and g(q) at one state, sharing their work.",
+            "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                        (Siciliano et al., eq. 7.42)",
+            "the three terms as the functions of their own return them.",
+        ),
+        Quantity::InverseDynamics => (
+            "Torques that a motion needs, friction included.",
+            "tau = B(q) ddq + C(q, dq) dq + F(dq) + g(q)                        (Siciliano et al., eq. 7.42)",
+            "N m (revolute) or N (prismatic) by joint.",
+        ),
+        Quantity::ForwardDynamics => (
+            "Accelerations that torques cause, friction included.",
+            "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.5)",
+            "rad/s² (revolute) or m/s² (prismatic) by joint.",
+        ),
+        Quantity::Regressor => (
+            "Regressor Y(q, dq, dqr, ddqr): the dynamics as a linear function of the parameters.",
+            "B(q) ddqr + C(q, dq) dqr + F + g(q) = Y pi + tau_known             (Siciliano et al., eqs. 7.53 and 8.97)",
+            "`y[joint][parameter]`, parameters in the order of `PARAMETER_NAMES`. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
+             With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
+        ),
+        Quantity::KnownTorque => (
+            "The torque of what is not among the parameters: tau_known of the regressor's equation.",
+            "tau_known = B(q) ddqr + C(q, dq) dqr + F + g(q) - Y pi",
+            "N m (revolute) or N (prismatic) by joint.",
+        ),
+        Quantity::KineticEnergy => (
+            "Kinetic energy of links and rotors.",
+            "T = 1/2 dq' B(q) dq                                               (Siciliano et al., eq. 7.31)",
+            "J.",
+        ),
+        Quantity::PotentialEnergy => (
+            "Potential energy of gravity; zero where the masses of all moving links lie at the origin of the base frame.",
+            "U(q) = - sum_i m_i g0' p_li                                       (Siciliano et al., eq. 7.36)",
+            "J.",
+        ),
+    };
+    Text { title, formula, result }
+}
+
+fn argument(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Pi => "`pi`: the parameters, in the order and units of `PARAMETER_NAMES`.",
+        Argument::Q => "`q`: joint variables, rad (revolute) or m (prismatic).",
+        Argument::Dq => "`dq`: joint rates, rad/s or m/s.",
+        Argument::Ddq => "`ddq`: joint accelerations, rad/s² or m/s².",
+        Argument::Dqr => "`dqr`: reference rates, rad/s or m/s.",
+        Argument::Ddqr => "`ddqr`: reference accelerations, rad/s² or m/s².",
+        Argument::Tau => "`tau`: joint torques (forces), N m or N.",
+    }
+}
+
+/// The documentation of a function, line by line.
+pub(super) fn function(function: &Function) -> Vec<String> {
+    let Text { title, formula, result } = text(function.quantity);
+    let mut lines = vec![format!(" {title}")];
+    if function.with_parameters {
+        lines.extend([
+            String::new(),
+            " The parameters are given at run time; what is not among them is as in the description.".into(),
+        ]);
+    }
+    let blank = || String::new();
+    lines.extend([blank(), " ```text".into(), format!(" {formula}"), " ```".into(), blank()]);
+    lines.extend(function.arguments.iter().map(|&a| format!(" - {}", argument(a))));
+    lines.push(format!(" - Returns {result}"));
+    lines.extend([blank(), format!(" Cost: {}. Derived by {}.", cost(&Cost::of(function)), function.method)]);
+    lines
+}
+
+/// Operations in words.
+pub(super) fn cost(cost: &Cost) -> String {
+    let count = |n: usize, one: &str, many: &str| match n {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        n => Some(format!("{n} {many}")),
+    };
+    let parts: Vec<String> = [
+        count(cost.mul, "multiplication", "multiplications"),
+        count(cost.add, "addition", "additions"),
+        count(cost.div, "division", "divisions"),
+        count(cost.sincos, "sine and cosine pair", "sine and cosine pairs"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if parts.is_empty() {
+        "none, the result is constant".into()
+    } else {
+        parts.join(", ")
+    }
+}

@@ -1,0 +1,347 @@
+//! The quantities of an arm: what each is, what it takes and returns, and its derivations.
+//!
+//! A quantity may have several derivations, each in a pool of its own: a recursion over the links and, where it stays short, the closed
+//! form. All give the same expressions, which their fingerprints prove; which one is emitted is a matter of cost alone.
+
+use crate::derive::arm::Arm;
+use crate::derive::newton_euler::Motion;
+use crate::derive::parameters::{ParameterVector, View};
+use crate::derive::{self};
+use crate::manipulator::Manipulator;
+use crate::ring::field::Field;
+use crate::ring::normal_form::{Arrangement, NormalForm};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// A function of the emitted module.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// T_e(q).
+    DirectKinematics,
+    /// T_i(q).
+    LinkFrames,
+    /// J(q).
+    GeometricJacobian,
+    /// dJ/dt(q, dq).
+    GeometricJacobianDot,
+    /// B(q).
+    InertiaMatrix,
+    /// C(q, dq).
+    CoriolisMatrix,
+    /// g(q).
+    Gravity,
+    /// F(dq).
+    Friction,
+    /// B, C and g together.
+    EquationsOfMotion,
+    /// tau(q, dq, ddq).
+    InverseDynamics,
+    /// ddq(q, dq, tau).
+    ForwardDynamics,
+    /// Y(q, dq, dqr, ddqr).
+    Regressor,
+    /// tau_known(q, dq, dqr, ddqr).
+    KnownTorque,
+    /// T(q, dq).
+    KineticEnergy,
+    /// U(q).
+    PotentialEnergy,
+}
+
+/// An argument of an emitted function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Argument {
+    /// The parameter vector.
+    Pi,
+    /// Joint variables.
+    Q,
+    /// Joint rates.
+    Dq,
+    /// Joint accelerations.
+    Ddq,
+    /// Reference rates.
+    Dqr,
+    /// Reference accelerations.
+    Ddqr,
+    /// Joint torques.
+    Tau,
+}
+
+/// Shape of a result, in terms of the n joints and the p parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A number.
+    Scalar,
+    /// n entries.
+    Vector,
+    /// 4 x 4.
+    Frame,
+    /// n times 4 x 4.
+    Frames,
+    /// 6 x n.
+    Jacobian,
+    /// n x n.
+    Square,
+    /// n x p.
+    Regressor,
+    /// B, C and g: n x n, n x n, n.
+    EquationsOfMotion,
+}
+
+impl Shape {
+    /// Rows and columns of one matrix, or of each of several.
+    pub fn rows_columns(self, n: usize, p: usize) -> (usize, usize) {
+        match self {
+            Shape::Scalar => (1, 1),
+            Shape::Vector => (n, 1),
+            Shape::Frame | Shape::Frames => (4, 4),
+            Shape::Jacobian => (6, n),
+            Shape::Square | Shape::EquationsOfMotion => (n, n),
+            Shape::Regressor => (n, p),
+        }
+    }
+}
+
+/// One derivation of a quantity: its entries, row by row, in a pool.
+#[derive(Clone)]
+pub struct Derivation {
+    /// The expressions.
+    pub pool: Pool,
+    /// Entries, row by row.
+    pub entries: Vec<ExprId>,
+    /// How it was derived, in a few words.
+    pub method: &'static str,
+}
+
+/// A closed form is tried up to so many terms an entry, on the way and at the end.
+pub const CLOSED_FORM_TERMS: usize = 300;
+
+impl Quantity {
+    /// All, in the order of the emitted module.
+    pub const ALL: [Quantity; 15] = [
+        Quantity::DirectKinematics,
+        Quantity::LinkFrames,
+        Quantity::GeometricJacobian,
+        Quantity::GeometricJacobianDot,
+        Quantity::InertiaMatrix,
+        Quantity::CoriolisMatrix,
+        Quantity::Gravity,
+        Quantity::Friction,
+        Quantity::EquationsOfMotion,
+        Quantity::InverseDynamics,
+        Quantity::ForwardDynamics,
+        Quantity::Regressor,
+        Quantity::KnownTorque,
+        Quantity::KineticEnergy,
+        Quantity::PotentialEnergy,
+    ];
+
+    /// The emitted function's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::DirectKinematics => "direct_kinematics",
+            Quantity::LinkFrames => "link_frames",
+            Quantity::GeometricJacobian => "geometric_jacobian",
+            Quantity::GeometricJacobianDot => "geometric_jacobian_dot",
+            Quantity::InertiaMatrix => "inertia_matrix",
+            Quantity::CoriolisMatrix => "coriolis_matrix",
+            Quantity::Gravity => "gravity",
+            Quantity::Friction => "friction",
+            Quantity::EquationsOfMotion => "equations_of_motion",
+            Quantity::InverseDynamics => "inverse_dynamics",
+            Quantity::ForwardDynamics => "forward_dynamics",
+            Quantity::Regressor => "regressor",
+            Quantity::KnownTorque => "known_torque",
+            Quantity::KineticEnergy => "kinetic_energy",
+            Quantity::PotentialEnergy => "potential_energy",
+        }
+    }
+
+    /// Symbol in plain text and in LaTeX.
+    pub fn symbol(self) -> (&'static str, &'static str) {
+        match self {
+            Quantity::DirectKinematics => ("T_e(q)", "T_e(q)"),
+            Quantity::LinkFrames => ("T_i(q)", "T_i(q)"),
+            Quantity::GeometricJacobian => ("J(q)", "J(q)"),
+            Quantity::GeometricJacobianDot => ("dJ/dt(q, dq)", "\\dot J(q, \\dot q)"),
+            Quantity::InertiaMatrix => ("B(q)", "B(q)"),
+            Quantity::CoriolisMatrix => ("C(q, dq)", "C(q, \\dot q)"),
+            Quantity::Gravity => ("g(q)", "g(q)"),
+            Quantity::Friction => ("F(dq)", "F(\\dot q)"),
+            Quantity::EquationsOfMotion => ("B, C, g", "B, C, g"),
+            Quantity::InverseDynamics => ("tau(q, dq, ddq)", "\\tau(q, \\dot q, \\ddot q)"),
+            Quantity::ForwardDynamics => ("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
+            Quantity::Regressor => ("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"),
+            Quantity::KnownTorque => ("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
+            Quantity::KineticEnergy => ("T(q, dq)", "\\mathcal T(q, \\dot q)"),
+            Quantity::PotentialEnergy => ("U(q)", "\\mathcal U(q)"),
+        }
+    }
+
+    /// Arguments of the plain function, in order.
+    pub fn arguments(self) -> &'static [Argument] {
+        use Argument::{Ddq, Ddqr, Dq, Dqr, Tau, Q};
+        match self {
+            Quantity::DirectKinematics
+            | Quantity::LinkFrames
+            | Quantity::GeometricJacobian
+            | Quantity::InertiaMatrix
+            | Quantity::Gravity
+            | Quantity::PotentialEnergy => &[Q],
+            Quantity::GeometricJacobianDot | Quantity::CoriolisMatrix | Quantity::EquationsOfMotion | Quantity::KineticEnergy => {
+                &[Q, Dq]
+            }
+            Quantity::Friction => &[Dq],
+            Quantity::InverseDynamics => &[Q, Dq, Ddq],
+            Quantity::ForwardDynamics => &[Q, Dq, Tau],
+            Quantity::Regressor | Quantity::KnownTorque => &[Q, Dq, Dqr, Ddqr],
+        }
+    }
+
+    /// Whether there is a form that takes the parameters at run time.
+    pub fn has_parameters(self) -> bool {
+        use Quantity::*;
+        matches!(
+            self,
+            InertiaMatrix
+                | CoriolisMatrix
+                | Gravity
+                | Friction
+                | EquationsOfMotion
+                | InverseDynamics
+                | ForwardDynamics
+                | KineticEnergy
+                | PotentialEnergy
+        )
+    }
+
+    /// Shape of the result.
+    pub fn shape(self) -> Shape {
+        match self {
+            Quantity::DirectKinematics => Shape::Frame,
+            Quantity::LinkFrames => Shape::Frames,
+            Quantity::GeometricJacobian | Quantity::GeometricJacobianDot => Shape::Jacobian,
+            Quantity::InertiaMatrix | Quantity::CoriolisMatrix => Shape::Square,
+            Quantity::Gravity
+            | Quantity::Friction
+            | Quantity::InverseDynamics
+            | Quantity::ForwardDynamics
+            | Quantity::KnownTorque => Shape::Vector,
+            Quantity::EquationsOfMotion => Shape::EquationsOfMotion,
+            Quantity::Regressor => Shape::Regressor,
+            Quantity::KineticEnergy | Quantity::PotentialEnergy => Shape::Scalar,
+        }
+    }
+
+    /// The entries by recursion over the links, in a pool of their own.
+    pub fn by_recursion(
+        self,
+        manipulator: &Manipulator,
+        field: &Field,
+        view: View<'_>,
+        parameters: &ParameterVector,
+    ) -> Derivation {
+        let mut pool = Pool::new(field.clone());
+        // The regressor of named parameters is the derivative by them, and its known rest what is left without them.
+        let view = match self {
+            Quantity::Regressor => View::Vector(parameters),
+            Quantity::KnownTorque => View::Known(parameters),
+            _ => view,
+        };
+        let mut arm = Arm::new(&mut pool, manipulator, view);
+        let grouped = matches!(view, View::Nominal)
+            && matches!(
+                self,
+                Quantity::InertiaMatrix
+                    | Quantity::CoriolisMatrix
+                    | Quantity::Gravity
+                    | Quantity::EquationsOfMotion
+                    | Quantity::InverseDynamics
+                    | Quantity::ForwardDynamics
+                    | Quantity::KineticEnergy
+            );
+        if grouped {
+            arm.group_towards_base(&mut pool);
+        }
+        let entries = self.entries(&mut pool, &arm, parameters);
+        Derivation { pool, entries, method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" } }
+    }
+
+    /// The entries for an arm in a pool, row by row.
+    pub fn entries(self, pool: &mut Pool, arm: &Arm, parameters: &ParameterVector) -> Vec<ExprId> {
+        match self {
+            Quantity::DirectKinematics => derive::kinematics::direct_kinematics(pool, arm).concat(),
+            Quantity::LinkFrames => derive::kinematics::link_frames(pool, arm).concat().concat(),
+            Quantity::GeometricJacobian => derive::kinematics::geometric_jacobian(pool, arm).concat(),
+            Quantity::GeometricJacobianDot => derive::kinematics::geometric_jacobian_dot(pool, arm).concat(),
+            Quantity::InertiaMatrix => derive::inertia::inertia_matrix(pool, arm).concat(),
+            Quantity::CoriolisMatrix => derive::coriolis::coriolis_matrix(pool, arm).concat(),
+            Quantity::Gravity => derive::gravity::gravity(pool, arm),
+            Quantity::Friction => {
+                let rates = arm.symbols(pool, Symbol::Rate);
+                derive::newton_euler::friction(pool, arm, &rates)
+            }
+            Quantity::EquationsOfMotion => {
+                let b = derive::inertia::inertia_matrix(pool, arm);
+                let c = derive::coriolis::christoffel(pool, arm, &b);
+                let g = derive::gravity::gravity(pool, arm);
+                [b.concat(), c.concat(), g].concat()
+            }
+            Quantity::InverseDynamics => {
+                let motion = Motion::plain(pool, arm);
+                derive::newton_euler::inverse_dynamics(pool, arm, &motion)
+            }
+            Quantity::ForwardDynamics => derive::forward_dynamics::forward_dynamics(pool, arm),
+            Quantity::Regressor => derive::regressor::regressor(pool, arm, parameters).concat(),
+            Quantity::KnownTorque => {
+                let motion = Motion::with_reference(pool, arm);
+                derive::newton_euler::inverse_dynamics(pool, arm, &motion)
+            }
+            Quantity::KineticEnergy => vec![derive::energy::kinetic_energy(pool, arm)],
+            Quantity::PotentialEnergy => vec![derive::gravity::potential_energy(pool, arm)],
+        }
+    }
+}
+
+impl Derivation {
+    /// The closed form of every entry, if none is too long.
+    pub fn closed_forms(&self) -> Option<Vec<NormalForm>> {
+        self.pool.normal_forms(&self.entries, CLOSED_FORM_TERMS).into_iter().collect()
+    }
+
+    /// The derivations from the closed form, if there is one: one for each order in which its products can be formed.
+    pub fn by_closed_form(&self) -> Vec<Derivation> {
+        let Some(forms) = self.closed_forms() else { return Vec::new() };
+        Arrangement::ALL
+            .iter()
+            .map(|&arrangement| {
+                let mut pool = Pool::new(self.pool.field().clone());
+                let entries = forms.iter().map(|form| pool.from_normal_form(form, arrangement)).collect();
+                Derivation { pool, entries, method: "closed form" }
+            })
+            .collect()
+    }
+}
+
+/// A field in which the constants of an arm have their roots.
+pub fn field_of(manipulator: &Manipulator) -> Field {
+    let mut numbers = Vec::new();
+    for joint in &manipulator.joints {
+        for placement in [&joint.placement, &joint.link_frame, &manipulator.tool] {
+            numbers.extend(placement.rotation.iter().flatten().cloned());
+            numbers.extend(placement.translation.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        }
+        let bodies = [Some(&joint.link), manipulator.payload.as_ref()];
+        for body in bodies.into_iter().flatten() {
+            let all = std::iter::once(&body.mass).chain(&body.com).chain(&body.inertia);
+            numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        }
+        if let Some(motor) = &joint.motor {
+            numbers.extend(motor.axis.iter().cloned());
+            numbers
+                .extend(motor.position.iter().chain([&motor.ratio, &motor.mass]).flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        }
+    }
+    numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
+    numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+    Field::for_constants(&numbers)
+}

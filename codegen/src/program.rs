@@ -1,0 +1,106 @@
+//! Straight-line programs: what a machine does, in order, in no language.
+//!
+//! A function is a list of steps, each an operation on inputs, constants and earlier steps, and a list of outputs.
+//! Absent from here on: graphs, sharing, mathematics.
+
+mod cost;
+mod schedule;
+
+pub use cost::Cost;
+pub use schedule::{module, Options, Scalar};
+
+use crate::equations::{Argument, Quantity};
+use crate::exact::Number;
+use crate::ring::Symbol;
+
+/// A value that a step uses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Operand {
+    /// The result of an earlier step.
+    Step(u32),
+    /// An input.
+    Input(Symbol),
+    /// An exact constant.
+    Constant(Number),
+}
+
+/// An operation on two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    /// a + b
+    Add,
+    /// a - b
+    Subtract,
+    /// a b
+    Multiply,
+    /// a / b
+    Divide,
+}
+
+/// One step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// The operation.
+    pub operation: Operation,
+    /// Its left operand.
+    pub left: Operand,
+    /// Its right operand.
+    pub right: Operand,
+}
+
+/// An output entry: an operand and its sign.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Output {
+    /// The value.
+    pub operand: Operand,
+    /// Whether it is negated. Constants carry their sign themselves.
+    pub negated: bool,
+}
+
+/// A function.
+#[derive(Clone, Debug)]
+pub struct Function {
+    /// What it computes.
+    pub quantity: Quantity,
+    /// Whether it takes the parameters at run time.
+    pub with_parameters: bool,
+    /// Arguments in order.
+    pub arguments: Vec<Argument>,
+    /// Steps in order.
+    pub steps: Vec<Step>,
+    /// Entries of the result, row by row.
+    pub outputs: Vec<Output>,
+    /// How it was derived.
+    pub method: &'static str,
+}
+
+impl Function {
+    /// Its name in the emitted module.
+    pub fn name(&self) -> String {
+        let name = self.quantity.name();
+        if self.with_parameters {
+            format!("{name}_with")
+        } else {
+            name.into()
+        }
+    }
+}
+
+/// All that the emitted module holds.
+#[derive(Clone, Debug)]
+pub struct Module {
+    /// Name of the robot.
+    pub name: String,
+    /// Joints: name and whether it is revolute.
+    pub joints: Vec<(String, bool)>,
+    /// Limits by joint, infinite where not given: lowest q, highest q, highest |dq|, highest |tau|.
+    pub limits: Vec<[Option<Number>; 4]>,
+    /// Rows of the task in the geometric Jacobian.
+    pub task: Vec<usize>,
+    /// Parameters: name, nominal value, meaning.
+    pub parameters: Vec<(String, Number, String)>,
+    /// Functions in order.
+    pub functions: Vec<Function>,
+    /// The scalar.
+    pub scalar: Scalar,
+}

@@ -1,0 +1,50 @@
+//! What a function costs, counted in operations.
+
+use std::collections::BTreeSet;
+
+use super::{Function, Operand, Operation};
+use crate::ring::Symbol;
+
+/// Operations of a function: one per binary `*`, `+` or `-`, `/`; sign changes and sines apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// Multiplications.
+    pub mul: usize,
+    /// Additions and subtractions.
+    pub add: usize,
+    /// Divisions.
+    pub div: usize,
+    /// Sign changes.
+    pub neg: usize,
+    /// Sine and cosine pairs.
+    pub sincos: usize,
+}
+
+impl Cost {
+    /// The cost of a function.
+    pub fn of(function: &Function) -> Cost {
+        let mut cost = Cost::default();
+        let mut angles = BTreeSet::new();
+        for step in &function.steps {
+            match step.operation {
+                Operation::Add | Operation::Subtract => cost.add += 1,
+                Operation::Multiply => cost.mul += 1,
+                Operation::Divide => cost.div += 1,
+            }
+        }
+        let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
+        for operand in operands.chain(function.outputs.iter().map(|output| &output.operand)) {
+            if let Operand::Input(Symbol::Sine(i) | Symbol::Cosine(i)) = operand {
+                angles.insert(*i);
+            }
+        }
+        cost.sincos = angles.len();
+        cost.neg = function.outputs.iter().filter(|output| output.negated).count();
+        cost
+    }
+
+    /// A single figure to compare derivations by: a sine and cosine pair or a division counts like some additions, a sign change not at all.
+    pub fn weight(&self) -> usize {
+        self.mul + self.add + 4 * self.div + 16 * self.sincos
+    }
+}

@@ -1,0 +1,130 @@
+//! From shared expressions to numbered steps, and from the derivations of each quantity to the cheapest.
+
+use std::collections::HashMap;
+
+use super::{Cost, Function, Module, Operand, Operation, Output, Step};
+use crate::derive::parameters::{ParameterVector, View};
+use crate::equations::{Argument, Derivation, Quantity};
+use crate::exact::Number;
+use crate::manipulator::{JointKind, Manipulator};
+use crate::ring::field::Field;
+use crate::ring::{ExprId, Node, Pool};
+
+/// The scalar of the emitted module.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scalar {
+    /// Double precision.
+    #[default]
+    F64,
+    /// Single precision.
+    F32,
+}
+
+/// Choices of generation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// The scalar type behind `Real`.
+    pub scalar: Scalar,
+}
+
+/// The module of an arm.
+pub fn module(manipulator: &Manipulator, field: &Field, parameters: &ParameterVector, options: &Options) -> Module {
+    let mut functions = Vec::new();
+    for quantity in Quantity::ALL {
+        functions.push(function(manipulator, field, parameters, quantity, false));
+        if quantity.has_parameters() {
+            functions.push(function(manipulator, field, parameters, quantity, true));
+        }
+    }
+    Module {
+        name: manipulator.name.clone(),
+        joints: manipulator.joints.iter().map(|j| (j.name.clone(), j.kind == JointKind::Revolute)).collect(),
+        limits: manipulator
+            .joints
+            .iter()
+            .map(|joint| {
+                let [low, high] = joint.limits.position.clone().map_or([None, None], |p| p.map(Some));
+                [low, high, joint.limits.velocity.clone(), joint.limits.effort.clone()]
+            })
+            .collect(),
+        task: manipulator.task.iter().map(|row| row.index()).collect(),
+        parameters: parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
+        functions,
+        scalar: options.scalar,
+    }
+}
+
+/// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.
+pub fn function(
+    manipulator: &Manipulator,
+    field: &Field,
+    parameters: &ParameterVector,
+    quantity: Quantity,
+    with_parameters: bool,
+) -> Function {
+    let view = if with_parameters { View::Vector(parameters) } else { View::Nominal };
+    let recursion = quantity.by_recursion(manipulator, field, view, parameters);
+    let closed = recursion.by_closed_form();
+    debug_assert!(closed.iter().all(|c| {
+        c.entries.iter().zip(&recursion.entries).all(|(&a, &b)| c.pool.fingerprint(a) == recursion.pool.fingerprint(b))
+    }));
+    closed
+        .iter()
+        .chain([&recursion])
+        .map(|derivation| lower(quantity, with_parameters, derivation))
+        .min_by_key(|function| Cost::of(function).weight())
+        .expect("there is at least the recursion")
+}
+
+fn lower(quantity: Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
+    let (steps, outputs) = steps(&derivation.pool, &derivation.entries);
+    let mut arguments = quantity.arguments().to_vec();
+    if with_parameters {
+        arguments.insert(0, Argument::Pi);
+    }
+    Function { quantity, with_parameters, arguments, steps, outputs, method: derivation.method }
+}
+
+/// The steps that the expressions need, each after its operands, in the order in which the expressions ask for them.
+pub fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
+    let mut steps: Vec<Step> = Vec::new();
+    let mut done: HashMap<usize, u32> = HashMap::new();
+    for &expr in exprs {
+        let mut stack = vec![(expr.unsigned(), false)];
+        while let Some((expr, ready)) = stack.pop() {
+            if done.contains_key(&expr.index()) {
+                continue;
+            }
+            let (operation, a, b) = match pool.node(expr) {
+                Node::Constant(_) | Node::Symbol(_) => continue,
+                Node::Add(a, b) => (if b.is_negated() { Operation::Subtract } else { Operation::Add }, a, b),
+                Node::Mul(a, b) => (Operation::Multiply, a, b),
+                Node::Reciprocal(a) => (Operation::Divide, ExprId::ONE, a),
+            };
+            if ready {
+                let (left, right) = (operand(pool, &done, a), operand(pool, &done, b));
+                done.insert(expr.index(), steps.len() as u32);
+                steps.push(Step { operation, left, right });
+            } else {
+                stack.extend([(expr, true), (b.unsigned(), false), (a.unsigned(), false)]);
+            }
+        }
+    }
+    let outputs = exprs
+        .iter()
+        .map(|&expr| match pool.as_constant(expr) {
+            Some(value) => Output { operand: Operand::Constant(value), negated: false },
+            None => Output { operand: operand(pool, &done, expr), negated: expr.is_negated() },
+        })
+        .collect();
+    (steps, outputs)
+}
+
+/// An operand without its sign: signs sit in the operation or in the output.
+fn operand(pool: &Pool, done: &HashMap<usize, u32>, expr: ExprId) -> Operand {
+    match pool.node(expr) {
+        Node::Constant(_) => Operand::Constant(pool.as_constant(expr.unsigned()).unwrap_or_else(Number::zero)),
+        Node::Symbol(symbol) => Operand::Input(symbol),
+        Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => Operand::Step(done[&expr.index()]),
+    }
+}
