@@ -13,7 +13,11 @@
 //! A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's link_frame) Rz(theta) Tz(d)`
 //! and `link_frame = Tx(a) Rx(alpha)`; a modified one gives `placement = Rx(alpha) Tx(a) Rz(theta) Tz(d)` and `link_frame = 1`.
 
+mod validate;
+
 use crate::exact::{Number, Polynomial};
+
+pub use validate::{equations, read, read_for, JointPlaces, Places, Role, Scalar, Use, MAX_JOINTS};
 
 /// Index into [`Manipulator::joints`]; link i is the one that joint i moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,0 +1,372 @@
+//! YAML text -> a tree of nodes, each with its place.
+//!
+//! The tree is built from the events of the reader, not through serde: so scalars stay the text that stands in the file, every
+//! duplicate key is found (not the first alone), and aliases, tags and second documents can be judged where they stand.
+//! Absent from here on: YAML syntax, anchors and aliases (a node that is referred to is copied), duplicate keys.
+
+use std::collections::BTreeMap;
+
+use serde_yaml::granit_parser::{options, ErrorKind, Event, Parser, ScalarStyle, ScanError};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::source::{Source, Span, Spanned};
+
+/// No description needs more text than this, in bytes.
+const MAX_TEXT: usize = 256 * 1024;
+/// No description nests deeper.
+const MAX_DEPTH: usize = 24;
+/// Nodes after the copying of aliases.
+const MAX_NODES: usize = 200_000;
+
+/// A value in the tree.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    /// Where it stands; without the key before it.
+    pub(super) span: Span,
+    /// What it is.
+    pub(super) kind: Kind,
+}
+
+/// Kinds of values.
+#[derive(Clone, Debug)]
+pub(super) enum Kind {
+    /// A text, quoted or not.
+    Scalar(Scalar),
+    /// A list.
+    List(Vec<Node>),
+    /// Keys and values in the order of the file; no key twice.
+    Mapping(Vec<(Spanned<String>, Node)>),
+}
+
+/// A text.
+#[derive(Clone, Debug)]
+pub(super) struct Scalar {
+    /// The text, quotes and escapes resolved.
+    pub(super) text: String,
+    /// Whether it stands without quotes, so that YAML gives `~` and the like a meaning of their own.
+    pub(super) plain: bool,
+    /// Offset of the text in the source, where it stands there letter by letter.
+    pub(super) verbatim: Option<usize>,
+}
+
+impl Node {
+    /// What this is, for a message.
+    pub(super) fn describe(&self) -> &'static str {
+        match &self.kind {
+            Kind::Scalar(s) if s.is_nothing() => "nothing",
+            Kind::Scalar(_) => "a single value",
+            Kind::List(_) => "a list",
+            Kind::Mapping(_) => "a mapping",
+        }
+    }
+
+    fn size(&self) -> usize {
+        match &self.kind {
+            Kind::Scalar(_) => 1,
+            Kind::List(items) => 1 + items.iter().map(Node::size).sum::<usize>(),
+            Kind::Mapping(entries) => 1 + entries.iter().map(|(_, value)| 1 + value.size()).sum::<usize>(),
+        }
+    }
+}
+
+impl Scalar {
+    /// Whether nothing stands here, or YAML's word for nothing.
+    pub(super) fn is_nothing(&self) -> bool {
+        self.plain && matches!(self.text.as_str(), "" | "~" | "null" | "Null" | "NULL")
+    }
+}
+
+/// The tree of `source`; `None` if there is none.
+pub(super) fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
+    let text = source.text();
+    if text.len() > MAX_TEXT {
+        diagnostics.push(Diagnostic::new(
+            Code::TooLarge,
+            Span::new(0, 0),
+            format!("the file has {} bytes, more than the {MAX_TEXT} that are read", text.len()),
+            "",
+            "describe one robot per file; a description of 64 joints has some 50 000 bytes",
+        ));
+        return None;
+    }
+    let options = options! {
+        emit_comments: false,
+        disallow_directives: true,
+        flow_nesting_limit: MAX_DEPTH,
+        block_nesting_limit: MAX_DEPTH,
+    };
+    let builder = Builder { source, diagnostics, open: Vec::new(), anchors: BTreeMap::new(), nodes: 0, root: None };
+    builder.run(Parser::new_from_str_with_options(text, options))
+}
+
+/// A list or a mapping that has begun.
+struct Open {
+    start: Span,
+    anchor: usize,
+    flow: bool,
+    content: Content,
+}
+
+enum Content {
+    List(Vec<Node>),
+    /// Entries, their keys (to find duplicates), and the key that waits for its value (`None` in it: no key that can be used).
+    Mapping(Vec<(Spanned<String>, Node)>, BTreeMap<String, Span>, Option<Option<Spanned<String>>>),
+}
+
+struct Builder<'a> {
+    source: &'a Source,
+    diagnostics: &'a mut Diagnostics,
+    open: Vec<Open>,
+    anchors: BTreeMap<usize, Node>,
+    nodes: usize,
+    root: Option<Node>,
+}
+
+impl Builder<'_> {
+    fn run<'i>(
+        mut self,
+        events: impl Iterator<Item = Result<(Event<'i>, serde_yaml::granit_parser::Span), ScanError>>,
+    ) -> Option<Node> {
+        let mut documents = 0;
+        for event in events {
+            let (event, at) = match event {
+                Ok(event) => event,
+                Err(error) => {
+                    self.syntax_error(&error);
+                    return None;
+                }
+            };
+            let span = at.byte_range().map_or(Span::new(0, 0), |r| Span::new(r.start, r.end.max(r.start)));
+            if let Some(tag) = at.tag_span().and_then(|t| t.byte_range()) {
+                self.diagnostics.push(Diagnostic::new(
+                    Code::YamlFeature,
+                    Span::new(tag.start, tag.end),
+                    "a tag has no meaning in a description",
+                    "a YAML tag",
+                    "remove it: the key says what kind of value is expected",
+                ));
+            }
+            match event {
+                Event::DocumentStart(..) => {
+                    documents += 1;
+                    if documents == 2 {
+                        self.diagnostics.push(Diagnostic::new(
+                            Code::YamlFeature,
+                            span,
+                            "a second document begins here",
+                            "",
+                            "describe one robot per file; remove this line and what follows it",
+                        ));
+                        return self.root;
+                    }
+                }
+                Event::Scalar(text, style, anchor, _) => {
+                    let plain = style == ScalarStyle::Plain;
+                    let verbatim = self.verbatim(&text, span, style);
+                    let node = Node { span, kind: Kind::Scalar(Scalar { text: text.into_owned(), plain, verbatim }) };
+                    self.place(node, anchor)?;
+                }
+                Event::SequenceStart(style, anchor, _) => {
+                    let flow = style == serde_yaml::granit_parser::StructureStyle::Flow;
+                    self.open.push(Open { start: span, anchor, flow, content: Content::List(Vec::new()) });
+                }
+                Event::MappingStart(style, anchor, _) => {
+                    let flow = style == serde_yaml::granit_parser::StructureStyle::Flow;
+                    let content = Content::Mapping(Vec::new(), BTreeMap::new(), None);
+                    self.open.push(Open { start: span, anchor, flow, content });
+                }
+                Event::SequenceEnd | Event::MappingEnd => self.close(span)?,
+                Event::Alias(anchor) => match self.anchors.get(&anchor) {
+                    Some(node) => {
+                        self.nodes += node.size();
+                        if self.nodes > MAX_NODES {
+                            self.diagnostics.push(Diagnostic::new(
+                                Code::TooLarge,
+                                span,
+                                format!("written out, the aliases of this file give more than {MAX_NODES} values"),
+                                "too much here",
+                                "write the values out instead of referring to them by aliases",
+                            ));
+                            return None;
+                        }
+                        let node = node.clone();
+                        self.place(node, 0)?;
+                    }
+                    None => {
+                        self.diagnostics.push(Diagnostic::new(
+                            Code::YamlFeature,
+                            span,
+                            "this alias refers to a value that contains it",
+                            "an alias within its own anchor",
+                            "write the value out",
+                        ));
+                        return None;
+                    }
+                },
+                Event::StreamStart | Event::StreamEnd | Event::DocumentEnd => {}
+                _ => {}
+            }
+        }
+        self.root
+    }
+
+    /// Offset of a scalar's text in the source, if it stands there as it is.
+    fn verbatim(&self, text: &str, span: Span, style: ScalarStyle) -> Option<usize> {
+        let start = match style {
+            ScalarStyle::Plain => span.start,
+            ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => span.start + 1,
+            ScalarStyle::Literal | ScalarStyle::Folded => return None,
+        };
+        (self.source.text().get(start..start + text.len()) == Some(text)).then_some(start)
+    }
+
+    /// Ends the innermost list or mapping; `end` is the place of its closing bracket, if it has one.
+    fn close(&mut self, end: Span) -> Option<()> {
+        let Open { start, anchor, flow, content } = self.open.pop()?;
+        let (kind, last) = match content {
+            Content::List(items) => {
+                let last = items.last().map(|n| n.span);
+                (Kind::List(items), last)
+            }
+            Content::Mapping(entries, ..) => {
+                let last = entries.last().map(|(key, value)| key.span.to(value.span));
+                (Kind::Mapping(entries), last)
+            }
+        };
+        // A block ends with its last value; what the reader calls its end may be lines away.
+        let span = if flow { start.to(end) } else { last.map_or(start, |last| Span::new(start.start.min(last.start), last.end)) };
+        self.place(Node { span, kind }, anchor)
+    }
+
+    /// Puts a complete node where it belongs.
+    fn place(&mut self, node: Node, anchor: usize) -> Option<()> {
+        if anchor != 0 {
+            self.anchors.insert(anchor, node.clone());
+        }
+        self.nodes += 1;
+        match self.open.last_mut().map(|open| &mut open.content) {
+            None => self.root = Some(node),
+            Some(Content::List(items)) => items.push(node),
+            Some(Content::Mapping(entries, seen, waiting)) => match waiting.take() {
+                None => *waiting = Some(key(node, seen, self.diagnostics)),
+                Some(Some(key)) => entries.push((key, node)),
+                Some(None) => {}
+            },
+        }
+        Some(())
+    }
+
+    fn syntax_error(&mut self, error: &ScanError) {
+        let at = error.marker().byte_offset().unwrap_or(0).min(self.source.text().len());
+        let span = self.visible(at);
+        let (message, help) = explain(error.kind());
+        let code = match error.kind() {
+            ErrorKind::RecursionLimitExceeded => Code::TooLarge,
+            ErrorKind::DirectiveDisallowed => Code::YamlFeature,
+            _ => Code::YamlSyntax,
+        };
+        let mut diagnostic = Diagnostic::new(code, span, message, "here", help);
+        if let Some(open) = self.open.iter().rev().find(|open| open.flow && open.start.end <= span.start) {
+            diagnostic = diagnostic.also(open.start, "this bracket is open");
+        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// The character at `at`, or the last visible one before it.
+    fn visible(&self, at: usize) -> Span {
+        let text = self.source.text();
+        match text.get(at..).and_then(|rest| rest.chars().next()) {
+            Some(c) if !c.is_whitespace() || c == '\t' => Span::new(at, at + c.len_utf8()),
+            _ => {
+                let before = text.get(..at).unwrap_or("").trim_end().len();
+                Span::new(before, before)
+            }
+        }
+    }
+}
+
+/// The key that `node` is, unless it is none or stands here already.
+fn key(node: Node, seen: &mut BTreeMap<String, Span>, diagnostics: &mut Diagnostics) -> Option<Spanned<String>> {
+    let Kind::Scalar(scalar) = node.kind else {
+        diagnostics.push(Diagnostic::new(
+            Code::WrongKind,
+            node.span,
+            format!("a key must be a word, found {}", node.describe()),
+            "not a key",
+            "write `key: value`",
+        ));
+        return None;
+    };
+    if let Some(&first) = seen.get(&scalar.text) {
+        diagnostics.push(
+            Diagnostic::new(
+                Code::DuplicateKey,
+                node.span,
+                format!("the key `{}` stands here twice", super::excerpt(&scalar.text)),
+                "the second one",
+                "keep one of the two",
+            )
+            .also(first, "the first one"),
+        );
+        return None;
+    }
+    seen.insert(scalar.text.clone(), node.span);
+    Some(Spanned::new(scalar.text, node.span))
+}
+
+/// What the reader's complaint means, and what to do about it.
+fn explain(kind: &ErrorKind) -> (String, String) {
+    use ErrorKind as E;
+    let (message, help): (&str, &str) = match kind {
+        E::TabNotAllowed | E::TabInBlockIndentation | E::TabInIndentation | E::TabInPlainScalar | E::TabAtBlockScalarStart => {
+            ("YAML does not allow a tab here", "indent with spaces, two per level")
+        }
+        E::InvalidIndentation | E::InvalidFlowScalarIndent | E::ExpectedBlockMappingKey | E::ExpectedBlockSequenceEntry => (
+            "the indentation does not fit the lines above",
+            "begin the keys of one mapping, and the dashes of one list, in the same column",
+        ),
+        E::SimpleKeyExpected | E::InvalidSimpleKey => ("a key must be followed by a colon", "write `key: value`, on one line"),
+        E::MappingValueNotAllowed | E::MappingKeyNotAllowed | E::InvalidColonPlacement => (
+            "a `key: value` cannot stand here",
+            "begin it on a line of its own with the indentation of its neighbours; put a text that contains a colon in quotes",
+        ),
+        E::InvalidMappingValueWhitespace => ("a colon must be followed by a space", "write `key: value`"),
+        E::BlockSequenceEntryNotAllowed | E::BlockEntryInFlowCollection | E::InvalidBlockEntryWhitespace => (
+            "a list entry cannot begin here",
+            "begin `- value` on a line of its own; between [ and ] separate the values by commas instead",
+        ),
+        E::UnexpectedEofFlowSequence | E::ExpectedFlowSequenceSeparator => {
+            ("a list that begins with `[` does not end", "separate its values by commas and end it with `]`")
+        }
+        E::UnexpectedEofFlowMapping | E::UnexpectedEofImplicitFlowMapping | E::ExpectedFlowMappingSeparator => {
+            ("a mapping that begins with `{` does not end", "separate its entries by commas and end it with `}`")
+        }
+        E::UnclosedFlowCollection { .. } => ("a bracket is not closed", "close it with its counterpart, `]` or `}`"),
+        E::MismatchedFlowCollectionEnd { .. } => {
+            ("the closing bracket does not fit the open one", "close `[` with `]` and `{` with `}`")
+        }
+        E::MisplacedFlowCollectionEnd => ("a closing bracket without an open one", "remove it, or open it with `[` or `{`"),
+        E::UnclosedQuotedScalar | E::DocumentIndicatorInQuotedScalar => {
+            ("a quoted text does not end", "end it with the quote that it begins with")
+        }
+        E::InvalidTrailingSingleQuotedScalar | E::InvalidTrailingDoubleQuotedScalar => {
+            ("something follows the closing quote", "a quoted text must be the whole value")
+        }
+        E::UnknownAnchor => {
+            ("this alias refers to nothing above it", "name the value with `&name` before it is used, or write it out")
+        }
+        E::UnexpectedCharacter { .. } => {
+            ("this character cannot begin a value", "put the text in quotes, or remove the character")
+        }
+        E::RecursionLimitExceeded => ("the file nests too deeply", "a description needs no more than six levels"),
+        E::DirectiveDisallowed => ("a YAML directive has no meaning in a description", "remove the line that begins with `%`"),
+        E::CommentNotSeparated => ("a comment must be separated by a space", "write a space before `#`"),
+        _ => {
+            return (
+                format!("this is not YAML: {kind}"),
+                "check indentation, quotes, brackets and colons here and on the line above".into(),
+            )
+        }
+    };
+    (message.into(), help.into())
+}

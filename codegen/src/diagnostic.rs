@@ -1,0 +1,317 @@
+//! What is wrong with a text, where, why, and how to mend it.
+//!
+//! A stage gathers [`Diagnostic`]s and goes on with what it could read; nobody sees the first fault alone.
+//! There is one rendering, for terminal, build script and snapshots: [`Diagnostics::render`].
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+
+use crate::source::{Source, Span};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Nothing can be generated from the text.
+    Error,
+    /// The text is taken as written, but may not say what was meant.
+    Warning,
+}
+
+macro_rules! codes {
+    ($($(#[$doc:meta])* $variant:ident $severity:ident $name:literal,)*) => {
+        /// Kinds of diagnostics; each has a stable name.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl Code {
+            /// Every code.
+            pub const ALL: &'static [Code] = &[$(Code::$variant,)*];
+
+            /// The stable name, as printed in brackets: `error[unknown-key]`.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Code::$variant => $name,)*
+                }
+            }
+
+            /// Error or warning; a code is always the same one.
+            pub fn severity(self) -> Severity {
+                match self {
+                    $(Code::$variant => Severity::$severity,)*
+                }
+            }
+        }
+    };
+}
+
+codes! {
+    // The text as YAML.
+    /// The file holds nothing.
+    EmptyFile Error "empty-file",
+    /// The text is not YAML.
+    YamlSyntax Error "yaml-syntax",
+    /// A part of YAML that a description has no use for: tags, several documents, merge keys.
+    YamlFeature Error "yaml-feature",
+    /// The text, its nesting or its aliases exceed what a description may need.
+    TooLarge Error "too-large",
+    /// A key stands twice in one mapping.
+    DuplicateKey Error "duplicate-key",
+
+    // Keys and kinds.
+    /// A key that means nothing here.
+    UnknownKey Error "unknown-key",
+    /// A required key is absent.
+    MissingKey Error "missing-key",
+    /// A mapping where a number is expected, and the like.
+    WrongKind Error "wrong-kind",
+    /// A list with too few or too many elements.
+    WrongLength Error "wrong-length",
+    /// Neither `standard` nor `modified`.
+    UnknownConvention Error "unknown-convention",
+    /// Neither `revolute` nor `prismatic`.
+    UnknownJointType Error "unknown-joint-type",
+
+    // Numbers and expressions.
+    /// Not an expression.
+    BadExpression Error "bad-expression",
+    /// A name that `parameters` does not define above its use.
+    UnknownName Error "unknown-name",
+    /// NaN or an infinity.
+    NotFinite Error "not-finite",
+    /// A number beyond the range of the scalar, or so small that it becomes 0 there.
+    OutOfRange Error "out-of-range",
+    /// A divisor that is 0.
+    DivisionByZero Error "division-by-zero",
+    /// The root of a negative number.
+    NegativeRoot Error "negative-root",
+    /// An expression whose exact value would grow too large to work with.
+    TooComplex Error "too-complex",
+
+    // Names.
+    /// A name that is not an identifier.
+    BadName Error "bad-name",
+    /// A name that has a meaning already.
+    ReservedName Error "reserved-name",
+    /// A name given to two things of one kind.
+    DuplicateName Error "duplicate-name",
+
+    // The arm.
+    /// An arm without joints.
+    NoJoints Error "no-joints",
+    /// More joints than can be generated.
+    TooManyJoints Error "too-many-joints",
+    /// A mass below 0.
+    NegativeMass Error "negative-mass",
+    /// An inertia tensor that is not positive semidefinite.
+    ImpossibleInertia Error "impossible-inertia",
+    /// A rotor inertia below 0.
+    NegativeRotorInertia Error "negative-rotor-inertia",
+    /// A friction coefficient below 0.
+    NegativeFriction Error "negative-friction",
+    /// A gear ratio of 0.
+    ZeroRatio Error "zero-ratio",
+    /// A spin axis without a direction.
+    ZeroAxis Error "zero-axis",
+    /// A position range that holds no interval.
+    EmptyLimits Error "empty-limits",
+    /// A velocity or effort limit that is not positive.
+    NonPositiveLimit Error "non-positive-limit",
+
+    // Task and regressor.
+    /// A task row that does not exist.
+    UnknownTaskRow Error "unknown-task-row",
+    /// A task row named twice.
+    DuplicateTaskRow Error "duplicate-task-row",
+    /// A list that must name something names nothing.
+    EmptyList Error "empty-list",
+    /// `regressor` lists a name that `parameters` does not define.
+    UnknownParameter Error "unknown-parameter",
+    /// `regressor` lists a name twice.
+    RepeatedParameter Error "repeated-parameter",
+    /// tau is not linear in a name that `regressor` lists.
+    NonlinearParameter Error "nonlinear-parameter",
+    /// No joint moves any row of the task.
+    ImmovableTask Error "immovable-task",
+    /// The inertia matrix is singular for every q.
+    SingularInertia Error "singular-inertia",
+
+    // Warnings.
+    /// Principal moments that no body has.
+    TriangleInequality Warning "triangle-inequality",
+    /// A parameter that nothing uses.
+    UnusedParameter Warning "unused-parameter",
+    /// An angle so large that degrees were probably meant.
+    DegreesSuspected Warning "degrees-suspected",
+    /// A decimal that is nearly a multiple of pi/12.
+    RoundedAngle Warning "rounded-angle",
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A place in the text and what to say about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// What is there; may be empty.
+    pub text: String,
+}
+
+/// One fault or one doubt.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Its kind.
+    pub code: Code,
+    /// One sentence: what is wrong.
+    pub message: String,
+    /// Where; the first label is the place of the diagnostic.
+    pub labels: Vec<Label>,
+    /// What to do about it.
+    pub help: String,
+}
+
+impl Diagnostic {
+    /// A diagnostic at `span`, which says `label` there.
+    pub fn new(
+        code: Code,
+        span: Span,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic { code, message: message.into(), labels: vec![Label { span, text: label.into() }], help: help.into() }
+    }
+
+    /// With a second place that has to do with it.
+    #[must_use]
+    pub fn also(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
+        self.labels.push(Label { span, text: text.into() });
+        self
+    }
+
+    /// Where it stands.
+    pub fn span(&self) -> Span {
+        self.labels[0].span
+    }
+}
+
+/// With or without colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colour {
+    /// Plain text.
+    Never,
+    /// ANSI colours, for a terminal.
+    Always,
+}
+
+/// At most so many are rendered: more of them come from a text that is no description at all.
+const RENDERED: usize = 500;
+
+/// Diagnostics of one text.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Diagnostics {
+    list: Vec<Diagnostic>,
+    seen: BTreeSet<(Span, Code)>,
+}
+
+impl Diagnostics {
+    /// None.
+    pub fn new() -> Diagnostics {
+        Diagnostics::default()
+    }
+
+    /// Adds one; a second one of the same kind at the same place says nothing new and is dropped.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        if self.seen.insert((diagnostic.span(), diagnostic.code)) {
+            self.list.push(diagnostic);
+        }
+    }
+
+    /// Adds those of another stage.
+    pub fn extend(&mut self, others: Diagnostics) {
+        for diagnostic in others.list {
+            self.push(diagnostic);
+        }
+    }
+
+    /// In the order of the text.
+    pub fn sort(&mut self) {
+        self.list.sort_by_key(|d| (d.span().start, d.code.severity(), d.code));
+    }
+
+    /// The diagnostics.
+    pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.list.iter()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Number of errors.
+    pub fn errors(&self) -> usize {
+        self.list.iter().filter(|d| d.code.severity() == Severity::Error).count()
+    }
+
+    /// Number of warnings.
+    pub fn warnings(&self) -> usize {
+        self.list.len() - self.errors()
+    }
+
+    /// Whether one of them is an error.
+    pub fn has_errors(&self) -> bool {
+        self.errors() > 0
+    }
+
+    /// All of them as text, each with `NAME:LINE:COLUMN` and the source line underlined, in the order of [`Diagnostics::iter`].
+    pub fn render(&self, source: &Source, colour: Colour) -> String {
+        let mut text = String::new();
+        for diagnostic in self.list.iter().take(RENDERED) {
+            text.push_str(&render(diagnostic, source, colour));
+            text.push_str("\n\n");
+        }
+        if self.list.len() > RENDERED {
+            text.push_str(&format!("{}: {} more not shown\n\n", source.name(), self.list.len() - RENDERED));
+        }
+        text
+    }
+}
+
+fn render(diagnostic: &Diagnostic, source: &Source, colour: Colour) -> String {
+    let level = match diagnostic.code.severity() {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    // The renderer reads all the text it is given, so it gets the lines from the first label to the last.
+    let window =
+        source.lines(diagnostic.labels.iter().map(|label| label.span).reduce(Span::to).expect("a diagnostic has a label"));
+    let within = |span: Span| span.start - window.start..span.end - window.start;
+    let mut snippet = Snippet::source(source.slice(window)).path(source.name()).line_start(source.place(window.start).line);
+    for (i, label) in diagnostic.labels.iter().enumerate() {
+        let kind = if i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };
+        let annotation = kind.span(within(source.first_line(label.span)));
+        snippet = snippet.annotation(if label.text.is_empty() { annotation } else { annotation.label(label.text.as_str()) });
+    }
+    let report = [level
+        .primary_title(diagnostic.message.as_str())
+        .id(diagnostic.code.name())
+        .element(snippet)
+        .element(Level::HELP.message(diagnostic.help.as_str()))];
+    let renderer = match colour {
+        Colour::Never => Renderer::plain(),
+        Colour::Always => Renderer::styled(),
+    };
+    renderer.render(&report)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,166 @@
+//! [`RobotDescription`] -> [`Manipulator`]: every check that a description must pass, all faults reported together.
+//!
+//! ```text
+//! names.rs       identifiers, reserved words, names used twice
+//! parameters.rs  which names stay symbols, which are numbers, which abbreviate an expression
+//! evaluate.rs    expression -> exact number, or polynomial in the symbols
+//! geometry.rs    angles, Denavit-Hartenberg rows of both conventions -> placements
+//! bodies.rs      mass, centre of mass, inertia: no impossible body
+//! joints.rs      limits, motor, friction
+//! choices.rs     task, regressor
+//! places.rs      where things stand, for what is found out later
+//! equations.rs   faults that only the equations show
+//! ```
+//!
+//! Absent from here on: spans, conventions, expressions, impossible values. Nothing after this stage can fail.
+
+mod bodies;
+mod choices;
+pub mod equations;
+mod evaluate;
+mod geometry;
+mod joints;
+mod names;
+mod parameters;
+mod places;
+
+use std::collections::BTreeMap;
+
+use super::{LinkId, Manipulator};
+use crate::description::{JointDescription, RobotDescription};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Polynomial;
+use crate::source::{Source, Span};
+use evaluate::Evaluator;
+use parameters::Parameters;
+pub use places::{JointPlaces, Places, Role, Use};
+
+/// Equations and emitted code grow with the number of joints; an arm of more than this is a mistake.
+pub const MAX_JOINTS: usize = 64;
+
+/// The floating-point type of the emitted code; its range bounds the numbers of a description.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scalar {
+    /// 64 bits.
+    #[default]
+    F64,
+    /// 32 bits.
+    F32,
+}
+
+/// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
+/// There is an arm if and only if no diagnostic is an error.
+pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
+    read_for(source, Scalar::F64)
+}
+
+/// As [`read`], with numbers that must fit `scalar`.
+pub fn read_for(source: &Source, scalar: Scalar) -> (Option<(Manipulator, Places)>, Diagnostics) {
+    let (description, mut diagnostics) = RobotDescription::parse(source);
+    let valid = description.and_then(|d| validate(source, &d, scalar, &mut diagnostics));
+    diagnostics.sort();
+    (valid.filter(|_| !diagnostics.has_errors()), diagnostics)
+}
+
+/// Everything that the parts of the validation share.
+struct Context<'d> {
+    source: &'d Source,
+    evaluator: Evaluator<'d>,
+    diagnostics: &'d mut Diagnostics,
+    /// Inertias that give one moment alone, of which one warning tells.
+    planar: Vec<(Span, String)>,
+}
+
+impl Context<'_> {
+    fn report(&mut self, code: Code, span: Span, message: impl Into<String>, label: impl Into<String>, help: impl Into<String>) {
+        self.diagnostics.push(Diagnostic::new(code, span, message, label, help));
+    }
+}
+
+fn validate(
+    source: &Source,
+    description: &RobotDescription,
+    scalar: Scalar,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Manipulator, Places)> {
+    names::check(description, diagnostics);
+    let parameters = Parameters::resolve(description, scalar, diagnostics);
+    let mut context = Context { source, evaluator: Evaluator::new(parameters, scalar), diagnostics, planar: Vec::new() };
+    let gravity = description.gravity.as_ref().and_then(|g| context.polynomials(&g.value));
+    let joints = joints(description, &mut context);
+    let tool = geometry::tool(description.tool.as_ref(), &mut context);
+    let payload = description.payload.as_ref().map(|p| bodies::body(p, "the payload", &mut context));
+    let task = choices::task(description, context.diagnostics);
+    let regressor = choices::regressor(description, &mut context);
+    bodies::warn_of_planar(&mut context);
+    context.evaluator.parameters.warn_of_unused(context.diagnostics);
+    if context.diagnostics.has_errors() {
+        return None;
+    }
+    let joints = joints?;
+    let tip = LinkId(u32::try_from(joints.len() - 1).expect("the number of joints is bounded"));
+    let places = places::gather(description, &context.evaluator.parameters);
+    let manipulator = Manipulator {
+        name: description.name.as_ref()?.value.clone(),
+        parameters: context.evaluator.parameters.symbols(),
+        gravity: gravity?,
+        joints,
+        tip,
+        tool: tool?,
+        payload: match payload {
+            Some(body) => Some(body?),
+            None => None,
+        },
+        task,
+        regressor: regressor?,
+    };
+    Some((manipulator, places))
+}
+
+/// The joints, if all of them are valid.
+fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<Vec<super::Joint>> {
+    let list = description.joints.as_ref()?;
+    if list.value.is_empty() {
+        let help = "write one `- name: ...` per joint, from base to tip, with type, a, alpha, d, theta and link";
+        context.report(Code::NoJoints, list.span, "an arm has at least one joint", "no joint", help);
+        return None;
+    }
+    if let Some(joint) = list.value.get(MAX_JOINTS) {
+        let message = format!("{} joints are more than the {MAX_JOINTS} that can be generated", list.value.len());
+        let help = "describe the arm alone; an arm that is rigid in some joints needs them as parts of their links";
+        context.report(Code::TooManyJoints, joint.span, message, format!("joint {}", MAX_JOINTS + 1), help);
+        return None;
+    }
+    let convention = description.convention.as_ref().map(|c| c.value);
+    let mut valid = Some(Vec::new());
+    let mut previous_frame = None;
+    for (i, joint) in list.value.iter().enumerate() {
+        let parent = i.checked_sub(1).map(|p| LinkId(u32::try_from(p).expect("the number of joints is bounded")));
+        let (joint, link_frame) = joints::joint(i, joint, previous_frame.as_ref(), parent, convention, context);
+        previous_frame = link_frame;
+        valid = valid.zip(joint).map(|(mut all, joint)| {
+            all.push(joint);
+            all
+        });
+    }
+    valid
+}
+
+/// How messages call a joint: by its name, else by its number.
+fn call(i: usize, joint: &JointDescription) -> String {
+    match &joint.name {
+        Some(name) => format!("`{}`", crate::description::excerpt(&name.value)),
+        None => format!("{}", i + 1),
+    }
+}
+
+/// The zero vector.
+fn zeros() -> [Polynomial; 3] {
+    std::array::from_fn(|_| Polynomial::zero())
+}
+
+/// Places of first mention by name, to find those that stand twice.
+type FirstSeen<'d> = BTreeMap<&'d str, Span>;
+
+#[cfg(test)]
+mod tests;

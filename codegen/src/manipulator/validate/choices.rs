@@ -1,0 +1,82 @@
+//! Task and regressor: rows and names, each at most once, each known.
+
+use super::evaluate::text_of;
+use super::{Context, FirstSeen};
+use crate::description::{did_you_mean, excerpt, RegressorDescription, RobotDescription};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::manipulator::{RegressorChoice, TaskRow};
+
+/// The rows, all six where the file names none.
+pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Vec<TaskRow> {
+    let Some(task) = &description.task else { return TaskRow::ALL.to_vec() };
+    let mut seen = FirstSeen::new();
+    let mut rows = Vec::new();
+    for row in &task.value {
+        let name = row.value.name();
+        if let Some(first) = seen.get(name) {
+            let message = format!("the task names the row `{name}` twice");
+            let help = "each row of the operational space stands once; the order is yours";
+            diagnostics.push(
+                Diagnostic::new(Code::DuplicateTaskRow, row.span, message, "the second one", help).also(*first, "the first one"),
+            );
+        } else {
+            seen.insert(name, row.span);
+            rows.push(row.value);
+        }
+    }
+    rows
+}
+
+/// The regressor's columns, as far as they can be judged without the equations.
+pub(super) fn regressor(description: &RobotDescription, context: &mut Context<'_>) -> Option<RegressorChoice> {
+    let names = match description.regressor.as_ref().map(|r| &r.value) {
+        None if description.regressor.is_none() => return Some(RegressorChoice::Standard),
+        None => return None,
+        Some(RegressorDescription::Standard) => return Some(RegressorChoice::Standard),
+        Some(RegressorDescription::Base) => return Some(RegressorChoice::Base),
+        Some(RegressorDescription::Names(names)) => names,
+    };
+    let mut seen = FirstSeen::new();
+    let mut symbols = Vec::new();
+    let mut faults = Vec::new();
+    let parameters = &context.evaluator.parameters;
+    for name in names {
+        let shown = excerpt(&name.value);
+        if let Some(first) = seen.get(name.value.as_str()) {
+            let message = format!("the regressor lists `{shown}` twice");
+            let fault =
+                Diagnostic::new(Code::RepeatedParameter, name.span, message, "the second one", "each parameter has one column");
+            faults.push(fault.also(*first, "the first one"));
+            continue;
+        }
+        seen.insert(&name.value, name.span);
+        let Some(entry) = parameters.get(&name.value) else {
+            let known = parameters.names();
+            let help = match did_you_mean(&name.value, &known) {
+                Some(meant) => format!("did you mean `{meant}`? Otherwise define it under `parameters`"),
+                None if name.value == "standard" || name.value == "base" => {
+                    format!("write `regressor: {}`, without brackets", name.value)
+                }
+                None => {
+                    format!("define it: a line `{shown}: ...` under `parameters`, and use it in the values that it stands for")
+                }
+            };
+            let message = format!("the regressor lists `{shown}`, which is not defined under `parameters`");
+            faults.push(Diagnostic::new(Code::UnknownParameter, name.span, message, "unknown parameter", help));
+            continue;
+        };
+        if let Some((place, reason)) = entry.number {
+            let message = format!("the torques are not linear in `{shown}`: it enters {}", reason.text());
+            let value = entry.nominal.as_ref().map_or_else(String::new, |n| format!(" ({})", text_of(n)));
+            let help = format!("take `{shown}` off the list: it stays the number that it is{value}");
+            let fault = Diagnostic::new(Code::NonlinearParameter, name.span, message, "cannot have a column", help);
+            faults.push(fault.also(place, format!("enters here {}", reason.text())));
+            continue;
+        }
+        symbols.extend(entry.symbol);
+    }
+    for fault in faults {
+        context.diagnostics.push(fault);
+    }
+    Some(RegressorChoice::Names(symbols))
+}

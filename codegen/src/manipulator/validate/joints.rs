@@ -1,0 +1,136 @@
+//! One joint: its frames, its link, limits, motor and friction.
+
+use std::cmp::Ordering;
+
+use super::bodies::{self, optional_not_negative};
+use super::evaluate::text_of;
+use super::{call, geometry, zeros, Context};
+use crate::description::{Convention, Expression, JointDescription, LimitsDescription, MotorDescription};
+use crate::diagnostic::Code;
+use crate::exact::{Number, Polynomial};
+use crate::manipulator::{Joint, JointKind, Limits, LinkId, Motor, Placement};
+
+/// The joint; faults are reported. `previous_frame` is the previous link's frame in its joint frame.
+pub(super) fn joint(
+    i: usize,
+    description: &JointDescription,
+    previous_frame: Option<&Placement>,
+    parent: Option<LinkId>,
+    convention: Option<Convention>,
+    context: &mut Context<'_>,
+) -> (Option<Joint>, Option<Placement>) {
+    let called = call(i, description);
+    let row = geometry::row(description, &called, convention, context);
+    let kind = description.kind.as_ref().map(|k| k.value);
+    let link = description.link.as_ref().and_then(|link| bodies::body(link, &format!("the link of joint {called}"), context));
+    let limits = limits(&description.limits, kind, &called, context);
+    let motor = match &description.motor {
+        Some(motor) => self::motor(motor, row.as_ref().map(|r| r.axis.clone()), &called, context).map(Some),
+        None => Some(None),
+    };
+    let what = |coefficient: &str| format!("the {coefficient} friction of joint {called}");
+    let viscous = optional_not_negative(&description.friction.viscous, &what("viscous"), Code::NegativeFriction, context);
+    let coulomb = optional_not_negative(&description.friction.coulomb, &what("Coulomb"), Code::NegativeFriction, context);
+    let after = row.as_ref().map(|r| r.after.clone());
+    let joint = (|| {
+        let row = row?;
+        let placement = match previous_frame {
+            Some(frame) => geometry::compose(frame, &row.before),
+            None => row.before,
+        };
+        Some(Joint {
+            name: description.name.as_ref()?.value.clone(),
+            kind: kind?,
+            parent,
+            placement,
+            link_frame: row.after,
+            limits: limits?,
+            link: link?,
+            motor: motor?,
+            viscous: viscous?,
+            coulomb: coulomb?,
+        })
+    })();
+    (joint, after)
+}
+
+fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str, context: &mut Context<'_>) -> Option<Limits> {
+    let position = match &description.position {
+        Some(position) => {
+            let bounds = context.numbers(&position.value);
+            if let Some([lowest, highest]) = &bounds {
+                if kind == Some(JointKind::Revolute) {
+                    for (expression, value) in position.value.iter().flatten().zip([lowest, highest]) {
+                        geometry::doubt_limit(expression, value, &format!("a limit of joint {called}"), context);
+                    }
+                }
+                let order = (highest - lowest).sign();
+                if order != Ordering::Greater {
+                    let what = if order == Ordering::Less { "reversed" } else { "empty" };
+                    let message = format!("the position limits of joint {called} are {what}");
+                    let label = format!("from {} to {}", text_of(lowest), text_of(highest));
+                    let help = "write [lowest, highest], the first below the second; leave a joint out that does not move";
+                    context.report(Code::EmptyLimits, position.span, message, label, help);
+                }
+            }
+            bounds.map(Some)
+        }
+        None => Some(None),
+    };
+    let velocity = positive(description.velocity.as_ref(), "velocity", called, context);
+    let effort = positive(description.effort.as_ref(), "effort", called, context);
+    Some(Limits { position: position?, velocity: velocity?, effort: effort? })
+}
+
+/// A limit of a size; `Some(None)` where there is none.
+fn positive(value: Option<&Expression>, what: &str, called: &str, context: &mut Context<'_>) -> Option<Option<Number>> {
+    let Some(value) = value else { return Some(None) };
+    let number = context.number(value)?;
+    if number.sign() != Ordering::Greater {
+        let message = format!("the {what} limit of joint {called} is not positive");
+        let help = format!("give the largest size that is allowed, above 0; leave `{what}` out if there is no limit");
+        context.report(Code::NonPositiveLimit, value.span, message, format!("this is {}", text_of(&number)), help);
+        return None;
+    }
+    Some(Some(number))
+}
+
+fn motor(
+    description: &MotorDescription,
+    joint_axis: Option<[Number; 3]>,
+    called: &str,
+    context: &mut Context<'_>,
+) -> Option<Motor> {
+    let ratio = match &description.ratio {
+        Some(ratio) => {
+            let nominal = context.number(ratio);
+            if nominal.is_some_and(|r| r.sign() == Ordering::Equal) {
+                let message = format!("the gear ratio of joint {called} is 0");
+                let help = "a rotor that does not turn with its joint drives nothing: give rotor speed over joint speed, or leave `motor` out";
+                context.report(Code::ZeroRatio, ratio.span, message, "this is 0", help);
+            }
+            context.polynomial(ratio)
+        }
+        None => Some(Polynomial::from(Number::one())),
+    };
+    let of = |what: &str| format!("the {what} of the motor of joint {called}");
+    let inertia = optional_not_negative(&description.inertia, &of("inertia"), Code::NegativeRotorInertia, context);
+    let mass = optional_not_negative(&description.mass, &of("mass"), Code::NegativeMass, context);
+    let viscous = optional_not_negative(&description.viscous, &of("viscous friction"), Code::NegativeFriction, context);
+    let position = match &description.position {
+        Some(position) => context.polynomials(&position.value),
+        None => Some(zeros()),
+    };
+    let axis = match &description.axis {
+        Some(axis) => context.numbers(&axis.value).and_then(|a| geometry::unit_vector(a, axis.span, called, context)),
+        None => joint_axis,
+    };
+    Some(Motor {
+        ratio: ratio?,
+        inertia: inertia?,
+        mass: mass?.unwrap_or_default(),
+        position: position?,
+        axis: axis?,
+        viscous: viscous?,
+    })
+}

@@ -1,0 +1,109 @@
+//! Names: of the robot, of joints, of parameters.
+
+use super::FirstSeen;
+use crate::description::{excerpt, RobotDescription};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::source::Spanned;
+
+/// Words of Rust, editions 2015 to 2024, that cannot be the name of a module.
+const KEYWORDS: [&str; 53] = [
+    "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn", "else",
+    "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod", "move",
+    "mut", "override", "priv", "pub", "ref", "return", "self", "static", "struct", "super", "trait", "true", "try", "type",
+    "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "_",
+];
+/// Words of expressions.
+const WORDS: [&str; 3] = ["pi", "deg", "sqrt"];
+/// Joint variables, rates and accelerations in printed equations, each followed by the joint's number.
+const VARIABLES: [&str; 5] = ["q", "dq", "ddq", "dqr", "ddqr"];
+
+/// Checks every name that the file gives.
+pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostics) {
+    if let Some(name) = &description.name {
+        check_name(name, "the robot", diagnostics);
+    }
+    for parameter in &description.parameters {
+        check_name(&parameter.name, "a parameter", diagnostics);
+    }
+    let mut seen = FirstSeen::new();
+    for name in description.joints.iter().flat_map(|joints| &joints.value).filter_map(|joint| joint.name.as_ref()) {
+        check_name(name, "a joint", diagnostics);
+        if let Some(first) = seen.get(name.value.as_str()) {
+            let message = format!("two joints are called `{}`", excerpt(&name.value));
+            let help = "give each joint a name of its own: messages and tables call it by that name";
+            diagnostics.push(
+                Diagnostic::new(Code::DuplicateName, name.span, message, "the second one", help).also(*first, "the first one"),
+            );
+        } else {
+            seen.insert(&name.value, name.span);
+        }
+    }
+}
+
+fn check_name(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics) {
+    let shown = excerpt(&name.value);
+    if let Some(meaning) = reserved(&name.value) {
+        let message = format!("`{shown}` cannot be the name of {what}: it is {meaning}");
+        let help = format!("choose another name, such as `{}_`", name.value.trim_matches('_').to_lowercase());
+        diagnostics.push(Diagnostic::new(Code::ReservedName, name.span, message, "reserved", help));
+    } else if !is_identifier(&name.value) {
+        let message = format!("`{shown}` cannot be the name of {what}: it is not an identifier");
+        let help = match suggestion(&name.value) {
+            Some(better) => format!("use letters, digits and `_`, a letter first: `{better}`"),
+            None => "use letters, digits and `_`, a letter first".into(),
+        };
+        diagnostics.push(Diagnostic::new(Code::BadName, name.span, message, "not an identifier", help));
+    }
+}
+
+/// What a reserved name means already.
+fn reserved(name: &str) -> Option<&'static str> {
+    if KEYWORDS.contains(&name) {
+        return Some(if name == "_" { "a placeholder of Rust" } else { "a keyword of Rust" });
+    }
+    if WORDS.contains(&name) {
+        return Some("a word of expressions");
+    }
+    let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    (VARIABLES.contains(&letters) && letters.len() < name.len()).then_some("a joint variable of the equations")
+}
+
+fn is_identifier(name: &str) -> bool {
+    // The raw `r#fn` is an identifier too, but no word of an expression.
+    !name.contains('#') && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
+}
+
+/// The name with everything replaced that an identifier cannot have.
+fn suggestion(name: &str) -> Option<String> {
+    let mut better: String =
+        name.trim().chars().take(40).map(|c| if c == '_' || c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if better.starts_with(|c: char| c.is_ascii_digit()) {
+        better.insert(0, 'r');
+    }
+    (is_identifier(&better) && reserved(&better).is_none()).then_some(better)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(name: &str, free: bool) {
+        assert_eq!(reserved(name).is_none() && is_identifier(name), free, "{name}");
+    }
+
+    #[test]
+    fn keywords_words_of_expressions_and_joint_variables_are_reserved() {
+        for name in
+            ["fn", "self", "Self", "gen", "try", "async", "pi", "deg", "sqrt", "q1", "dq12", "ddq3", "dqr1", "ddqr07", "_"]
+        {
+            check(name, false);
+        }
+        for name in ["q", "dq", "q1a", "m1", "qr1", "Pi", "_x", "union", "raw", "r\u{e4}der", "I1", "mcx1"] {
+            check(name, true);
+        }
+        for name in ["", "1a", "a b", "a-b", "a.b", "r#fn", "a\u{2019}"] {
+            check(name, false);
+        }
+    }
+}

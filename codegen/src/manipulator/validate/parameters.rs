@@ -1,0 +1,218 @@
+//! Named quantities: which stay symbols, which are numbers, which stand for an expression.
+//!
+//! - A name whose value uses other names *abbreviates* that expression: it is substituted wherever it occurs, unless `regressor`
+//!   lists it; then it is independent and starts from that value.
+//! - A name that enters anywhere by division, root or angle is a *number* everywhere: its symbol would not be a polynomial.
+//! - All other names are *symbols* ([`ParameterId`]) of the equations.
+
+use std::collections::BTreeMap;
+
+use super::evaluate;
+use super::places::{self, Role, Use};
+use super::Scalar;
+use crate::description::{did_you_mean, excerpt, Expression, ExpressionKind, Operator, RegressorDescription, RobotDescription};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Number;
+use crate::manipulator::{Parameter, ParameterId};
+use crate::source::Span;
+
+/// The named quantities of a description, in its order.
+pub(super) struct Parameters<'d> {
+    pub(super) entries: Vec<Entry<'d>>,
+    by_name: BTreeMap<&'d str, usize>,
+}
+
+/// A named quantity.
+pub(super) struct Entry<'d> {
+    pub(super) name: &'d str,
+    pub(super) span: Span,
+    pub(super) value: Option<&'d Expression>,
+    /// Its value; `None` if there is none, which is reported.
+    pub(super) nominal: Option<Number>,
+    /// Its symbol, if it is one.
+    pub(super) symbol: Option<ParameterId>,
+    /// Where and how it enters so that it must be a number.
+    pub(super) number: Option<(Span, Reason)>,
+    /// Whether it stands for the expression under it.
+    pub(super) abbreviation: bool,
+    /// Where it stands in expressions.
+    pub(super) uses: Vec<Use>,
+}
+
+/// Why a name cannot be a symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reason {
+    Division,
+    Root,
+    Angle,
+    Axis,
+}
+
+impl Reason {
+    /// How the name enters.
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Reason::Division => "by division",
+            Reason::Root => "through a root",
+            Reason::Angle => "through an angle",
+            Reason::Axis => "through the direction of an axis",
+        }
+    }
+}
+
+impl<'d> Parameters<'d> {
+    /// Finds out what each name is, and reports names that are not defined.
+    pub(super) fn resolve(description: &'d RobotDescription, scalar: Scalar, diagnostics: &mut Diagnostics) -> Parameters<'d> {
+        let listed: Vec<&str> = match &description.regressor {
+            Some(regressor) => match &regressor.value {
+                RegressorDescription::Names(names) => names.iter().map(|n| n.value.as_str()).collect(),
+                _ => Vec::new(),
+            },
+            None => Vec::new(),
+        };
+        let mut parameters = Parameters { entries: Vec::new(), by_name: BTreeMap::new() };
+        let later: Vec<&str> = description.parameters.iter().map(|p| p.name.value.as_str()).collect();
+        for parameter in &description.parameters {
+            let name = parameter.name.value.as_str();
+            if let Some(value) = &parameter.value {
+                parameters.note_uses(value, Role::Parameter, &later, diagnostics);
+            }
+            let abbreviation = parameter.value.as_ref().is_some_and(|v| !v.named().is_empty()) && !listed.contains(&name);
+            let nominal = parameter.value.as_ref().and_then(|v| evaluate::number(v, &parameters, scalar, diagnostics));
+            let entry = Entry {
+                name,
+                span: parameter.name.span,
+                value: parameter.value.as_ref(),
+                nominal,
+                symbol: None,
+                number: None,
+                abbreviation,
+                uses: Vec::new(),
+            };
+            parameters.by_name.insert(name, parameters.entries.len());
+            parameters.entries.push(entry);
+        }
+        for (role, expression) in places::expressions(description) {
+            parameters.note_uses(expression, role, &later, diagnostics);
+            match role {
+                Role::Angle => parameters.force(expression, expression.span, Reason::Angle),
+                Role::Axis => parameters.force(expression, expression.span, Reason::Axis),
+                _ => {}
+            }
+            // A limit is a number anyway.
+            if role != Role::Limit {
+                parameters.force_within(expression);
+            }
+        }
+        for i in 0..parameters.entries.len() {
+            if let Some(value) = parameters.entries[i].value.filter(|_| parameters.entries[i].abbreviation) {
+                parameters.force_within(value);
+            }
+        }
+        let symbols = parameters.entries.iter_mut().filter(|e| !e.abbreviation && e.number.is_none());
+        for (id, entry) in (0..).zip(symbols) {
+            entry.symbol = Some(ParameterId(id));
+        }
+        parameters
+    }
+
+    /// The named quantity called `name`.
+    pub(super) fn get(&self, name: &str) -> Option<&Entry<'d>> {
+        self.by_name.get(name).map(|&i| &self.entries[i])
+    }
+
+    /// The quantities that are symbols, in the order of their ids.
+    pub(super) fn symbols(&self) -> Vec<Parameter> {
+        let symbols = self.entries.iter().filter(|e| e.symbol.is_some());
+        symbols.filter_map(|e| Some(Parameter { name: e.name.into(), nominal: e.nominal.clone()? })).collect()
+    }
+
+    /// All names.
+    pub(super) fn names(&self) -> Vec<&'d str> {
+        self.entries.iter().map(|e| e.name).collect()
+    }
+
+    /// Warns of names that no expression uses.
+    pub(super) fn warn_of_unused(&self, diagnostics: &mut Diagnostics) {
+        for entry in self.entries.iter().filter(|e| e.uses.is_empty()) {
+            let message = format!("nothing uses the parameter `{}`", excerpt(entry.name));
+            let help = "use it in an expression, or remove it (and from `regressor`, where its column would be 0)";
+            diagnostics.push(Diagnostic::new(Code::UnusedParameter, entry.span, message, "not used", help));
+        }
+    }
+
+    /// Notes where names stand; reports those that nothing above defines.
+    fn note_uses(&mut self, expression: &Expression, role: Role, later: &[&str], diagnostics: &mut Diagnostics) {
+        for (name, span) in expression.named() {
+            match self.by_name.get(name) {
+                Some(&i) => self.entries[i].uses.push(Use { span, role }),
+                None => diagnostics.push(self.unknown(name, span, later)),
+            }
+        }
+    }
+
+    fn unknown(&self, name: &str, span: Span, later: &[&str]) -> Diagnostic {
+        let shown = excerpt(name);
+        if matches!(name.to_ascii_lowercase().as_str(), "inf" | "infinity" | "nan") {
+            let help = "every quantity of an arm is finite; leave the key out where it is optional and unknown";
+            return Diagnostic::new(Code::NotFinite, span, format!("`{shown}` is not a finite number"), "not finite", help);
+        }
+        let mut words = self.names();
+        words.push("pi");
+        let help = if later.contains(&name) {
+            format!("`{shown}` is defined further down: a value may use the names above it; move it up")
+        } else if let Some(meant) = did_you_mean(name, &words) {
+            format!("did you mean `{meant}`? Otherwise define `{shown}` under `parameters`")
+        } else if self.entries.is_empty() {
+            format!("define it: `parameters: {{{shown}: ...}}`; without definitions an expression knows only `pi`")
+        } else {
+            let known: Vec<String> = self.names().iter().take(8).map(|n| format!("`{}`", excerpt(n))).collect();
+            let more = if self.entries.len() > 8 { ", ..." } else { "" };
+            format!("define it under `parameters`, which has {}{more}", known.join(", "))
+        };
+        Diagnostic::new(Code::UnknownName, span, format!("the name `{shown}` is not defined"), "unknown name", help)
+    }
+
+    /// Makes numbers of the names in divisors and under roots.
+    fn force_within(&mut self, expression: &Expression) {
+        let mut found: Vec<(&Expression, Reason)> = Vec::new();
+        collect_nonpolynomial(expression, &mut found);
+        for (part, reason) in found {
+            self.force(part, part.span, reason);
+        }
+    }
+
+    /// Makes numbers of all names in `expression`, and of the names that they stand for.
+    fn force(&mut self, expression: &Expression, at: Span, reason: Reason) {
+        let mut pending = vec![expression.names()];
+        while let Some(names) = pending.pop() {
+            for name in names {
+                let Some(&i) = self.by_name.get(name) else { continue };
+                let entry = &mut self.entries[i];
+                if entry.number.is_none() {
+                    entry.number = Some((at, reason));
+                    pending.extend(entry.value.filter(|_| entry.abbreviation).map(Expression::names));
+                }
+            }
+        }
+    }
+}
+
+/// Divisors and arguments of roots.
+fn collect_nonpolynomial<'e>(expression: &'e Expression, found: &mut Vec<(&'e Expression, Reason)>) {
+    match &expression.kind {
+        ExpressionKind::Decimal(_) | ExpressionKind::Pi | ExpressionKind::Name(_) => {}
+        ExpressionKind::Negate(a) | ExpressionKind::Degrees(a) => collect_nonpolynomial(a, found),
+        ExpressionKind::Root(a) => {
+            found.push((a, Reason::Root));
+            collect_nonpolynomial(a, found);
+        }
+        ExpressionKind::Binary(operator, a, b) => {
+            collect_nonpolynomial(a, found);
+            if *operator == Operator::Divide {
+                found.push((b, Reason::Division));
+            }
+            collect_nonpolynomial(b, found);
+        }
+    }
+}
