@@ -11,3 +11,6 @@ pub mod kinematics;
 pub mod newton_euler;
 pub mod parameters;
 pub mod regressor;
+
+#[cfg(test)]
+mod tests;

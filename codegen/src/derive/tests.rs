@@ -1,0 +1,315 @@
+//! Identities between the equations, exact in the prime field, for arms with everything in them.
+
+use super::arm::Arm;
+use super::newton_euler::{friction, inverse_dynamics, newton_euler, Motion};
+use super::parameters::{ParameterVector, View};
+use super::*;
+use crate::equations::{field_of, Quantity};
+use crate::manipulator::Manipulator;
+use crate::ring::{ExprId, Pool, Symbol};
+use crate::source::Source;
+
+/// Two tilted arms that hold everything a description can: both joint types, both conventions, tool, payload, rotors with mass and tilted axes,
+/// friction, general angles.
+const STANDARD: &str = "
+name: everything
+convention: standard
+gravity: [1, -2, -9.81]
+parameters: {m1: 3, l: 0.3, Im: 0.01}
+joints:
+  - {name: a, type: revolute, a: 0.2, alpha: pi/2, d: 0.1, theta: 0.7,
+     link: {mass: m1, com: [0.1, 0.2, -0.1], inertia: {xx: 0.2, yy: 0.3, zz: 0.35, xy: 0.01, xz: -0.02, yz: 0.03}},
+     motor: {ratio: 20, inertia: Im, viscous: 0.001}, friction: {viscous: 0.1, coulomb: 2}}
+  - {name: b, type: prismatic, a: l, alpha: pi/3, d: 0.2, theta: pi/4,
+     link: {mass: 2, com: [0.1, 0.02, 0.3], inertia: {xx: 0.2, yy: 0.3, zz: 0.35, xy: 0.01}},
+     motor: {ratio: 50, inertia: 0.02, mass: 0.5, position: [0.1, 0.2, 0.3], axis: [1, 2, 2]}}
+  - {name: c, type: revolute, a: -0.1, alpha: 0.3, d: 0.4, theta: 0,
+     link: {mass: 1, com: [0.3, 0.1, 0.1], inertia: {xx: 0.1, yy: 0.1, zz: 0.1, yz: 0.02}},
+     motor: {ratio: 100, inertia: 0.0002, mass: 0.1, position: [0.3, 0, 0], axis: [1, 1, 0]}}
+  - {name: d, type: revolute, a: 0.1, alpha: 0, d: 0, theta: 0,
+     link: {mass: 1, com: [0.2, 0.1, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1, xz: 0.01}},
+     motor: {ratio: -30, inertia: 0.0003, axis: [0, 1, 1]}, friction: {coulomb: 0.5}}
+tool: {xyz: [0, 0.1, 0.2], rpy: [0.1, pi/6, -pi/4]}
+payload: {mass: 0.7, com: [0.05, 0, 0.1], inertia: {xx: 0.01, yy: 0.02, zz: 0.02, xy: 0.001}}
+";
+
+fn arms() -> Vec<Manipulator> {
+    let modified = STANDARD.replace("standard", "modified");
+    let sideways = STANDARD.replace("prismatic", "revolute").replace("{name: c, type: revolute", "{name: c, type: prismatic");
+    [STANDARD.to_string(), modified, sideways]
+        .into_iter()
+        .map(|text| {
+            let source = Source::new("everything.yaml", text);
+            let (read, diagnostics) = crate::manipulator::read(&source);
+            read.unwrap_or_else(|| panic!("{diagnostics:?}")).0
+        })
+        .collect()
+}
+
+/// Runs a check on every arm, described by numbers and with all names as symbols.
+fn check(check: impl Fn(&mut Pool, &Arm, &Manipulator)) {
+    for manipulator in arms() {
+        for view in [View::Nominal, View::Symbolic] {
+            let mut pool = Pool::new(field_of(&manipulator));
+            let arm = Arm::new(&mut pool, &manipulator, view);
+            check(&mut pool, &arm, &manipulator);
+        }
+    }
+}
+
+#[track_caller]
+fn assert_equal(pool: &Pool, a: &[ExprId], b: &[ExprId]) {
+    assert_eq!(a.len(), b.len());
+    for (k, (&a, &b)) in a.iter().zip(b).enumerate() {
+        assert!(pool.equal(a, b), "entry {k} differs");
+    }
+}
+
+fn times(pool: &mut Pool, m: &[Vec<ExprId>], v: &[ExprId]) -> Vec<ExprId> {
+    m.iter().map(|row| pool.dot(row, v)).collect()
+}
+
+/// B the plain way: Σ_i J_i' M_i J_i over links and rotors, J_i by differentiation of frames (the book, eq. 7.32).
+fn textbook_inertia(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
+    let n = arm.dof();
+    let frames = kinematics::frames(pool, arm);
+    let mut b = vec![vec![ExprId::ZERO; n]; n];
+    for i in 0..n {
+        let (rotation, origin) = frames.joints[i];
+        let body = arm.joints[i].body;
+        // T = ½ Σ tr(dX P dX'), X = [R | p] the upper part of the frame, P the body's second, first and zeroth moments.
+        let columns: Vec<Vec<ExprId>> = (0..n)
+            .map(|k| {
+                let flat: Vec<ExprId> = rotation.concat().into_iter().chain(origin).collect();
+                pool.partial_derivative(&flat, k as u16)
+            })
+            .collect();
+        let s = arm::symmetric(&body.second);
+        let moment = |a: usize, c: usize| match (a, c) {
+            (3, 3) => body.mass,
+            (3, c) => body.first[c],
+            (a, 3) => body.first[a],
+            (a, c) => s[a][c],
+        };
+        let entry = |column: &[ExprId], row: usize, a: usize| if a < 3 { column[row * 3 + a] } else { column[9 + row] };
+        for j in 0..n {
+            for k in 0..n {
+                for row in 0..3 {
+                    for a in 0..4 {
+                        for c in 0..4 {
+                            let left = pool.mul(entry(&columns[j], row, a), moment(a, c));
+                            let term = pool.mul(left, entry(&columns[k], row, c));
+                            b[j][k] = pool.add(b[j][k], term);
+                        }
+                    }
+                }
+            }
+        }
+        // The rotor beyond what turns with the parent link: I_m k (u_j e_i + e_i u_j) + I_m k² e_i e_i, u_j = z_m · z_j over the parent's joints.
+        if let Some(rotor) = arm.joints[i].rotor {
+            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+            let own = pool.mul(coupling, rotor.ratio);
+            b[i][i] = pool.add(b[i][i], own);
+            let mut outer = arm.joints[i].parent;
+            let axis = outer.map(|p| pool.transform(&frames.joints[p].0, &rotor.axis));
+            while let Some(j) = outer {
+                if arm.joints[j].is_revolute() {
+                    let z = [0, 1, 2].map(|row| frames.joints[j].0[row][2]);
+                    let along = pool.dot3(&axis.unwrap(), &z);
+                    let term = pool.mul(coupling, along);
+                    b[i][j] = pool.add(b[i][j], term);
+                    b[j][i] = pool.add(b[j][i], term);
+                }
+                outer = arm.joints[j].parent;
+            }
+        }
+    }
+    b
+}
+
+#[test]
+fn inertia_is_the_textbook_sum() {
+    check(|pool, arm, _| {
+        let (b, textbook) = (inertia::inertia_matrix(pool, arm), textbook_inertia(pool, arm));
+        assert_equal(pool, &b.concat(), &textbook.concat());
+    });
+}
+
+#[test]
+fn grouping_changes_nothing() {
+    check(|pool, arm, _| {
+        let mut grouped = arm.clone();
+        grouped.group_towards_base(pool);
+        let motion = Motion::plain(pool, arm);
+        let (a, b) = (newton_euler(pool, arm, &motion, true), newton_euler(pool, &grouped, &motion, true));
+        assert_equal(pool, &a, &b);
+        let (a, b) = (inertia::inertia_matrix(pool, arm), inertia::inertia_matrix(pool, &grouped));
+        assert_equal(pool, &a.concat(), &b.concat());
+        let (a, b) = (gravity::gravity(pool, arm), gravity::gravity(pool, &grouped));
+        assert_equal(pool, &a, &b);
+        let (a, b) = (energy::kinetic_energy(pool, arm), energy::kinetic_energy(pool, &grouped));
+        assert_equal(pool, &[a], &[b]);
+    });
+}
+
+#[test]
+fn inertia_rate_less_twice_coriolis_is_skew() {
+    check(|pool, arm, _| {
+        let b = inertia::inertia_matrix(pool, arm);
+        let rate = pool.time_derivative(&b.concat());
+        let c = coriolis::coriolis_matrix(pool, arm);
+        let n = arm.dof();
+        for i in 0..n {
+            for j in 0..n {
+                let sum = pool.add(c[i][j], c[j][i]);
+                assert!(pool.equal(rate[i * n + j], sum), "entry {i} {j}");
+            }
+        }
+    });
+}
+
+#[test]
+fn newton_euler_is_lagrange() {
+    check(|pool, arm, _| {
+        let motion = Motion::with_reference(pool, arm);
+        let tau = newton_euler(pool, arm, &motion, true);
+        let b = inertia::inertia_matrix(pool, arm);
+        let c = coriolis::coriolis_matrix(pool, arm);
+        let g = gravity::gravity(pool, arm);
+        let inertial = times(pool, &b, &motion.accelerations);
+        let centrifugal = times(pool, &c, &motion.reference);
+        let sum: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sum([inertial[i], centrifugal[i], g[i]])).collect();
+        assert_equal(pool, &tau, &sum);
+    });
+}
+
+#[test]
+fn gravity_is_the_gradient_of_the_potential() {
+    check(|pool, arm, _| {
+        let potential = gravity::potential_energy(pool, arm);
+        let gradient: Vec<ExprId> = (0..arm.dof() as u16).map(|i| pool.partial_derivative(&[potential], i)[0]).collect();
+        let g = gravity::gravity(pool, arm);
+        assert_equal(pool, &g, &gradient);
+    });
+}
+
+#[test]
+fn kinetic_energy_is_half_the_quadratic_form() {
+    check(|pool, arm, _| {
+        let energy = energy::kinetic_energy(pool, arm);
+        let b = inertia::inertia_matrix(pool, arm);
+        let rates = arm.symbols(pool, Symbol::Rate);
+        let momentum = times(pool, &b, &rates);
+        let (twice, two) = (pool.dot(&rates, &momentum), pool.integer(2));
+        let doubled = pool.mul(two, energy);
+        assert_equal(pool, &[doubled], &[twice]);
+    });
+}
+
+#[test]
+fn jacobian_is_the_derivative_of_the_frame() {
+    check(|pool, arm, _| {
+        let frame = kinematics::direct_kinematics(pool, arm);
+        let jacobian = kinematics::geometric_jacobian(pool, arm);
+        let dot = kinematics::geometric_jacobian_dot(pool, arm);
+        let rate = pool.time_derivative(&jacobian.concat());
+        assert_equal(pool, &dot.concat(), &rate);
+        for k in 0..arm.dof() {
+            let derivative = pool.partial_derivative(&frame.concat(), k as u16);
+            for row in 0..3 {
+                assert!(pool.equal(derivative[4 * row + 3], jacobian[row][k]));
+            }
+            // dR/dq = [z] R
+            let z = [jacobian[3][k], jacobian[4][k], jacobian[5][k]];
+            for column in 0..3 {
+                let axis = [frame[0][column], frame[1][column], frame[2][column]];
+                let turned = pool.cross(&z, &axis);
+                for row in 0..3 {
+                    assert!(pool.equal(derivative[4 * row + column], turned[row]));
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn forward_dynamics_inverts_inverse_dynamics() {
+    check(|pool, arm, _| {
+        let acceleration = forward_dynamics::forward_dynamics(pool, arm);
+        let motion = Motion { accelerations: acceleration, ..Motion::plain(pool, arm) };
+        let tau = inverse_dynamics(pool, arm, &motion);
+        let expected = arm.symbols(pool, Symbol::Torque);
+        assert_equal(pool, &tau, &expected);
+    });
+}
+
+#[test]
+fn torque_is_the_regressor_times_the_parameters() {
+    for manipulator in arms() {
+        let field = field_of(&manipulator);
+        for vector in [ParameterVector::standard(&manipulator), base::base_parameters(&manipulator, &field)] {
+            let mut pool = Pool::new(field.clone());
+            let arm = Arm::new(&mut pool, &manipulator, View::Vector(&vector));
+            let y = regressor::regressor(&mut pool, &arm, &vector);
+            let motion = Motion::with_reference(&mut pool, &arm);
+            let tau = inverse_dynamics(&mut pool, &arm, &motion);
+            let symbols: Vec<ExprId> = (0..vector.len() as u16).map(|k| pool.symbol(Symbol::Parameter(k))).collect();
+            let known_arm = Arm::new(&mut pool, &manipulator, View::Known(&vector));
+            let known = inverse_dynamics(&mut pool, &known_arm, &motion);
+            let product = times(&mut pool, &y, &symbols);
+            let sum: Vec<ExprId> = (0..arm.dof()).map(|i| pool.add(product[i], known[i])).collect();
+            assert_equal(&pool, &tau, &sum);
+
+            // With the nominal values it is the torque of the description.
+            let nominal: Vec<ExprId> = vector.entries.iter().map(|e| pool.constant(&e.nominal)).collect();
+            let product = times(&mut pool, &y, &nominal);
+            let described_arm = Arm::new(&mut pool, &manipulator, View::Nominal);
+            let described = inverse_dynamics(&mut pool, &described_arm, &motion);
+            let sum: Vec<ExprId> = (0..arm.dof()).map(|i| pool.add(product[i], known[i])).collect();
+            assert_equal(&pool, &described, &sum);
+        }
+    }
+}
+
+#[test]
+fn base_parameters_are_independent_and_as_many_as_the_rank() {
+    for manipulator in arms() {
+        let field = field_of(&manipulator);
+        let vector = base::base_parameters(&manipulator, &field);
+        let (pool, y) = base::regressor_of(&manipulator, &field, &vector);
+        assert!(base::dependence(&pool, &y).dependent.is_empty());
+        let (pool, y) = base::regressor_of(&manipulator, &field, &ParameterVector::standard(&manipulator));
+        assert_eq!(base::dependence(&pool, &y).independent.len(), vector.len());
+    }
+}
+
+#[test]
+fn friction_opposes_and_sits_in_inverse_dynamics() {
+    check(|pool, arm, _| {
+        let motion = Motion::plain(pool, arm);
+        let (with, without) = (inverse_dynamics(pool, arm, &motion), newton_euler(pool, arm, &motion, true));
+        let friction = friction(pool, arm, &motion.rates);
+        let sum: Vec<ExprId> = (0..arm.dof()).map(|i| pool.add(without[i], friction[i])).collect();
+        assert_equal(pool, &with, &sum);
+        let at_joint = arm.joints[0].viscous;
+        let value = pool.as_constant(at_joint).unwrap();
+        // 20² · 0.001 + 0.1
+        assert_eq!(value, crate::exact::Number::from(crate::exact::Rational::from_parts(1.into(), 2u8.into())));
+    });
+}
+
+#[test]
+fn closed_forms_are_the_same_expressions() {
+    for manipulator in arms() {
+        let field = field_of(&manipulator);
+        let parameters = ParameterVector::standard(&manipulator);
+        for quantity in [Quantity::DirectKinematics, Quantity::InertiaMatrix, Quantity::Gravity] {
+            let recursion = quantity.by_recursion(&manipulator, &field, View::Nominal, &parameters);
+            for closed in recursion.by_closed_form() {
+                for (&a, &b) in closed.entries.iter().zip(&recursion.entries) {
+                    assert_eq!(closed.pool.fingerprint(a), recursion.pool.fingerprint(b));
+                }
+            }
+        }
+    }
+}
