@@ -1,0 +1,218 @@
+//! The oracle judged: against stored values of another library, a closed form of the book, and the laws of mechanics.
+
+use armgen_tests::oracle::{times, Description, Matrix, Model};
+use armgen_tests::precision::{agree, deviation, DUAL, FORWARD_RESIDUAL, REFERENCE};
+use armgen_tests::random::{self, State};
+use armgen_tests::reference::{description, reference, ROBOTS};
+
+#[track_caller]
+fn read(text: &str) -> Description {
+    Description::read(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+#[track_caller]
+fn model(text: &str) -> Model {
+    read(text).model().unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn flat(m: &Matrix) -> Vec<f64> {
+    m.concat()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + b).collect()
+}
+
+#[test]
+fn agrees_with_the_reference_values() {
+    for robot in ROBOTS {
+        let description = read(&description(robot));
+        let model = description.model().expect(robot);
+        for (i, s) in reference(robot).samples.iter().enumerate() {
+            let check =
+                |what: &str, ours: &[f64], theirs: &[f64]| agree(&format!("{robot} sample {i} {what}"), ours, theirs, REFERENCE);
+            let (q, dq) = (&s.q, &s.dq);
+            check("T", &flat(&model.direct_kinematics(q)), &flat(&s.direct_kinematics));
+            check("J", &flat(&model.geometric_jacobian(q)), &flat(&s.geometric_jacobian));
+            check("B", &flat(&model.inertia_matrix(q)), &flat(&s.inertia_matrix));
+            check("C", &flat(&model.coriolis_matrix(q, dq)), &flat(&s.coriolis_matrix));
+            check("g", &model.gravity(q), &s.gravity);
+            check("tau", &model.inverse_dynamics(q, dq, &s.ddq), &s.tau);
+            let regressor = description.regressor(q, dq, dq, &s.ddq).expect("not base").expect(robot);
+            check("Y", &flat(&regressor.y), &flat(&s.regressor));
+            let ddq = model.forward_dynamics(q, dq, &s.tau).expect("regular");
+            let residual = model.forward_residual(q, &ddq, &s.qdd_from_tau, &s.tau);
+            assert!(residual <= FORWARD_RESIDUAL, "{robot} sample {i} forward dynamics: {residual:e}");
+        }
+    }
+}
+
+/// The two-link planar arm with rotors, the book, Sect. 7.3.2: distances a, l from the joints, rotor i on link i-1 at joint i.
+#[test]
+fn agrees_with_the_two_link_planar_arm_of_the_book() {
+    let (a1, a2, l1, l2, ml1, ml2, il1, il2) = (0.8, 0.7, 0.35, 0.3, 12.0, 9.0, 1.1, 0.6);
+    let (mm2, im1, im2, kr1, kr2) = (2.5, 0.012, 0.007, 90.0, -60.0);
+    let g = 9.81;
+    let text = format!(
+        "name: planar
+convention: standard
+gravity: [0, -{g}, 0]
+joints:
+- {{name: j1, type: revolute, a: {a1}, alpha: 0, d: 0, theta: 0,
+   link: {{mass: {ml1}, com: [{l1} - {a1}, 0, 0], inertia: {{zz: {il1}}}}}, motor: {{ratio: {kr1}, inertia: {im1}, mass: 3}}}}
+- {{name: j2, type: revolute, a: {a2}, alpha: 0, d: 0, theta: 0,
+   link: {{mass: {ml2}, com: [{l2} - {a2}, 0, 0], inertia: {{zz: {il2}}}}}, motor: {{ratio: {kr2}, inertia: {im2}, mass: {mm2}}}}}
+"
+    );
+    let arm = model(&text);
+    let (q, dq, ddq) = ([0.4, -1.3], [0.9, 1.7], [-2.0, 3.0]);
+    let ((s1, c1), (s2, c2)) = (f64::sin_cos(q[0]), f64::sin_cos(q[1]));
+    let (s12, c12) = (q[0] + q[1]).sin_cos();
+    // The rotor of the book also turns about its own centre with the link: I_m2 enters b11 once, with k_r2 into b12.
+    let b11 = il1 + ml1 * l1 * l1 + kr1 * kr1 * im1 + il2 + ml2 * (a1 * a1 + l2 * l2 + 2.0 * a1 * l2 * c2) + im2 + mm2 * a1 * a1;
+    let b12 = il2 + ml2 * (l2 * l2 + a1 * l2 * c2) + kr2 * im2;
+    let b22 = il2 + ml2 * l2 * l2 + kr2 * kr2 * im2;
+    let h = -ml2 * a1 * l2 * s2;
+    let g1 = (ml1 * l1 + mm2 * a1 + ml2 * a1) * g * c1 + ml2 * l2 * g * c12;
+    let g2 = ml2 * l2 * g * c12;
+    agree("B", &flat(&arm.inertia_matrix(&q)), &[b11, b12, b12, b22], DUAL);
+    agree("C", &flat(&arm.coriolis_matrix(&q, &dq)), &[h * dq[1], h * (dq[0] + dq[1]), -h * dq[0], 0.0], DUAL);
+    agree("g", &arm.gravity(&q), &[g1, g2], DUAL);
+    let tau1 = b11 * ddq[0] + b12 * ddq[1] + 2.0 * h * dq[0] * dq[1] + h * dq[1] * dq[1] + g1;
+    let tau2 = b12 * ddq[0] + b22 * ddq[1] - h * dq[0] * dq[0] + g2;
+    agree("tau", &arm.inverse_dynamics(&q, &dq, &ddq), &[tau1, tau2], DUAL);
+    let p = [a1 * c1 + a2 * c12, a1 * s1 + a2 * s12];
+    let t = arm.direct_kinematics(&q);
+    agree("T", &flat(&t), &[c12, -s12, 0.0, p[0], s12, c12, 0.0, p[1], 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0], DUAL);
+    let u = g * (ml1 * l1 * s1 + mm2 * a1 * s1 + ml2 * (a1 * s1 + l2 * s12));
+    agree("U", &[arm.potential_energy(&q)], &[u], DUAL);
+}
+
+/// Laws that every arm obeys; `what` names the arm in a failure.
+#[track_caller]
+fn check_laws(what: &str, text: &str, state: &State) {
+    let arm = model(text);
+    let State { q, dq, ddq, dqr, ddqr } = state;
+    let check = |law: &str, a: &[f64], b: &[f64]| agree(&format!("{what}: {law}\n{text}"), a, b, DUAL);
+
+    let (b, c, g) = (arm.inertia_matrix(q), arm.coriolis_matrix(q, dq), arm.gravity(q));
+    let n = arm.dof();
+    let transposed: Matrix = (0..n).map(|i| (0..n).map(|j| b[j][i]).collect()).collect();
+    check("B is symmetric", &flat(&b), &flat(&transposed));
+    check("T = ½ dq' B dq", &[arm.kinetic_energy(q, dq)], &[0.5 * dot(dq, &times(&b, dq))]);
+    check("g = dU/dq", &g, &arm.potential_gradient(q));
+    let newton_euler = arm.newton_euler(q, dq, ddq, arm.gravity);
+    check("NE = B ddq + C dq + g", &newton_euler, &sum(&sum(&times(&b, ddq), &times(&c, dq)), &g));
+    check("C v by polarisation", &arm.coriolis_times(q, dq, dqr), &times(&c, dqr));
+    check("power", &[arm.power(q, dq, ddq)], &[dot(dq, &newton_euler)]);
+
+    // dB/dt - 2C is skew, for any velocity.
+    let db = arm.inertia_matrix_derivatives(q);
+    let n_matrix: Matrix =
+        (0..n).map(|i| (0..n).map(|j| (0..n).map(|k| db[k][i][j] * dq[k]).sum::<f64>() - 2.0 * c[i][j]).collect()).collect();
+    let opposite: Matrix = (0..n).map(|i| (0..n).map(|j| -n_matrix[j][i]).collect()).collect();
+    check("dB/dt - 2C is skew", &flat(&n_matrix), &flat(&opposite));
+
+    // The Jacobian two ways, its derivative by a central difference (h² and 1e-16 / h).
+    let j = arm.geometric_jacobian(q);
+    check("J", &flat(&j), &flat(&arm.geometric_jacobian_by_differentiation(q)));
+    let h = 1e-5;
+    let moved = |s: f64| flat(&arm.geometric_jacobian(&q.iter().zip(dq).map(|(q, v)| q + s * h * v).collect::<Vec<_>>()));
+    let difference: Vec<f64> = moved(1.0).iter().zip(moved(-1.0)).map(|(a, b)| (a - b) / (2.0 * h)).collect();
+    agree(&format!("{what}: dJ/dt"), &flat(&arm.geometric_jacobian_dot(q, dq)), &difference, 1e-7);
+    let last = arm.link_frames(q).pop().expect("a joint");
+    let (r, p) = (&arm.tool.0, &arm.tool.1);
+    let tool = [
+        vec![r[0][0], r[0][1], r[0][2], p[0]],
+        vec![r[1][0], r[1][1], r[1][2], p[1]],
+        vec![r[2][0], r[2][1], r[2][2], p[2]],
+        vec![0.0, 0.0, 0.0, 1.0],
+    ];
+    let columns: Matrix = (0..4).map(|j| times(&last, &tool.iter().map(|row| row[j]).collect::<Vec<_>>())).collect();
+    let product: Vec<f64> = (0..4).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+    check("T = T_n tool", &flat(&arm.direct_kinematics(q)), &product);
+
+    // Y pi is the four-argument inverse dynamics.
+    let tau_4 = arm.inverse_dynamics_4(q, dq, dqr, ddqr);
+    let viscous: Vec<f64> = arm.viscous().iter().zip(dqr).map(|(f, v)| f * v).collect();
+    let coulomb = sum(&arm.friction(dq), &arm.viscous().iter().zip(dq).map(|(f, v)| -f * v).collect::<Vec<_>>());
+    let right = sum(&sum(&times(&b, ddqr), &times(&c, dqr)), &sum(&sum(&viscous, &coulomb), &g));
+    check("four arguments", &tau_4, &right);
+    check("Y pi + known", &arm.standard_regressor(q, dq, dqr, ddqr).torque(), &tau_4);
+    if let Some(regressor) = read(text).regressor(q, dq, dqr, ddqr) {
+        check("Y pi + known, as the file wants", &regressor.expect(what).torque(), &tau_4);
+    }
+
+    let tau = arm.inverse_dynamics(q, dq, ddq);
+    let back = arm.forward_dynamics(q, dq, &tau).unwrap_or_else(|| panic!("{what}: singular B\n{text}"));
+    let residual = arm.forward_residual(q, &back, ddq, &tau);
+    assert!(residual <= FORWARD_RESIDUAL, "{what}: forward dynamics {residual:e}");
+    assert!((0..20).all(|k| arm.kinetic_energy(q, &random::state(n, 1000 + k).dq) > 0.0), "{what}: B is not positive\n{text}");
+}
+
+#[test]
+fn random_arms_obey_the_laws() {
+    for seed in 0..120 {
+        let text = random::arm(seed);
+        check_laws(&format!("seed {seed}"), &text, &random::state(model(&text).dof(), seed));
+    }
+}
+
+#[test]
+fn tricky_arms_obey_the_laws() {
+    for (name, text) in random::tricky() {
+        for seed in 0..5 {
+            check_laws(name, text, &random::state(model(text).dof(), seed));
+        }
+    }
+}
+
+/// dtau/dq and dtau/ddq against central differences, on an arm that has everything.
+#[test]
+fn derivatives_of_the_inverse_dynamics() {
+    let arm = model(&random::arm(3));
+    let State { q, dq, ddq, .. } = random::state(arm.dof(), 3);
+    let (by_q, by_dq) = arm.inverse_dynamics_derivatives(&q, &dq, &ddq);
+    let h = 1e-5;
+    for k in 0..arm.dof() {
+        let at = |v: &[f64], s: f64| v.iter().enumerate().map(|(i, x)| if i == k { x + s * h } else { *x }).collect::<Vec<_>>();
+        let difference = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<_>>();
+        let column = |m: &Matrix| m.iter().map(|row| row[k]).collect::<Vec<_>>();
+        let tau = |q: &[f64], dq: &[f64]| arm.inverse_dynamics(q, dq, &ddq);
+        agree("dtau/dq", &column(&by_q), &difference(tau(&at(&q, 1.0), &dq), tau(&at(&q, -1.0), &dq)), 1e-6);
+        agree("dtau/ddq", &column(&by_dq), &difference(tau(&q, &at(&dq, 1.0)), tau(&q, &at(&dq, -1.0))), 1e-6);
+    }
+}
+
+/// A planted error is seen: each of these changes of a description moves the torque.
+#[test]
+fn planted_errors_are_seen() {
+    let (name, text) = random::tricky()[0];
+    let arm = model(text);
+    let State { q, dq, ddq, .. } = random::state(arm.dof(), 1);
+    let tau = arm.inverse_dynamics(&q, &dq, &ddq);
+    let plant = |change: &dyn Fn(&mut Model)| {
+        let mut changed = arm.clone();
+        change(&mut changed);
+        deviation(&changed.inverse_dynamics(&q, &dq, &ddq), &tau)
+    };
+    assert_eq!(plant(&|_| ()), 0.0);
+    let changes: [(&str, &dyn Fn(&mut Model)); 8] = [
+        ("convention", &|m| m.modified = !m.modified),
+        ("gravity", &|m| m.gravity[2] += 1e-9),
+        ("tool", &|m| m.tool.1[0] += 1e-9),
+        ("payload", &|m| m.payload.iter_mut().for_each(|p| p[0] += 1e-9)),
+        ("row", &|m| m.joints[1].row[1] += 1e-9),
+        ("link", &|m| m.joints[2].link[6] += 1e-9),
+        ("rotor axis", &|m| m.joints.iter_mut().filter_map(|j| j.motor.as_mut()).for_each(|m| m.axis[2] += 1e-6)),
+        ("rotor inertia", &|m| m.joints.iter_mut().filter_map(|j| j.motor.as_mut()).for_each(|m| m.inertia = None)),
+    ];
+    for (what, change) in changes {
+        let found = plant(change);
+        assert!(found > DUAL, "{name}: a changed {what} moves tau by {found:e} only");
+    }
+}
