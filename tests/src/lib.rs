@@ -3,6 +3,8 @@
 //! - [`oracle`]: a numerical model of an arm, straight from the description, in f64 and dual numbers;
 //! - [`mod@reference`]: values that another library computed, stored in `data/reference`;
 //! - [`formula`] and [`trigonometry`]: plain formulas, compared exactly as rational trigonometric expressions;
+//! - [`shown`]: what `show --format json` prints, read back;
+//! - [`technical_project`]: every closed form of the SCARA's technical project, and the comparison with what is shown;
 //! - [`random`]: random arms and states from a seed;
 //! - [`precision`]: every tolerance, with its reason.
 
@@ -11,4 +13,6 @@ pub mod oracle;
 pub mod precision;
 pub mod random;
 pub mod reference;
+pub mod shown;
+pub mod technical_project;
 pub mod trigonometry;

@@ -1,9 +1,10 @@
 //! The oracle judged: against stored values of another library, a closed form of the book, and the laws of mechanics.
 
-use armgen_tests::oracle::{times, Description, Matrix, Model};
-use armgen_tests::precision::{agree, deviation, DUAL, FORWARD_RESIDUAL, REFERENCE};
+use armgen_tests::oracle::{rank, times, Description, Matrix, Model};
+use armgen_tests::precision::{agree, deviation, CHECK_STATE, DUAL, FORWARD_RESIDUAL, REFERENCE};
 use armgen_tests::random::{self, State};
 use armgen_tests::reference::{description, reference, ROBOTS};
+use armgen_tests::technical_project;
 
 #[track_caller]
 fn read(text: &str) -> Description {
@@ -186,6 +187,42 @@ fn derivatives_of_the_inverse_dynamics() {
         agree("dtau/dq", &column(&by_q), &difference(tau(&at(&q, 1.0), &dq), tau(&at(&q, -1.0), &dq)), 1e-6);
         agree("dtau/ddq", &column(&by_dq), &difference(tau(&q, &at(&dq, 1.0)), tau(&q, &at(&dq, -1.0))), 1e-6);
     }
+}
+
+#[test]
+fn agrees_with_the_check_state_of_the_technical_project() {
+    let scara = read(technical_project::ROBOT);
+    let state = technical_project::check_state();
+    let (q, dq, ddq, dqr) = (&state.q[..], &state.dq[..], &state.ddq[..], &state.dqr[..]);
+    let arm = scara.model().expect("valid");
+    let check = |what: &str, ours: &[f64], given: &[f64]| agree(what, ours, given, CHECK_STATE);
+    check("tau", &arm.inverse_dynamics(q, dq, ddq), &state.tau);
+    check("four arguments", &arm.inverse_dynamics_4(q, dq, dqr, ddq), &state.y_pi);
+    let regressor = scara.regressor(q, dq, dqr, ddq).expect("names").expect("parameters");
+    check("Y pi", &regressor.torque(), &state.y_pi);
+    check("nothing but pi", &regressor.known, &[0.0; 4]);
+    let c = arm.coriolis_matrix(q, dq);
+    check("C dq", &times(&c, dq), &state.c_dq);
+    check("C dqr", &times(&c, dqr), &state.c_dqr);
+    let t = arm.direct_kinematics(q);
+    check("x_e", &[t[0][3], t[1][3], t[2][3], t[1][1].atan2(t[0][1])], &state.x_e);
+    let drift = times(&arm.geometric_jacobian_dot(q, dq), dq);
+    check("dJ/dt dq", &[drift[0], drift[1], drift[2], drift[5]], &state.j_dot_dq);
+    let loaded = scara.model_with(&[("m_l3", 15.0)]).expect("a parameter");
+    check("forward dynamics", &loaded.forward_dynamics(q, dq, &[0.0; 4]).expect("regular"), &state.ddq_loaded);
+}
+
+/// Ranks that are known: 11 of the 14 of the SCARA, 8 of its links' 40.
+#[test]
+fn ranks_of_stacked_regressors() {
+    let scara = read(technical_project::ROBOT);
+    let stacked = |f: &dyn Fn(&State) -> Matrix| -> usize {
+        rank(&(0..30).flat_map(|seed| f(&random::state(4, seed))).collect::<Matrix>())
+    };
+    let named = |s: &State| scara.regressor(&s.q, &s.dq, &s.dqr, &s.ddqr).expect("names").expect("parameters").y;
+    assert_eq!(stacked(&named), 11);
+    let bare = model(&description("scara4"));
+    assert_eq!(stacked(&|s: &State| bare.standard_regressor(&s.q, &s.dq, &s.dqr, &s.ddqr).y), 8);
 }
 
 /// A planted error is seen: each of these changes of a description moves the torque.
