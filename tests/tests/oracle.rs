@@ -58,7 +58,8 @@ fn agrees_with_the_two_link_planar_arm_of_the_book() {
     let (a1, a2, l1, l2, ml1, ml2, il1, il2) = (0.8, 0.7, 0.35, 0.3, 12.0, 9.0, 1.1, 0.6);
     let (mm2, im1, im2, kr1, kr2) = (2.5, 0.012, 0.007, 90.0, -60.0);
     let g = 9.81;
-    let text = format!(
+    // The same arm by standard rows (frames at the links' ends) and by modified ones (frames at the joints, the end as tool).
+    let standard = format!(
         "name: planar
 convention: standard
 gravity: [0, -{g}, 0]
@@ -69,7 +70,18 @@ joints:
    link: {{mass: {ml2}, com: [{l2} - {a2}, 0, 0], inertia: {{zz: {il2}}}}}, motor: {{ratio: {kr2}, inertia: {im2}, mass: {mm2}}}}}
 "
     );
-    let arm = model(&text);
+    let modified = format!(
+        "name: planar
+convention: modified
+gravity: [0, -{g}, 0]
+joints:
+- {{name: j1, type: revolute, a: 0, alpha: 0, d: 0, theta: 0,
+   link: {{mass: {ml1}, com: [{l1}, 0, 0], inertia: {{zz: {il1}}}}}, motor: {{ratio: {kr1}, inertia: {im1}, mass: 3}}}}
+- {{name: j2, type: revolute, a: {a1}, alpha: 0, d: 0, theta: 0, link: {{mass: {ml2}, com: [{l2}, 0, 0], inertia: {{zz: {il2}}}}},
+   motor: {{ratio: {kr2}, inertia: {im2}, mass: {mm2}, position: [{a1}, 0, 0]}}}}
+tool: {{xyz: [{a2}, 0, 0]}}
+"
+    );
     let (q, dq, ddq) = ([0.4, -1.3], [0.9, 1.7], [-2.0, 3.0]);
     let ((s1, c1), (s2, c2)) = (f64::sin_cos(q[0]), f64::sin_cos(q[1]));
     let (s12, c12) = (q[0] + q[1]).sin_cos();
@@ -80,17 +92,49 @@ joints:
     let h = -ml2 * a1 * l2 * s2;
     let g1 = (ml1 * l1 + mm2 * a1 + ml2 * a1) * g * c1 + ml2 * l2 * g * c12;
     let g2 = ml2 * l2 * g * c12;
-    agree("B", &flat(&arm.inertia_matrix(&q)), &[b11, b12, b12, b22], DUAL);
-    agree("C", &flat(&arm.coriolis_matrix(&q, &dq)), &[h * dq[1], h * (dq[0] + dq[1]), -h * dq[0], 0.0], DUAL);
-    agree("g", &arm.gravity(&q), &[g1, g2], DUAL);
     let tau1 = b11 * ddq[0] + b12 * ddq[1] + 2.0 * h * dq[0] * dq[1] + h * dq[1] * dq[1] + g1;
     let tau2 = b12 * ddq[0] + b22 * ddq[1] - h * dq[0] * dq[0] + g2;
-    agree("tau", &arm.inverse_dynamics(&q, &dq, &ddq), &[tau1, tau2], DUAL);
     let p = [a1 * c1 + a2 * c12, a1 * s1 + a2 * s12];
-    let t = arm.direct_kinematics(&q);
-    agree("T", &flat(&t), &[c12, -s12, 0.0, p[0], s12, c12, 0.0, p[1], 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0], DUAL);
     let u = g * (ml1 * l1 * s1 + mm2 * a1 * s1 + ml2 * (a1 * s1 + l2 * s12));
-    agree("U", &[arm.potential_energy(&q)], &[u], DUAL);
+    for text in [standard, modified] {
+        let arm = model(&text);
+        agree("B", &flat(&arm.inertia_matrix(&q)), &[b11, b12, b12, b22], DUAL);
+        agree("C", &flat(&arm.coriolis_matrix(&q, &dq)), &[h * dq[1], h * (dq[0] + dq[1]), -h * dq[0], 0.0], DUAL);
+        agree("g", &arm.gravity(&q), &[g1, g2], DUAL);
+        agree("tau", &arm.inverse_dynamics(&q, &dq, &ddq), &[tau1, tau2], DUAL);
+        let t = [c12, -s12, 0.0, p[0], s12, c12, 0.0, p[1], 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        agree("T", &flat(&arm.direct_kinematics(&q)), &t, DUAL);
+        agree("U", &[arm.potential_energy(&q)], &[u], DUAL);
+    }
+}
+
+/// Rotors of an arm with crossed axes: where the axis of a rotor stands by default and by choice, in both conventions.
+#[test]
+fn rotors_turn_about_the_axis_that_the_file_says() {
+    let arm = |convention: &str, alphas: [&str; 2], axis: &str| {
+        model(&format!(
+            "{{name: crossed, convention: {convention}, gravity: [0, 0, 0], joints: [
+            {{name: j1, type: revolute, a: 0, alpha: {}, d: 0, theta: 0, link: {{mass: 0, inertia: {{xx: 1, yy: 1, zz: 1}}}}}},
+            {{name: j2, type: revolute, a: 0, alpha: {}, d: 0, theta: 0, link: {{mass: 0, inertia: {{xx: 1, yy: 1, zz: 1}}}},
+              motor: {{ratio: 10, inertia: 0.25{axis}}}}}]}}",
+            alphas[0], alphas[1]
+        ))
+    };
+    // B = links + I_m (s, k)(s, k)', s = axis · z0 in link 1: joint axes at right angles for "pi/2", 60 degrees for "pi/3".
+    let check = |arm: Model, between: f64, s: f64| {
+        let links = [2.0, between.cos(), between.cos(), 1.0];
+        let rotor = [s * s, s * 10.0, s * 10.0, 100.0].map(|x| 0.25 * x);
+        agree("B", &flat(&arm.inertia_matrix(&[0.4, 0.9])), &sum(&links, &rotor), DUAL);
+    };
+    let (right, sixty) = (std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_3);
+    check(arm("standard", ["pi/2", "0"], ""), right, 0.0);
+    check(arm("modified", ["0", "pi/2"], ""), right, 0.0);
+    check(arm("standard", ["pi/3", "0"], ""), sixty, 0.5);
+    check(arm("modified", ["0", "pi/3"], ""), sixty, 0.5);
+    // z of link 1's frame is the joint axis in standard rows, z0 in modified ones; and an axis need not have length 1.
+    check(arm("standard", ["pi/3", "0"], ", axis: [0, 0, 1]"), sixty, 0.5);
+    check(arm("modified", ["0", "pi/3"], ", axis: [0, 0, -7]"), sixty, -1.0);
+    check(arm("modified", ["0", "pi/3"], ", axis: [0, 3, 4]"), sixty, 0.8);
 }
 
 /// Laws that every arm obeys; `what` names the arm in a failure.
