@@ -137,6 +137,54 @@ fn rotors_turn_about_the_axis_that_the_file_says() {
     check(arm("modified", ["0", "pi/3"], ", axis: [0, 3, 4]"), sixty, 0.8);
 }
 
+/// The default axis of a rotor in modified rows, by its sign: axes 1 and 3 are antiparallel at q2 = 0, rotor 3 couples with -1.
+#[test]
+fn the_default_axis_is_the_joint_axis() {
+    let joint = |i: usize, alpha: &str, rest: &str| {
+        let inertia = "{xx: 1, yy: 1, zz: 1}";
+        format!(
+            "{{name: j{i}, type: revolute, a: 0, alpha: {alpha}, d: 0, theta: 0, link: {{mass: 0, inertia: {inertia}}}{rest}}}"
+        )
+    };
+    let motor = ", motor: {ratio: 10, inertia: 0.25}";
+    let joints = [joint(1, "0", ""), joint(2, "pi/2", ""), joint(3, "pi/2", motor)].join(", ");
+    let arm = model(&format!("{{name: folded, convention: modified, gravity: [0, 0, 0], joints: [{joints}]}}"));
+    let links = [3.0, 0.0, -1.0, 0.0, 2.0, 0.0, -1.0, 0.0, 1.0];
+    let rotor = [1.0, 0.0, -10.0, 0.0, 0.0, 0.0, -10.0, 0.0, 100.0].map(|x| 0.25 * x);
+    agree("B", &flat(&arm.inertia_matrix(&[0.4, 0.0, 0.9])), &sum(&links, &rotor), DUAL);
+}
+
+/// A load at a turned tool of a pendulum, in closed form: it stands at (0.3, 0.1) of the link.
+#[test]
+fn a_load_rides_in_the_end_effector_frame() {
+    let arm = model(
+        "{name: pendulum, convention: standard, gravity: [0, -9.81, 0],
+        joints: [{name: j1, type: revolute, a: 0, alpha: 0, d: 0, theta: 0, link: {mass: 0, inertia: {zz: 1}}}],
+        tool: {xyz: [0.3, 0, 0.2], rpy: [0, 0, pi/2]}, payload: {mass: 2, com: [0.1, 0, 0], inertia: {zz: 0.5}}}",
+    );
+    let q: f64 = 0.7;
+    agree("B", &flat(&arm.inertia_matrix(&[q])), &[1.0 + 0.5 + 2.0 * (0.09 + 0.01)], DUAL);
+    agree("g", &arm.gravity(&[q]), &[2.0 * 9.81 * (0.3 * q.cos() - 0.1 * q.sin())], DUAL);
+}
+
+/// The standard parameters in their order; what is not among them is the rotors' mass alone.
+#[test]
+fn standard_parameters() {
+    let arm = |name: &str| model(random::tricky().iter().find(|(other, _)| *other == name).expect("a tricky arm").1);
+    let swing = arm("single_joint").standard_parameters();
+    let zz = 0.036 + 1.2 * 0.3 * 0.3;
+    agree("pi", &swing, &[1.2, -0.36, 0.0, 0.0, 0.0, 0.0, zz, 0.0, 0.0, zz, 1e-5, 2e-4, 0.01, 0.05], DUAL);
+
+    let mut all = arm("everything");
+    // Ten of five links and the load; joint 1: inertia, two frictions; 2: four; 3: inertia; 4: inertia, Coulomb; 5: inertia, rotor's friction.
+    assert_eq!(all.standard_parameters().len(), 60 + 3 + 4 + 1 + 2 + 2);
+    let State { q, dq, dqr, ddqr, .. } = random::state(5, 1);
+    let known = |arm: &Model| arm.standard_regressor(&q, &dq, &dqr, &ddqr).known;
+    assert!(known(&all).iter().any(|x| x.abs() > 0.1));
+    all.joints.iter_mut().filter_map(|j| j.motor.as_mut()).for_each(|m| m.mass = 0.0);
+    assert_eq!(known(&all), [0.0; 5]);
+}
+
 /// Laws that every arm obeys; `what` names the arm in a failure.
 #[track_caller]
 fn check_laws(what: &str, text: &str, state: &State) {
