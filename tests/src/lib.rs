@@ -1,1 +1,18 @@
-//! Tests.
+//! The judges of armgen: code that finds by other ways what the generator finds, and shares no helper with it.
+//!
+//! - [`oracle`]: a numerical model of an arm, straight from the description, in f64 and dual numbers;
+//! - [`mod@reference`]: values that another library computed, stored in `data/reference`;
+//! - [`formula`] and [`trigonometry`]: plain formulas, compared exactly as rational trigonometric expressions;
+//! - [`shown`]: what `show --format json` prints, read back;
+//! - [`technical_project`]: every closed form of the SCARA's technical project, and the comparison with what is shown;
+//! - [`random`]: random arms and states from a seed;
+//! - [`precision`]: every tolerance, with its reason.
+
+pub mod formula;
+pub mod oracle;
+pub mod precision;
+pub mod random;
+pub mod reference;
+pub mod shown;
+pub mod technical_project;
+pub mod trigonometry;

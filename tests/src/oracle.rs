@@ -1,0 +1,95 @@
+//! A numerical model of an arm, written apart from the generator: what it finds, the generator has to find.
+//!
+//! Another formulation in other code. The description is read again, into plain f64; every vector stands in the *base* frame;
+//! bodies are ten numbers about the origin of their frame. Newton-Euler (the book, Sect. 7.5, rotors included) is the only dynamics:
+//!
+//! ```text
+//! tau  = NE(q, dq, ddq, g0) + F_v dq + F_c sign(dq)
+//! g    = NE(q, 0, 0, g0)                 B e_j = NE(q, 0, e_j, 0)                C dq = NE(q, dq, 0, 0)
+//! C_ij = sum_k ½ (∂b_ij/∂q_k + ∂b_ik/∂q_j - ∂b_jk/∂q_i) dq_k                     dB/dq by dual numbers: exact to rounding
+//! C(q, a) b = ¼ (NE(q, a+b, 0, 0) - NE(q, a-b, 0, 0))                            Christoffel's C is symmetric in a and b
+//! Y_k  = tau(pi = e_k) - tau(pi = 0)                                             linear in pi, so unit parameters give columns
+//! ```
+//!
+//! [`Description::read`] reads a file's text, [`Description::model`] gives its [`Model`]; the functions are methods of it.
+
+mod description;
+mod dynamics;
+mod kinematics;
+mod regressor;
+mod scalar;
+mod vector;
+
+pub use description::{Description, RegressorChoice};
+pub use dynamics::{rank, solve};
+pub use regressor::Regressor;
+pub use scalar::{Dual, Scalar};
+
+/// A matrix as a list of rows.
+pub type Matrix = Vec<Vec<f64>>;
+
+/// Product of a matrix and a vector.
+pub fn times(m: &[Vec<f64>], v: &[f64]) -> Vec<f64> {
+    m.iter().map(|row| row.iter().zip(v).map(|(a, b)| a * b).sum()).collect()
+}
+
+/// Mass, first moments, inertia about the frame's origin: m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz.
+///
+/// The equations are linear in these ten.
+pub type Ten = [f64; 10];
+
+/// A serial arm in plain numbers, SI units.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Modified (Craig, Khalil) instead of standard Denavit-Hartenberg rows.
+    pub modified: bool,
+    /// Acceleration of gravity in the base frame.
+    pub gravity: [f64; 3],
+    /// Joints from base to tip, each with the link that it moves.
+    pub joints: Vec<Joint>,
+    /// End-effector frame in the last link's frame: rotation by rows, translation.
+    pub tool: ([[f64; 3]; 3], [f64; 3]),
+    /// Rigid load, in the end-effector frame.
+    pub payload: Option<Ten>,
+}
+
+/// A joint and its link.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Slides instead of turning.
+    pub prismatic: bool,
+    /// a, alpha, d, theta of the row; the joint variable is added to d or theta.
+    pub row: [f64; 4],
+    /// The link, in its own Denavit-Hartenberg frame.
+    pub link: Ten,
+    /// The rotor on the previous link.
+    pub motor: Option<Motor>,
+    /// Viscous friction at the joint, if given.
+    pub viscous: Option<f64>,
+    /// Coulomb friction at the joint, if given.
+    pub coulomb: Option<f64>,
+}
+
+/// The rotor of a joint, in the frame of the previous link (the base frame for the first joint).
+#[derive(Clone, Debug)]
+pub struct Motor {
+    /// k_r.
+    pub ratio: f64,
+    /// Inertia about the spin axis, if given.
+    pub inertia: Option<f64>,
+    /// Mass.
+    pub mass: f64,
+    /// Where the mass is.
+    pub position: [f64; 3],
+    /// Spin axis, a unit vector.
+    pub axis: [f64; 3],
+    /// Viscous friction at the rotor, if given.
+    pub viscous: Option<f64>,
+}
+
+impl Model {
+    /// Number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+}
