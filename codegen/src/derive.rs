@@ -12,5 +12,18 @@ pub mod newton_euler;
 pub mod parameters;
 pub mod regressor;
 
+use crate::manipulator::{Manipulator, RegressorChoice};
+use crate::ring::field::Field;
+use parameters::ParameterVector;
+
+/// The parameter vector that a description chooses by `regressor`.
+pub fn parameter_vector(manipulator: &Manipulator, field: &Field) -> ParameterVector {
+    match &manipulator.regressor {
+        RegressorChoice::Standard => ParameterVector::standard(manipulator),
+        RegressorChoice::Base => base::base_parameters(manipulator, field),
+        RegressorChoice::Names(names) => ParameterVector::named(manipulator, names),
+    }
+}
+
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 //! A quantity may have several derivations, each in a pool of its own: a recursion over the links and, where it stays short, the closed
 //! form. All give the same expressions, which their fingerprints prove; which one is emitted is a matter of cost alone.
 
-use crate::derive::arm::Arm;
+use crate::derive::arm::{Arm, Rest};
 use crate::derive::newton_euler::Motion;
 use crate::derive::parameters::{ParameterVector, View};
 use crate::derive::{self};
@@ -11,6 +11,7 @@ use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
 use crate::ring::normal_form::{Arrangement, NormalForm};
 use crate::ring::{ExprId, Pool, Symbol};
+use crate::Model;
 
 /// A function of the emitted module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -233,21 +234,16 @@ impl Quantity {
     }
 
     /// The entries by recursion over the links, in a pool of their own.
-    pub fn by_recursion(
-        self,
-        manipulator: &Manipulator,
-        field: &Field,
-        view: View<'_>,
-        parameters: &ParameterVector,
-    ) -> Derivation {
-        let mut pool = Pool::new(field.clone());
+    pub fn by_recursion(self, model: &Model, view: View<'_>) -> Derivation {
+        let parameters = &model.parameters;
+        let mut pool = Pool::new(model.field.clone());
         // The regressor of named parameters is the derivative by them, and its known rest what is left without them.
         let view = match self {
             Quantity::Regressor => View::Vector(parameters),
             Quantity::KnownTorque => View::Known(parameters),
             _ => view,
         };
-        let mut arm = Arm::new(&mut pool, manipulator, view);
+        let mut arm = Arm::new(&mut pool, &model.manipulator, view);
         let grouped = matches!(view, View::Nominal)
             && matches!(
                 self,
@@ -260,7 +256,7 @@ impl Quantity {
                     | Quantity::KineticEnergy
             );
         if grouped {
-            arm.group_towards_base(&mut pool);
+            arm.group_towards_base(&mut pool, Rest::NoSecondMomentAlongAxis);
         }
         let entries = self.entries(&mut pool, &arm, parameters);
         Derivation { pool, entries, method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" } }

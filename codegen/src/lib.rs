@@ -1,5 +1,18 @@
 //! From the description of a robot arm to its equations of motion, and from these to plain `no_std` Rust.
+//!
+//! The stages, in order; each type says what can no longer occur after it:
+//!
+//! | stage | from | to | can fail |
+//! |---|---|---|---|
+//! | parse | [`source::Source`] | [`description::RobotDescription`] | yes |
+//! | validate | `RobotDescription` | [`manipulator::Manipulator`] | yes |
+//! | derive | `Manipulator` | [`equations::Derivation`] of each [`equations::Quantity`] | no |
+//! | schedule | derivations, [`program::Options`] | [`program::Module`] | no |
+//! | emit | `Module` | text | no |
+//!
+//! Text goes in, text comes out; only [`build_script`] touches files and environment.
 
+pub mod build_script;
 pub mod derive;
 pub mod description;
 pub mod diagnostic;
@@ -10,3 +23,56 @@ pub mod manipulator;
 pub mod program;
 pub mod ring;
 pub mod source;
+
+use derive::parameters::ParameterVector;
+use diagnostic::Diagnostics;
+use emit::rust::Origin;
+use manipulator::Manipulator;
+use program::{Module, Options};
+use ring::field::Field;
+use source::Source;
+
+/// The text of an emitted module and of the trait implementation that goes with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Generated {
+    /// The module: free functions over arrays.
+    pub module: String,
+    /// The implementation of the runtime's traits for it.
+    pub runtime: String,
+}
+
+/// A valid arm with what its equations are formed in.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The arm.
+    pub manipulator: Manipulator,
+    /// The field of the fingerprints.
+    pub field: Field,
+    /// The parameter vector that its `regressor` chooses.
+    pub parameters: ParameterVector,
+}
+
+impl Model {
+    /// The model of a valid arm.
+    pub fn new(manipulator: Manipulator) -> Model {
+        let field = equations::field_of(&manipulator);
+        let parameters = derive::parameter_vector(&manipulator, &field);
+        Model { manipulator, field, parameters }
+    }
+
+    /// The programs of all functions.
+    pub fn module(&self, options: &Options) -> Module {
+        program::module(self, options)
+    }
+}
+
+/// From text to text: the module if the description is valid, and all there is to say about the description.
+pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
+    let (valid, diagnostics) = manipulator::read_for(source, options.scalar);
+    let generated = valid.map(|(manipulator, _)| {
+        let module = Model::new(manipulator).module(options);
+        let origin = Origin::of(source);
+        Generated { module: emit::rust::print(&module, &origin), runtime: emit::rust::print_runtime(&module, &origin) }
+    });
+    (generated, diagnostics)
+}

@@ -6,8 +6,9 @@
 mod cost;
 mod schedule;
 
+pub use crate::manipulator::Scalar;
 pub use cost::Cost;
-pub use schedule::{module, Options, Scalar};
+pub use schedule::{module, Options};
 
 use crate::equations::{Argument, Quantity};
 use crate::exact::Number;

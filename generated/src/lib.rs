@@ -1,1 +1,11 @@
-//! The robot of robot.yaml.
+//! The robot that `robot.yaml` describes: edit that file and rebuild, and every function here follows.
+//!
+//! The functions are free functions over arrays, without allocation and without `std`; they need libm alone. With the feature `runtime` the
+//! robots [`Nominal`] and [`WithParameters`] implement the traits of `armgen-runtime`.
+#![no_std]
+#![forbid(unsafe_code)]
+
+include!(concat!(env!("OUT_DIR"), "/robot.rs"));
+
+#[cfg(feature = "runtime")]
+include!(concat!(env!("OUT_DIR"), "/robot_runtime.rs"));

@@ -81,6 +81,8 @@ pub struct Arm {
     pub tool_rotation: Matrix,
     /// End-effector frame in the tip's joint frame: origin.
     pub tool_origin: Vector,
+    /// First moment, in the base frame, of the rotors that ride on the base: a constant of the potential energy.
+    pub base_moment: Vector,
 }
 
 impl Body {
@@ -114,6 +116,15 @@ impl Body {
     fn turned(&self, pool: &mut Pool, rotation: &Matrix) -> Body {
         Body { mass: self.mass, first: pool.transform(rotation, &self.first), second: turn_second(pool, rotation, &self.second) }
     }
+}
+
+/// What grouping leaves zero in the body of a revolute joint, besides mass and first moment along the axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rest {
+    /// Szz = 0.
+    NoSecondMomentAlongAxis,
+    /// Iyy = 0.
+    NoInertiaAboutY,
 }
 
 /// Index pairs of the six entries of a symmetric matrix, in the order xx xy yy xz yz zz.
@@ -188,13 +199,14 @@ impl Arm {
         let joints = (0..manipulator.joints.len()).map(|i| joint(pool, manipulator, view, i)).collect();
         let gravity = manipulator.gravity.clone().map(|g| view.polynomial(pool, manipulator, &g));
         let tip = super::parameters::tip(manipulator);
-        let mut arm = Arm { joints, gravity, tip, tool_rotation: crate::ring::matrix::IDENTITY, tool_origin: ZERO };
+        let mut arm =
+            Arm { joints, gravity, tip, tool_rotation: crate::ring::matrix::IDENTITY, tool_origin: ZERO, base_moment: ZERO };
         let (rotation, origin) = placement(pool, manipulator, view, &manipulator.tool);
         let last = arm.joints[tip];
         arm.tool_rotation = pool.product(&last.link_rotation, &rotation);
         let turned = pool.transform(&last.link_rotation, &origin);
         arm.tool_origin = pool.add_vectors(&turned, &last.link_origin);
-        if manipulator.payload.is_some() {
+        if manipulator.payload.is_some() && !view.bodies_in_joint_frames() {
             let payload = inertial_body(pool, manipulator, view, StandardParameter::Payload);
             let payload = payload.turned(pool, &arm.tool_rotation);
             let payload = payload.moved(pool, &arm.tool_origin);
@@ -222,7 +234,10 @@ impl Arm {
     /// A mass on the axis of a revolute joint, its moment and second moment along the axis, look the same to the parent whatever the
     /// joint angle, and joint i does not feel them: m, hz and Szz move to the parent. The second moments of a link behind a prismatic
     /// joint never change their direction: all six move. What reaches the base is dropped.
-    pub fn group_towards_base(&mut self, pool: &mut Pool) {
+    ///
+    /// How much second moment along the axis moves is free: all of Szz ([`Rest::NoSecondMomentAlongAxis`]), which leaves the least
+    /// work, or Iyy = Sxx + Szz, which leaves the base parameters of the literature ([`Rest::NoInertiaAboutY`]).
+    pub fn group_towards_base(&mut self, pool: &mut Pool, rest: Rest) {
         for i in (0..self.dof()).rev() {
             let joint = self.joints[i];
             let mut handed = Body::EMPTY;
@@ -230,7 +245,12 @@ impl Arm {
             if joint.is_revolute() {
                 handed.mass = std::mem::replace(&mut body.mass, ExprId::ZERO);
                 handed.first[2] = std::mem::replace(&mut body.first[2], ExprId::ZERO);
-                handed.second[5] = std::mem::replace(&mut body.second[5], ExprId::ZERO);
+                let along = match rest {
+                    Rest::NoSecondMomentAlongAxis => body.second[5],
+                    Rest::NoInertiaAboutY => pool.add(body.second[0], body.second[5]),
+                };
+                body.second[5] = pool.sub(body.second[5], along);
+                handed.second[5] = along;
             } else {
                 handed.second = std::mem::replace(&mut body.second, [ExprId::ZERO; 6]);
             }
@@ -288,8 +308,12 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         }
     }
     let link = inertial_body(pool, manipulator, view, |k| StandardParameter::Link(index, k));
-    let turned = link.turned(pool, &link_rotation);
-    let body = turned.moved(pool, &link_origin);
+    let body = if view.bodies_in_joint_frames() {
+        link
+    } else {
+        let turned = link.turned(pool, &link_rotation);
+        turned.moved(pool, &link_origin)
+    };
     let friction = |pool: &mut Pool, parameter| view.standard(pool, manipulator, parameter);
     let mut viscous = friction(pool, StandardParameter::Viscous(index));
     let coulomb = friction(pool, StandardParameter::Coulomb(index));
@@ -325,14 +349,19 @@ fn add_rotor(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, arm: &m
     let Some(motor) = &manipulator.joints[i].motor else { return };
     let parent = arm.joints[i].parent;
     let axis = motor.axis.clone().map(|a| pool.constant(&a));
+    let position = motor.position.clone().map(|x| view.polynomial(pool, manipulator, &x));
+    let mass = view.polynomial(pool, manipulator, &motor.mass);
     let (axis, position) = match parent {
         Some(p) => {
-            let position = motor.position.clone().map(|x| view.polynomial(pool, manipulator, &x));
             let link = arm.joints[p];
             let turned = pool.transform(&link.link_rotation, &position);
             (pool.transform(&link.link_rotation, &axis), pool.add_vectors(&turned, &link.link_origin))
         }
-        None => (axis, ZERO),
+        None => {
+            let moment = pool.scale(mass, &position);
+            arm.base_moment = pool.add_vectors(&arm.base_moment, &moment);
+            (axis, position)
+        }
     };
     let inertia = view.standard(pool, manipulator, StandardParameter::RotorInertia(i as u16));
     let ratio = view.polynomial(pool, manipulator, &motor.ratio);
@@ -343,8 +372,7 @@ fn add_rotor(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, arm: &m
             pool.mul(inertia, product)
         });
         let carried = Body { second: second_moments(pool, &tensor), ..Body::EMPTY };
-        let mass = Body { mass: view.polynomial(pool, manipulator, &motor.mass), ..Body::EMPTY };
-        let mass = mass.moved(pool, &position);
+        let mass = Body { mass, ..Body::EMPTY }.moved(pool, &position);
         let body = arm.joints[p].body.plus(pool, &carried);
         arm.joints[p].body = body.plus(pool, &mass);
     }

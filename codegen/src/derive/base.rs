@@ -5,12 +5,12 @@
 //! (Gautier and Khalil 1990). The rank and the choice of columns are found in the prime field from random states, where a state more never
 //! changes the answer but for odds of 1/p; each row of K is then solved for exactly, over the exact constants, from rational states.
 
-use super::arm::Arm;
+use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
-use super::parameters::{nominal, Entry, ParameterKind, ParameterVector, StandardParameter, View};
-use super::regressor::{regressor, standard_columns};
+use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View};
+use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::Number;
-use crate::manipulator::Manipulator;
+use crate::manipulator::{JointKind, Manipulator};
 use crate::ring::field::{scramble, Element, Field};
 use crate::ring::{ExprId, Node, Pool, Symbol};
 
@@ -26,13 +26,7 @@ pub struct Dependence {
 /// The dependence among the columns of `y`, `y[joint][column]`, taken in order: a column is kept unless those before it span it.
 pub fn dependence(pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
     let columns = y.first().map_or(0, Vec::len);
-    let rows = y.len();
-    let states = columns / rows.max(1) + 4;
-    let mut matrix: Vec<Vec<Element>> = Vec::new();
-    for state in 0..states as u64 {
-        matrix.extend(field_values(pool, y, state));
-    }
-    let (pivots, reduced) = echelon(pool.field(), matrix, columns);
+    let (pivots, reduced) = stacked_echelon(pool, y);
     let mut dependent = Vec::new();
     for column in (0..columns).filter(|c| !pivots.contains(c)) {
         let support: Vec<usize> =
@@ -41,6 +35,19 @@ pub fn dependence(pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
         dependent.push((column, support.into_iter().zip(coefficients).collect()));
     }
     Dependence { independent: pivots, dependent }
+}
+
+/// How many parameters a motion can tell apart: the rank of Y stacked over many states.
+pub fn rank(pool: &Pool, y: &[Vec<ExprId>]) -> usize {
+    stacked_echelon(pool, y).0.len()
+}
+
+/// The reduced row echelon form of Y stacked over enough states of the field.
+fn stacked_echelon(pool: &Pool, y: &[Vec<ExprId>]) -> (Vec<usize>, Vec<Vec<Element>>) {
+    let columns = y.first().map_or(0, Vec::len);
+    let states = columns / y.len().max(1) + 4;
+    let matrix = (0..states as u64).flat_map(|state| field_values(pool, y, state)).collect();
+    echelon(pool.field(), matrix, columns)
 }
 
 /// Values of Y at a state of the field, row by row.
@@ -109,6 +116,9 @@ fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[u
     }
     let mut system: Vec<Vec<Number>> = Vec::new();
     let mut pivots: Vec<usize> = Vec::new();
+    // Quotients of general constants may be zero without looking it: the field knows.
+    let mut field = pool.field().clone();
+    let mut settle = |x: Number| if field.number(&x) == field.zero() { Number::zero() } else { x };
     for state in 0.. {
         let of = Pool::rational_state(state);
         for row in y {
@@ -118,7 +128,7 @@ fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[u
                 let factor = equation[pivot].clone();
                 if !factor.is_zero() {
                     for (x, p) in equation.iter_mut().zip(known) {
-                        *x = &*x - &(&factor * p);
+                        *x = settle(&*x - &(&factor * p));
                     }
                 }
             }
@@ -129,7 +139,7 @@ fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[u
                 let factor = known[pivot].clone();
                 if !factor.is_zero() {
                     for (x, p) in known.iter_mut().zip(&equation) {
-                        *x = &*x - &(&factor * p);
+                        *x = settle(&*x - &(&factor * p));
                     }
                 }
             }
@@ -156,44 +166,34 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
 }
 
 /// The base parameters of an arm.
+///
+/// What no joint feels is first grouped towards the base in joint frames, exactly and without a division. What still depends on others
+/// then, because a motion near the base is restricted or a rotor turns with a link, is found by rank.
 pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    let mut columns = StandardParameter::all(manipulator);
-    columns.sort_by_key(|&column| preference(column));
     let mut pool = Pool::new(field.clone());
-    let arm = Arm::new(&mut pool, manipulator, View::Nominal);
+    let standard = ParameterVector::standard(manipulator);
+    let mut arm = Arm::new(&mut pool, manipulator, View::Vector(&standard));
+    arm.group_towards_base(&mut pool, Rest::NoInertiaAboutY);
+    let mut columns = candidates(manipulator);
+    columns.sort_by_key(|&column| preference(column));
+    let values: Vec<Vec<Number>> = columns.iter().map(|&c| combination(&mut pool, &arm, &standard, c)).collect();
+
     let motion = Motion::with_reference(&mut pool, &arm);
-    let y = standard_columns(&mut pool, &arm, &motion, &columns);
+    let y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns);
     let dependence = dependence(&pool, &y);
-    let value = |column: usize| nominal(manipulator, &columns[column].value(manipulator));
     let mut base: Vec<(StandardParameter, Entry)> = dependence
         .independent
         .iter()
         .map(|&column| {
-            let parameter = columns[column];
-            let mut total = value(column);
-            let mut meaning = parameter.name();
-            let mut parts: Vec<(StandardParameter, &Number)> = dependence
-                .dependent
-                .iter()
-                .flat_map(|(other, combination)| {
-                    combination.iter().filter(|(c, _)| *c == column).map(|(_, k)| (columns[*other], k))
-                })
-                .collect();
-            parts.sort_by_key(|(other, _)| *other);
-            for (other, k) in &parts {
-                let negative = k.leads_negative();
-                let size = if negative { -*k } else { (*k).clone() };
-                let factor = match (size.is_one(), size.terms().count()) {
-                    (true, _) => String::new(),
-                    (false, 1) => format!("{size} "),
-                    (false, _) => format!("({size}) "),
-                };
-                meaning += &format!(" {} {factor}{}", if negative { '-' } else { '+' }, other.name());
-                let position = columns.iter().position(|c| c == other).expect("a column");
-                total = &total + &(*k * &value(position));
+            let mut total = values[column].clone();
+            for (other, combination) in &dependence.dependent {
+                for (_, k) in combination.iter().filter(|(c, _)| *c == column) {
+                    for (sum, value) in total.iter_mut().zip(&values[*other]) {
+                        *sum = &*sum + &(k * value);
+                    }
+                }
             }
-            let name = if parts.is_empty() { parameter.name() } else { format!("{}R", parameter.name()) };
-            (parameter, Entry { name, nominal: total, meaning })
+            (columns[column], entry(columns[column], &standard, &total))
         })
         .collect();
     base.sort_by_key(|(parameter, _)| *parameter);
@@ -201,8 +201,90 @@ pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVec
     ParameterVector { entries, kind: ParameterKind::Base(kept) }
 }
 
-/// Columns are kept in this order: friction, then links from the base outwards, so that what a joint does not feel is regrouped towards the base;
-/// within a link the mass last. Rotors and the payload are told apart from links only where nothing else can carry their effect.
+/// What can be left after grouping: links without m, mcz and Iyy (revolute) or without inertia (prismatic), rotors, friction.
+fn candidates(manipulator: &Manipulator) -> Vec<StandardParameter> {
+    StandardParameter::all(manipulator)
+        .into_iter()
+        .filter(|&parameter| match parameter {
+            StandardParameter::Link(i, k) if manipulator.joints[usize::from(i)].kind == JointKind::Revolute => {
+                ![0, 3, 6].contains(&k)
+            }
+            StandardParameter::Link(_, k) => k < 4,
+            StandardParameter::Payload(_) => false,
+            _ => true,
+        })
+        .collect()
+}
+
+/// A parameter of the grouped arm as coefficients of the standard parameters.
+fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter: StandardParameter) -> Vec<Number> {
+    let expr = match parameter {
+        StandardParameter::Link(i, k) => {
+            let body = &arm.joints[usize::from(i)].body;
+            let [xx, xy, yy, xz, yz, zz] = body.second;
+            match k {
+                0 => body.mass,
+                1..=3 => body.first[usize::from(k) - 1],
+                4 => pool.add(yy, zz),
+                5 => -xy,
+                6 => pool.add(xx, zz),
+                7 => -xz,
+                8 => -yz,
+                _ => pool.add(xx, yy),
+            }
+        }
+        _ => {
+            let column = standard.position(parameter).expect("all that is not a link's is itself a standard parameter");
+            pool.symbol(Symbol::Parameter(column as u16))
+        }
+    };
+    // A rotor's column holds all that its inertia does, its turning with the parent link included: that part of the body is not the link's.
+    let of_rotor = |k: u16| matches!(&standard.kind, ParameterKind::Standard(all) if matches!(all[usize::from(k)], StandardParameter::RotorInertia(_)));
+    let of_link = matches!(parameter, StandardParameter::Link(..));
+    (0..standard.len() as u16)
+        .map(|k| {
+            if of_link && of_rotor(k) {
+                return Number::zero();
+            }
+            let derivative = derivative_by_parameter(pool, &[expr], k)[0];
+            pool.as_constant(derivative).expect("grouping is linear in the parameters")
+        })
+        .collect()
+}
+
+/// A base parameter: named after the standard parameter that it is, or with an R where others are regrouped into it.
+fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Entry {
+    let mut nominal = Number::zero();
+    let mut meaning = String::new();
+    let mut name = format!("{}R", parameter.name());
+    let parts: Vec<(&Entry, &Number)> = standard.entries.iter().zip(coefficients).filter(|(_, k)| !k.is_zero()).collect();
+    for (entry, k) in &parts {
+        nominal = &nominal + &(*k * &entry.nominal);
+        let negative = k.leads_negative();
+        let size = if negative { -*k } else { (*k).clone() };
+        meaning += match (meaning.is_empty(), negative) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        meaning += &match (size.is_one(), size.terms().count()) {
+            (true, _) => entry.name.clone(),
+            (false, 1) => format!("{size}*{}", entry.name),
+            (false, _) => format!("({size})*{}", entry.name),
+        };
+    }
+    if let [(entry, k)] = parts[..] {
+        if k.is_one() {
+            name = entry.name.clone();
+            meaning = entry.meaning.clone();
+        }
+    }
+    Entry { name, nominal, meaning }
+}
+
+/// Columns are kept in this order: friction, then links from the base outwards; within a link inertia about the axis first. Rotors are told
+/// apart from links only where nothing else can carry their effect.
 fn preference(parameter: StandardParameter) -> (u8, u16, u8) {
     const RANK: [u8; 10] = [9, 3, 4, 8, 5, 1, 7, 2, 6, 0];
     match parameter {

@@ -8,7 +8,7 @@
 
 use super::arm::Arm;
 use super::kinematics::frames;
-use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 
 /// Mass and first moment of all that each joint carries, in its joint frame.
@@ -46,10 +46,10 @@ pub fn gravity(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
         .collect()
 }
 
-/// U(q), J: zero where all masses of moving links lie at the origin of the base frame.
+/// U(q), J: zero where all masses, rotors included, lie at the origin of the base frame.
 pub fn potential_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
     let frames = frames(pool, arm);
-    let mut total = ZERO;
+    let mut total = arm.base_moment;
     for (joint, (rotation, origin)) in arm.joints.iter().zip(&frames.joints) {
         let turned = pool.transform(rotation, &joint.body.first);
         let weighted = pool.scale(joint.body.mass, origin);

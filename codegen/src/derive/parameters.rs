@@ -1,7 +1,7 @@
 //! The parameter vector pi: what the regressor's columns are, and what each entry of the model is in terms of it.
 
 use crate::exact::{Number, Polynomial, Rational};
-use crate::manipulator::{Body, LinkId, Manipulator, ParameterId, RegressorChoice};
+use crate::manipulator::{Body, LinkId, Manipulator, ParameterId};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// One of the parameters in which the dynamics of every arm are linear.
@@ -126,7 +126,8 @@ pub struct Entry {
 pub enum ParameterKind {
     /// The standard parameters themselves.
     Standard(Vec<StandardParameter>),
-    /// Independent ones among the standard parameters; the others are set to zero and their effect is carried by these.
+    /// The base parameters: the independent ones among the parameters of rotors, friction and of the links in their *joint frames*. All others
+    /// are set to zero and their effect is carried by these.
     Base(Vec<StandardParameter>),
     /// Names of the description.
     Names(Vec<ParameterId>),
@@ -168,6 +169,11 @@ impl View<'_> {
         }
     }
 
+    /// Whether the ten parameters of a link are those in its joint frame, with the payload among them.
+    pub fn bodies_in_joint_frames(self) -> bool {
+        matches!(self, View::Vector(ParameterVector { kind: ParameterKind::Base(_), .. }))
+    }
+
     /// A standard parameter as an expression.
     pub fn standard(self, pool: &mut Pool, manipulator: &Manipulator, parameter: StandardParameter) -> ExprId {
         let (View::Vector(vector) | View::Known(vector)) = self else {
@@ -175,36 +181,29 @@ impl View<'_> {
         };
         match &vector.kind {
             ParameterKind::Names(_) => self.polynomial(pool, manipulator, &parameter.value(manipulator)),
-            ParameterKind::Standard(columns) | ParameterKind::Base(columns) => {
-                match columns.iter().position(|&column| column == parameter) {
-                    Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
-                    _ => ExprId::ZERO,
-                }
-            }
+            ParameterKind::Standard(_) | ParameterKind::Base(_) => match vector.position(parameter) {
+                Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
+                _ => ExprId::ZERO,
+            },
         }
     }
 }
 
 impl ParameterVector {
-    /// The vector of `regressor: standard` or of a list of names; base parameters are found in `derive::base`.
-    pub fn standard_or_names(manipulator: &Manipulator) -> ParameterVector {
-        match &manipulator.regressor {
-            RegressorChoice::Names(names) => {
-                let entries = names
-                    .iter()
-                    .map(|id| {
-                        let parameter = &manipulator.parameters[id.0 as usize];
-                        Entry {
-                            name: parameter.name.clone(),
-                            nominal: parameter.nominal.clone(),
-                            meaning: "named in the description".into(),
-                        }
-                    })
-                    .collect();
-                ParameterVector { entries, kind: ParameterKind::Names(names.clone()) }
-            }
-            RegressorChoice::Standard | RegressorChoice::Base => ParameterVector::standard(manipulator),
-        }
+    /// Names of the description.
+    pub fn named(manipulator: &Manipulator, names: &[ParameterId]) -> ParameterVector {
+        let entries = names
+            .iter()
+            .map(|id| {
+                let parameter = &manipulator.parameters[id.0 as usize];
+                Entry {
+                    name: parameter.name.clone(),
+                    nominal: parameter.nominal.clone(),
+                    meaning: "named in the description".into(),
+                }
+            })
+            .collect();
+        ParameterVector { entries, kind: ParameterKind::Names(names.to_vec()) }
     }
 
     /// All standard parameters.
@@ -219,6 +218,14 @@ impl ParameterVector {
             })
             .collect();
         ParameterVector { entries, kind: ParameterKind::Standard(columns) }
+    }
+
+    /// The column of a standard parameter.
+    pub fn position(&self, parameter: StandardParameter) -> Option<usize> {
+        match &self.kind {
+            ParameterKind::Standard(columns) | ParameterKind::Base(columns) => columns.iter().position(|&c| c == parameter),
+            ParameterKind::Names(_) => None,
+        }
     }
 
     /// Number of entries.

@@ -13,7 +13,7 @@
 use super::arm::Arm;
 use super::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{ParameterKind, ParameterVector, StandardParameter};
-use crate::ring::matrix::{Matrix, Vector, ZERO};
+use crate::ring::matrix::{transpose, Matrix, Vector, IDENTITY, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// Y, for an arm whose parameter vector are symbols (named parameters) or for the standard parameters of any arm.
@@ -25,7 +25,8 @@ pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Ve
             let columns: Vec<Vec<ExprId>> = (0..names.len() as u16).map(|k| derivative_by_parameter(pool, &tau, k)).collect();
             (0..arm.dof()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
         }
-        ParameterKind::Standard(columns) | ParameterKind::Base(columns) => standard_columns(pool, arm, &motion, columns),
+        ParameterKind::Standard(columns) => standard_columns(pool, arm, &motion, columns),
+        ParameterKind::Base(columns) => columns_in_joint_frames(pool, arm, &motion, columns),
     }
 }
 
@@ -34,8 +35,24 @@ pub fn derivative_by_parameter(pool: &mut Pool, exprs: &[ExprId], k: u16) -> Vec
     pool.differentiate(exprs, &mut |_, symbol| if symbol == Symbol::Parameter(k) { ExprId::ONE } else { ExprId::ZERO })
 }
 
-/// Columns of standard parameters.
+/// Columns of standard parameters, those of a link in its link frame.
 pub fn standard_columns(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
+    let frames: Vec<(Matrix, Vector)> = arm.joints.iter().map(|joint| (joint.link_rotation, joint.link_origin)).collect();
+    columns_in(pool, arm, motion, columns, &frames)
+}
+
+/// The same with the parameters of a link in its joint frame.
+pub fn columns_in_joint_frames(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
+    columns_in(pool, arm, motion, columns, &vec![(IDENTITY, ZERO); arm.dof()])
+}
+
+fn columns_in(
+    pool: &mut Pool,
+    arm: &Arm,
+    motion: &Motion,
+    columns: &[StandardParameter],
+    frames: &[(Matrix, Vector)],
+) -> Vec<Vec<ExprId>> {
     let motions = link_motions(pool, arm, motion, true);
     let mut y = vec![vec![ExprId::ZERO; columns.len()]; arm.dof()];
     let mut links: Vec<Option<LinkColumns>> = vec![None; arm.dof()];
@@ -44,9 +61,8 @@ pub fn standard_columns(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[
         match parameter {
             StandardParameter::Link(i, k) => {
                 let i = usize::from(i);
-                let joint = &arm.joints[i];
-                let of = links[i]
-                    .get_or_insert_with(|| link_columns(pool, arm, &motions, i, &joint.link_rotation, &joint.link_origin));
+                let (rotation, origin) = &frames[i];
+                let of = links[i].get_or_insert_with(|| link_columns(pool, arm, &motions, i, rotation, origin));
                 of.iter().for_each(|(row, entries)| y[*row][column] = entries[usize::from(k)]);
             }
             StandardParameter::Payload(k) => {
@@ -83,7 +99,7 @@ fn link_columns(pool: &mut Pool, arm: &Arm, motions: &[LinkMotion], i: usize, ro
     let at_origin = pool.add_vectors(&m.acceleration, &carried);
     let a = pool.transform_back(rotation, &at_origin);
     let turned = pool.product(&m.field, rotation);
-    let u = pool.product(&crate::ring::matrix::transpose(rotation), &turned);
+    let u = pool.product(&transpose(rotation), &turned);
     let moments = inertia_moments(pool, &u);
     // Twists of the joints from i down to the base, in the frame: z and the velocity v of its origin.
     let mut columns = Vec::new();

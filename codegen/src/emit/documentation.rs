@@ -88,7 +88,7 @@ fn text(quantity: Quantity) -> Text {
             "J.",
         ),
         Quantity::PotentialEnergy => (
-            "Potential energy of gravity; zero where the masses of all moving links lie at the origin of the base frame.",
+            "Potential energy of gravity; zero where all masses, rotors included, lie at the origin of the base frame.",
             "U(q) = - sum_i m_i g0' p_li                                       (Siciliano et al., eq. 7.36)",
             "J.",
         ),

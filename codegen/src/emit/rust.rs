@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
+use sha2::{Digest, Sha256};
 
 use super::literal::literal;
 use super::{documentation, runtime};
 use crate::equations::{Argument, Shape};
 use crate::program::{Function, Module, Operand, Operation, Scalar, Step};
 use crate::ring::Symbol;
+use crate::source::Source;
 
 /// Steps with one use are written inside the step that uses them, up to so many operands in a line.
 const OPERANDS_IN_A_LINE: usize = 6;
@@ -22,6 +24,15 @@ pub struct Origin {
     pub file: String,
     /// Hash of the description's text, hexadecimal.
     pub hash: String,
+}
+
+impl Origin {
+    /// Of a description: its file name, not its folder, so that the output is the same everywhere.
+    pub fn of(source: &Source) -> Origin {
+        let file = source.name().rsplit(['/', '\\']).next().unwrap_or_default().to_string();
+        let digest = Sha256::digest(source.text().as_bytes());
+        Origin { file, hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect() }
+    }
 }
 
 /// The emitted module as text.

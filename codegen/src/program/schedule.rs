@@ -3,22 +3,12 @@
 use std::collections::HashMap;
 
 use super::{Cost, Function, Module, Operand, Operation, Output, Step};
-use crate::derive::parameters::{ParameterVector, View};
+use crate::derive::parameters::View;
 use crate::equations::{Argument, Derivation, Quantity};
 use crate::exact::Number;
-use crate::manipulator::{JointKind, Manipulator};
-use crate::ring::field::Field;
+use crate::manipulator::{JointKind, Scalar};
 use crate::ring::{ExprId, Node, Pool};
-
-/// The scalar of the emitted module.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scalar {
-    /// Double precision.
-    #[default]
-    F64,
-    /// Single precision.
-    F32,
-}
+use crate::Model;
 
 /// Choices of generation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,14 +18,15 @@ pub struct Options {
 }
 
 /// The module of an arm.
-pub fn module(manipulator: &Manipulator, field: &Field, parameters: &ParameterVector, options: &Options) -> Module {
+pub fn module(model: &Model, options: &Options) -> Module {
     let mut functions = Vec::new();
     for quantity in Quantity::ALL {
-        functions.push(function(manipulator, field, parameters, quantity, false));
+        functions.push(function(model, quantity, false));
         if quantity.has_parameters() {
-            functions.push(function(manipulator, field, parameters, quantity, true));
+            functions.push(function(model, quantity, true));
         }
     }
+    let manipulator = &model.manipulator;
     Module {
         name: manipulator.name.clone(),
         joints: manipulator.joints.iter().map(|j| (j.name.clone(), j.kind == JointKind::Revolute)).collect(),
@@ -48,26 +39,17 @@ pub fn module(manipulator: &Manipulator, field: &Field, parameters: &ParameterVe
             })
             .collect(),
         task: manipulator.task.iter().map(|row| row.index()).collect(),
-        parameters: parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
+        parameters: model.parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
         functions,
         scalar: options.scalar,
     }
 }
 
 /// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.
-pub fn function(
-    manipulator: &Manipulator,
-    field: &Field,
-    parameters: &ParameterVector,
-    quantity: Quantity,
-    with_parameters: bool,
-) -> Function {
-    let view = if with_parameters { View::Vector(parameters) } else { View::Nominal };
-    let recursion = quantity.by_recursion(manipulator, field, view, parameters);
+fn function(model: &Model, quantity: Quantity, with_parameters: bool) -> Function {
+    let view = if with_parameters { View::Vector(&model.parameters) } else { View::Nominal };
+    let recursion = quantity.by_recursion(model, view);
     let closed = recursion.by_closed_form();
-    debug_assert!(closed.iter().all(|c| {
-        c.entries.iter().zip(&recursion.entries).all(|(&a, &b)| c.pool.fingerprint(a) == recursion.pool.fingerprint(b))
-    }));
     closed
         .iter()
         .chain([&recursion])
@@ -86,7 +68,7 @@ fn lower(quantity: Quantity, with_parameters: bool, derivation: &Derivation) -> 
 }
 
 /// The steps that the expressions need, each after its operands, in the order in which the expressions ask for them.
-pub fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
+fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
     let mut steps: Vec<Step> = Vec::new();
     let mut done: HashMap<usize, u32> = HashMap::new();
     for &expr in exprs {

@@ -1,0 +1,70 @@
+//! The face for a build script: from a description beside the crate to Rust in `OUT_DIR`.
+//!
+//! ```no_run
+//! // build.rs
+//! armgen_codegen::build_script::Robot::new("robot.yaml").generate();
+//! ```
+//!
+//! writes `$OUT_DIR/robot.rs`, the module, and `$OUT_DIR/robot_runtime.rs`, the implementation of the runtime's traits. A crate takes them in by
+//!
+//! ```ignore
+//! include!(concat!(env!("OUT_DIR"), "/robot.rs"));
+//! ```
+//!
+//! The script reruns when the description changes and only then. A wrong description fails the build with every fault and its place;
+//! warnings of the description become warnings of the build.
+
+use std::path::{Path, PathBuf};
+
+use crate::diagnostic::Colour;
+use crate::program::{Options, Scalar};
+use crate::source::Source;
+
+/// A description to generate from.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    description: PathBuf,
+    options: Options,
+}
+
+impl Robot {
+    /// The description in `path`, relative to the folder of the crate that is built.
+    pub fn new(path: impl AsRef<Path>) -> Robot {
+        Robot { description: path.as_ref().to_path_buf(), options: Options::default() }
+    }
+
+    /// The scalar type behind `Real`; f64 unless chosen.
+    pub fn scalar(mut self, scalar: Scalar) -> Robot {
+        self.options.scalar = scalar;
+        self
+    }
+
+    /// Writes the module and the trait implementation into `OUT_DIR`, named after the description's file, or ends the build with the reason.
+    pub fn generate(&self) {
+        if let Err(message) = self.try_generate() {
+            eprintln!("{message}");
+            std::process::exit(1);
+        }
+    }
+
+    fn try_generate(&self) -> Result<(), String> {
+        let path = self.description.display();
+        println!("cargo::rerun-if-changed={path}");
+        println!("cargo::rerun-if-changed=build.rs");
+        let bytes = std::fs::read(&self.description).map_err(|e| format!("error: cannot read {path}: {e}"))?;
+        let text = String::from_utf8(bytes).map_err(|e| format!("error: {path} is not UTF-8: {e}"))?;
+        let source = Source::new(path.to_string(), text);
+        let (generated, diagnostics) = crate::generate(&source, &self.options);
+        let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
+        for warning in diagnostics.render(&source, Colour::Never).lines().filter(|line| !line.is_empty()) {
+            println!("cargo::warning={warning}");
+        }
+        let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
+        let stem = self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
+        for (name, text) in [(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)] {
+            let file = out.join(name);
+            std::fs::write(&file, text).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;
+        }
+        Ok(())
+    }
+}

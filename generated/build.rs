@@ -1,0 +1,5 @@
+//! Generates the robot of robot.yaml.
+
+fn main() {
+    armgen_codegen::build_script::Robot::new("../robot.yaml").generate();
+}
