@@ -56,8 +56,9 @@ impl Robot {
         let source = Source::new(path.to_string(), text);
         let (generated, diagnostics) = crate::generate(&source, &self.options);
         let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
-        for warning in diagnostics.render(&source, Colour::Never).lines().filter(|line| !line.is_empty()) {
-            println!("cargo::warning={warning}");
+        for warning in diagnostics.iter() {
+            let place = source.place(warning.span().start);
+            println!("cargo::warning={path}:{}:{}: {}", place.line, place.column, warning.message);
         }
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
         let stem = self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());

@@ -295,7 +295,10 @@ fn render(diagnostic: &Diagnostic, source: &Source, colour: Colour) -> String {
     let window =
         source.lines(diagnostic.labels.iter().map(|label| label.span).reduce(Span::to).expect("a diagnostic has a label"));
     let within = |span: Span| span.start - window.start..span.end - window.start;
-    let mut snippet = Snippet::source(source.slice(window)).path(source.name()).line_start(source.place(window.start).line);
+    // A carriage return would show as a symbol at the end of each line.
+    let lines = source.slice(window).replace("\r\n", " \n");
+    let lines = lines.strip_suffix('\r').unwrap_or(&lines);
+    let mut snippet = Snippet::source(lines).path(source.name()).line_start(source.place(window.start).line);
     for (i, label) in diagnostic.labels.iter().enumerate() {
         let kind = if i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };
         let annotation = kind.span(within(source.first_line(label.span)));

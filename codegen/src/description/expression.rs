@@ -250,6 +250,7 @@ impl<'a> Parser<'a> {
                 let name = &self.rest()[..self.rest().find(|c| !is_name_part(c)).unwrap_or(self.rest().len())];
                 self.at += name.len();
                 match name {
+                    "\u{3c0}" => Err(self.error(from, self.at, "unexpected here", "write `pi`")),
                     "pi" => Ok(self.expression(ExpressionKind::Pi, from)),
                     "deg" | "sqrt" => {
                         self.skip_blanks();
@@ -377,8 +378,8 @@ impl<'a> Parser<'a> {
                     "write the number in decimal digits",
                 ));
             }
-            let help = if matches!(word, "m" | "kg" | "s" | "mm" | "cm" | "g" | "rad" | "N" | "Nm") {
-                "remove the unit: all values are in SI units (m, kg, s, rad, N)".to_owned()
+            let help = if is_unit(word) {
+                WITHOUT_UNIT.to_owned()
             } else {
                 format!("write `{number}*{}` if a product is meant", excerpt(word))
             };
@@ -404,13 +405,13 @@ impl<'a> Parser<'a> {
             '\u{2212}' | '\u{2013}' | '\u{2014}' => "write the minus sign `-` of the keyboard",
             '\u{d7}' | '\u{b7}' | '\u{22c5}' => "write a product with `*`",
             '\u{f7}' => "write a quotient with `/`",
-            '\u{3c0}' => "write `pi`",
             '\u{221a}' => "write a root as `sqrt(2)`",
             '%' => "write the number itself: `0.05` for 5 percent",
             ')' => "remove it, or open it with `(`",
             '$' | '{' | '}' => "write names as they are, without braces",
             '=' | '<' | '>' | '!' | '&' | '|' | '?' | ':' => "an expression has only the operators + - * /",
             '(' | '0'..='9' | '.' => "write an operator (+ - * /) between two values",
+            c if is_name_start(c) && is_unit(self.rest()) => WITHOUT_UNIT,
             c if is_name_start(c) => "write an operator (+ - * /) between two values",
             _ => "an expression may use + - * / ( ), decimals, 1e-3, pi, deg(90), sqrt(2) and the names under `parameters`",
         };
@@ -421,17 +422,21 @@ impl<'a> Parser<'a> {
 /// The error about a number beyond the floats' range, `above` or below.
 pub(crate) fn out_of_range(span: Span, text: String, above: bool) -> Diagnostic {
     let (message, help) = if above {
-        (
-            format!("`{text}` is beyond the range of the emitted numbers"),
-            "check the power of ten: the largest f64 is about 1.8e308",
-        )
+        (format!("{text} is beyond the range of the emitted numbers"), "check the power of ten: the largest f64 is about 1.8e308")
     } else {
         (
-            format!("`{text}` is so small that it becomes 0 in the emitted numbers"),
+            format!("{text} is so small that it becomes 0 in the emitted numbers"),
             "write 0 if that is meant; the smallest f64 is about 5e-324",
         )
     };
     Diagnostic::new(Code::OutOfRange, span, message, if above { "too large" } else { "too small" }, help)
+}
+
+const WITHOUT_UNIT: &str = "remove the unit: all values are in SI units (m, kg, s, rad, N)";
+
+fn is_unit(word: &str) -> bool {
+    let word = word.trim_end();
+    matches!(word, "m" | "mm" | "cm" | "kg" | "g" | "s" | "rad" | "N" | "Nm" | "kg*m^2" | "kgm2" | "m/s" | "rad/s")
 }
 
 fn is_name_start(c: char) -> bool {

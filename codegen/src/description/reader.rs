@@ -121,7 +121,7 @@ impl Reader<'_> {
 
     fn robot(&mut self, root: &Node) -> RobotDescription {
         let first = first_key(root);
-        let Some(fields) = self.mapping(root, "a robot", first, ROBOT) else { return RobotDescription::default() };
+        let Some(fields) = self.mapping(root, "the description", first, ROBOT) else { return RobotDescription::default() };
         RobotDescription {
             name: fields.get("name").and_then(|(key, node)| self.word(node, key, "name")),
             convention: fields.get("convention").and_then(|(key, node)| {

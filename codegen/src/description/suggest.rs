@@ -3,14 +3,16 @@
 /// The one of `words` that `found` was probably meant to be.
 pub(crate) fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
     let found: Vec<char> = found.chars().take(64).flat_map(char::to_lowercase).collect();
-    // One slip in a short word, two from six letters on, three from nine on.
-    let allowed = found.len() / 3;
-    words
-        .iter()
-        .map(|word| (distance(&found, &word.to_lowercase().chars().collect::<Vec<_>>()), *word))
-        .filter(|(d, word)| *d == 0 || (*d <= allowed.max(1) && *d < word.len()))
-        .min_by_key(|(d, _)| *d)
-        .map(|(_, word)| word)
+    // One slip in a short word, two from six letters on, three from nine on; of two letters one must be right, and in front.
+    let allowed = (found.len() / 3).max(1);
+    let likely = |word: &Vec<char>| {
+        let d = distance(&found, word);
+        let swapped = || found.iter().rev().eq(word);
+        let near = d <= allowed && d < word.len() && (found.len() > 2 || found.first() == word.first() || swapped());
+        (d == 0 || near).then_some(d)
+    };
+    let ranked = words.iter().filter_map(|word| Some((likely(&word.to_lowercase().chars().collect())?, *word)));
+    ranked.min_by_key(|(d, _)| *d).map(|(_, word)| word)
 }
 
 /// Least number of letters to insert, remove, replace or swap with their neighbour.
@@ -46,6 +48,8 @@ mod tests {
         check("masss", Some("mass"));
         check("Mass", Some("mass"));
         check("yx", Some("xy"));
+        check("xx", Some("xy"));
+        check("ay", None);
         check("intertia", Some("inertia"));
         check("regresor", Some("regressor"));
         check("STANDARD", Some("standard"));

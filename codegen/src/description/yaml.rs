@@ -265,11 +265,19 @@ impl Builder<'_> {
             ErrorKind::DirectiveDisallowed => Code::YamlFeature,
             _ => Code::YamlSyntax,
         };
-        let mut diagnostic = Diagnostic::new(code, span, message, "here", help);
-        if let Some(open) = self.open.iter().rev().find(|open| open.flow && open.start.end <= span.start) {
-            diagnostic = diagnostic.also(open.start, "this bracket is open");
-        }
-        self.diagnostics.push(diagnostic);
+        let line = |span: Span| self.source.place(span.start).line;
+        let open = self.open.iter().rev().find(|open| open.flow).map(|open| open.start).filter(|open| line(*open) < line(span));
+        self.diagnostics.push(match open.filter(|_| code == Code::YamlSyntax) {
+            // A bracket left open lines above explains more than where the reader stumbled.
+            Some(open) => {
+                let bracket = self.source.slice(open);
+                let counterpart = if bracket == "{" { "}" } else { "]" };
+                let message = format!("the bracket `{bracket}` is not closed");
+                let help = format!("close it with `{counterpart}`");
+                Diagnostic::new(code, open, message, "opened here", help).also(span, "this cannot stand inside it")
+            }
+            None => Diagnostic::new(code, span, message, "here", help),
+        });
     }
 
     /// The character at `at`, or the last visible one before it.

@@ -83,6 +83,7 @@ fn validate(
     scalar: Scalar,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Manipulator, Places)> {
+    let complete = !diagnostics.has_errors();
     names::check(description, diagnostics);
     let parameters = Parameters::resolve(description, scalar, diagnostics);
     let mut context = Context { source, evaluator: Evaluator::new(parameters, scalar), diagnostics, planar: Vec::new() };
@@ -93,7 +94,10 @@ fn validate(
     let task = choices::task(description, context.diagnostics);
     let regressor = choices::regressor(description, &mut context);
     bodies::warn_of_planar(&mut context);
-    context.evaluator.parameters.warn_of_unused(context.diagnostics);
+    // What could not be read may use any name.
+    if complete {
+        context.evaluator.parameters.warn_of_unused(context.diagnostics);
+    }
     if context.diagnostics.has_errors() {
         return None;
     }
@@ -127,7 +131,7 @@ fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<V
     }
     if let Some(joint) = list.value.get(MAX_JOINTS) {
         let message = format!("{} joints are more than the {MAX_JOINTS} that can be generated", list.value.len());
-        let help = "describe the arm alone; an arm that is rigid in some joints needs them as parts of their links";
+        let help = "leave joints out that never move: they are parts of their links";
         context.report(Code::TooManyJoints, joint.span, message, format!("joint {}", MAX_JOINTS + 1), help);
         return None;
     }

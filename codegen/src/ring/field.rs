@@ -246,7 +246,7 @@ pub(crate) fn scramble(x: u64) -> u64 {
 /// Whether n is prime: Miller and Rabin with the first twelve primes as bases, which decides below 3.3e24 (Sorenson and Webster 2015).
 fn is_prime(n: u64) -> bool {
     const BASES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
-    if n < 2 || BASES.iter().any(|&b| n % b == 0) {
+    if n < 2 || BASES.iter().any(|&b| n.is_multiple_of(b)) {
         return BASES.contains(&n);
     }
     let mul = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(n)) as u64;

@@ -39,7 +39,7 @@ pub(super) fn not_negative(value: &Expression, what: &str, code: Code, context: 
         let why = match code {
             Code::NegativeFriction => "friction takes energy from the arm, so its coefficient is at least 0",
             Code::NegativeRotorInertia => "a moment of inertia is an integral of squared distances, so it is at least 0",
-            _ => "a mass is at least 0; write 0 for a link that has none",
+            _ => "a mass is at least 0; write 0 for a body that has none",
         };
         let label = format!("this is {}", text_of(&nominal));
         context.report(code, value.span, format!("{what} is negative"), label, why);

@@ -44,14 +44,16 @@ pub(super) fn doubt_limit(expression: &Expression, radians: &Number, what: &str,
 
 /// Warns of an angle above `suspect` that is written as a decimal, and of one that is nearly a multiple of pi/12.
 fn doubt_angle(expression: &Expression, radians: &Number, what: &str, suspect: f64, context: &mut Context<'_>) {
-    let float = radians.to_f64();
     // A name that stands for a decimal is as doubtful as the decimal; the remedy belongs to its definition.
-    let definition = expression.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value);
-    let written = definition.unwrap_or(expression);
+    let definition = expression.as_name().and_then(|name| context.evaluator.parameters.get(name));
+    let definition = definition.and_then(|entry| entry.value.zip(entry.nominal.clone()));
+    let (written, radians) = definition.unwrap_or((expression, radians.clone()));
+    let float = radians.to_f64();
     if float.abs() > suspect {
         if written.is_decimal() {
-            let text = context.source.slice(written.span).trim_start_matches(['-', '+']).to_owned();
-            let message = format!("{what} is {} rad: {} turns", text_of(radians), rounded(float / std::f64::consts::TAU, 2));
+            let text = context.source.slice(written.span).to_owned();
+            let turns = rounded(float.abs() / std::f64::consts::TAU, 2);
+            let message = format!("{what}: {} rad are {turns} turns", text_of(&radians));
             let help = format!("angles are in radians; write `deg({text})` if degrees are meant");
             context.report(Code::DegreesSuspected, written.span, message, "in degrees?", help);
         }
@@ -62,12 +64,13 @@ fn doubt_angle(expression: &Expression, radians: &Number, what: &str, suspect: f
     }
     let step = std::f64::consts::PI / 12.0;
     let multiple = (float / step).round();
-    let off = float - multiple * step;
-    if multiple == 0.0 || off.abs() > NEAR {
+    if multiple == 0.0 || (float - multiple * step).abs() > NEAR {
         return;
     }
+    let twelfths = Number::from(Rational::from(multiple as i64) / Rational::from(12));
+    let off = (&radians - &(&twelfths * &Number::pi())).to_f64();
     let meant = multiple_of_pi(multiple as i64);
-    let message = format!("{what} is {} rad, nearly but not {meant}: it is off by {:.1e} rad", text_of(radians), off.abs());
+    let message = format!("{what}: {} rad is nearly, but not, {meant} (off by {:.1e} rad)", text_of(&radians), off.abs());
     let help = format!("write `{meant}` if that is meant; it has an exact sine and cosine. The decimal is taken as written");
     context.report(Code::RoundedAngle, written.span, message, format!("`{meant}`?"), help);
 }

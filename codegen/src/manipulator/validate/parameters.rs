@@ -5,7 +5,7 @@
 //! - A name that enters anywhere by division, root or angle is a *number* everywhere: its symbol would not be a polynomial.
 //! - All other names are *symbols* ([`ParameterId`]) of the equations.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::evaluate;
 use super::places::{self, Role, Use};
@@ -20,6 +20,8 @@ use crate::source::Span;
 pub(super) struct Parameters<'d> {
     pub(super) entries: Vec<Entry<'d>>,
     by_name: BTreeMap<&'d str, usize>,
+    /// Names that stand in values above their definition, which is reported.
+    forward: BTreeSet<&'d str>,
 }
 
 /// A named quantity.
@@ -70,7 +72,7 @@ impl<'d> Parameters<'d> {
             },
             None => Vec::new(),
         };
-        let mut parameters = Parameters { entries: Vec::new(), by_name: BTreeMap::new() };
+        let mut parameters = Parameters { entries: Vec::new(), by_name: BTreeMap::new(), forward: BTreeSet::new() };
         let later: Vec<&str> = description.parameters.iter().map(|p| p.name.value.as_str()).collect();
         for parameter in &description.parameters {
             let name = parameter.name.value.as_str();
@@ -134,7 +136,7 @@ impl<'d> Parameters<'d> {
 
     /// Warns of names that no expression uses.
     pub(super) fn warn_of_unused(&self, diagnostics: &mut Diagnostics) {
-        for entry in self.entries.iter().filter(|e| e.uses.is_empty()) {
+        for entry in self.entries.iter().filter(|e| e.uses.is_empty() && !self.forward.contains(e.name)) {
             let message = format!("nothing uses the parameter `{}`", excerpt(entry.name));
             let help = "use it in an expression, or remove it (and from `regressor`, where its column would be 0)";
             diagnostics.push(Diagnostic::new(Code::UnusedParameter, entry.span, message, "not used", help));
@@ -142,11 +144,14 @@ impl<'d> Parameters<'d> {
     }
 
     /// Notes where names stand; reports those that nothing above defines.
-    fn note_uses(&mut self, expression: &Expression, role: Role, later: &[&str], diagnostics: &mut Diagnostics) {
+    fn note_uses(&mut self, expression: &Expression, role: Role, later: &[&'d str], diagnostics: &mut Diagnostics) {
         for (name, span) in expression.named() {
             match self.by_name.get(name) {
                 Some(&i) => self.entries[i].uses.push(Use { span, role }),
-                None => diagnostics.push(self.unknown(name, span, later)),
+                None => {
+                    self.forward.extend(later.iter().find(|defined| **defined == name));
+                    diagnostics.push(self.unknown(name, span, later));
+                }
             }
         }
     }

@@ -1,1 +1,265 @@
+use super::*;
+use crate::diagnostic::Colour;
+use crate::exact::{Number, Rational};
+use crate::manipulator::{Joint, JointKind, ParameterId, Placement, RegressorChoice, TaskRow};
 
+/// A one-joint arm; `edits` replace parts of it, and what is not found is appended.
+fn arm(edits: &[(&str, &str)]) -> String {
+    let mut text = "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {}\njoints:\n  - name: shoulder\n    \
+                    type: revolute\n    a: 0.5\n    alpha: pi/2\n    d: 0.25\n    theta: 0\n    link: {mass: 2}\n"
+        .to_owned();
+    for (old, new) in edits {
+        match old.is_empty() {
+            true => text += new,
+            false => {
+                assert!(text.contains(old), "{old} in {text}");
+                text = text.replacen(old, new, 1);
+            }
+        }
+    }
+    text
+}
+
+#[track_caller]
+fn valid(text: &str) -> (Manipulator, Places) {
+    let source = Source::new("robot.yaml", text);
+    let (read, diagnostics) = read(&source);
+    read.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never)))
+}
+
+/// Expects these codes, in the order of the text, and an arm just where none is an error.
+#[track_caller]
+fn check(text: &str, codes: &[Code]) {
+    let source = Source::new("robot.yaml", text);
+    let (read, diagnostics) = read(&source);
+    let found: Vec<Code> = diagnostics.iter().map(|d| d.code).collect();
+    assert_eq!(found, codes, "{}", diagnostics.render(&source, Colour::Never));
+    assert_eq!(read.is_some(), !diagnostics.has_errors());
+}
+
+fn only(text: &str) -> Joint {
+    valid(text).0.joints.remove(0)
+}
+
+fn n(numerator: i64, denominator: i64) -> Number {
+    Number::from(Rational::from(numerator) / Rational::from(denominator))
+}
+
+fn matrix(rows: [[i64; 3]; 3]) -> [[Number; 3]; 3] {
+    rows.map(|row| row.map(Number::from))
+}
+
+fn position(placement: &Placement) -> [Number; 3] {
+    placement.translation.each_ref().map(|t| t.as_number().expect("a number"))
+}
+
+#[test]
+fn a_standard_row_turns_before_the_joint_and_twists_after_it() {
+    let joint = only(&arm(&[("theta: 0", "theta: pi/2")]));
+    assert_eq!(joint.placement.rotation, matrix([[0, -1, 0], [1, 0, 0], [0, 0, 1]]));
+    assert_eq!(position(&joint.placement), [n(0, 1), n(0, 1), n(1, 4)]);
+    assert_eq!(joint.link_frame.rotation, matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]]));
+    assert_eq!(position(&joint.link_frame), [n(1, 2), n(0, 1), n(0, 1)]);
+}
+
+#[test]
+fn a_modified_row_stands_wholly_before_the_joint() {
+    let joint = only(&arm(&[("standard", "modified")]));
+    // Rx(pi/2) Tx(1/2) Tz(1/4): z of the joint frame is -y of the base, so the offset goes there.
+    assert_eq!(joint.placement.rotation, matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]]));
+    assert_eq!(position(&joint.placement), [n(1, 2), n(-1, 4), n(0, 1)]);
+    assert_eq!(joint.link_frame, geometry::identity());
+}
+
+#[test]
+fn the_second_joint_stands_in_the_first_ones_joint_frame() {
+    let second = "  - {name: elbow, type: prismatic, a: 0, alpha: 0, d: 1, theta: 0, link: {mass: 1}}\n";
+    let (arm, _) = valid(&arm(&[("", second)]));
+    let joint = &arm.joints[1];
+    // Tx(1/2) Rx(pi/2) Tz(1)
+    assert_eq!(position(&joint.placement), [n(1, 2), n(-1, 1), n(0, 1)]);
+    assert_eq!(joint.placement.rotation, matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]]));
+    assert_eq!((joint.parent, joint.kind, arm.tip), (Some(LinkId(0)), JointKind::Prismatic, LinkId(1)));
+}
+
+#[test]
+fn three_ways_to_write_a_right_angle_are_one() {
+    let turns = ["pi/2", "deg(90)", "90*pi/180", "pi - pi/2", "\"deg(45)*2\""];
+    let arms = turns.map(|t| only(&arm(&[("alpha: pi/2", &format!("alpha: {t}"))])).link_frame);
+    assert!(arms.iter().all(|frame| *frame == arms[0]));
+}
+
+#[test]
+fn what_is_not_given_has_the_value_of_the_format() {
+    let (arm, places) = valid(&arm(&[("link:", "motor: {}\n    link:")]));
+    assert_eq!(arm.task, TaskRow::ALL);
+    assert_eq!(arm.regressor, RegressorChoice::Standard);
+    assert_eq!(arm.tool, geometry::identity());
+    assert!(arm.payload.is_none() && arm.parameters.is_empty());
+    assert_eq!((places.task, places.regressor), (None, None));
+    let joint = &arm.joints[0];
+    assert!(joint.viscous.is_none() && joint.coulomb.is_none() && joint.limits.position.is_none());
+    assert!(joint.link.com.iter().chain(&joint.link.inertia).all(Polynomial::is_zero));
+    let motor = joint.motor.as_ref().expect("a motor");
+    assert_eq!(motor.ratio.as_number(), Some(Number::one()));
+    assert!(motor.inertia.is_none() && motor.viscous.is_none() && motor.mass.is_zero());
+    assert_eq!(motor.axis, [0, 0, 1].map(Number::from));
+}
+
+#[test]
+fn the_axis_of_a_motor_is_the_joint_axis_or_the_normalised_direction() {
+    let motor = |edits: &[(&str, &str)]| only(&arm(edits)).motor.expect("a motor").axis;
+    let link = ("link:", "motor: {}\n    link:");
+    assert_eq!(motor(&[link, ("standard", "modified")]), [0, -1, 0].map(Number::from));
+    let half = n(1, 2);
+    let root = &n(3, 1).sqrt().expect("positive") * &half;
+    assert_eq!(motor(&[link, ("standard", "modified"), ("alpha: pi/2", "alpha: pi/6")]), [n(0, 1), -&half, root]);
+    let axis = motor(&[("link:", "motor: {axis: [1, 0, -2]}\n    link:")]);
+    let fifth = n(1, 5).sqrt().expect("positive");
+    assert_eq!(axis, [fifth.clone(), n(0, 1), -&(&fifth * &n(2, 1))]);
+}
+
+#[test]
+fn the_tool_turns_about_fixed_axes_x_y_z_in_turn() {
+    let tool = |rpy: &str| valid(&arm(&[("", &format!("tool: {{xyz: [1, 2, 3], rpy: {rpy}}}\n"))])).0.tool;
+    let turned = tool("[pi/2, 0, pi/2]");
+    // Rz(pi/2) Rx(pi/2)
+    assert_eq!(turned.rotation, matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]]));
+    assert_eq!(position(&turned), [1, 2, 3].map(Number::from));
+    assert_eq!(tool("[0, pi/2, 0]").rotation, matrix([[0, 0, 1], [0, 1, 0], [-1, 0, 0]]));
+}
+
+#[test]
+fn an_empty_payload_is_a_load_of_zero() {
+    let payload = valid(&arm(&[("", "payload: {}\n")])).0.payload.expect("a payload");
+    assert!(payload.mass.is_zero() && payload.com.iter().chain(&payload.inertia).all(Polynomial::is_zero));
+}
+
+#[test]
+fn inertia_stands_in_the_order_xx_xy_yy_xz_yz_zz() {
+    let text = arm(&[("{mass: 2}", "{mass: 2, inertia: {xx: 11, yy: 12, zz: 13, xy: 1, xz: 2, yz: 3}}")]);
+    let inertia = only(&text).link.inertia.map(|p| p.as_number().expect("a number"));
+    assert_eq!(inertia, [11, 1, 12, 2, 3, 13].map(Number::from));
+}
+
+#[test]
+fn names_stay_symbols_where_they_enter_as_polynomials() {
+    let text = arm(&[("parameters: {}", "parameters: {m: 4, l: 1, n: 3}"), ("a: 0.5", "a: l/2"), ("mass: 2", "mass: m*n - n")]);
+    let (arm, places) = valid(&text);
+    let names: Vec<&str> = arm.parameters.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["m", "l", "n"]);
+    let mass = &arm.joints[0].link.mass;
+    assert_eq!(mass.variables().into_iter().collect::<Vec<_>>(), [ParameterId(0), ParameterId(2)]);
+    assert_eq!(mass.evaluate(&|id| arm.parameters[id.0 as usize].nominal.clone()), n(9, 1));
+    assert_eq!(places.uses[2].len(), 2);
+    assert_eq!(places.uses[1][0].role, Role::Length);
+    let source = Source::new("robot.yaml", text);
+    assert_eq!(source.slice(places.uses[1][0].span), "l");
+    assert_eq!(source.slice(places.joints[0].mass), "m*n - n");
+}
+
+#[test]
+fn a_divisor_a_root_and_an_angle_make_numbers_of_their_names() {
+    let text = arm(&[
+        ("parameters: {}", "parameters: {m: 4, k: 2, r: 9, t: 0.3, h: 2*k, s: m + 1}"),
+        ("a: 0.5", "a: m/h + sqrt(r)"),
+        ("alpha: pi/2", "alpha: t"),
+        ("mass: 2", "mass: k*m + r + t + s"),
+    ]);
+    let (arm, _) = valid(&text);
+    // h abbreviates 2 k and s abbreviates m + 1; k, r and t are numbers.
+    let names: Vec<&str> = arm.parameters.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["m"]);
+    let m = Polynomial::variable(ParameterId(0));
+    let constant = |v: Number| Polynomial::from(v);
+    assert_eq!(arm.joints[0].link.mass, &(&m * &constant(n(3, 1))) + &constant(n(103, 10)));
+    assert_eq!(arm.joints[0].link_frame.translation[0], &(&m * &constant(n(1, 4))) + &constant(n(3, 1)));
+}
+
+#[test]
+fn a_listed_name_is_independent_of_the_names_in_its_value() {
+    let text = arm(&[("parameters: {}", "parameters: {m: 4, h: m/2}"), ("mass: 2", "mass: h + m"), ("", "regressor: [h]\n")]);
+    let (arm, _) = valid(&text);
+    assert_eq!(arm.regressor, RegressorChoice::Names(vec![ParameterId(1)]));
+    assert_eq!(arm.parameters[1].nominal, n(2, 1));
+    assert_eq!(arm.joints[0].link.mass.variables().len(), 2);
+    let text = text.replace("regressor: [h]", "regressor: [m]");
+    assert_eq!(valid(&text).0.joints[0].link.mass.variables().len(), 1);
+}
+
+#[test]
+fn numbers_that_a_float_cannot_hold_are_errors() {
+    for (mass, codes) in [
+        ("1e308", &[][..]),
+        ("1e309", &[Code::OutOfRange]),
+        ("1e-323", &[]),
+        ("1e-324", &[Code::OutOfRange]),
+        ("1e400*1e-400", &[]),
+        ("0*1e400", &[]),
+        ("1e999999999", &[Code::OutOfRange]),
+    ] {
+        check(&arm(&[("mass: 2", &format!("mass: {mass}"))]), codes);
+    }
+    let source = Source::new("robot.yaml", arm(&[("mass: 2", "mass: 1e39")]));
+    assert!(read_for(&source, Scalar::F64).0.is_some());
+    assert!(read_for(&source, Scalar::F32).0.is_none());
+}
+
+#[test]
+fn angles_near_a_multiple_of_a_twelfth_of_pi_are_doubted() {
+    let warned = |alpha: &str| {
+        let source = Source::new("robot.yaml", arm(&[("alpha: pi/2", &format!("alpha: {alpha}"))]));
+        let (_, diagnostics) = read(&source);
+        diagnostics.iter().map(|d| d.code).collect::<Vec<_>>()
+    };
+    for near in ["1.5708", "1.57", "-1.57", "3.14159", "0.2618", "1.5727", "3.1416/2", "6.2832", "1.5707963267948966"] {
+        assert_eq!(warned(near), [Code::RoundedAngle], "{near}");
+    }
+    for far in ["0", "0.001", "-0.0019", "1.5729", "1.5687", "0.7", "pi/2", "deg(90)", "1.57*pi/pi + 0.1", "deg(1.5708)"] {
+        assert_eq!(warned(far), [], "{far}");
+    }
+    for degrees in ["90", "-90", "45", "6.3"] {
+        assert_eq!(warned(degrees), [Code::DegreesSuspected], "{degrees}");
+    }
+    assert_eq!(warned("4*pi"), []);
+    assert_eq!(warned("1000001"), [Code::OutOfRange]);
+}
+
+#[test]
+fn inertia_is_judged_exactly() {
+    let with = |inertia: &str| arm(&[("{mass: 2}", &format!("{{mass: 2, inertia: {{{inertia}}}}}"))]);
+    check(&with("xx: 1, yy: 1, zz: 2"), &[]);
+    check(&with("xx: 1, yy: 1, zz: 2.0000000000000000000000001"), &[Code::TriangleInequality]);
+    check(&with("zz: 4"), &[Code::TriangleInequality]);
+    check(&with("xx: 2, yy: 3, zz: 3, xy: sqrt(6)"), &[Code::TriangleInequality]);
+    check(&with("xx: 2, yy: 3, zz: 5, xy: sqrt(6)"), &[]);
+    check(&with("xx: 2, yy: 3, zz: 5, xy: sqrt(6) + 1e-30"), &[Code::ImpossibleInertia]);
+    check(&with("xy: 1"), &[Code::ImpossibleInertia]);
+    check(&with("xx: 1, yy: 1, zz: 1, xy: 0.9, yz: 0.9, xz: -0.9"), &[Code::ImpossibleInertia]);
+    check(&with("xx: -1"), &[Code::ImpossibleInertia]);
+    check(&with("xx: a*"), &[Code::BadExpression]);
+}
+
+#[test]
+fn growth_is_bounded() {
+    let mut parameters = String::from("parameters:\n  x0: 2*sqrt(3) + pi\n");
+    let mut symbols = String::from("parameters:\n  a: 1\n  b: 2\n  x0: a + b\n");
+    for i in 1..100 {
+        parameters += &format!("  x{i}: x{}*x{}\n", i - 1, i - 1);
+        symbols += &format!("  x{i}: x{}*x{}\n", i - 1, i - 1);
+    }
+    check(&arm(&[("parameters: {}\n", &parameters), ("mass: 2", "mass: x99")]), &[Code::TooComplex]);
+    check(&arm(&[("parameters: {}\n", &symbols), ("mass: 2", "mass: x99")]), &[Code::OutOfRange]);
+    check(&arm(&[("mass: 2", "mass: sqrt(sqrt(sqrt(sqrt(sqrt(sqrt(sqrt(2 + pi)))))))")]), &[Code::TooComplex]);
+    check(&arm(&[("mass: 2", "mass: 1/(1 + 1/(2 + 1/(3 + 1/(4 + pi))))")]), &[Code::TooComplex]);
+    check(&arm(&[("mass: 2", "mass: sqrt(2 + sqrt(2 + sqrt(2)))")]), &[]);
+    let chain: String = (1..9000).map(|i| format!("  x{i}: x{}\n", i - 1)).collect();
+    let (arm, _) = valid(&arm(&[("parameters: {}\n", &format!("parameters:\n  x0: 2\n{chain}")), ("a: 0.5", "a: 1/x8999")]));
+    assert!(arm.parameters.is_empty());
+}
+
+#[test]
+fn a_name_that_is_used_above_its_definition_is_not_called_unused() {
+    let text = arm(&[("parameters: {}", "parameters: {a: b, b: 2, c: 1}"), ("a: 0.5", "a: a")]);
+    check(&text, &[Code::UnknownName, Code::UnusedParameter]);
+}
