@@ -57,7 +57,7 @@ impl Robot {
         let (generated, diagnostics) = crate::generate(&source, &self.options);
         let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
         for warning in diagnostics.iter() {
-            let place = source.place(warning.span().start);
+            let place = source.place(warning.span().range().start);
             println!("cargo::warning={path}:{}:{}: {}", place.line, place.column, warning.message);
         }
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;

@@ -1,5 +1,26 @@
 //! What uses a robot: manipulability, trajectories, closed-loop inverse kinematics, control, stability, simulation.
+//!
+//! Everything is generic over a robot (the traits of [`robot`]), its `N` joints, the `M` rows of its [`task`], the `P` parameters of
+//! its regressor, and its scalar, `f32` or `f64`. Symbols and equation numbers are those of "the book": Siciliano, Sciavicco,
+//! Villani, Oriolo, *Robotics: Modelling, Planning and Control*. SI units and radians throughout.
+//!
+//! - **Allocation**: none, except in [`stability`] and [`simulation`], which run on a host and stand behind the feature `std`.
+//! - **Panics**: none. A function that can fail returns a small documented `enum`.
+//! - **Bits**: sine, cosine and root come from `libm` in every build and nothing is contracted into a fused multiply-add,
+//!   so one program gives the same bits on a host and on a microcontroller.
+//! - **Time**: [`core::time::Duration`], integer nanoseconds, so that the phases of a time law change at exactly the sample meant.
 #![cfg_attr(not(feature = "std"), no_std)]
+// `!(x > 0)` also catches a NaN, which `x <= 0` lets pass.
+#![allow(clippy::neg_cmp_op_on_partial_ord)]
+
 pub use nalgebra;
 
+pub mod control;
+pub mod linalg;
+pub mod orientation;
+pub mod reference;
 pub mod robot;
+#[cfg(feature = "std")]
+pub mod simulation;
+pub mod task;
+pub mod trajectory;

@@ -1,0 +1,95 @@
+//! Controllers: what torque to ask for, given what is desired and what is measured.
+//!
+//! All start from the equation of motion B ddq + n = tau with n = C dq + F + g, of which a model (marked ^) is known:
+//!
+//! | controller | law | the book |
+//! |---|---|---|
+//! | [`PdGravity`] | u = g^(q) + K_P e + K_D de | Sect. 8.5.1 |
+//! | [`InverseDynamics`] | u = B^ y + n^, y = ddq_d + K_D de + K_P e | Sect. 8.5.2 |
+//! | [`Robust`] | the same with y + w, w bounded by the uncertainty | Sect. 8.5.3 |
+//! | [`Adaptive`] | u = Y(q, dq, dq_r, ddq_r) pi^ + K_D sigma, pi^ adapted | Sect. 8.5.4 |
+//! | [`OperationalSpace`] | u = B^ y + n^, y = J^+ (a_d + K_D de + K_P e + K_I int e - dJ dq) | Sect. 8.6.2 |
+//!
+//! with e = q_d - q (or the pose error of the task), de its derivative. Gains are diagonal, hence positive definite where every
+//! element is positive; the constructors check it. A controller holds gains, no robot and no clock: the caller owns the loop and
+//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a memory,
+//! advanced by forward Euler after the torque is computed.
+//!
+//! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the memory as it was.
+
+mod adaptive;
+mod gains;
+mod inverse_dynamics;
+mod operational_space;
+mod pd;
+mod robust;
+
+pub use adaptive::{Adaptive, Interval};
+pub use gains::{Gain, GainError, TorqueLimits};
+pub use inverse_dynamics::InverseDynamics;
+pub use operational_space::{NullSpace, OperationalSpace};
+pub use pd::PdGravity;
+pub use robust::{BoundaryLayer, Robust};
+
+use crate::{
+    linalg::is_finite,
+    reference::{JointReference, State},
+};
+use nalgebra::{RealField, SVector};
+
+/// Why there is no torque for this sample; the caller brakes or holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ControlError {
+    /// A measured joint variable or rate is infinite or NaN: the sensor has failed.
+    MeasurementNotFinite,
+    /// The reference is infinite or NaN.
+    ReferenceNotFinite,
+    /// The Jacobian has lost a row of the task: allow damping, or keep away from singular postures.
+    Singular,
+    /// The law gave an infinite or NaN torque: gains or model are beyond the range of the scalar.
+    TorqueNotFinite,
+}
+
+/// The torque for one sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torque<T, const N: usize> {
+    /// Joint torques (forces), N m or N.
+    pub tau: SVector<T, N>,
+    /// Whether a torque limit cut it.
+    pub limited: bool,
+    /// Whether the inverse of the Jacobian was damped, near a singularity.
+    pub damped: bool,
+}
+
+fn check<T: RealField + Copy, const N: usize>(measured: &State<T, N>, reference_is_finite: bool) -> Result<(), ControlError> {
+    if !measured.is_finite() {
+        Err(ControlError::MeasurementNotFinite)
+    } else if !reference_is_finite {
+        Err(ControlError::ReferenceNotFinite)
+    } else {
+        Ok(())
+    }
+}
+
+fn check_joint<T: RealField + Copy, const N: usize>(
+    measured: &State<T, N>,
+    reference: &JointReference<T, N>,
+) -> Result<(), ControlError> {
+    check(measured, reference.is_finite())
+}
+
+/// The last step of every controller: nothing that is not finite leaves, nothing beyond the limits.
+fn issue<T: RealField + Copy, const N: usize>(
+    tau: SVector<T, N>,
+    limits: &Option<TorqueLimits<T, N>>,
+    damped: bool,
+) -> Result<Torque<T, N>, ControlError> {
+    if !is_finite(&tau) {
+        return Err(ControlError::TorqueNotFinite);
+    }
+    let (tau, limited) = match limits {
+        Some(limits) => limits.apply(&tau),
+        None => (tau, false),
+    };
+    Ok(Torque { tau, limited, damped })
+}

@@ -1,0 +1,151 @@
+//! Adaptive control (Slotine, Li, 1987; the book, Sect. 8.5.4, eqs. 8.88-8.97).
+//!
+//! The dynamics are linear in the parameters: B ddq_r + C dq_r + F dq_r + g = Y(q, dq, dq_r, ddq_r) pi. With the reference rates
+//! dq_r = dq_d + Lambda e, ddq_r = ddq_d + Lambda de and sigma = dq_r - dq,
+//!
+//! ```text
+//! u = Y pi^ + K_D sigma,        d pi^/dt = K_pi^-1 Y' sigma
+//! ```
+//!
+//! make V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decrease: the errors vanish, the estimate need not
+//! be right. That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever
+//! V says: compute the spectral radius of the sampled loop first (module `stability`).
+
+use super::{check_joint, gains, issue, ControlError, Gain, GainError, Torque, TorqueLimits};
+use crate::{
+    linalg::is_finite,
+    reference::{JointReference, State},
+    robot::Regressor,
+};
+use nalgebra::{RealField, SVector};
+
+/// An interval that the estimate is known to lie in; the estimate is projected onto it after each step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval<T, const P: usize> {
+    lower: SVector<T, P>,
+    upper: SVector<T, P>,
+}
+
+impl<T: RealField + Copy, const P: usize> Interval<T, P> {
+    /// Bounds of each parameter; equal bounds pin it.
+    ///
+    /// # Errors
+    /// Where a bound is not finite, or the lower one exceeds the upper one.
+    pub fn new(lower: [T; P], upper: [T; P]) -> Result<Self, GainError> {
+        let (lower, upper) = (SVector::from(lower), SVector::from(upper));
+        gains::finite(Gain::Interval, &lower)?;
+        gains::finite(Gain::Interval, &upper)?;
+        gains::not_negative(Gain::Interval, &(upper - lower))?;
+        Ok(Self { lower, upper })
+    }
+}
+
+/// u = Y(q, dq, dq_r, ddq_r) pi^ + K_D sigma, with pi^ adapted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive<T, const N: usize, const P: usize> {
+    pub(crate) lambda: SVector<T, N>,
+    pub(crate) k_d: SVector<T, N>,
+    /// Diagonal of K_pi^-1, zero for frozen parameters.
+    pub(crate) rate: SVector<T, P>,
+    pub(crate) estimate: SVector<T, P>,
+    period: T,
+    interval: Option<Interval<T, P>>,
+    limits: Option<TorqueLimits<T, N>>,
+}
+
+impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
+    /// Diagonals of Lambda, 1/s, of K_D, N m s/rad or N s/m, and of K_pi; the estimate to start from; the sampling period, s.
+    ///
+    /// # Errors
+    /// Where a gain or the period is not positive and finite, or the estimate is not finite.
+    pub fn new(lambda: [T; N], k_d: [T; N], k_pi: [T; P], estimate: [T; P], period: T) -> Result<Self, GainError> {
+        let (lambda, k_d, k_pi, estimate) = (lambda.into(), k_d.into(), SVector::from(k_pi), estimate.into());
+        gains::positive(Gain::Filter, &lambda)?;
+        gains::positive(Gain::Derivative, &k_d)?;
+        gains::positive(Gain::Adaptation, &k_pi)?;
+        gains::finite(Gain::Estimate, &estimate)?;
+        gains::positive_scalar(Gain::Period, period)?;
+        let rate = k_pi.map(|k| T::one() / k);
+        Ok(Self { lambda, k_d, rate, estimate, period, interval: None, limits: None })
+    }
+
+    /// The same with the estimate kept in an interval: an adaptation that would leave it stops at its bound.
+    ///
+    /// The projection does not increase V where the true parameters lie in the interval.
+    pub fn with_projection(mut self, interval: Interval<T, P>) -> Self {
+        self.estimate = project(&self.estimate, &interval);
+        self.interval = Some(interval);
+        self
+    }
+
+    /// The same with the parameters marked `true` kept at their present estimate.
+    pub fn with_frozen(mut self, frozen: [bool; P]) -> Self {
+        for (rate, frozen) in self.rate.iter_mut().zip(frozen) {
+            if frozen {
+                *rate = T::zero();
+            }
+        }
+        self
+    }
+
+    /// The same with torques limited; while a limit is at work the estimate rests.
+    pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
+        Self { limits: Some(limits), ..self }
+    }
+
+    /// The present estimate pi^.
+    pub fn estimate(&self) -> &SVector<T, P> {
+        &self.estimate
+    }
+
+    /// The law in continuous time, from any estimate: torque and d pi^/dt, without a step of the estimate.
+    ///
+    /// # Errors
+    /// Where measurement, reference or torque is not finite.
+    pub fn law<R: Regressor<N, P, Real = T>>(
+        &self,
+        model: &R,
+        reference: &JointReference<T, N>,
+        measured: &State<T, N>,
+        estimate: &SVector<T, P>,
+    ) -> Result<(Torque<T, N>, SVector<T, P>), ControlError> {
+        check_joint(measured, reference)?;
+        let e = reference.q - measured.q;
+        let de = reference.dq - measured.dq;
+        let dqr = reference.dq + self.lambda.component_mul(&e);
+        let ddqr = reference.ddq + self.lambda.component_mul(&de);
+        let sigma = dqr - measured.dq;
+        let y = model.regressor(&measured.q, &measured.dq, &dqr, &ddqr);
+        let known = model.known_torque(&measured.q, &measured.dq, &dqr, &ddqr);
+        let torque = issue(y * estimate + known + self.k_d.component_mul(&sigma), &self.limits, false)?;
+        Ok((torque, y.tr_mul(&sigma).component_mul(&self.rate)))
+    }
+
+    /// Torque for one sample, then the step pi^ += T_s K_pi^-1 Y' sigma, projected.
+    ///
+    /// # Errors
+    /// Where measurement, reference, torque or the next estimate is not finite; the estimate stays as it was.
+    pub fn torque<R: Regressor<N, P, Real = T>>(
+        &mut self,
+        model: &R,
+        reference: &JointReference<T, N>,
+        measured: &State<T, N>,
+    ) -> Result<Torque<T, N>, ControlError> {
+        let (torque, rate) = self.law(model, reference, measured, &self.estimate)?;
+        if !torque.limited {
+            let next = self.estimate + rate * self.period;
+            if !is_finite(&next) {
+                return Err(ControlError::TorqueNotFinite);
+            }
+            self.estimate = match &self.interval {
+                Some(interval) => project(&next, interval),
+                None => next,
+            };
+        }
+        Ok(torque)
+    }
+}
+
+fn project<T: RealField + Copy, const P: usize>(estimate: &SVector<T, P>, interval: &Interval<T, P>) -> SVector<T, P> {
+    SVector::from_fn(|i, _| estimate[i].max(interval.lower[i]).min(interval.upper[i]))
+}

@@ -1,0 +1,51 @@
+//! Small linear algebra over matrices whose sizes are const generics.
+//!
+//! nalgebra's `cholesky` carries no bound beyond the sizes themselves; its `lu`, `qr`, `svd` and `symmetric_eigen` ask for
+//! arithmetic on sizes that a caller with const generics cannot state. The few factorisations needed besides Cholesky are here,
+//! each bounded in its work and without allocation.
+
+mod lyapunov;
+mod right_inverse;
+mod singular;
+
+pub use lyapunov::{diagonal_lyapunov, LyapunovBlocks};
+pub use right_inverse::{Damping, DampingError, RightInverse, Solution};
+pub use singular::{left_singular, LeftSingular};
+
+use nalgebra::{RealField, SMatrix, SVector};
+
+/// A decimal constant in the scalar `T`.
+#[inline]
+pub(crate) fn lit<T: RealField>(x: f64) -> T {
+    nalgebra::convert(x)
+}
+
+/// The value of `x` as `f64`; `None` for a scalar type that has no such reading.
+#[inline]
+pub(crate) fn to_f64<T: RealField>(x: T) -> Option<f64> {
+    nalgebra::try_convert(x)
+}
+
+/// Whether every element is finite: neither infinite nor NaN.
+#[inline]
+pub fn is_finite<T: RealField + Copy, const R: usize, const C: usize>(m: &SMatrix<T, R, C>) -> bool {
+    m.iter().all(|x| x.is_finite())
+}
+
+/// `x` with every element cut to `[-bound, bound]`, and whether anything was cut.
+#[inline]
+pub fn saturate<T: RealField + Copy, const N: usize>(x: &SVector<T, N>, bound: &SVector<T, N>) -> (SVector<T, N>, bool) {
+    let mut cut = false;
+    let y = x.zip_map(bound, |x, b| {
+        if x > b {
+            cut = true;
+            b
+        } else if x < -b {
+            cut = true;
+            -b
+        } else {
+            x
+        }
+    });
+    (y, cut)
+}

@@ -1,0 +1,204 @@
+//! The right pseudo-inverse of a wide matrix of full rank, and its damped form.
+//!
+//! For J, M x N with M <= N, factor the transpose: J' = Q R with Q' Q = I (N x M) and R upper triangular (M x M). Then
+//!
+//! ```text
+//! J+ = J' (J J')^-1 = Q R^-T,    I - J+ J = I - Q Q',    det(J J') = prod r_ii^2
+//! ```
+//!
+//! which neither squares the condition number, as J J' would, nor needs M = N. Q comes from modified Gram-Schmidt applied twice,
+//! orthogonal to rounding unless a row is dependent to rounding (Giraud, Langou, Rozloznik, 2005).
+
+use super::lit;
+use nalgebra::{RealField, SMatrix, SVector};
+
+/// J' = Q R of a matrix J with full row rank.
+#[derive(Clone, Copy, Debug)]
+pub struct RightInverse<T, const M: usize, const N: usize> {
+    q: SMatrix<T, N, M>,
+    r: SMatrix<T, M, M>,
+}
+
+impl<T: RealField + Copy, const M: usize, const N: usize> RightInverse<T, M, N> {
+    /// Factors J; `None` where a row depends on those before it within 64 roundings: J is singular, not finite, or has M > N.
+    pub fn new(j: &SMatrix<T, M, N>) -> Option<Self> {
+        let (factors, full_rank) = Self::factor(j);
+        full_rank.then_some(factors)
+    }
+
+    fn factor(j: &SMatrix<T, M, N>) -> (Self, bool) {
+        let mut q: SMatrix<T, N, M> = j.transpose();
+        let mut r = SMatrix::<T, M, M>::zeros();
+        let mut full_rank = true;
+        let tiny = T::default_epsilon() * lit(64.0);
+        for k in 0..M {
+            let mut v: SVector<T, N> = q.column(k).into_owned();
+            let length = v.norm();
+            for _ in 0..2 {
+                for i in 0..k {
+                    let along = q.column(i).dot(&v);
+                    r[(i, k)] += along;
+                    v -= q.column(i) * along;
+                }
+            }
+            let rest = v.norm();
+            // Not `rest <= ...`: a NaN must count as dependent.
+            if rest > tiny * length && rest.is_finite() {
+                r[(k, k)] = rest;
+                q.set_column(k, &(v / rest));
+            } else {
+                full_rank = false;
+                q.set_column(k, &SVector::zeros());
+            }
+        }
+        (Self { q, r }, full_rank)
+    }
+
+    /// J+ v: the vector of least norm with J x = v.
+    pub fn solve(&self, v: &SVector<T, M>) -> SVector<T, N> {
+        // R' y = v, forward.
+        let mut y = *v;
+        for i in 0..M {
+            let mut sum = y[i];
+            for k in 0..i {
+                sum -= self.r[(k, i)] * y[k];
+            }
+            y[i] = sum / self.r[(i, i)];
+        }
+        self.q * y
+    }
+
+    /// J+ as a matrix, N x M.
+    pub fn matrix(&self) -> SMatrix<T, N, M> {
+        let mut inverse = SMatrix::<T, N, M>::zeros();
+        for i in 0..M {
+            let mut unit = SVector::<T, M>::zeros();
+            unit[i] = T::one();
+            inverse.set_column(i, &self.solve(&unit));
+        }
+        inverse
+    }
+
+    /// (I - J+ J) x: the part of x that the rows of J do not see.
+    pub fn null_space(&self, x: &SVector<T, N>) -> SVector<T, N> {
+        x - self.q * self.q.tr_mul(x)
+    }
+
+    /// sqrt(det(J J')), never negative: the volume spanned by the rows.
+    pub fn volume(&self) -> T {
+        volume(&self.r)
+    }
+}
+
+fn volume<T: RealField + Copy, const M: usize>(r: &SMatrix<T, M, M>) -> T {
+    (0..M).fold(T::one(), |product, i| product * r[(i, i)])
+}
+
+/// Damping near singularities, by the manipulability (Nakamura, Hanafusa, 1986).
+///
+/// ```text
+/// x = J' (J J' + lambda^2 I)^-1 v,    lambda = lambda_0 (1 - w / w_0) for w < w_0,    0 otherwise
+/// ```
+///
+/// with w = sqrt(det(J J')). Where lambda > 0, |x| <= |v| / (2 lambda).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Damping<T> {
+    threshold: T,
+    factor: T,
+}
+
+/// Why a damping was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DampingError {
+    /// The threshold w_0 is not a positive finite number.
+    Threshold,
+    /// The factor lambda_0 is not a positive finite number.
+    Factor,
+}
+
+/// What [`Damping::solve`] found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution<T, const N: usize> {
+    /// The joint vector.
+    pub x: SVector<T, N>,
+    /// Whether damping was at work: J x differs from v.
+    pub damped: bool,
+}
+
+impl<T: RealField + Copy> Damping<T> {
+    /// `threshold` is w_0 in the units of w, `factor` is lambda_0 in the units of a singular value of J.
+    ///
+    /// # Errors
+    /// Where one of them is not positive and finite.
+    pub fn new(threshold: T, factor: T) -> Result<Self, DampingError> {
+        if !(threshold > T::zero() && threshold.is_finite()) {
+            return Err(DampingError::Threshold);
+        }
+        if !(factor > T::zero() && factor.is_finite()) {
+            return Err(DampingError::Factor);
+        }
+        Ok(Self { threshold, factor })
+    }
+
+    /// The threshold w_0 below which damping is at work.
+    pub fn threshold(&self) -> T {
+        self.threshold
+    }
+
+    /// J+ v, damped where w < w_0; `None` only where J or v is not finite.
+    pub fn solve<const M: usize, const N: usize>(&self, j: &SMatrix<T, M, N>, v: &SVector<T, M>) -> Option<Solution<T, N>> {
+        let (factors, full_rank) = RightInverse::factor(j);
+        let w = if full_rank { factors.volume() } else { T::zero() };
+        if w >= self.threshold {
+            return Some(Solution { x: factors.solve(v), damped: false });
+        }
+        let lambda = self.factor * (T::one() - w / self.threshold);
+        let mut gram = j * j.transpose();
+        for i in 0..M {
+            gram[(i, i)] += lambda * lambda;
+        }
+        let x = j.tr_mul(&gram.cholesky()?.solve(v));
+        super::is_finite(&x).then_some(Solution { x, damped: true })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix2x3, Vector2};
+
+    #[test]
+    fn solves_with_least_norm_and_projects_on_the_null_space() {
+        let j = Matrix2x3::new(1.0, 2.0, 3.0, -1.0, 0.5, 2.0);
+        let inverse = RightInverse::new(&j).unwrap();
+        let v = Vector2::new(0.3, -0.7);
+        let x = inverse.solve(&v);
+        assert!((j * x - v).norm() < 1e-15);
+        assert!(inverse.null_space(&x).norm() < 1e-15, "least norm has no part in the null space");
+        assert!((j * inverse.null_space(&nalgebra::Vector3::new(1.0, 1.0, 1.0))).norm() < 1e-14);
+        let gram: nalgebra::Matrix2<f64> = j * j.transpose();
+        assert!((inverse.volume() - gram.determinant().sqrt()).abs() < 1e-14);
+        assert!((inverse.matrix() * v - x).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_dependent_row_and_a_nan_are_singular() {
+        assert!(RightInverse::new(&Matrix2x3::new(1.0, 2.0, 3.0, 2.0, 4.0, 6.0)).is_none());
+        assert!(RightInverse::new(&Matrix2x3::new(1.0, 2.0, f64::NAN, 2.0, 4.0, 6.0)).is_none());
+        assert!(RightInverse::new(&nalgebra::Matrix3x2::new(1.0, 2.0, 3.0, 2.0, 4.0, 7.0)).is_none(), "more rows than joints");
+    }
+
+    #[test]
+    fn damping_bounds_the_solution() {
+        let damping = Damping::new(0.1, 0.05).unwrap();
+        let v = Vector2::new(0.3, -0.7);
+        for w in [1.0, 0.2, 0.05, 1e-3, 1e-9, 0.0] {
+            let j = Matrix2x3::new(1.0, 0.0, 0.0, 0.0, w, 0.0);
+            let s = damping.solve(&j, &v).unwrap();
+            assert_eq!(s.damped, w < 0.1);
+            let lambda = 0.05 * (1.0 - f64::min(w, 0.1) / 0.1);
+            assert!(!s.damped || s.x.norm() <= v.norm() / (2.0 * lambda));
+        }
+        assert!(damping.solve(&Matrix2x3::new(f64::NAN, 0.0, 0.0, 0.0, 1.0, 0.0), &v).is_none());
+    }
+}

@@ -1,0 +1,138 @@
+//! Orientation errors, from rotation matrices and from quaternions.
+//!
+//! Let E = R_d R_e' be the rotation, in the base frame, that takes the actual orientation R_e to the desired one R_d: a turn by
+//! theta about the unit vector r. Its skew part holds r sin(theta), its trace 1 + 2 cos(theta). Four error vectors follow, equal to
+//! first order, all in the base frame, all desired minus actual:
+//!
+//! ```text
+//! theta r                                          rotation vector: grows with the angle up to pi
+//! sin(theta) r = 1/2 (n x n_d + s x s_d + a x a_d)  (the book, eq. 3.84): vanishes again at pi
+//! sin(theta/2) r                                   vector part of the quaternion (the book, eq. 3.91)
+//! atan2 about one axis                             for tasks with a single angular row
+//! ```
+
+use crate::linalg::lit;
+use nalgebra::{Matrix3, RealField, Rotation3, Unit, UnitQuaternion, Vector3};
+
+/// sin(theta) r of a rotation matrix: the axial vector of its skew part.
+#[inline]
+fn axial<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
+    Vector3::new(e[(2, 1)] - e[(1, 2)], e[(0, 2)] - e[(2, 0)], e[(1, 0)] - e[(0, 1)]) * lit::<T>(0.5)
+}
+
+/// Rotation vector theta r of the rotation matrix `e`, theta in [0, pi]; rad.
+///
+/// Accurate to a few roundings for every angle, half a turn included, where the sign of r is free and the first component of r
+/// that is not zero is taken positive.
+pub fn rotation_vector<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
+    let v = axial(e);
+    let (sine, cosine) = (v.norm(), (e.trace() - T::one()) * lit::<T>(0.5));
+    if cosine > -lit::<T>(0.5) {
+        if sine == T::zero() {
+            return Vector3::zeros();
+        }
+        return v * (sine.atan2(cosine) / sine);
+    }
+    // Near half a turn the skew part fades; the symmetric part, S = r r' (1 - cos) + cos I, holds the axis.
+    let symmetric = (e + e.transpose()) * lit::<T>(0.5) - Matrix3::from_diagonal_element(cosine);
+    let mut largest = 0;
+    for i in 1..3 {
+        if symmetric[(i, i)] > symmetric[(largest, largest)] {
+            largest = i;
+        }
+    }
+    let column: Vector3<T> = symmetric.column(largest).into_owned();
+    let mut r = column / column.norm();
+    let along = r.dot(&v);
+    let first_is_negative = r.iter().find(|x| x.abs() > lit(1e-3)).is_some_and(|x| *x < T::zero());
+    if along < T::zero() || (along == T::zero() && first_is_negative) {
+        r = -r;
+    }
+    r * sine.atan2(cosine)
+}
+
+/// Angle of the turn about base axis `axis` (0, 1, 2 for x, y, z) that comes nearest to the rotation `e`; rad, in (-pi, pi].
+///
+/// It maximises the trace of `Rot(axis, angle)' e`: atan2(e_kj - e_jk, e_jj + e_kk) with j, k the other two axes in cyclic order.
+/// Where the axes are opposed (e turns `axis` over) every angle is as near, and the result is 0.
+pub fn turn_about<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> T {
+    let (j, k) = match axis {
+        0 => (1, 2),
+        1 => (2, 0),
+        _ => (0, 1),
+    };
+    let sine = e[(k, j)] - e[(j, k)];
+    let cosine = e[(j, j)] + e[(k, k)];
+    if sine == T::zero() && cosine == T::zero() {
+        return T::zero();
+    }
+    sine.atan2(cosine)
+}
+
+/// Orientation error e_O = 1/2 (n x n_d + s x s_d + a x a_d) = sin(theta) r of rotation matrices (the book, eq. 3.84).
+pub fn sine_error<T: RealField + Copy>(desired: &Matrix3<T>, actual: &Matrix3<T>) -> Vector3<T> {
+    axial(&(desired * actual.transpose()))
+}
+
+/// Orientation error e_O = eta_e eps_d - eta_d eps_e - S(eps_d) eps_e = sin(theta/2) r of quaternions (the book, eq. 3.91),
+/// of the two turns the shorter one.
+pub fn quaternion_error<T: RealField + Copy>(desired: &UnitQuaternion<T>, actual: &UnitQuaternion<T>) -> Vector3<T> {
+    let e = desired * actual.inverse();
+    let vector = e.imag();
+    // q and -q are the same orientation; the one with a positive scalar part turns by less than pi.
+    if e.scalar() < T::zero() {
+        -vector
+    } else {
+        vector
+    }
+}
+
+/// The unit quaternion of a rotation matrix.
+pub fn quaternion<T: RealField + Copy>(r: &Matrix3<T>) -> UnitQuaternion<T> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*r))
+}
+
+/// Rotation by `angle` about the unit vector `axis` (the book, eq. 2.25).
+pub fn rotation<T: RealField + Copy>(axis: &Unit<Vector3<T>>, angle: T) -> Matrix3<T> {
+    Rotation3::from_axis_angle(axis, angle).into_inner()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+
+    #[test]
+    fn every_error_is_the_turn_it_measures() {
+        let axis = Unit::new_normalize(Vector3::new(0.3, -0.5, 0.8));
+        let actual = rotation(&Unit::new_normalize(Vector3::new(1.0, 2.0, -0.4)), 0.7);
+        for angle in [0.0, 1e-9, 1e-4, 0.5, 1.5, 2.5, 3.1, PI - 1e-7] {
+            let desired = rotation(&axis, angle) * actual;
+            let e = desired * actual.transpose();
+            assert!((rotation_vector(&e) - axis.into_inner() * angle).norm() < 4e-15, "{angle}");
+            assert!((sine_error(&desired, &actual) - axis.into_inner() * angle.sin()).norm() < 1e-15);
+            let q = quaternion_error(&quaternion(&desired), &quaternion(&actual));
+            assert!((q - axis.into_inner() * (angle / 2.0).sin()).norm() < 1e-15, "{angle}");
+        }
+    }
+
+    #[test]
+    fn half_a_turn_has_an_axis() {
+        for axis in [Vector3::x(), Vector3::y(), Vector3::z(), Vector3::new(1.0, -2.0, 0.5).normalize()] {
+            let e = rotation(&Unit::new_unchecked(axis), PI);
+            let v = rotation_vector(&e);
+            assert!((v.norm() - PI).abs() < 1e-14 && v.cross(&axis).norm() < 1e-14, "{v}");
+        }
+    }
+
+    #[test]
+    fn a_turn_about_one_axis_ignores_the_tilt() {
+        for axis in 0..3 {
+            let mut unit = Vector3::zeros();
+            unit[axis] = 1.0;
+            for angle in [-3.0f64, -0.2, 0.0, 1e-12, 1.0, 3.1] {
+                assert!((turn_about(&rotation(&Unit::new_unchecked(unit), angle), axis) - angle).abs() < 1e-15);
+            }
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Simulation of an arm under sampled control, on a host.
+//!
+//! The plant is a robot value of its own, with its own parameters: the load that the controller does not know is a second value.
+//! Between samples the torque is held (zero-order hold) and the equation of motion
+//!
+//! ```text
+//! d/dt (q, dq) = (dq, B^-1 (tau - C dq - F(dq) - g))
+//! ```
+//!
+//! is integrated, by fixed Runge-Kutta steps or by adaptive ones. Sensors may delay and disturb what the controller sees, from a seed:
+//! equal inputs give equal bits. The energy audit compares the change of T + U with the work of the torques and of friction.
+
+mod integrator;
+mod log;
+mod plant;
+mod run;
+mod sensor;
+
+pub use integrator::{dormand_prince, rk4, Integrator, Phase, StepError};
+pub use log::Log;
+pub use plant::{Energy, Plant};
+pub use run::{run, RunError, RunOptions, Sample};
+pub use sensor::{Noise, Sensor};

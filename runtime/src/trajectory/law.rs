@@ -1,0 +1,331 @@
+//! Time laws: s(t) from 0 to 1.
+//!
+//! Trapezoidal speed with duration T and acceleration time t_c, for a path of length L:
+//!
+//! ```text
+//! v = L / (T - t_c),  a = v / t_c
+//! s = 1/2 t^2 / (t_c (T - t_c))              0 <= t < t_c
+//!   = (t - t_c / 2) / (T - t_c)              t_c <= t < T - t_c
+//!   = 1 - 1/2 (T - t)^2 / (t_c (T - t_c))    T - t_c <= t < T           (the book, Sect. 4.2.1, eq. 4.8)
+//! ```
+//!
+//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6); given T and v, t_c = T - L/v (eq. 4.9). Given limits of v and a, the
+//! shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
+
+use super::PlanFault;
+use crate::linalg::{lit, to_f64};
+use core::time::Duration;
+use nalgebra::RealField;
+
+/// A time law as requested; lengths in m for paths, rad for turns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Law<T> {
+    /// Trapezoidal speed of this duration and acceleration time (the deceleration takes as long).
+    Trapezoidal {
+        /// Duration T.
+        duration: Duration,
+        /// Acceleration time t_c, at most T/2.
+        acceleration_time: Duration,
+    },
+    /// Trapezoidal speed of this duration and acceleration, |a| >= 4 L / T^2.
+    TrapezoidalByAcceleration {
+        /// Duration T.
+        duration: Duration,
+        /// Acceleration along the path.
+        acceleration: T,
+    },
+    /// Trapezoidal speed of this duration and cruise velocity, L / T < |v| <= 2 L / T.
+    TrapezoidalByVelocity {
+        /// Duration T.
+        duration: Duration,
+        /// Velocity along the path.
+        velocity: T,
+    },
+    /// The shortest trapezoidal (or triangular) speed within these limits.
+    TrapezoidalByLimits {
+        /// Greatest velocity along the path.
+        velocity: T,
+        /// Greatest acceleration along the path.
+        acceleration: T,
+    },
+    /// s = 3 x^2 - 2 x^3 with x = t / T: continuous velocity, zero at both ends (the book, Sect. 4.2.1).
+    Cubic {
+        /// Duration T.
+        duration: Duration,
+    },
+    /// s = 10 x^3 - 15 x^4 + 6 x^5 with x = t / T: continuous acceleration, velocity and acceleration zero at both ends.
+    Quintic {
+        /// Duration T.
+        duration: Duration,
+    },
+}
+
+/// A time law that can be run: what [`Law::resolve`] makes of a request.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profile<T> {
+    duration: Duration,
+    shape: Shape<T>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape<T> {
+    /// Nothing moves.
+    Rest,
+    /// `slow` = T - t_c, when deceleration begins; `speed` = 1 / (T - t_c); `rise` = 1 / (t_c (T - t_c)).
+    Trapezoid {
+        rise_time: Duration,
+        slow: Duration,
+        half_rise_time: T,
+        speed: T,
+        rise: T,
+    },
+    Cubic(T),
+    Quintic(T),
+}
+
+/// s and its derivatives at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress<T> {
+    /// s, from 0 to 1.
+    pub s: T,
+    /// ds/dt, 1/s.
+    pub ds: T,
+    /// d2s/dt2, 1/s^2.
+    pub dds: T,
+}
+
+/// Seconds of a duration, rounded once in `f64`.
+#[inline]
+pub(crate) fn seconds<T: RealField>(t: Duration) -> T {
+    lit(t.as_secs_f64())
+}
+
+/// The nearest duration; `None` for what is negative, not finite or too long.
+fn duration<T: RealField>(seconds: T) -> Option<Duration> {
+    Duration::try_from_secs_f64(to_f64(seconds)?).ok()
+}
+
+impl<T: RealField + Copy> Law<T> {
+    /// The law for a path of this length, which may be zero.
+    ///
+    /// # Errors
+    /// Where no such law exists; the fault says why.
+    pub fn resolve(&self, length: T) -> Result<Profile<T>, PlanFault> {
+        if !length.is_finite() {
+            return Err(PlanFault::NotFinite);
+        }
+        let length = length.abs();
+        let still = length == T::zero();
+        let positive = |x: T, fault| match x.is_finite() {
+            false => Err(PlanFault::NotFinite),
+            true if x > T::zero() => Ok(x),
+            true => Err(fault),
+        };
+        match *self {
+            Law::Trapezoidal { duration, acceleration_time } => trapezoid(duration, acceleration_time),
+            Law::TrapezoidalByAcceleration { duration: t, acceleration } => {
+                let a = positive(acceleration.abs(), PlanFault::AccelerationTooSmall)?;
+                let half = seconds::<T>(t) * lit(0.5);
+                let under_root = half * half - length / a;
+                if under_root < T::zero() {
+                    return Err(PlanFault::AccelerationTooSmall);
+                }
+                if still {
+                    return Ok(Profile { duration: t, shape: Shape::Rest });
+                }
+                trapezoid(t, duration(half - under_root.sqrt()).ok_or(PlanFault::AccelerationTooSmall)?)
+            }
+            Law::TrapezoidalByVelocity { duration: t, velocity } => {
+                if still {
+                    return Ok(Profile { duration: t, shape: Shape::Rest });
+                }
+                let v = positive(velocity.abs(), PlanFault::VelocityOutOfRange)?;
+                let whole = seconds::<T>(t);
+                // A margin of a few roundings: v = 2 L / T itself, the triangle, is allowed.
+                let margin = T::one() + T::default_epsilon() * lit(8.0);
+                if v * whole <= length || v * whole > lit::<T>(2.0) * length * margin {
+                    return Err(PlanFault::VelocityOutOfRange);
+                }
+                let t_c = duration(whole - length / v).ok_or(PlanFault::VelocityOutOfRange)?;
+                trapezoid(t, t_c.min(t / 2))
+            }
+            Law::TrapezoidalByLimits { velocity, acceleration } => {
+                let v = positive(velocity, PlanFault::LimitNotPositive)?;
+                let a = positive(acceleration, PlanFault::LimitNotPositive)?;
+                if still {
+                    return Ok(Profile { duration: Duration::ZERO, shape: Shape::Rest });
+                }
+                let (t_c, cover) = if length * a < v * v {
+                    let t_c = (length / a).sqrt();
+                    (t_c, t_c)
+                } else {
+                    (v / a, length / v)
+                };
+                // One nanosecond more than the nearest: the limits are kept after rounding, too.
+                let up = |x| duration(x).and_then(|d| d.checked_add(Duration::from_nanos(1))).ok_or(PlanFault::TooLong);
+                let (t_c, cover) = (up(t_c)?, up(cover)?);
+                trapezoid(t_c.checked_add(cover).ok_or(PlanFault::TooLong)?, t_c)
+            }
+            Law::Cubic { duration } if duration > Duration::ZERO => {
+                Ok(Profile { duration, shape: Shape::Cubic(seconds(duration)) })
+            }
+            Law::Quintic { duration } if duration > Duration::ZERO => {
+                Ok(Profile { duration, shape: Shape::Quintic(seconds(duration)) })
+            }
+            Law::Cubic { .. } | Law::Quintic { .. } => Err(PlanFault::NoDuration),
+        }
+    }
+}
+
+fn trapezoid<T: RealField + Copy>(duration: Duration, rise_time: Duration) -> Result<Profile<T>, PlanFault> {
+    if duration.is_zero() {
+        return Err(PlanFault::NoDuration);
+    }
+    if rise_time.is_zero() {
+        return Err(PlanFault::NoAccelerationTime);
+    }
+    let Some(slow) = duration.checked_sub(rise_time).filter(|slow| *slow >= rise_time) else {
+        return Err(PlanFault::CruiseTimeNegative);
+    };
+    let (t_c, cover) = (seconds::<T>(rise_time), seconds::<T>(slow));
+    let shape = Shape::Trapezoid {
+        rise_time,
+        slow,
+        half_rise_time: t_c * lit(0.5),
+        speed: T::one() / cover,
+        rise: T::one() / (t_c * cover),
+    };
+    Ok(Profile { duration, shape })
+}
+
+impl<T: RealField + Copy> Profile<T> {
+    /// A law under which nothing moves.
+    pub fn rest(duration: Duration) -> Self {
+        Self { duration, shape: Shape::Rest }
+    }
+
+    /// Duration T.
+    pub fn duration(&self) -> Duration {
+        self.duration
+    }
+
+    /// s, ds/dt and d2s/dt2 at time `t` from the start of the law; after its end s = 1 and nothing moves.
+    ///
+    /// At a corner the acceleration is that of the phase that begins.
+    #[inline]
+    pub fn at(&self, t: Duration) -> Progress<T> {
+        let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
+        let Some(rest) = self.duration.checked_sub(t).filter(|rest| !rest.is_zero()) else {
+            return Progress { s: one, ds: zero, dds: zero };
+        };
+        match self.shape {
+            Shape::Rest => Progress { s: zero, ds: zero, dds: zero },
+            Shape::Trapezoid { rise_time, slow, half_rise_time, speed, rise } => {
+                if t < rise_time {
+                    let t = seconds::<T>(t);
+                    Progress { s: half * rise * t * t, ds: rise * t, dds: rise }
+                } else if t < slow {
+                    Progress { s: (seconds::<T>(t) - half_rise_time) * speed, ds: speed, dds: zero }
+                } else {
+                    let rest = seconds::<T>(rest);
+                    Progress { s: one - half * rise * rest * rest, ds: rise * rest, dds: -rise }
+                }
+            }
+            Shape::Cubic(whole) => {
+                let x = seconds::<T>(t) / whole;
+                Progress {
+                    s: x * x * (lit::<T>(3.0) - lit::<T>(2.0) * x),
+                    ds: lit::<T>(6.0) * x * (one - x) / whole,
+                    dds: (lit::<T>(6.0) - lit::<T>(12.0) * x) / (whole * whole),
+                }
+            }
+            Shape::Quintic(whole) => {
+                let x = seconds::<T>(t) / whole;
+                let y = one - x;
+                Progress {
+                    s: x * x * x * (lit::<T>(10.0) + x * (lit::<T>(6.0) * x - lit(15.0))),
+                    ds: lit::<T>(30.0) * x * x * y * y / whole,
+                    dds: lit::<T>(60.0) * x * y * (one - lit::<T>(2.0) * x) / (whole * whole),
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const T: Duration = Duration::from_millis(1500);
+
+    fn laws() -> [Law<f64>; 6] {
+        [
+            Law::Trapezoidal { duration: T, acceleration_time: Duration::from_millis(200) },
+            Law::TrapezoidalByAcceleration { duration: T, acceleration: 1.5 },
+            Law::TrapezoidalByVelocity { duration: T, velocity: 0.4 },
+            Law::TrapezoidalByLimits { velocity: 0.3, acceleration: 0.7 },
+            Law::Cubic { duration: T },
+            Law::Quintic { duration: T },
+        ]
+    }
+
+    #[test]
+    fn each_derivative_is_that_of_the_one_before() {
+        for law in laws() {
+            let p = law.resolve(0.5).unwrap();
+            let n = p.duration().as_nanos() as u64 / 1000;
+            let h = Duration::from_micros(1);
+            for k in 1..999 {
+                let t = Duration::from_micros(n * k / 1000);
+                let (a, b, c) = (p.at(t - h), p.at(t), p.at(t + h));
+                assert!(((c.s - a.s) / 2e-6 - b.ds).abs() < 1e-5, "{law:?} at {t:?}");
+                // Across a corner of a trapezoid the difference quotient lies between both sides.
+                let quotient = (c.ds - a.ds) / 2e-6;
+                let (low, high) = (a.dds.min(b.dds).min(c.dds), a.dds.max(b.dds).max(c.dds));
+                assert!(quotient > low - 1e-3 && quotient < high + 1e-3, "{law:?} at {t:?}: {quotient} {b:?}");
+            }
+            assert!(p.at(Duration::ZERO).s == 0.0 && p.at(p.duration()) == Progress { s: 1.0, ds: 0.0, dds: 0.0 });
+        }
+    }
+
+    #[test]
+    fn limits_are_kept_and_reached() {
+        for (length, v, a) in [(0.5, 0.3, 0.7), (0.01, 0.3, 0.7), (3.0, 1.0, 10.0), (1e-6, 2.0, 5.0)] {
+            let p = Law::TrapezoidalByLimits { velocity: v, acceleration: a }.resolve(length).unwrap();
+            let peak = (0..=1000u32).map(|k| p.at(p.duration() * k / 1000).ds * length).fold(0.0, f64::max);
+            assert!(peak <= v && p.at(Duration::ZERO).dds * length <= a);
+            let triangle = length * a < v * v;
+            assert!(p.at(Duration::ZERO).dds * length > a * (1.0 - 1e-4));
+            assert!(triangle || peak > v * (1.0 - 1e-6));
+        }
+    }
+
+    #[test]
+    fn the_parameters_asked_for_are_the_ones_found() {
+        let by_acceleration = Law::TrapezoidalByAcceleration { duration: T, acceleration: 1.5 }.resolve(0.5).unwrap();
+        assert!((by_acceleration.at(Duration::ZERO).dds * 0.5 - 1.5f64).abs() < 1e-7);
+        let by_velocity = Law::TrapezoidalByVelocity { duration: T, velocity: 0.4 }.resolve(0.5).unwrap();
+        assert!((by_velocity.at(T / 2).ds * 0.5 - 0.4f64).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let ms = Duration::from_millis;
+        let fault = |law: Law<f64>| law.resolve(0.5).unwrap_err();
+        use PlanFault::*;
+        assert_eq!(fault(Law::Trapezoidal { duration: T, acceleration_time: ms(751) }), CruiseTimeNegative);
+        assert_eq!(fault(Law::Trapezoidal { duration: T, acceleration_time: ms(2000) }), CruiseTimeNegative);
+        assert_eq!(fault(Law::Trapezoidal { duration: T, acceleration_time: ms(0) }), NoAccelerationTime);
+        assert_eq!(fault(Law::Trapezoidal { duration: ms(0), acceleration_time: ms(0) }), NoDuration);
+        assert_eq!(fault(Law::TrapezoidalByAcceleration { duration: T, acceleration: 0.88 }), AccelerationTooSmall);
+        assert_eq!(fault(Law::TrapezoidalByVelocity { duration: T, velocity: 0.33 }), VelocityOutOfRange);
+        assert_eq!(fault(Law::TrapezoidalByVelocity { duration: T, velocity: 0.67 }), VelocityOutOfRange);
+        assert_eq!(fault(Law::TrapezoidalByLimits { velocity: -1.0, acceleration: 1.0 }), LimitNotPositive);
+        assert_eq!(fault(Law::TrapezoidalByLimits { velocity: f64::NAN, acceleration: 1.0 }), NotFinite);
+        assert_eq!(fault(Law::TrapezoidalByLimits { velocity: 1e-300, acceleration: 1.0 }), TooLong);
+        assert_eq!(fault(Law::Cubic { duration: ms(0) }), NoDuration);
+        // The bounds themselves are allowed.
+        assert!(Law::TrapezoidalByVelocity { duration: T, velocity: 2.0 / 3.0 }.resolve(0.5).is_ok());
+        assert!(Law::<f64>::Trapezoidal { duration: T, acceleration_time: ms(750) }.resolve(0.5).is_ok());
+    }
+}
