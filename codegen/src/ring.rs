@@ -57,6 +57,24 @@ pub enum Symbol {
     Parameter(u16),
 }
 
+impl Symbol {
+    /// The index of its joint or parameter.
+    pub fn index(self) -> u16 {
+        match self {
+            Symbol::Sine(i)
+            | Symbol::Cosine(i)
+            | Symbol::Position(i)
+            | Symbol::Rate(i)
+            | Symbol::RateSign(i)
+            | Symbol::Acceleration(i)
+            | Symbol::ReferenceRate(i)
+            | Symbol::ReferenceAcceleration(i)
+            | Symbol::Torque(i)
+            | Symbol::Parameter(i) => i,
+        }
+    }
+}
+
 /// A node and a sign.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ExprId(u32);

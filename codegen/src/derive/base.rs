@@ -23,6 +23,9 @@ pub struct Dependence {
     pub dependent: Vec<(usize, Vec<(usize, Number)>)>,
 }
 
+/// So many states with small numbers are tried first.
+const SIMPLE_STATES: u64 = 24;
+
 /// The dependence among the columns of `y`, `y[joint][column]`, taken in order: a column is kept unless those before it span it.
 pub fn dependence(pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
     let columns = y.first().map_or(0, Vec::len);
@@ -120,7 +123,9 @@ fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[u
     let mut field = pool.field().clone();
     let mut settle = |x: Number| if field.number(&x) == field.zero() { Number::zero() } else { x };
     for state in 0.. {
-        let of = Pool::rational_state(state);
+        // Simple states keep the numbers small; if they do not tell the columns apart, general ones do.
+        let of: Box<dyn Fn(Symbol) -> Number> =
+            if state < SIMPLE_STATES { Box::new(Pool::simple_state(state)) } else { Box::new(Pool::rational_state(state)) };
         for row in y {
             let exprs: Vec<ExprId> = support.iter().chain([&column]).map(|&c| row[c]).collect();
             let mut equation = pool.evaluate(&exprs, &of).expect("a regressor has no reciprocals");

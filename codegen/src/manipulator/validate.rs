@@ -16,7 +16,7 @@
 
 mod bodies;
 mod choices;
-pub mod equations;
+mod equations;
 mod evaluate;
 mod geometry;
 mod joints;
@@ -118,6 +118,7 @@ fn validate(
         task,
         regressor: regressor?,
     };
+    equations::check(&manipulator, &places, context.diagnostics);
     Some((manipulator, places))
 }
 

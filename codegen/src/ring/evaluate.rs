@@ -89,10 +89,36 @@ impl Pool {
         let cache = std::cell::RefCell::new(HashMap::<Symbol, Number>::new());
         move |symbol| cache.borrow_mut().entry(symbol).or_insert_with(|| rational_value(symbol, number)).clone()
     }
+
+    /// Quarter turns for angles and -1, 0, 1 for all other symbols: states whose numbers stay small, by number.
+    pub fn simple_state(number: u64) -> impl Fn(Symbol) -> Number {
+        move |symbol| {
+            let kind = match symbol {
+                Symbol::Sine(_) | Symbol::Cosine(_) => 1,
+                Symbol::Position(_) => 2,
+                Symbol::Rate(_) | Symbol::RateSign(_) => 3,
+                Symbol::Acceleration(_) => 5,
+                Symbol::ReferenceRate(_) => 6,
+                Symbol::ReferenceAcceleration(_) => 7,
+                Symbol::Torque(_) => 8,
+                Symbol::Parameter(_) => 9,
+            };
+            let drawn = draw(number, kind, symbol.index());
+            Number::from(match symbol {
+                Symbol::Sine(_) => [0, 1, 0, -1][(drawn % 4) as usize],
+                Symbol::Cosine(_) => [1, 0, -1, 0][(drawn % 4) as usize],
+                _ => (drawn % 3) as i64 - 1,
+            })
+        }
+    }
+}
+
+fn draw(number: u64, kind: u64, index: u16) -> u64 {
+    super::scramble(super::scramble(number.wrapping_mul(64) + kind) ^ u64::from(index))
 }
 
 fn rational_value(symbol: Symbol, number: u64) -> Number {
-    let draw = |kind: u64, index: u16| super::scramble(super::scramble(number.wrapping_mul(64) + kind) ^ u64::from(index));
+    let draw = |kind: u64, index: u16| draw(number, kind, index);
     let small = |kind: u64, index: u16| {
         let bits = draw(kind, index);
         crate::exact::Rational::from((bits % 41) as i64 - 20) / crate::exact::Rational::from((bits >> 32) as i64 % 5 + 1)

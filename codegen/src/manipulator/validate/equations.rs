@@ -5,14 +5,86 @@
 //! - No joint moves any row of the task that the file writes: [`immovable_task`].
 //! - The inertia matrix B(q) is singular for every q (a massless last link without inertia, say): [`singular_inertia`].
 
+//! Each is decided exactly, in the prime field of the expressions' fingerprints.
+
 use super::{Places, Role};
-use crate::diagnostic::{Code, Diagnostic};
+use crate::derive::arm::Arm;
+use crate::derive::newton_euler::{inverse_dynamics, Motion};
+use crate::derive::parameters::{ParameterVector, View};
+use crate::derive::regressor::derivative_by_parameter;
+use crate::derive::{inertia, kinematics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::equations::field_of;
 use crate::manipulator::{Manipulator, ParameterId, RegressorChoice};
+use crate::ring::field::{Element, Field};
+use crate::ring::{ExprId, Pool};
 use crate::source::Span;
+
+/// Reports every fault of a description that only its equations show.
+pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnostics) {
+    let field = field_of(manipulator);
+    let mut found: Vec<Option<Diagnostic>> = Vec::new();
+    for (one, other) in nonlinear_pairs(manipulator, &field) {
+        found.push(nonlinear(manipulator, places, one, Some(other)));
+    }
+    let mut pool = Pool::new(field.clone());
+    let arm = Arm::new(&mut pool, manipulator, View::Nominal);
+    if places.task.is_some() {
+        let jacobian = kinematics::geometric_jacobian(&mut pool, &arm);
+        if manipulator.task.iter().all(|row| jacobian[row.index()].iter().all(|&e| e == ExprId::ZERO)) {
+            found.push(immovable_task(manipulator, places));
+        }
+    }
+    let b = inertia::inertia_matrix(&mut pool, &arm);
+    let values = b.iter().map(|row| row.iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
+    found.extend(zero_pivots(&field, values).into_iter().map(|joint| singular_inertia(manipulator, places, joint)));
+    found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));
+}
+
+/// Pairs of listed names, equal ones included, by which the second derivative of tau is not zero.
+fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId, ParameterId)> {
+    let RegressorChoice::Names(names) = &manipulator.regressor else { return Vec::new() };
+    let vector = ParameterVector::named(manipulator, names);
+    let mut pool = Pool::new(field.clone());
+    let arm = Arm::new(&mut pool, manipulator, View::Vector(&vector));
+    let motion = Motion::with_reference(&mut pool, &arm);
+    let tau = inverse_dynamics(&mut pool, &arm, &motion);
+    let mut pairs = Vec::new();
+    for one in 0..names.len() {
+        let column = derivative_by_parameter(&mut pool, &tau, one as u16);
+        for other in one..names.len() {
+            if derivative_by_parameter(&mut pool, &column, other as u16).iter().any(|&e| e != ExprId::ZERO) {
+                pairs.push((names[one], names[other]));
+            }
+        }
+    }
+    pairs
+}
+
+/// The joints at which symmetric elimination of B, at a generic state, meets a pivot of 0. B is positive semidefinite: such a joint
+/// accelerates nothing that the joints before it do not.
+fn zero_pivots(field: &Field, mut b: Vec<Vec<Element>>) -> Vec<usize> {
+    let n = b.len();
+    let mut zero = Vec::new();
+    for k in 0..n {
+        if b[k][k] == field.zero() {
+            zero.push(k);
+            continue;
+        }
+        let inverse = field.inverse(b[k][k]);
+        for i in k + 1..n {
+            let factor = field.mul(b[i][k], inverse);
+            for j in k + 1..n {
+                b[i][j] = field.sub(b[i][j], field.mul(factor, b[k][j]));
+            }
+        }
+    }
+    zero
+}
 
 /// tau is not linear in `parameter`: it occurs with a power, or multiplied by `other`, which is listed too.
 /// `None` if the regressor does not list `parameter`.
-pub fn nonlinear(
+fn nonlinear(
     manipulator: &Manipulator,
     places: &Places,
     parameter: ParameterId,
@@ -52,7 +124,7 @@ pub fn nonlinear(
 }
 
 /// No joint moves any row of the task. `None` if the file writes no task.
-pub fn immovable_task(manipulator: &Manipulator, places: &Places) -> Option<Diagnostic> {
+fn immovable_task(manipulator: &Manipulator, places: &Places) -> Option<Diagnostic> {
     let span = places.task_rows.iter().copied().reduce(Span::to).or(places.task)?;
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
     let message = format!("no joint moves any row of the task ({})", rows.join(", "));
@@ -61,7 +133,7 @@ pub fn immovable_task(manipulator: &Manipulator, places: &Places) -> Option<Diag
 }
 
 /// B(q) is singular for every q, because `joint` (by index) accelerates nothing beyond what the joints before it do.
-pub fn singular_inertia(manipulator: &Manipulator, places: &Places, joint: usize) -> Option<Diagnostic> {
+fn singular_inertia(manipulator: &Manipulator, places: &Places, joint: usize) -> Option<Diagnostic> {
     let at = places.joints.get(joint)?;
     let name = manipulator.joints.get(joint).map_or("", |j| j.name.as_str());
     let message = format!("the inertia matrix is singular for every q: joint `{name}` moves no inertia");

@@ -64,7 +64,7 @@ fn a_standard_row_turns_before_the_joint_and_twists_after_it() {
 
 #[test]
 fn a_modified_row_stands_wholly_before_the_joint() {
-    let joint = only(&arm(&[("standard", "modified")]));
+    let joint = only(&arm(&[("standard", "modified"), ("{mass: 2}", "{mass: 2, com: [1, 0, 0]}")]));
     // Rx(pi/2) Tx(1/2) Tz(1/4): z of the joint frame is -y of the base, so the offset goes there.
     assert_eq!(joint.placement.rotation, matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]]));
     assert_eq!(position(&joint.placement), [n(1, 2), n(-1, 4), n(0, 1)]);
@@ -109,12 +109,12 @@ fn what_is_not_given_has_the_value_of_the_format() {
 #[test]
 fn the_axis_of_a_motor_is_the_joint_axis_or_the_normalised_direction() {
     let motor = |edits: &[(&str, &str)]| only(&arm(edits)).motor.expect("a motor").axis;
-    let link = ("link:", "motor: {}\n    link:");
+    let link = ("link:", "motor: {inertia: 1}\n    link:");
     assert_eq!(motor(&[link, ("standard", "modified")]), [0, -1, 0].map(Number::from));
     let half = n(1, 2);
     let root = &n(3, 1).sqrt().expect("positive") * &half;
     assert_eq!(motor(&[link, ("standard", "modified"), ("alpha: pi/2", "alpha: pi/6")]), [n(0, 1), -&half, root]);
-    let axis = motor(&[("link:", "motor: {axis: [1, 0, -2]}\n    link:")]);
+    let axis = motor(&[("link:", "motor: {inertia: 1, axis: [1, 0, -2]}\n    link:")]);
     let fifth = n(1, 5).sqrt().expect("positive");
     assert_eq!(axis, [fifth.clone(), n(0, 1), -&(&fifth * &n(2, 1))]);
 }
@@ -198,7 +198,7 @@ fn numbers_that_a_float_cannot_hold_are_errors() {
         ("0*1e400", &[]),
         ("1e999999999", &[Code::OutOfRange]),
     ] {
-        check(&arm(&[("mass: 2", &format!("mass: {mass}"))]), codes);
+        check(&arm(&[("mass: 2", &format!("mass: {mass}, inertia: {{xx: 1, yy: 1, zz: 1}}"))]), codes);
     }
     let source = Source::new("robot.yaml", arm(&[("mass: 2", "mass: 1e39")]));
     assert!(read_for(&source, Scalar::F64).0.is_some());
