@@ -9,7 +9,7 @@ use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
 use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View};
 use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
-use crate::exact::Number;
+use crate::exact::{Number, Rational};
 use crate::manipulator::{JointKind, Manipulator};
 use crate::ring::field::{scramble, Element, Field};
 use crate::ring::{ExprId, Node, Pool, Symbol};
@@ -34,7 +34,7 @@ pub fn dependence(pool: &Pool, y: &[Vec<ExprId>]) -> Dependence {
     for column in (0..columns).filter(|c| !pivots.contains(c)) {
         let support: Vec<usize> =
             pivots.iter().enumerate().filter(|&(row, _)| reduced[row][column] != pool.field().zero()).map(|(_, &p)| p).collect();
-        let coefficients = exact_combination(pool, y, column, &support);
+        let coefficients = if support.is_empty() { Vec::new() } else { exact_combination(pool, y, column, &support) };
         dependent.push((column, support.into_iter().zip(coefficients).collect()));
     }
     Dependence { independent: pivots, dependent }
@@ -112,54 +112,113 @@ fn echelon(field: &Field, mut matrix: Vec<Vec<Element>>, columns: usize) -> (Vec
     (pivots, matrix)
 }
 
-/// The exact coefficients of Y_column = Σ k_s Y_s over the support, from rational states.
+/// The exact coefficients of Y_column = Σ k_s Y_s over the support: from as many equations as unknowns, those with the smallest numbers.
 fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[usize]) -> Vec<Number> {
-    if support.is_empty() {
-        return Vec::new();
-    }
-    let mut system: Vec<Vec<Number>> = Vec::new();
-    let mut pivots: Vec<usize> = Vec::new();
-    // Quotients of general constants may be zero without looking it: the field knows.
+    let simple = (0..SIMPLE_STATES).map(|s| Box::new(Pool::simple_state(s)) as Box<dyn Fn(Symbol) -> Number>);
+    let general = (0..).map(|s| Box::new(Pool::rational_state(s)) as Box<dyn Fn(Symbol) -> Number>);
+    let mut states = simple.chain(general);
     let mut field = pool.field().clone();
-    let mut settle = |x: Number| if field.number(&x) == field.zero() { Number::zero() } else { x };
-    for state in 0.. {
-        // Simple states keep the numbers small; if they do not tell the columns apart, general ones do.
-        let of: Box<dyn Fn(Symbol) -> Number> =
-            if state < SIMPLE_STATES { Box::new(Pool::simple_state(state)) } else { Box::new(Pool::rational_state(state)) };
-        for row in y {
-            let exprs: Vec<ExprId> = support.iter().chain([&column]).map(|&c| row[c]).collect();
-            let mut equation = pool.evaluate(&exprs, &of).expect("a regressor has no reciprocals");
-            for (known, &pivot) in system.iter().zip(&pivots) {
-                let factor = equation[pivot].clone();
-                if !factor.is_zero() {
-                    for (x, p) in equation.iter_mut().zip(known) {
-                        *x = settle(&*x - &(&factor * p));
-                    }
+    let mut equations: Vec<Vec<Number>> = Vec::new();
+    let mut wanted = SIMPLE_STATES as usize;
+    loop {
+        for of in states.by_ref().take(wanted) {
+            for row in y {
+                let exprs: Vec<ExprId> = support.iter().chain([&column]).map(|&c| row[c]).collect();
+                let equation = pool.evaluate(&exprs, &of).expect("a regressor has no reciprocals");
+                if equation.iter().any(|x| !x.is_zero()) {
+                    equations.push(equation);
                 }
-            }
-            let Some(pivot) = (0..support.len()).find(|&k| !equation[k].is_zero()) else { continue };
-            let scale = equation[pivot].clone();
-            let equation: Vec<Number> = equation.iter().map(|x| x.checked_div(&scale).expect("the pivot is not zero")).collect();
-            for known in &mut system {
-                let factor = known[pivot].clone();
-                if !factor.is_zero() {
-                    for (x, p) in known.iter_mut().zip(&equation) {
-                        *x = settle(&*x - &(&factor * p));
-                    }
-                }
-            }
-            system.push(equation);
-            pivots.push(pivot);
-            if system.len() == support.len() {
-                let mut solution = vec![Number::zero(); support.len()];
-                for (equation, &pivot) in system.iter().zip(&pivots) {
-                    solution[pivot] = equation[support.len()].clone();
-                }
-                return solution;
             }
         }
+        equations.sort_by_cached_key(|equation| (equation.iter().map(|x| x.terms().count()).sum::<usize>(), equation.clone()));
+        equations.dedup();
+        let values: Vec<Vec<Element>> =
+            (0..=support.len()).map(|k| equations.iter().map(|e| field.number(&e[k])).collect()).collect();
+        // Independent equations are the pivots among the columns of the transposed system.
+        let (independent, _) = echelon(&field, values, equations.len());
+        if independent.len() == support.len() {
+            let system: Vec<Vec<Number>> = independent.into_iter().map(|e| equations[e].clone()).collect();
+            return solve(&mut field, system);
+        }
+        wanted = support.len() + 1;
     }
-    unreachable!("independent columns give a full system after finitely many states")
+}
+
+/// The solution of a regular system, the right-hand sides last in each row.
+fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
+    let n = system.len();
+    let rational = system.iter().flatten().all(|x| x.as_rational().is_some());
+    if !rational && n <= LARGEST_BY_MINORS {
+        // By Cramer's rule: no quotient of general constants before the last step.
+        let determinant = minors(&system, &(0..n).collect::<Vec<_>>());
+        return (0..n)
+            .map(|k| {
+                let columns: Vec<usize> = (0..n).map(|c| if c == k { n } else { c }).collect();
+                quotient(field, &minors(&system, &columns), &determinant)
+            })
+            .collect();
+    }
+    // Quotients of general constants may be zero without looking it: the field knows.
+    let zero = field.zero();
+    for k in 0..n {
+        let pivot = (k..n).find(|&r| field.number(&system[r][k]) != zero).expect("the system is regular");
+        system.swap(k, pivot);
+        let scale = system[k][k].clone();
+        let row: Vec<Number> = system[k].iter().map(|x| quotient(field, x, &scale)).collect();
+        for (r, other) in system.iter_mut().enumerate() {
+            let factor = other[k].clone();
+            if r != k && !factor.is_zero() {
+                for (x, p) in other.iter_mut().zip(&row) {
+                    let difference = &*x - &(&factor * p);
+                    *x = if field.number(&difference) == zero { Number::zero() } else { difference };
+                }
+            }
+        }
+        system[k] = row;
+    }
+    system.into_iter().map(|mut row| row.pop().expect("the right-hand side")).collect()
+}
+
+/// Systems up to this size over general constants are solved by minors.
+const LARGEST_BY_MINORS: usize = 8;
+
+/// The determinant of chosen columns, by expansion along rows over sets of columns, each set once.
+fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
+    let n = columns.len();
+    let mut of_set: Vec<Number> = vec![Number::zero(); 1 << n];
+    of_set[0] = Number::one();
+    for set in 1usize..1 << n {
+        let row = set.count_ones() as usize - 1;
+        let mut sum = Number::zero();
+        let mut place = 0;
+        for (k, &column) in columns.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1) {
+            let entry = &system[row][column];
+            if !entry.is_zero() {
+                let term = entry * &of_set[set & !(1 << k)];
+                sum = if (row + place) % 2 == 0 { &sum + &term } else { &sum - &term };
+            }
+            place += 1;
+        }
+        of_set[set] = sum;
+    }
+    of_set.pop().expect("the full set")
+}
+
+/// a/b; as a fraction where it is one, however a and b are written.
+fn quotient(field: &mut Field, a: &Number, b: &Number) -> Number {
+    let value = a.checked_div(b).expect("the divisor is not zero");
+    if value.as_rational().is_some() || value.terms().count() == 1 && b.terms().count() == 1 {
+        return value;
+    }
+    // A short continued fraction that the field and an enclosure confirm.
+    let (low, high) = value.enclose(320);
+    let fraction = Number::from(Rational::simplest_in(low, high));
+    let same = field.number(&fraction) == field.number(&value);
+    if same && fraction.to_string().len() < 60 {
+        fraction
+    } else {
+        value
+    }
 }
 
 /// The regressor of a parameter vector, in a pool of its own.
