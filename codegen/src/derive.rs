@@ -3,6 +3,7 @@
 pub mod arm;
 pub mod base;
 pub mod coriolis;
+pub mod determinant;
 pub mod energy;
 pub mod forward_dynamics;
 pub mod gravity;

@@ -68,11 +68,15 @@ impl Model {
 
 /// From text to text: the module if the description is valid, and all there is to say about the description.
 pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
-    let (valid, diagnostics) = manipulator::read_for(source, options.scalar);
-    let generated = valid.map(|(manipulator, _)| {
-        let module = Model::new(manipulator).module(options);
-        let origin = Origin::of(source);
-        Generated { module: emit::rust::print(&module, &origin), runtime: emit::rust::print_runtime(&module, &origin) }
-    });
-    (generated, diagnostics)
+    let (valid, mut diagnostics) = manipulator::read_for(source, options.scalar);
+    let Some((manipulator, places)) = valid else { return (None, diagnostics) };
+    let module = Model::new(manipulator).module(options);
+    if let Some(value) = module.out_of_range() {
+        diagnostics.push(manipulator::product_out_of_range(&places, options.scalar, value));
+        return (None, diagnostics);
+    }
+    let origin = Origin::of(source);
+    let generated =
+        Generated { module: emit::rust::print(&module, &origin), runtime: emit::rust::print_runtime(&module, &origin) };
+    (Some(generated), diagnostics)
 }

@@ -105,3 +105,29 @@ pub struct Module {
     /// The scalar.
     pub scalar: Scalar,
 }
+
+impl Module {
+    /// A constant that the scalar cannot hold: products of numbers that each fit may not.
+    pub fn out_of_range(&self) -> Option<&Number> {
+        let operands = self
+            .functions
+            .iter()
+            .flat_map(|f| f.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(f.outputs.iter().map(|o| &o.operand)));
+        let constants = operands.filter_map(|operand| match operand {
+            Operand::Constant(value) => Some(value),
+            Operand::Step(_) | Operand::Input(_) => None,
+        });
+        constants.chain(self.parameters.iter().map(|(_, value, _)| value)).find(|value| !self.scalar.holds(value))
+    }
+}
+
+impl Scalar {
+    /// Whether the nearest float of a number is finite, and zero only for zero.
+    pub fn holds(self, value: &Number) -> bool {
+        let nearest = match self {
+            Scalar::F64 => value.to_f64(),
+            Scalar::F32 => f64::from(value.to_f32()),
+        };
+        nearest.is_finite() && (nearest != 0.0 || value.is_zero())
+    }
+}

@@ -314,3 +314,90 @@ fn closed_forms_are_the_same_expressions() {
         }
     }
 }
+
+/// The determinant, its factors and its singular configurations, as text.
+#[track_caller]
+fn check_determinant(text: &str, form: &str, factors: &[(&str, Option<&str>)]) {
+    let source = Source::new("arm.yaml", text);
+    let (read, diagnostics) = crate::manipulator::read(&source);
+    let model =
+        crate::Model::new(read.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, crate::diagnostic::Colour::Never))).0);
+    let found = determinant::determinant(&model, View::Nominal).expect("square");
+    let printer = crate::ring::print::Printer { notation: crate::ring::print::Notation::Text, parameters: &[] };
+    assert_eq!(printer.form(found.form.as_ref().expect("short")), form);
+    let texts: Vec<(String, Option<String>)> =
+        found.factors.iter().map(|f| (printer.form(&f.form), f.singular.clone())).collect();
+    let texts: Vec<(&str, Option<&str>)> = texts.iter().map(|(f, s)| (f.as_str(), s.as_deref())).collect();
+    assert_eq!(texts, factors);
+    // The product of the factors is the determinant.
+    let mut pool = Pool::new(model.field.clone());
+    let mut product = ExprId::ONE;
+    for factor in &found.factors {
+        let expr = pool.from_normal_form(&factor.form, crate::ring::normal_form::Arrangement::ByWave);
+        product = pool.mul(product, expr);
+    }
+    assert_eq!(pool.fingerprint(product), found.pool.fingerprint(found.value));
+}
+
+fn arm_text(rows: &[&str], task: &str) -> String {
+    let mut text = String::from("name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n");
+    for (i, row) in rows.iter().enumerate() {
+        text += &format!("  - {{name: j{i}, {row}, link: {{mass: 1, inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n");
+    }
+    text + task
+}
+
+#[test]
+fn determinants_are_factored_and_their_zeros_named() {
+    let scara = include_str!("../../../robots/scara.yaml");
+    check_determinant(scara, "1/4*sin(q2)", &[("1/4*sin(q2)", Some("q2 = k pi"))]);
+    // A polar arm: det J = q2.
+    let polar = arm_text(
+        &["type: revolute, a: 0, alpha: pi/2, d: 0, theta: pi/2", "type: prismatic, a: 0, alpha: 0, d: 0, theta: 0"],
+        "task: [x, y]\n",
+    );
+    check_determinant(&polar, "-q2", &[("-q2", Some("q2 = 0"))]);
+    // The anthropomorphic arm (the book, eq. 3.38): det J_P = -a2 a3 s3 (a2 c2 + a3 c23).
+    let anthropomorphic = arm_text(
+        &[
+            "type: revolute, a: 0, alpha: pi/2, d: 0, theta: 0",
+            "type: revolute, a: 2, alpha: 0, d: 0, theta: 0",
+            "type: revolute, a: 3, alpha: 0, d: 0, theta: 0",
+        ],
+        "task: [x, y, z]\n",
+    );
+    check_determinant(
+        &anthropomorphic,
+        "-9*sin(q2 + 2*q3) + 6*sin(q2 - q3) - 6*sin(q2 + q3) + 9*sin(q2)",
+        &[("sin(q3)", Some("q3 = k pi")), ("-18*cos(q2 + q3) - 12*cos(q2)", None)],
+    );
+}
+
+#[test]
+fn zeros_of_one_angle_are_named() {
+    // A planar arm whose second link sits at an offset angle: det J = a1 a2 sin(q2 + pi/4).
+    let offset = arm_text(
+        &["type: revolute, a: 1, alpha: 0, d: 0, theta: 0", "type: revolute, a: 1, alpha: 0, d: 0, theta: pi/4"],
+        "task: [x, y]\n",
+    );
+    check_determinant(
+        &offset,
+        "1/2*sqrt(2)*cos(q2) + 1/2*sqrt(2)*sin(q2)",
+        &[("1/2*sqrt(2)*cos(q2) + 1/2*sqrt(2)*sin(q2)", Some("q2 = atan(-1) + k pi"))],
+    );
+}
+
+#[test]
+fn six_axis_arms_have_their_textbook_factors() {
+    let model = |text: &str| {
+        let source = Source::new("arm.yaml", text);
+        crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0)
+    };
+    // Wrist, elbow and shoulder of the Puma. The elbow is stretched where the wrist centre lies on x2: a3 sin q3 + d4 cos q3 = 0.
+    let puma = model(include_str!("../../../robots/puma560.yaml"));
+    let found = determinant::determinant(&puma, View::Nominal).expect("square");
+    let singular: Vec<Option<&str>> = found.factors.iter().map(|f| f.singular.as_deref()).collect();
+    assert_eq!(singular, [Some("q3 = atan(-4318/203) + k pi"), Some("q5 = k pi"), None]);
+    let panda = model(include_str!("../../../robots/panda7.yaml"));
+    assert!(determinant::determinant(&panda, View::Nominal).is_err_and(|why| why.contains("not square")));
+}

@@ -31,6 +31,7 @@ use crate::description::{JointDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Polynomial;
 use crate::source::{Source, Span};
+pub use equations::product_out_of_range;
 use evaluate::Evaluator;
 use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};

@@ -82,3 +82,41 @@ impl Pool {
         })
     }
 }
+
+impl Pool {
+    /// Expressions rebuilt in another pool, with each symbol replaced by what `of` says.
+    pub fn substitute_into(&self, target: &mut Pool, exprs: &[ExprId], of: &dyn Fn(&mut Pool, Symbol) -> ExprId) -> Vec<ExprId> {
+        let needed = self.reachable(exprs);
+        let mut images = vec![ExprId::ZERO; self.len()];
+        for index in (0..self.len()).filter(|&i| needed[i]) {
+            let image = |e: ExprId| images[e.index()].signed(e.is_negated());
+            images[index] = match self.node(self.expr(index)) {
+                Node::Constant(_) => target.constant(&self.as_constant(self.expr(index)).expect("a constant")),
+                Node::Symbol(symbol) => of(target, symbol),
+                Node::Add(a, b) => target.add(image(a), image(b)),
+                Node::Mul(a, b) => target.mul(image(a), image(b)),
+                Node::Reciprocal(a) => target.reciprocal(image(a)),
+            };
+        }
+        exprs.iter().map(|e| images[e.index()].signed(e.is_negated())).collect()
+    }
+
+    /// Which nodes expressions need, by index.
+    pub(super) fn reachable(&self, exprs: &[ExprId]) -> Vec<bool> {
+        let mut needed = vec![false; self.len()];
+        exprs.iter().for_each(|e| needed[e.index()] = true);
+        for index in (0..self.len()).rev() {
+            if needed[index] {
+                match self.node(self.expr(index)) {
+                    Node::Add(a, b) | Node::Mul(a, b) => {
+                        needed[a.index()] = true;
+                        needed[b.index()] = true;
+                    }
+                    Node::Reciprocal(a) => needed[a.index()] = true,
+                    Node::Constant(_) | Node::Symbol(_) => {}
+                }
+            }
+        }
+        needed
+    }
+}

@@ -9,20 +9,7 @@ use crate::exact::Number;
 impl Pool {
     /// The exact values of expressions where each symbol has the value `of` says. `None` where a reciprocal meets 0.
     pub fn evaluate(&self, exprs: &[ExprId], of: &dyn Fn(Symbol) -> Number) -> Option<Vec<Number>> {
-        let mut needed = vec![false; self.len()];
-        exprs.iter().for_each(|e| needed[e.index()] = true);
-        for index in (0..self.len()).rev() {
-            if needed[index] {
-                match self.nodes[index] {
-                    Node::Add(a, b) | Node::Mul(a, b) => {
-                        needed[a.index()] = true;
-                        needed[b.index()] = true;
-                    }
-                    Node::Reciprocal(a) => needed[a.index()] = true,
-                    Node::Constant(_) | Node::Symbol(_) => {}
-                }
-            }
-        }
+        let needed = self.reachable(exprs);
         let mut values: Vec<Number> = vec![Number::zero(); self.len()];
         for index in 0..self.len() {
             if needed[index] {

@@ -180,16 +180,7 @@ fn merge(a: &Factors, b: &Factors) -> Factors {
 impl Pool {
     /// The normal forms of expressions; `None` for one that needs, on the way or at the end, more than `limit` terms or a reciprocal.
     pub fn normal_forms(&self, exprs: &[ExprId], limit: usize) -> Vec<Option<NormalForm>> {
-        let mut needed = vec![false; self.len()];
-        exprs.iter().for_each(|e| needed[e.index()] = true);
-        for index in (0..self.len()).rev() {
-            if needed[index] {
-                if let Node::Add(a, b) | Node::Mul(a, b) = self.nodes[index] {
-                    needed[a.index()] = true;
-                    needed[b.index()] = true;
-                }
-            }
-        }
+        let needed = self.reachable(exprs);
         let mut forms: Vec<Option<Rc<NormalForm>>> = vec![None; self.len()];
         for index in (0..self.len()).filter(|&i| needed[i]) {
             let of = |e: ExprId| forms[e.index()].clone();

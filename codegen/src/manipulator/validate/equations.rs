@@ -7,7 +7,7 @@
 
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
 
-use super::{Places, Role};
+use super::{Places, Role, Scalar};
 use crate::derive::arm::Arm;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterVector, View};
@@ -15,6 +15,7 @@ use crate::derive::regressor::derivative_by_parameter;
 use crate::derive::{inertia, kinematics};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::equations::field_of;
+use crate::exact::Number;
 use crate::manipulator::{Manipulator, ParameterId, RegressorChoice};
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Pool};
@@ -142,4 +143,18 @@ fn singular_inertia(manipulator: &Manipulator, places: &Places, joint: usize) ->
         Diagnostic::new(Code::SingularInertia, at.name, message, "moves nothing that has inertia", help)
             .also(at.link, "this link"),
     )
+}
+
+/// A number that the equations of the arm hold is beyond the range of the scalar, though those of the file are not.
+pub fn product_out_of_range(places: &Places, scalar: Scalar, value: &Number) -> Diagnostic {
+    let (name, size) = match scalar {
+        Scalar::F64 => ("f64", value.to_f64()),
+        Scalar::F32 => ("f32", f64::from(value.to_f32())),
+    };
+    let direction = if size == 0.0 { "too small" } else { "too large" };
+    let message = format!(
+        "a number that the equations of this arm need is {direction} for {name}: a product of lengths, masses or inertias"
+    );
+    let help = "look for a length, mass, inertia or ratio of an unlikely size: SI units throughout";
+    Diagnostic::new(Code::OutOfRange, places.name, message, "the equations of this arm", help)
 }

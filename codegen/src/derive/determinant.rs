@@ -1,0 +1,338 @@
+//! The determinant of the task Jacobian, its factors and the singular configurations.
+//!
+//! ```text
+//! det J(q) = 0: the end effector loses a direction of the task                          (the book, Sect. 3.3)
+//! ```
+//!
+//! The determinant is expanded by minors, each set of columns once. Joint variables that it does not depend on, which their zero
+//! derivative proves, are set to 0 first. What is left is factored as far as single joint variables go: seen as a polynomial in one
+//! variable, with the other waves as coefficients' carriers, its content in that variable is the greatest common divisor of
+//! univariate polynomials, in tan(q/2) for an angle.
+
+use std::collections::BTreeMap;
+
+use super::arm::Arm;
+use super::kinematics::geometric_jacobian;
+use super::parameters::View;
+use crate::exact::{Angle, Number, Rational};
+use crate::ring::normal_form::{Factors, NormalForm, Wave};
+use crate::ring::print::{Notation, Printer};
+use crate::ring::{ExprId, Pool, Symbol};
+use crate::Model;
+
+mod univariate;
+
+use univariate::Univariate;
+
+/// The determinant of a square task Jacobian.
+#[derive(Clone)]
+pub struct Determinant {
+    /// The expression's pool.
+    pub pool: Pool,
+    /// The determinant.
+    pub value: ExprId,
+    /// Its closed form, if it is not too long.
+    pub form: Option<NormalForm>,
+    /// Its factors, whose product it is, if there is a closed form.
+    pub factors: Vec<Factor>,
+}
+
+/// A factor of the determinant.
+#[derive(Clone, Debug)]
+pub struct Factor {
+    /// Its closed form.
+    pub form: NormalForm,
+    /// Where it is zero, if it depends on one joint variable alone: `q2 = k pi`.
+    pub singular: Option<String>,
+}
+
+/// Up to so many terms, on the way too, the determinant is sought in closed form.
+const TERMS: usize = 4000;
+
+/// The determinant, or why there is none.
+pub fn determinant(model: &Model, view: View<'_>) -> Result<Determinant, String> {
+    let manipulator = &model.manipulator;
+    let (rows, joints) = (manipulator.task.len(), manipulator.dof());
+    if rows != joints {
+        return Err(format!("the task has {rows} rows and the arm {joints} joints: its Jacobian is not square"));
+    }
+    let mut pool = Pool::new(model.field.clone());
+    let arm = Arm::new(&mut pool, manipulator, view);
+    let jacobian = geometric_jacobian(&mut pool, &arm);
+    let task: Vec<Vec<ExprId>> = manipulator.task.iter().map(|row| jacobian[row.index()].clone()).collect();
+    let value = by_minors(&mut pool, &task);
+    let mut simple = Pool::new(model.field.clone());
+    let fixed: Vec<u16> = (0..joints as u16).filter(|&i| pool.partial_derivative(&[value], i)[0] == ExprId::ZERO).collect();
+    let entries = pool.substitute_into(&mut simple, &task.concat(), &|pool, symbol| match symbol {
+        Symbol::Sine(i) | Symbol::Position(i) if fixed.contains(&i) => ExprId::ZERO,
+        Symbol::Cosine(i) if fixed.contains(&i) => ExprId::ONE,
+        _ => pool.symbol(symbol),
+    });
+    let task: Vec<Vec<ExprId>> = entries.chunks(joints).map(<[ExprId]>::to_vec).collect();
+    let reduced = by_minors(&mut simple, &task);
+    debug_assert!(simple.fingerprint(reduced) == pool.fingerprint(value));
+    let form = simple.normal_forms(&[reduced], TERMS).remove(0);
+    let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, form));
+    Ok(Determinant { pool: simple, value: reduced, form, factors })
+}
+
+/// Laplace's expansion along rows over sets of columns.
+fn by_minors(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> ExprId {
+    let n = matrix.len();
+    let mut of_set: Vec<ExprId> = vec![ExprId::ZERO; 1 << n];
+    of_set[0] = ExprId::ONE;
+    for set in 1usize..1 << n {
+        let row = set.count_ones() as usize - 1;
+        let mut sum = ExprId::ZERO;
+        for (place, column) in (0..n).filter(|c| set >> c & 1 == 1).enumerate() {
+            let term = pool.mul(matrix[row][column], of_set[set & !(1 << column)]);
+            sum = pool.add(sum, term.signed((row + place) % 2 == 1));
+        }
+        of_set[set] = sum;
+    }
+    of_set[(1 << n) - 1]
+}
+
+/// A joint variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Variable {
+    Angle(u16),
+    Position(u16),
+}
+
+/// The factors of a form: contents in single variables, then what is left; the constant factor goes into the first.
+fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
+    let mut rest = form.clone();
+    let mut found: Vec<(NormalForm, Option<String>)> = Vec::new();
+    let positions = |form: &NormalForm| {
+        let mut all: Vec<u16> = form
+            .terms()
+            .flat_map(|(_, f, _)| f.iter().filter_map(|(s, _)| if let Symbol::Position(i) = s { Some(*i) } else { None }))
+            .collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    };
+    let variables: Vec<Variable> =
+        rest.angles().into_iter().map(Variable::Angle).chain(positions(&rest).into_iter().map(Variable::Position)).collect();
+    for variable in variables {
+        if let Some((parts, quotient)) = content(model, &rest, variable) {
+            rest = quotient;
+            found.extend(parts);
+        }
+    }
+    let constant = rest.terms().all(|(wave, factors, _)| wave.angles.is_empty() && factors.is_empty());
+    if constant || found.is_empty() {
+        let scale = rest;
+        match found.first_mut() {
+            Some((first, _)) => *first = first.times(&scale, TERMS).expect("a constant adds no terms"),
+            None => found.push((scale, None)),
+        }
+    } else {
+        found.push((rest, None));
+    }
+    found.into_iter().map(|(form, singular)| Factor { form, singular }).collect()
+}
+
+/// The content of a form in one variable, in factors with their zeros, and the quotient; `None` if there is none.
+fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<(NormalForm, Option<String>)>, NormalForm)> {
+    let groups = split(form, variable);
+    let degree = groups.values().map(Univariate::degree).max()?;
+    let mut divisor: Option<Univariate> = None;
+    let mut field = model.field.clone();
+    for polynomial in groups.values() {
+        let polynomial = polynomial.to_degree(degree, matches!(variable, Variable::Angle(_)));
+        divisor = Some(match divisor {
+            None => polynomial,
+            Some(d) => univariate::gcd(&mut field, &d, &polynomial),
+        });
+    }
+    let divisor = divisor?.monic(&mut field);
+    // Roots at infinity (an angle of pi) that all share.
+    let is_angle = matches!(variable, Variable::Angle(_));
+    let infinite =
+        if is_angle { groups.values().map(|p| degree - p.to_degree(degree, true).proper_degree()).min().unwrap_or(0) } else { 0 };
+    let total = divisor.proper_degree() + infinite;
+    if total == 0 || (is_angle && total % 2 == 1) {
+        return None;
+    }
+    let mut quotient = NormalForm::default();
+    for ((wave, factors), polynomial) in &groups {
+        let part = univariate::divide(&mut field, &polynomial.to_degree(degree, is_angle), &divisor);
+        let part = from_univariate(&part, variable, degree - total);
+        let carrier = NormalForm::term(wave.clone(), factors.clone(), Number::one());
+        for (wave, factors, c) in part.times(&carrier, usize::MAX)?.terms() {
+            quotient.add_term(wave.clone(), factors.clone(), c.clone());
+        }
+    }
+    let parts = univariate::split_known_roots(&mut field, &divisor, infinite, is_angle)
+        .into_iter()
+        .map(|(part, degree)| {
+            let form = from_univariate(&part, variable, degree);
+            let singular = zeros(&form, variable, &part);
+            (form, Some(singular))
+        })
+        .collect();
+    // The pieces carry scales (sin q is 2t/(1 + t²)): what they have too much is divided out of the quotient.
+    let (parts, scale) = normalised(parts);
+    let quotient = quotient.times(&NormalForm::term(Wave::one(), Vec::new(), scale), usize::MAX)?;
+    Some((parts, quotient))
+}
+
+/// Scales each factor to a leading coefficient of 1, and returns the product of what was taken out.
+fn normalised(parts: Vec<(NormalForm, Option<String>)>) -> (Vec<(NormalForm, Option<String>)>, Number) {
+    let mut scale = Number::one();
+    let parts = parts
+        .into_iter()
+        .map(|(form, singular)| {
+            let groups = form.by_wave();
+            let leading = groups[0].1[0].1.clone();
+            let inverse = Number::one().checked_div(&leading).expect("a term is not zero");
+            scale = &scale * &leading;
+            let scaled = form.times(&NormalForm::term(Wave::one(), Vec::new(), inverse), usize::MAX).expect("no limit");
+            (scaled, singular)
+        })
+        .collect();
+    (parts, scale)
+}
+
+/// A form as polynomials in one variable, by what they are multiplied with.
+fn split(form: &NormalForm, variable: Variable) -> BTreeMap<(Wave, Factors), Univariate> {
+    let mut groups: BTreeMap<(Wave, Factors), Univariate> = BTreeMap::new();
+    for (wave, factors, c) in form.terms() {
+        match variable {
+            Variable::Position(i) => {
+                let power = factors.iter().find(|(s, _)| *s == Symbol::Position(i)).map_or(0, |(_, p)| *p as usize);
+                let others = factors.iter().filter(|(s, _)| *s != Symbol::Position(i)).copied().collect();
+                groups.entry((wave.clone(), others)).or_default().add(&Univariate::monomial(power, c.clone()));
+            }
+            Variable::Angle(i) => {
+                let k = wave.angles.iter().find(|(a, _)| *a == i).map_or(0, |(_, k)| *k);
+                let others: Vec<(u16, i32)> = wave.angles.iter().filter(|(a, _)| *a != i).copied().collect();
+                // sin(r + kq) = sin r cos kq + cos r sin kq, cos(r + kq) = cos r cos kq - sin r sin kq; r leads with a positive coefficient or flips.
+                let flip = others.first().is_some_and(|(_, k)| *k < 0);
+                let carrier: Vec<(u16, i32)> = others.iter().map(|(a, k)| (*a, if flip { -k } else { *k })).collect();
+                let mut push = |sine: bool, part: Univariate, negative: bool| {
+                    if carrier.is_empty() && sine {
+                        return;
+                    }
+                    let negative = negative != (sine && flip);
+                    let key = (Wave { angles: carrier.clone(), sine }, factors.clone());
+                    groups.entry(key).or_default().add(&if negative { part.negated() } else { part });
+                };
+                let (cosine, sine) = (Univariate::wave(k, false, c), Univariate::wave(k, true, c));
+                if wave.sine {
+                    push(true, cosine, false);
+                    push(false, sine, false);
+                } else {
+                    push(false, cosine, false);
+                    push(true, sine, true);
+                }
+            }
+        }
+    }
+    groups.retain(|_, polynomial| !polynomial.is_zero());
+    groups
+}
+
+/// The form of a polynomial: of t^j as sin^j(q/2) cos^(degree - j)(q/2), or of q^j.
+fn from_univariate(polynomial: &Univariate, variable: Variable, degree: usize) -> NormalForm {
+    let mut form = NormalForm::default();
+    for (power, c) in polynomial.coefficients().iter().enumerate().filter(|(_, c)| !c.is_zero()) {
+        let term = match variable {
+            Variable::Position(i) => {
+                let factors = if power == 0 { Vec::new() } else { vec![(Symbol::Position(i), power as u32)] };
+                NormalForm::term(Wave::one(), factors, c.clone())
+            }
+            Variable::Angle(i) => half_angle_term(i, power, degree - power, c),
+        };
+        for (wave, factors, c) in term.terms() {
+            form.add_term(wave.clone(), factors.clone(), c.clone());
+        }
+    }
+    form
+}
+
+/// c sin^a(q/2) cos^b(q/2), a + b even.
+fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
+    let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
+    let wave = |sine: bool, c: Number| NormalForm::term(Wave { angles: vec![(angle, 1)], sine }, Vec::new(), c);
+    let mut form = NormalForm::term(Wave::one(), Vec::new(), c.clone());
+    let mut multiply = |factor: &NormalForm| form = form.times(factor, usize::MAX).expect("no limit");
+    if a % 2 == 1 {
+        multiply(&wave(true, half.clone()));
+    }
+    let with_cosine = |negative: bool| {
+        let mut sum = wave(false, if negative { -&half } else { half.clone() });
+        sum.add_term(Wave::one(), Vec::new(), half.clone());
+        sum
+    };
+    (0..a / 2).for_each(|_| multiply(&with_cosine(true)));
+    (0..b / 2).for_each(|_| multiply(&with_cosine(false)));
+    form
+}
+
+/// Where a factor in one variable is zero.
+fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> String {
+    let printer = Printer { notation: Notation::Text, parameters: &[] };
+    let coefficient = |angles: Vec<(u16, i32)>, sine: bool| {
+        form.terms().find(|(w, _, _)| w.angles == angles && w.sine == sine).map_or(Number::zero(), |(_, _, c)| c.clone())
+    };
+    match variable {
+        Variable::Position(i) => {
+            let name = format!("q{}", i + 1);
+            match polynomial.coefficients() {
+                [zero, one] => {
+                    let root = (-zero).checked_div(one).expect("the leading coefficient is not zero");
+                    format!("{name} = {}", printer.number(&root))
+                }
+                _ => format!("{name} with {} = 0", printer.form(form)),
+            }
+        }
+        Variable::Angle(i) => {
+            let name = format!("q{}", i + 1);
+            let highest = form.terms().map(|(w, _, _)| w.order()).max().unwrap_or(0);
+            let (a, b, c) = (coefficient(vec![(i, 1)], false), coefficient(vec![(i, 1)], true), coefficient(Vec::new(), false));
+            if highest != 1 {
+                return format!("{name} with {} = 0", printer.form(form));
+            }
+            match (a.is_zero(), b.is_zero(), c.is_zero()) {
+                (true, false, true) => format!("{name} = k pi"),
+                (false, true, true) => format!("{name} = pi/2 + k pi"),
+                (false, false, true) => {
+                    let ratio = (-&a).checked_div(&b).expect("b is not zero");
+                    format!("{name} = atan({}) + k pi", printer.number(&ratio))
+                }
+                _ => linear_with_constant(&printer, &name, &a, &b, &c),
+            }
+        }
+    }
+}
+
+/// a cos q + b sin q + c = 0.
+fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Number, c: &Number) -> String {
+    let square = &(a * a) + &(b * b);
+    if (&square - &(c * c)).sign() == std::cmp::Ordering::Less {
+        return "never".into();
+    }
+    let radius = square.sqrt().expect("a sum of squares");
+    let ratio = (-c).checked_div(&radius).expect("a wave is there");
+    let centre = if b.is_zero() && a.sign() == std::cmp::Ordering::Greater {
+        String::new()
+    } else {
+        format!("atan2({}, {}) ", printer.number(b), printer.number(a))
+    };
+    // cos(q - centre) = ratio
+    let exact = [(0i64, 1i64), (1, 6), (1, 4), (1, 3), (1, 2), (2, 3), (3, 4), (5, 6), (1, 1)].into_iter().find(|&(n, d)| {
+        let part = Number::from(Rational::from(n) / Rational::from(d));
+        Angle::new(&part * &Number::pi()).cos() == ratio
+    });
+    let opening = match exact {
+        Some((0, _)) => return format!("{name} = {centre}{}2 k pi", if centre.is_empty() { "" } else { "+ " }),
+        Some((1, 1)) => return format!("{name} = {centre}{}pi + 2 k pi", if centre.is_empty() { "" } else { "+ " }),
+        Some((1, d)) => format!("pi/{d}"),
+        Some((n, d)) => format!("{n} pi/{d}"),
+        None => format!("acos({})", printer.number(&ratio)),
+    };
+    format!("{name} = {centre}+- {opening} + 2 k pi")
+}
