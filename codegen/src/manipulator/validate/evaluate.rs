@@ -48,6 +48,10 @@ pub(super) fn number(
         Scalar::F64 => (value.to_f64() == 0.0, value.to_f64().is_infinite()),
         Scalar::F32 => (value.to_f32() == 0.0, value.to_f32().is_infinite()),
     };
+    // A zero that no reduction sees, such as sqrt(3 + 2 sqrt(2)) - 1 - sqrt(2).
+    if zero && value.sign() == Ordering::Equal {
+        return Some(Number::zero());
+    }
     if infinite || (zero && !value.is_zero()) {
         diagnostics.push(out_of_range(expression.span, text_of(&value), infinite));
         return None;
