@@ -14,9 +14,9 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::{Atom, Number, Polynomial, Rational};
 
 /// Terms of an exact number.
-const MAX_TERMS: usize = 16;
+const MAX_TERMS: usize = 8;
 /// Bits of a numerator or denominator.
-const MAX_BITS: usize = 1 << 14;
+const MAX_BITS: usize = 1 << 12;
 /// Roots within roots.
 const MAX_NESTING: usize = 2;
 /// Different roots in a divisor: rationalising it doubles the terms with each.
