@@ -12,9 +12,6 @@ use armgen_codegen::source::Source;
 /// Files that show how several kinds of faults come out together.
 const MIXED: [&str; 2] = ["many-faults", "windows-lines-and-umlauts"];
 
-/// Files whose faults only the equations show: they are read as valid as long as no equations are consulted.
-const UNTIL_EQUATIONS: [&str; 3] = ["immovable-task", "nonlinear-parameter-length", "singular-inertia"];
-
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("bad")
 }
@@ -50,7 +47,7 @@ fn every_bad_file_is_told_what_is_wrong() {
         let (source, valid, diagnostics) = read(&stem);
         let rendered = diagnostics.render(&source, Colour::Never);
         assert_eq!(valid, !diagnostics.has_errors(), "{rendered}");
-        if !UNTIL_EQUATIONS.contains(&stem.as_str()) && !MIXED.contains(&stem.as_str()) {
+        if !MIXED.contains(&stem.as_str()) {
             let code = code_of(&stem).unwrap_or_else(|| panic!("no code is called as {stem}.yaml is"));
             assert!(diagnostics.iter().any(|d| d.code == code), "{stem}.yaml does not get {code}:\n{rendered}");
             assert_eq!(diagnostics.has_errors(), code.severity() == Severity::Error, "{rendered}");

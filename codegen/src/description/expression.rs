@@ -22,7 +22,7 @@ const MAX_DEPTH: usize = 32;
 /// Characters of an expression.
 const MAX_TEXT: usize = 2000;
 /// Digits of a decimal.
-const MAX_DIGITS: usize = 1000;
+const MAX_DIGITS: usize = 200;
 /// Powers of ten of a decimal, either way.
 const MAX_POWER: i64 = 1000;
 

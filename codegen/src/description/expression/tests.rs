@@ -111,8 +111,8 @@ fn long_inputs_end_soon() {
     for text in ["9".repeat(1_000_000), "-".repeat(1_000_000), "1+".repeat(500_000), "(".repeat(1_000_000)] {
         assert_eq!(read(&text).expect_err("too long").code, Code::TooComplex);
     }
-    assert_eq!(read(&"1".repeat(1500)).expect_err("too many digits").code, Code::TooComplex);
-    assert!(read(&"1".repeat(1000)).is_ok());
+    assert_eq!(read(&"1".repeat(201)).expect_err("too many digits").code, Code::TooComplex);
+    assert!(read(&"1".repeat(200)).is_ok());
     assert!(read("1+".repeat(900).trim_end_matches('+')).is_ok());
     assert_eq!(read(&"-".repeat(1000)).expect_err("too deep").code, Code::TooComplex);
 }

@@ -1,10 +1,10 @@
-//! Faults of a description that only its equations show: the diagnostics about them, given what was found.
+//! Faults of a description that only its equations show:
 //!
 //! - tau is not linear in the names that `regressor` lists together (a length, say, or a mass and its centre of mass both):
-//!   [`nonlinear`].
-//! - No joint moves any row of the task that the file writes: [`immovable_task`].
-//! - The inertia matrix B(q) is singular for every q (a massless last link without inertia, say): [`singular_inertia`].
-
+//!   second derivatives of tau.
+//! - No joint moves any row of the task that the file writes: rows of the Jacobian that are identically zero.
+//! - The inertia matrix B(q) is singular for every q (a massless last link without inertia, say): pivots of an elimination.
+//!
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
 
 use super::{Places, Role, Scalar};
@@ -18,7 +18,7 @@ use crate::equations::field_of;
 use crate::exact::Number;
 use crate::manipulator::{Manipulator, ParameterId, RegressorChoice};
 use crate::ring::field::{Element, Field};
-use crate::ring::{ExprId, Pool};
+use crate::ring::{ExprId, Pool, Symbol};
 use crate::source::Span;
 
 /// Reports every fault of a description that only its equations show.
@@ -50,6 +50,17 @@ fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId
     let arm = Arm::new(&mut pool, manipulator, View::Vector(&vector));
     let motion = Motion::with_reference(&mut pool, &arm);
     let tau = inverse_dynamics(&mut pool, &arm, &motion);
+    // All second derivatives at once: the second derivative along a direction with a symbol of its own for each name.
+    let mut along_all = |exprs: &[ExprId]| {
+        pool.differentiate(exprs, &mut |pool, symbol| match symbol {
+            Symbol::Parameter(k) => pool.symbol(Symbol::Torque(k)),
+            _ => ExprId::ZERO,
+        })
+    };
+    let first = along_all(&tau);
+    if along_all(&first).iter().all(|&e| e == ExprId::ZERO) {
+        return Vec::new();
+    }
     let mut pairs = Vec::new();
     for one in 0..names.len() {
         let column = derivative_by_parameter(&mut pool, &tau, one as u16);

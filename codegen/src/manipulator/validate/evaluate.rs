@@ -14,9 +14,9 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::{Atom, Number, Polynomial, Rational};
 
 /// Terms of an exact number.
-const MAX_TERMS: usize = 16;
+const MAX_TERMS: usize = 8;
 /// Bits of a numerator or denominator.
-const MAX_BITS: usize = 1 << 14;
+const MAX_BITS: usize = 1 << 12;
 /// Roots within roots.
 const MAX_NESTING: usize = 2;
 /// Different roots in a divisor: rationalising it doubles the terms with each.
@@ -48,6 +48,10 @@ pub(super) fn number(
         Scalar::F64 => (value.to_f64() == 0.0, value.to_f64().is_infinite()),
         Scalar::F32 => (value.to_f32() == 0.0, value.to_f32().is_infinite()),
     };
+    // A zero that no reduction sees, such as sqrt(3 + 2 sqrt(2)) - 1 - sqrt(2).
+    if zero && value.sign() == Ordering::Equal {
+        return Some(Number::zero());
+    }
     if infinite || (zero && !value.is_zero()) {
         diagnostics.push(out_of_range(expression.span, text_of(&value), infinite));
         return None;

@@ -65,7 +65,10 @@ fn reserved(name: &str) -> Option<&'static str> {
         return Some("a word of expressions");
     }
     let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    (VARIABLES.contains(&letters) && letters.len() < name.len()).then_some("a joint variable of the equations")
+    // Joints are counted from 1.
+    let number = &name[letters.len()..];
+    let variable = VARIABLES.contains(&letters) && !number.is_empty() && !number.starts_with('0');
+    variable.then_some("a joint variable of the equations")
 }
 
 fn is_identifier(name: &str) -> bool {
@@ -95,11 +98,11 @@ mod tests {
     #[test]
     fn keywords_words_of_expressions_and_joint_variables_are_reserved() {
         for name in
-            ["fn", "self", "Self", "gen", "try", "async", "pi", "deg", "sqrt", "q1", "dq12", "ddq3", "dqr1", "ddqr07", "_"]
+            ["fn", "self", "Self", "gen", "try", "async", "pi", "deg", "sqrt", "q1", "dq12", "ddq3", "dqr1", "ddqr70", "_"]
         {
             check(name, false);
         }
-        for name in ["q", "dq", "q1a", "m1", "qr1", "Pi", "_x", "union", "raw", "r\u{e4}der", "I1", "mcx1"] {
+        for name in ["q", "q0", "dq", "q1a", "m1", "qr1", "Pi", "_x", "union", "raw", "r\u{e4}der", "I1", "mcx1"] {
             check(name, true);
         }
         for name in ["", "1a", "a b", "a-b", "a.b", "r#fn", "a\u{2019}"] {
