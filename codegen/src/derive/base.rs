@@ -190,14 +190,12 @@ fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
     for set in 1usize..1 << n {
         let row = set.count_ones() as usize - 1;
         let mut sum = Number::zero();
-        let mut place = 0;
-        for (k, &column) in columns.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1) {
+        for (place, (k, &column)) in columns.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1).enumerate() {
             let entry = &system[row][column];
             if !entry.is_zero() {
                 let term = entry * &of_set[set & !(1 << k)];
-                sum = if (row + place) % 2 == 0 { &sum + &term } else { &sum - &term };
+                sum = if (row + place).is_multiple_of(2) { &sum + &term } else { &sum - &term };
             }
-            place += 1;
         }
         of_set[set] = sum;
     }

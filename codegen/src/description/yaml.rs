@@ -1,13 +1,12 @@
 //! YAML text -> a tree of nodes, each with its place.
 //!
 //! The tree is built from the events of a YAML parser, not through serde: so scalars stay the text that stands in the file, every
-//! duplicate key is found (not the first alone), and aliases, tags and second documents can be judged where they stand. It also
-//! keeps a serde reader out of the build of everything that is generated.
+//! duplicate key is found (not the first alone), and aliases, tags and second documents can be judged where they stand.
 //! Absent from here on: YAML syntax, anchors and aliases (a node that is referred to is copied), duplicate keys.
 
 use std::collections::BTreeMap;
 
-use granit_parser::{options, ErrorKind, Event, Parser, ScalarStyle, ScanError};
+use serde_yaml::granit_parser::{options, ErrorKind, Event, Parser, ScalarStyle, ScanError};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::source::{Source, Span, Spanned};
@@ -124,7 +123,10 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    fn run<'i>(mut self, events: impl Iterator<Item = Result<(Event<'i>, granit_parser::Span), ScanError>>) -> Option<Node> {
+    fn run<'i>(
+        mut self,
+        events: impl Iterator<Item = Result<(Event<'i>, serde_yaml::granit_parser::Span), ScanError>>,
+    ) -> Option<Node> {
         let mut documents = 0;
         for event in events {
             let (event, at) = match event {
@@ -165,11 +167,11 @@ impl Builder<'_> {
                     self.place(node, anchor)?;
                 }
                 Event::SequenceStart(style, anchor, _) => {
-                    let flow = style == granit_parser::StructureStyle::Flow;
+                    let flow = style == serde_yaml::granit_parser::StructureStyle::Flow;
                     self.open.push(Open { start: span, anchor, flow, content: Content::List(Vec::new()) });
                 }
                 Event::MappingStart(style, anchor, _) => {
-                    let flow = style == granit_parser::StructureStyle::Flow;
+                    let flow = style == serde_yaml::granit_parser::StructureStyle::Flow;
                     let content = Content::Mapping(Vec::new(), BTreeMap::new(), None);
                     self.open.push(Open { start: span, anchor, flow, content });
                 }

@@ -68,7 +68,7 @@ impl Univariate {
 
     /// self += other; of two numerators the one of lower formal degree is expanded by 1 + t².
     pub(super) fn add(&mut self, other: &Univariate) {
-        let even = self.degree() % 2 == 0 && other.degree() % 2 == 0;
+        let even = self.degree().is_multiple_of(2) && other.degree().is_multiple_of(2);
         let degree = self.degree().max(other.degree());
         let (mut sum, other) = (self.to_degree(degree, even), other.to_degree(degree, even));
         for (a, b) in sum.coefficients.iter_mut().zip(&other.coefficients) {
