@@ -18,15 +18,15 @@
 //! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the memory as it was.
 
 mod adaptive;
-mod gains;
 mod inverse_dynamics;
+mod limits;
 mod operational_space;
 mod pd;
 mod robust;
 
 pub use adaptive::{Adaptive, Interval};
-pub use gains::{Gain, GainError, TorqueLimits};
 pub use inverse_dynamics::InverseDynamics;
+pub use limits::TorqueLimits;
 pub use operational_space::{NullSpace, OperationalSpace};
 pub use pd::PdGravity;
 pub use robust::{BoundaryLayer, Robust};

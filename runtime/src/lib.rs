@@ -15,12 +15,17 @@
 
 pub use nalgebra;
 
+pub mod clik;
 pub mod control;
+pub mod gains;
 pub mod linalg;
+pub mod manipulability;
 pub mod orientation;
 pub mod reference;
 pub mod robot;
 #[cfg(feature = "std")]
 pub mod simulation;
+#[cfg(feature = "std")]
+pub mod stability;
 pub mod task;
 pub mod trajectory;

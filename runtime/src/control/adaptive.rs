@@ -11,8 +11,9 @@
 //! be right. That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever
 //! V says: compute the spectral radius of the sampled loop first (module `stability`).
 
-use super::{check_joint, gains, issue, ControlError, Gain, GainError, Torque, TorqueLimits};
+use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
+    gains::{self, Gain, GainError},
     linalg::is_finite,
     reference::{JointReference, State},
     robot::Regressor,

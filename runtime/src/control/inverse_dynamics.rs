@@ -3,8 +3,9 @@
 //! With u = B y + n and a perfect model, ddq = y. Choosing y = ddq_d + K_D de + K_P e leaves dde + K_D de + K_P e = 0:
 //! n decoupled, linear, second-order errors with natural frequency sqrt(k_P) and damping k_D / (2 sqrt(k_P)).
 
-use super::{check_joint, gains, issue, ControlError, Gain, GainError, Torque, TorqueLimits};
+use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
+    gains::{self, Gain, GainError},
     reference::{JointReference, State},
     robot::Dynamics,
 };

@@ -13,8 +13,9 @@
 //! The integral runs away while a torque limit keeps the error from closing. So, while a torque is cut, a row of the integral moves
 //! only towards zero, and it never leaves its own limit where one is given.
 
-use super::{check, gains, issue, ControlError, Gain, GainError, Torque, TorqueLimits};
+use super::{check, issue, ControlError, Torque, TorqueLimits};
 use crate::{
+    gains::{self, Gain, GainError},
     linalg::{is_finite, saturate, Damping, RightInverse},
     reference::{OperationalReference, Pose, State},
     robot::Dynamics,
@@ -41,6 +42,12 @@ impl<T: RealField + Copy, const N: usize> NullSpace<T, N> {
         gains::positive(Gain::NullSpace, &damping)?;
         gains::finite(Gain::NullSpace, &posture)?;
         Ok(Self { stiffness, damping, posture })
+    }
+
+    /// Diagonals of K_N and D_N.
+    #[cfg(feature = "std")]
+    pub(crate) fn gains(&self) -> (SVector<T, N>, SVector<T, N>) {
+        (self.stiffness, self.damping)
     }
 
     fn acceleration(&self, state: &State<T, N>) -> SVector<T, N> {

@@ -3,8 +3,9 @@
 //! u = g^(q) + K_P e + K_D de holds any posture with the model's gravity right, for all positive K_P and K_D in continuous time:
 //! V = 1/2 dq' B dq + 1/2 e' K_P e decreases along K_D and friction. With de = -dq for a posture that is held, this is eq. 8.51.
 
-use super::{check_joint, gains, issue, ControlError, Gain, GainError, Torque, TorqueLimits};
+use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
+    gains::{self, Gain, GainError},
     reference::{JointReference, State},
     robot::Dynamics,
 };

@@ -11,8 +11,9 @@
 //! as long as rho exceeds |eta|. Inside the layer the law is linear, with gains K_P + rho/epsilon Q12 and K_D + rho/epsilon Q22:
 //! the error does not vanish under a constant uncertainty, it is bounded.
 
-use super::{check_joint, gains, issue, ControlError, Gain, GainError, Torque, TorqueLimits};
+use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
+    gains::{self, Gain, GainError},
     linalg::{diagonal_lyapunov, LyapunovBlocks},
     reference::{JointReference, State},
     robot::Dynamics,

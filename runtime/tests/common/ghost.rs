@@ -2,7 +2,8 @@
 
 use super::scara::Scara;
 use armgen_runtime::{
-    reference::Pose,
+    clik::{Integration, JointLimits, SecondOrder},
+    reference::{JointReference, Pose, State},
     task::{Row, Task},
     trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, Reach, Segment, Turn},
 };
@@ -86,4 +87,29 @@ pub fn nominal() -> Scara<f64> {
 
 pub fn loaded() -> Scara<f64> {
     Scara::loaded()
+}
+
+/// The joint reference along the path and the hold, sample by sample: second-order CLIK, consistent with the hold.
+pub fn joint_reference() -> Vec<JointReference<f64, 4>> {
+    let (robot, trajectory) = (nominal(), ghost::<f64>());
+    let clik = second_order(Integration::HoldConsistent);
+    let mut state = State::at_rest(start());
+    (0..=22_000)
+        .map(|k| {
+            let step = clik.step(&robot, &state, &trajectory.sample(PERIOD * k)).unwrap();
+            state = step.next;
+            step.reference
+        })
+        .collect()
+}
+
+pub fn second_order(integration: Integration) -> SecondOrder<f64, 4, 4> {
+    let limits = JointLimits::rates([50.0; 4]).unwrap();
+    let (k_p, k_d) = ([1000.0, 1000.0, 2000.0, 1.0], [10.0, 10.0, 50.0, 1.0]);
+    SecondOrder::new(task(), k_p, k_d, 1e-3, integration, limits, [1e-3; 4]).unwrap()
+}
+
+/// 81 postures along the path, every 250 ms.
+pub fn postures() -> Vec<Vector4<f64>> {
+    joint_reference().iter().take(20_001).step_by(250).map(|r| r.q).collect()
 }

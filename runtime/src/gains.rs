@@ -1,12 +1,13 @@
-//! Gains, checked once.
+//! Gains and limits, checked once.
+//!
+//! All gain matrices are diagonal: positive definite where every element is positive.
 
-use crate::linalg::saturate;
 use nalgebra::{RealField, SVector};
 
 /// What a refused number was meant for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gain {
-    /// K_P, 1/s^2 (or N m/rad for [`PdGravity`](super::PdGravity)).
+    /// K_P, 1/s^2 (or N m/rad for [`PdGravity`](crate::control::PdGravity)).
     Proportional,
     /// K_D, 1/s (or N m s/rad).
     Derivative,
@@ -26,6 +27,12 @@ pub enum Gain {
     BoundaryLayer,
     /// Gains of the null space.
     NullSpace,
+    /// Limits of joint variables.
+    PositionLimit,
+    /// Limits of joint rates.
+    RateLimit,
+    /// Tolerance of the error of a task row.
+    Tolerance,
     /// Limit of the integral.
     IntegralLimit,
     /// Torque limit.
@@ -94,27 +101,4 @@ pub(crate) fn positive_scalar<T: RealField + Copy>(gain: Gain, value: T) -> Resu
 /// Finite and not negative.
 pub(crate) fn not_negative_scalar<T: RealField + Copy>(gain: Gain, value: T) -> Result<(), GainError> {
     not_negative(gain, &SVector::<T, 1>::new(value))
-}
-
-/// The largest torque (force) that each joint can give, to either side.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TorqueLimits<T, const N: usize> {
-    bound: SVector<T, N>,
-}
-
-impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
-    /// The limits of the joints, N m or N.
-    ///
-    /// # Errors
-    /// Where one is not positive and finite.
-    pub fn new(bound: [T; N]) -> Result<Self, GainError> {
-        let bound = SVector::from(bound);
-        positive(Gain::TorqueLimit, &bound)?;
-        Ok(Self { bound })
-    }
-
-    /// `tau` within the limits, and whether anything was cut.
-    pub fn apply(&self, tau: &SVector<T, N>) -> (SVector<T, N>, bool) {
-        saturate(tau, &self.bound)
-    }
 }

@@ -1,0 +1,63 @@
+//! Closed-loop inverse kinematics: joint motions that follow a motion of the end effector.
+//!
+//! Integrating dq = J^-1 v alone drifts. Fed back, the error e = x_d - x(q) of the task's rows obeys de = v_d - J dq, and
+//!
+//! | algorithm | law | error | the book |
+//! |---|---|---|---|
+//! | [`JacobianInverse`] | dq = J^-1 (v_d + K e) | de + K e = 0 | Sect. 3.7.1, eq. 3.70 |
+//! | [`JacobianTranspose`] | dq = J' K e | bounded while x_d moves, 0 at rest | Sect. 3.7.2, eq. 3.76 |
+//! | [`PseudoInverse`] | dq = J^+ (v_d + K e) + (I - J^+ J) dq_0 | de + K e = 0 | Sect. 3.7.1, eq. 3.72 |
+//! | [`DampedLeastSquares`] | dq = J' (J J' + lambda^2 I)^-1 (v_d + K e) | as the inverse, away from singularities | Sect. 3.5, eq. 3.59 |
+//! | [`SecondOrder`] | ddq = J^+ (a_d + K_D de + K_P e - dJ dq) | dde + K_D de + K_P e = 0 | Sect. 3.7.4, eq. 3.100 |
+//!
+//! Sampled at T_s these hold while T_s K is small: the inverse wants T_s k < 2, the transpose T_s lambda_max(J' K J) < 2
+//! ([`JacobianTranspose::loop_gain`]).
+//!
+//! [`Clik`] runs a first-order algorithm: it bounds the rates, stops at joint limits and names what happened ([`Outcome`]).
+
+mod first_order;
+mod follow;
+mod limits;
+mod objective;
+mod second_order;
+
+pub use first_order::{Algorithm, DampedLeastSquares, JacobianInverse, JacobianTranspose, PseudoInverse, Rates};
+pub use follow::{Clik, Reached, Step};
+pub use limits::JointLimits;
+pub use objective::{JointRangeDistance, Manipulability, NoObjective, Objective};
+pub use second_order::{Integration, SecondOrder, SecondOrderStep};
+
+/// Why there is no step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClikError {
+    /// Joint variables or rates are infinite or NaN.
+    StateNotFinite,
+    /// The reference is infinite or NaN.
+    ReferenceNotFinite,
+    /// The Jacobian has lost a row of the task and the algorithm has no damping: use [`DampedLeastSquares`], or keep away.
+    Singular,
+    /// The law gave infinite or NaN rates: gains or model are beyond the range of the scalar.
+    RatesNotFinite,
+}
+
+/// What a step, or a whole approach, came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Every error is within its tolerance.
+    Converged,
+    /// The error is above its tolerance, and the law is at work.
+    Tracking,
+    /// A rate limit slowed the motion down, along its direction.
+    RateLimited,
+    /// Near a singularity: rates are damped, and the error closes more slowly than its gain says.
+    Damped,
+    /// Near a singularity, and what is left of the error points where the arm cannot move: the goal is out of reach.
+    OutOfReach,
+    /// This joint stands at its limit and would have to go beyond.
+    JointLimit {
+        /// The joint, counted from 0.
+        joint: usize,
+    },
+    /// An approach that used up its steps.
+    OutOfSteps,
+}

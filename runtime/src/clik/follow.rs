@@ -1,0 +1,164 @@
+//! Running a first-order algorithm: bounded, within joint limits, with a name for what happened.
+
+use super::{Algorithm, ClikError, JointLimits, Outcome};
+use crate::{
+    gains::{self, Gain, GainError},
+    linalg::{is_finite, lit},
+    reference::{OperationalReference, Pose},
+    robot::Kinematics,
+    task::Task,
+};
+use nalgebra::{RealField, SMatrix, SVector};
+
+/// A first-order algorithm at a sampling period, with limits: q += T_s dq.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clik<A, T, const N: usize, const M: usize> {
+    task: Task<M>,
+    algorithm: A,
+    period: T,
+    limits: JointLimits<T, N>,
+    tolerance: SVector<T, M>,
+}
+
+/// One step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<T, const N: usize, const M: usize> {
+    /// Joint variables after the step, rad or m.
+    pub q: SVector<T, N>,
+    /// The rates that led there, bounded.
+    pub dq: SVector<T, N>,
+    /// Error of the task rows before the step, desired minus actual; m or rad.
+    pub error: SVector<T, M>,
+    /// What happened.
+    pub outcome: Outcome,
+}
+
+/// Where an approach ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reached<T, const N: usize, const M: usize> {
+    /// Joint variables, rad or m.
+    pub q: SVector<T, N>,
+    /// Error of the task rows there; m or rad.
+    pub error: SVector<T, M>,
+    /// Steps taken.
+    pub steps: u32,
+    /// [`Outcome::Converged`], or why not.
+    pub outcome: Outcome,
+}
+
+impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
+    /// `algorithm` for these task rows at the sampling period `period`, s, within `limits`; errors within `tolerance`, m or rad row by
+    /// row, count as converged.
+    ///
+    /// # Errors
+    /// Where the period or a tolerance is not positive and finite.
+    pub fn new(task: Task<M>, algorithm: A, period: T, limits: JointLimits<T, N>, tolerance: [T; M]) -> Result<Self, GainError> {
+        let tolerance = tolerance.into();
+        gains::positive_scalar(Gain::Period, period)?;
+        gains::positive(Gain::Tolerance, &tolerance)?;
+        Ok(Self { task, algorithm, period, limits, tolerance })
+    }
+
+    /// The task.
+    pub fn task(&self) -> &Task<M> {
+        &self.task
+    }
+
+    fn converged(&self, error: &SVector<T, M>) -> bool {
+        error.iter().zip(self.tolerance.iter()).all(|(e, tolerance)| e.abs() <= *tolerance)
+    }
+
+    /// One step from `q` after the reference of this sample.
+    ///
+    /// # Errors
+    /// Where `q` or the reference is not finite, or the algorithm meets a singular posture that it cannot handle.
+    pub fn step<R>(&self, robot: &R, q: &SVector<T, N>, reference: &OperationalReference<T>) -> Result<Step<T, N, M>, ClikError>
+    where
+        R: Kinematics<N, Real = T>,
+        A: Algorithm<R, N, M>,
+    {
+        if !is_finite(q) {
+            return Err(ClikError::StateNotFinite);
+        }
+        if !reference.is_finite() {
+            return Err(ClikError::ReferenceNotFinite);
+        }
+        let error = self.task.error(&reference.pose, &Pose::of(robot, q));
+        let j = self.task.jacobian(&robot.geometric_jacobian(q));
+        let rates = self.algorithm.rates(robot, q, &error, &self.task.select(&reference.velocity), &j)?;
+        if !is_finite(&rates.dq) {
+            return Err(ClikError::RatesNotFinite);
+        }
+        let (dq, slowed) = self.limits.slow_down(&rates.dq);
+        let (next, stopped) = self.limits.stop(q, &(q + dq * self.period));
+        // A joint that is stopped does not move: its rate is what it really did.
+        let dq = if stopped.is_some() { (next - q) / self.period } else { dq };
+        let outcome = if self.converged(&error) {
+            Outcome::Converged
+        } else if let Some(joint) = stopped {
+            Outcome::JointLimit { joint }
+        } else if rates.damped && points_out(&j, &error) {
+            Outcome::OutOfReach
+        } else if rates.damped {
+            Outcome::Damped
+        } else if slowed {
+            Outcome::RateLimited
+        } else {
+            Outcome::Tracking
+        };
+        Ok(Step { q: next, dq, error, outcome })
+    }
+
+    /// Steps towards a resting goal until it is reached, nothing moves any more, or `most_steps` are used up.
+    ///
+    /// An arm can rest in a singular posture with the goal in line with it, within reach, and see no way there. So where it comes to
+    /// rest without a joint limit in its way it is pushed aside once, by a hundredth of a unit in each joint; if it comes back to rest
+    /// no nearer, the goal is out of reach.
+    ///
+    /// # Errors
+    /// Those of [`Clik::step`].
+    pub fn approach<R>(
+        &self,
+        robot: &R,
+        start: &SVector<T, N>,
+        goal: &Pose<T>,
+        most_steps: u32,
+    ) -> Result<Reached<T, N, M>, ClikError>
+    where
+        R: Kinematics<N, Real = T>,
+        A: Algorithm<R, N, M>,
+    {
+        let reference = OperationalReference::at_rest(*goal);
+        let mut q = *start;
+        let mut rested_at: Option<T> = None;
+        for steps in 0..most_steps {
+            let step = self.step(robot, &q, &reference)?;
+            if step.outcome == Outcome::Converged {
+                return Ok(Reached { q, error: step.error, steps, outcome: Outcome::Converged });
+            }
+            let resting = step.dq.iter().zip(self.limits.rate().iter()).all(|(dq, rate)| dq.abs() <= *rate * lit(1e-6));
+            q = step.q;
+            if !resting {
+                continue;
+            }
+            if let Outcome::JointLimit { .. } = step.outcome {
+                return Ok(Reached { q, error: step.error, steps, outcome: step.outcome });
+            }
+            let distance = step.error.norm();
+            if rested_at.is_some_and(|before| distance > before * lit(0.999)) {
+                return Ok(Reached { q, error: step.error, steps, outcome: Outcome::OutOfReach });
+            }
+            rested_at = Some(distance);
+            let aside = SVector::from_fn(|i, _| lit::<T>(if i % 2 == 0 { 0.01 } else { -0.01 }));
+            q = self.limits.stop(&q, &(q + aside)).0;
+        }
+        let error = self.task.error(goal, &Pose::of(robot, &q));
+        let outcome = if self.converged(&error) { Outcome::Converged } else { Outcome::OutOfSteps };
+        Ok(Reached { q, error, steps: most_steps, outcome })
+    }
+}
+
+/// Whether no joint motion closes the error: J' e vanishes, to a hundredth of what a direction fully in reach would give.
+fn points_out<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M, N>, e: &SVector<T, M>) -> bool {
+    j.tr_mul(e).norm() <= lit::<T>(0.01) * j.norm() * e.norm()
+}

@@ -1,0 +1,74 @@
+//! Limits of joint variables and rates.
+
+use crate::gains::{self, Gain, GainError};
+use nalgebra::{RealField, SVector};
+
+/// How fast and how far joints may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointLimits<T, const N: usize> {
+    rate: SVector<T, N>,
+    range: Option<(SVector<T, N>, SVector<T, N>)>,
+}
+
+impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
+    /// Rates up to `rate`, rad/s or m/s, to either side; joint variables without limits.
+    ///
+    /// # Errors
+    /// Where a rate is not positive and finite.
+    pub fn rates(rate: [T; N]) -> Result<Self, GainError> {
+        let rate = rate.into();
+        gains::positive(Gain::RateLimit, &rate)?;
+        Ok(Self { rate, range: None })
+    }
+
+    /// The same with joint variables from `lower` to `upper`, rad or m.
+    ///
+    /// # Errors
+    /// Where a limit is not finite, or the lower one is not below the upper one.
+    pub fn with_range(self, lower: [T; N], upper: [T; N]) -> Result<Self, GainError> {
+        let (lower, upper) = (SVector::from(lower), SVector::from(upper));
+        gains::finite(Gain::PositionLimit, &lower)?;
+        gains::finite(Gain::PositionLimit, &upper)?;
+        gains::positive(Gain::PositionLimit, &(upper - lower))?;
+        Ok(Self { range: Some((lower, upper)), ..self })
+    }
+
+    /// The rate limits.
+    pub fn rate(&self) -> &SVector<T, N> {
+        &self.rate
+    }
+
+    /// `dq` slowed down, along its direction, until every rate is within its limit; and whether it was.
+    pub fn slow_down(&self, dq: &SVector<T, N>) -> (SVector<T, N>, bool) {
+        let mut factor = T::one();
+        for i in 0..N {
+            if dq[i].abs() > self.rate[i] {
+                factor = factor.min(self.rate[i] / dq[i].abs());
+            }
+        }
+        if factor < T::one() {
+            // The rounding of the product may exceed the limit by one unit: cut it.
+            (crate::linalg::saturate(&(dq * factor), &self.rate).0, true)
+        } else {
+            (*dq, false)
+        }
+    }
+
+    /// `next` kept within the range, and the first joint that was stopped.
+    ///
+    /// A joint that stands outside already, at `q`, may move inwards or stay.
+    pub fn stop(&self, q: &SVector<T, N>, next: &SVector<T, N>) -> (SVector<T, N>, Option<usize>) {
+        let Some((lower, upper)) = &self.range else {
+            return (*next, None);
+        };
+        let mut stopped = None;
+        let kept = SVector::from_fn(|i, _| {
+            let x = next[i].max(lower[i].min(q[i])).min(upper[i].max(q[i]));
+            if x != next[i] && stopped.is_none() {
+                stopped = Some(i);
+            }
+            x
+        });
+        (kept, stopped)
+    }
+}

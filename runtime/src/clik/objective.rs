@@ -1,0 +1,71 @@
+//! Objectives for the null space: dq_0 = k_0 (dw/dq)' climbs w without disturbing the task (the book, Sect. 3.5.1, eq. 3.55).
+
+use crate::{
+    gains::{self, Gain, GainError},
+    linalg::lit,
+    manipulability::manipulability_gradient,
+    robot::Kinematics,
+    task::Task,
+};
+use nalgebra::{RealField, SVector};
+
+/// A function w(q) to be increased.
+pub trait Objective<R: Kinematics<N>, const N: usize> {
+    /// dw/dq, per rad or m; `None` where w has no gradient, and the null space is left alone.
+    fn gradient(&self, robot: &R, q: &SVector<R::Real, N>) -> Option<SVector<R::Real, N>>;
+}
+
+/// Nothing to be gained: the joint rates of least norm.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NoObjective;
+
+impl<R: Kinematics<N>, const N: usize> Objective<R, N> for NoObjective {
+    fn gradient(&self, _: &R, _: &SVector<R::Real, N>) -> Option<SVector<R::Real, N>> {
+        Some(SVector::zeros())
+    }
+}
+
+/// The manipulability w of these task rows (the book, eq. 3.56), which need not be those that are followed.
+///
+/// Where the followed task relaxes a row, take the rows of the *full* task: the w of the relaxed one can grow all the way into a
+/// singularity of the full one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Manipulability<const K: usize> {
+    /// The rows whose manipulability counts.
+    pub task: Task<K>,
+}
+
+impl<R: Kinematics<N>, const N: usize, const K: usize> Objective<R, N> for Manipulability<K> {
+    fn gradient(&self, robot: &R, q: &SVector<R::Real, N>) -> Option<SVector<R::Real, N>> {
+        manipulability_gradient(robot, &self.task, q)
+    }
+}
+
+/// Distance from the limits of the joints, w = -1/(2 N) sum_i ((q_i - middle_i) / range_i)^2 (the book, eq. 3.57).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointRangeDistance<T, const N: usize> {
+    middle: SVector<T, N>,
+    range: SVector<T, N>,
+}
+
+impl<T: RealField + Copy, const N: usize> JointRangeDistance<T, N> {
+    /// Limits of the joint variables, rad or m.
+    ///
+    /// # Errors
+    /// Where a limit is not finite, or the lower one is not below the upper one.
+    pub fn new(lower: [T; N], upper: [T; N]) -> Result<Self, GainError> {
+        let (lower, upper) = (SVector::from(lower), SVector::from(upper));
+        gains::finite(Gain::PositionLimit, &lower)?;
+        gains::finite(Gain::PositionLimit, &upper)?;
+        let range = upper - lower;
+        gains::positive(Gain::PositionLimit, &range)?;
+        Ok(Self { middle: lower + range * lit::<T>(0.5), range })
+    }
+}
+
+impl<R: Kinematics<N>, const N: usize> Objective<R, N> for JointRangeDistance<R::Real, N> {
+    fn gradient(&self, _: &R, q: &SVector<R::Real, N>) -> Option<SVector<R::Real, N>> {
+        let scale = -nalgebra::one::<R::Real>() / lit(N as f64);
+        Some(SVector::from_fn(|i, _| scale * (q[i] - self.middle[i]) / (self.range[i] * self.range[i])))
+    }
+}

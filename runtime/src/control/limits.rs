@@ -1,0 +1,30 @@
+//! Torque limits.
+
+use crate::{
+    gains::{positive, Gain, GainError},
+    linalg::saturate,
+};
+use nalgebra::{RealField, SVector};
+
+/// The largest torque (force) that each joint can give, to either side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueLimits<T, const N: usize> {
+    bound: SVector<T, N>,
+}
+
+impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
+    /// The limits of the joints, N m or N.
+    ///
+    /// # Errors
+    /// Where one is not positive and finite.
+    pub fn new(bound: [T; N]) -> Result<Self, GainError> {
+        let bound = SVector::from(bound);
+        positive(Gain::TorqueLimit, &bound)?;
+        Ok(Self { bound })
+    }
+
+    /// `tau` within the limits, and whether anything was cut.
+    pub fn apply(&self, tau: &SVector<T, N>) -> (SVector<T, N>, bool) {
+        saturate(tau, &self.bound)
+    }
+}

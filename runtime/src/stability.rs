@@ -1,0 +1,24 @@
+//! Stability of the sampled loop, before anything moves.
+//!
+//! A proof in continuous time says nothing about a controller that runs once a millisecond. At rest at a posture, plant and controller
+//! are linear for small deviations x = (dq, ddq/dt):
+//!
+//! ```text
+//! plant        dx/dt = A x + B u,   A = [[0, I], [-B^-1 dg/dq, -B^-1 F_v]],   B = [0; B^-1]
+//! hold         x_{k+1} = A_d x_k + B_d u_k,   exp([[A, B], [0, 0]] T_s) = [[A_d, B_d], [0, I]]
+//! controller   u_k = K x_k + L m_k,   m_{k+1} = m_k + T_s E x_k                (m: integral or estimate, by forward Euler)
+//! ```
+//!
+//! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral radius.
+//! With one sample of delay u_k acts a period later, and the held torque is one more state. Of an estimate only those combinations are
+//! states that are excited at rest: the others are constants, and would add eigenvalues at 1.
+//!
+//! [`SampledLoop`] is one posture; [`analyse`] is a path, and what a run says first.
+
+mod eigenvalues;
+mod exponential;
+mod feedback;
+mod sampled_loop;
+
+pub use feedback::{Feedback, Linearise};
+pub use sampled_loop::{analyse, Delay, Report, SampledLoop, StabilityError, StablePeriod};

@@ -1,0 +1,187 @@
+//! The controllers, linearised at rest: u = K_q dq + K_v dv + L m, dm/dt = E_q dq + E_v dv for small deviations (dq, dv).
+//!
+//! At rest C dq is of second order and drops out, so the derivatives are B, F and dg/dq of the model. B and F come from the model
+//! exactly; dg/dq by central differences of g, the only approximation (to the square of their step, cube root of epsilon).
+
+use crate::{
+    control::{Adaptive, InverseDynamics, OperationalSpace, PdGravity, Robust},
+    linalg::{lit, RightInverse},
+    robot::{Dynamics, Regressor},
+};
+use nalgebra::{DMatrix, RealField, SMatrix, SVector};
+
+/// A linear feedback with memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feedback<T, const N: usize> {
+    /// K_q = du/dq.
+    pub position: SMatrix<T, N, N>,
+    /// K_v = du/d(dq).
+    pub velocity: SMatrix<T, N, N>,
+    /// L = du/dm, `N` rows, one column a memory.
+    pub memory: DMatrix<T>,
+    /// E_q, one row a memory.
+    pub memory_position: DMatrix<T>,
+    /// E_v, one row a memory.
+    pub memory_velocity: DMatrix<T>,
+}
+
+impl<T: RealField + Copy, const N: usize> Feedback<T, N> {
+    fn without_memory(position: SMatrix<T, N, N>, velocity: SMatrix<T, N, N>) -> Self {
+        Self {
+            position,
+            velocity,
+            memory: DMatrix::zeros(N, 0),
+            memory_position: DMatrix::zeros(0, N),
+            memory_velocity: DMatrix::zeros(0, N),
+        }
+    }
+}
+
+/// A controller that can be linearised at rest.
+pub trait Linearise<R: Dynamics<N>, const N: usize> {
+    /// Its feedback about the posture `q`, with the reference at rest there; `None` where the law is singular.
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>>;
+}
+
+/// Jacobian of `f` at `x` by central differences.
+pub(crate) fn derivative<T: RealField + Copy, const N: usize>(
+    x: &SVector<T, N>,
+    f: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+) -> SMatrix<T, N, N> {
+    let h = T::default_epsilon().cbrt();
+    let mut jacobian = SMatrix::<T, N, N>::zeros();
+    for i in 0..N {
+        let (mut low, mut high) = (*x, *x);
+        low[i] -= h;
+        high[i] += h;
+        jacobian.set_column(i, &((f(&high) - f(&low)) / (high[i] - low[i])));
+    }
+    jacobian
+}
+
+/// Viscous friction F_v, column by column: F(2 e_i) - F(e_i), in which Coulomb friction cancels.
+pub(crate) fn viscous<R: Dynamics<N>, const N: usize>(robot: &R) -> SMatrix<R::Real, N, N> {
+    let mut f = SMatrix::<R::Real, N, N>::zeros();
+    for i in 0..N {
+        let mut e = SVector::zeros();
+        e[i] = nalgebra::one::<R::Real>();
+        f.set_column(i, &(robot.friction(&(e * lit::<R::Real>(2.0))) - robot.friction(&e)));
+    }
+    f
+}
+
+fn columns_scaled<T: RealField + Copy, const R: usize, const N: usize>(
+    m: &SMatrix<T, R, N>,
+    k: &SVector<T, N>,
+) -> SMatrix<T, R, N> {
+    SMatrix::from_fn(|i, j| m[(i, j)] * k[j])
+}
+
+fn rows_scaled<T: RealField + Copy, const R: usize, const N: usize>(k: &SVector<T, R>, m: &SMatrix<T, R, N>) -> SMatrix<T, R, N> {
+    SMatrix::from_fn(|i, j| k[i] * m[(i, j)])
+}
+
+fn inverse_dynamics<R: Dynamics<N>, const N: usize>(
+    model: &R,
+    q: &SVector<R::Real, N>,
+    k_p: &SVector<R::Real, N>,
+    k_d: &SVector<R::Real, N>,
+) -> Feedback<R::Real, N> {
+    let b = model.inertia_matrix(q);
+    let dg = derivative(q, |q| model.gravity(q));
+    Feedback::without_memory(dg - columns_scaled(&b, k_p), viscous(model) - columns_scaled(&b, k_d))
+}
+
+impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for PdGravity<R::Real, N> {
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        let dg = derivative(q, |q| model.gravity(q));
+        Some(Feedback::without_memory(dg - SMatrix::from_diagonal(&self.k_p), -SMatrix::from_diagonal(&self.k_d)))
+    }
+}
+
+impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for InverseDynamics<R::Real, N> {
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        Some(inverse_dynamics(model, q, &self.k_p, &self.k_d))
+    }
+}
+
+/// Inside the boundary layer, where the law is linear: the added term raises the gains to K_P + rho/eps Q12 and K_D + rho/eps Q22.
+impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for Robust<R::Real, N> {
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        let slope = self.layer.rho / self.layer.epsilon;
+        Some(inverse_dynamics(model, q, &(self.k_p + self.q.q12 * slope), &(self.k_d + self.q.q22 * slope)))
+    }
+}
+
+/// At rest sigma = -(Lambda dq + dv) and the estimate moves along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0): its states are the at most N
+/// combinations that Y_0 K_pi^-1 Y_0' = L L' excites, u = L m, dm/dt = L' sigma.
+impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Adaptive<R::Real, N, P> {
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        let still = SVector::zeros();
+        let torque = |q: &SVector<R::Real, N>, dqr: &SVector<R::Real, N>, ddqr: &SVector<R::Real, N>| {
+            model.regressor(q, &still, dqr, ddqr) * self.estimate + model.known_torque(q, &still, dqr, ddqr)
+        };
+        let rest = torque(q, &still, &still);
+        let (mut b, mut f) = (SMatrix::<R::Real, N, N>::zeros(), SMatrix::<R::Real, N, N>::zeros());
+        for i in 0..N {
+            let mut e = SVector::zeros();
+            e[i] = nalgebra::one::<R::Real>();
+            b.set_column(i, &(torque(q, &still, &e) - rest));
+            f.set_column(i, &(torque(q, &e, &still) - rest));
+        }
+        let dg = derivative(q, |q| torque(q, &still, &still));
+        let k_d = SMatrix::from_diagonal(&self.k_d);
+        // dq_r = -Lambda dq and ddq_r = -Lambda dv.
+        let position = dg - columns_scaled(&(f + k_d), &self.lambda);
+        let velocity = -columns_scaled(&b, &self.lambda) - k_d;
+        let y = model.regressor(q, &still, &still, &still);
+        let l = excited(&(columns_scaled(&y, &self.rate) * y.transpose()));
+        let transpose = l.transpose();
+        let lambda = DMatrix::from_fn(N, N, |i, j| if i == j { self.lambda[i] } else { nalgebra::zero() });
+        Some(Feedback { position, velocity, memory_position: -(&transpose * lambda), memory_velocity: -transpose, memory: l })
+    }
+}
+
+/// L with L L' = g, symmetric positive semidefinite, one column for each direction that g has: Cholesky with pivots.
+fn excited<T: RealField + Copy, const N: usize>(g: &SMatrix<T, N, N>) -> DMatrix<T> {
+    let mut rest = *g;
+    let scale = (0..N).map(|i| g[(i, i)]).fold(T::zero(), |a, b| a.max(b));
+    let mut columns: Vec<SVector<T, N>> = Vec::new();
+    for _ in 0..N {
+        let pivot = (0..N).fold(0, |best, i| if rest[(i, i)] > rest[(best, best)] { i } else { best });
+        if !(rest[(pivot, pivot)] > scale * T::default_epsilon() * lit(1e3)) {
+            break;
+        }
+        let column: SVector<T, N> = rest.column(pivot) / rest[(pivot, pivot)].sqrt();
+        rest -= column * column.transpose();
+        columns.push(column);
+    }
+    DMatrix::from_fn(N, columns.len(), |i, j| columns[j][i])
+}
+
+/// y = J^+ (-K_P J dq - K_D J dv + K_I int) + (I - J^+ J)(-K_N dq - D_N dv), u = B y + F dv + dg/dq dq; the rows with an integral are
+/// memories, dm/dt = -J dq. The posture of the null space counts as that of the linearisation.
+impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for OperationalSpace<R::Real, N, M> {
+    fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        let j = self.task.jacobian(&model.geometric_jacobian(q));
+        let inverse = RightInverse::new(&j)?.matrix();
+        let b = model.inertia_matrix(q);
+        let gain = b * inverse;
+        let dg = derivative(q, |q| model.gravity(q));
+        let mut position = dg - gain * rows_scaled(&self.k_p, &j);
+        let mut velocity = viscous(model) - gain * rows_scaled(&self.k_d, &j);
+        if let Some((stiffness, damping)) = self.null_space.map(|null_space| null_space.gains()) {
+            let free = b - gain * j;
+            position -= columns_scaled(&free, &stiffness);
+            velocity -= columns_scaled(&free, &damping);
+        }
+        let rows: Vec<usize> = (0..M).filter(|i| self.k_i[*i] > nalgebra::zero()).collect();
+        Some(Feedback {
+            position,
+            velocity,
+            memory: DMatrix::from_fn(N, rows.len(), |i, k| gain[(i, rows[k])] * self.k_i[rows[k]]),
+            memory_position: DMatrix::from_fn(rows.len(), N, |k, i| -j[(rows[k], i)]),
+            memory_velocity: DMatrix::zeros(rows.len(), N),
+        })
+    }
+}

@@ -1,0 +1,265 @@
+//! The whole loop at one posture, and along a path.
+
+use super::{
+    eigenvalues,
+    exponential::exponential,
+    feedback::{derivative, viscous, Feedback, Linearise},
+};
+use crate::{linalg::lit, robot::Dynamics};
+use nalgebra::{linalg::balancing::balance_parlett_reinsch, DMatrix, RealField, SMatrix, SVector};
+
+/// When a torque acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delay {
+    /// At the sample from whose measurement it was computed.
+    None,
+    /// One sample later.
+    OneSample,
+}
+
+/// Why there is no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StabilityError {
+    /// The controller's law is singular at this posture (counted from 0).
+    Singular {
+        /// Index of the posture.
+        posture: usize,
+    },
+    /// The inertia matrix of the plant is not positive definite at this posture (counted from 0).
+    Inertia {
+        /// Index of the posture.
+        posture: usize,
+    },
+    /// The eigenvalues were not found: gains or model are beyond the range of the scalar.
+    Eigenvalues,
+    /// The sampling period is not positive and finite.
+    Period,
+    /// There is no posture.
+    NoPosture,
+}
+
+/// Up to which sampling period a loop is stable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StablePeriod<T> {
+    /// Stable up to this period, s, and unstable just above it.
+    UpTo(T),
+    /// Stable at this period, s, the longest one tried.
+    AtLeast(T),
+    /// Unstable even at this period, s, the shortest one tried: no sampling helps.
+    NotEvenAt(T),
+}
+
+/// What a run says before anything moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report<T> {
+    /// The largest spectral radius of all postures; stable below 1.
+    pub radius: T,
+    /// Index of the posture where it is found.
+    pub posture: usize,
+    /// Up to which sampling period the loop is stable at all postures.
+    pub period: StablePeriod<T>,
+}
+
+impl<T: RealField + Copy> Report<T> {
+    /// Whether the loop is stable at all postures.
+    pub fn is_stable(&self) -> bool {
+        self.radius < T::one()
+    }
+}
+
+/// Plant and controller about one posture.
+#[derive(Clone, Debug)]
+pub struct SampledLoop<T, const N: usize> {
+    /// -B^-1 dg/dq and -B^-1 F_v of the plant, and B^-1.
+    stiffness: SMatrix<T, N, N>,
+    friction: SMatrix<T, N, N>,
+    mobility: SMatrix<T, N, N>,
+    feedback: Feedback<T, N>,
+}
+
+/// Bisections: a tenth halved twenty times is below the millionth that ends them.
+const TRIALS: usize = 30;
+
+impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
+    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest at `q`.
+    ///
+    /// # Errors
+    /// [`StabilityError::Singular`] or [`StabilityError::Inertia`], for posture 0.
+    pub fn new<P, R, C>(plant: &P, model: &R, controller: &C, q: &SVector<T, N>) -> Result<Self, StabilityError>
+    where
+        P: Dynamics<N, Real = T>,
+        R: Dynamics<N, Real = T>,
+        C: Linearise<R, N>,
+    {
+        let feedback = controller.linearise(model, q).ok_or(StabilityError::Singular { posture: 0 })?;
+        let inertia = plant.inertia_matrix(q).cholesky().ok_or(StabilityError::Inertia { posture: 0 })?;
+        let mobility = inertia.inverse();
+        let dg = derivative(q, |q| plant.gravity(q));
+        Ok(Self { stiffness: -(mobility * dg), friction: -(mobility * viscous(plant)), mobility, feedback })
+    }
+
+    /// The matrix of the whole loop, states (dq, T_s dv, m, held torque with a delay).
+    ///
+    /// Velocities count in units of T_s so that positions and velocities are of one size.
+    fn matrix(&self, period: T, delay: Delay) -> DMatrix<T> {
+        let h = period;
+        // exp of [[0, I/h, 0], [h S, F, h B^-1], [0, 0, 0]] h, in these units.
+        let mut generator = DMatrix::zeros(3 * N, 3 * N);
+        for i in 0..N {
+            generator[(i, N + i)] = T::one();
+            for k in 0..N {
+                generator[(N + i, k)] = self.stiffness[(i, k)] * h * h;
+                generator[(N + i, N + k)] = self.friction[(i, k)] * h;
+                generator[(N + i, 2 * N + k)] = self.mobility[(i, k)] * h * h;
+            }
+        }
+        let held = exponential(&generator);
+        let (a, b) = (held.view((0, 0), (2 * N, 2 * N)), held.view((0, 2 * N), (2 * N, N)));
+        let memories = self.feedback.memory.ncols();
+        let law = DMatrix::from_fn(N, 2 * N + memories, |i, k| {
+            if k < N {
+                self.feedback.position[(i, k)]
+            } else if k < 2 * N {
+                self.feedback.velocity[(i, k - N)] / h
+            } else {
+                self.feedback.memory[(i, k - 2 * N)]
+            }
+        });
+        let delayed = match delay {
+            Delay::None => 0,
+            Delay::OneSample => N,
+        };
+        let size = 2 * N + memories;
+        let mut whole = DMatrix::zeros(size + delayed, size + delayed);
+        whole.view_mut((0, 0), (2 * N, 2 * N)).copy_from(&a);
+        for k in 0..memories {
+            whole[(2 * N + k, 2 * N + k)] = T::one();
+            for i in 0..N {
+                whole[(2 * N + k, i)] = self.feedback.memory_position[(k, i)] * h;
+                whole[(2 * N + k, N + i)] = self.feedback.memory_velocity[(k, i)];
+            }
+        }
+        match delay {
+            Delay::None => {
+                let mut top = whole.view_mut((0, 0), (2 * N, size));
+                top += b * law;
+            }
+            Delay::OneSample => {
+                whole.view_mut((0, size), (2 * N, N)).copy_from(&b);
+                whole.view_mut((size, 0), (N, size)).copy_from(&law);
+            }
+        }
+        whole
+    }
+
+    /// The largest modulus of the eigenvalues at the sampling period `period`, s.
+    ///
+    /// # Errors
+    /// [`StabilityError::Period`], [`StabilityError::Eigenvalues`].
+    pub fn spectral_radius(&self, period: T, delay: Delay) -> Result<T, StabilityError> {
+        if !(period > T::zero() && period.is_finite()) {
+            return Err(StabilityError::Period);
+        }
+        let mut m = self.matrix(period, delay);
+        if !m.iter().all(|x| x.is_finite()) {
+            return Err(StabilityError::Eigenvalues);
+        }
+        balance_parlett_reinsch(&mut m);
+        let moduli = eigenvalues::moduli(m).ok_or(StabilityError::Eigenvalues)?;
+        let radius = moduli.into_iter().fold(T::zero(), |a, b| if b > a || !b.is_finite() { b } else { a });
+        radius.is_finite().then_some(radius).ok_or(StabilityError::Eigenvalues)
+    }
+
+    /// Up to which sampling period the loop is stable, looking from `period`, s, upwards if it is stable there, else downwards.
+    ///
+    /// # Errors
+    /// Those of [`SampledLoop::spectral_radius`].
+    pub fn largest_stable_period(&self, period: T, delay: Delay) -> Result<StablePeriod<T>, StabilityError> {
+        let stable = |t: T| Ok::<_, StabilityError>(self.spectral_radius(t, delay)? < T::one());
+        // Steps of a tenth: finer than any window of stability that one would want to stand in.
+        let up = lit::<T>(1.1);
+        let (mut low, mut high) = (period, period);
+        if stable(period)? {
+            loop {
+                high = low * up;
+                if high > period * lit(1e3) {
+                    return Ok(StablePeriod::AtLeast(low));
+                }
+                if !stable(high)? {
+                    break;
+                }
+                low = high;
+            }
+        } else {
+            loop {
+                low = high / up;
+                if low < period * lit(1e-4) {
+                    return Ok(StablePeriod::NotEvenAt(high));
+                }
+                if stable(low)? {
+                    break;
+                }
+                high = low;
+            }
+        }
+        for _ in 0..TRIALS {
+            let middle = (low * high).sqrt();
+            if high / low <= T::one() + lit(1e-6) || middle <= low || middle >= high {
+                break;
+            }
+            if stable(middle)? {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(StablePeriod::UpTo(low))
+    }
+}
+
+/// Spectral radius and largest stable period of `controller` at all `postures`, at the sampling period `period`, s.
+///
+/// # Errors
+/// With the index of the posture that has no answer; [`StabilityError::NoPosture`] without any.
+pub fn analyse<P, R, C, T, const N: usize>(
+    plant: &P,
+    model: &R,
+    controller: &C,
+    postures: &[SVector<T, N>],
+    period: T,
+    delay: Delay,
+) -> Result<Report<T>, StabilityError>
+where
+    T: RealField + Copy,
+    P: Dynamics<N, Real = T>,
+    R: Dynamics<N, Real = T>,
+    C: Linearise<R, N>,
+{
+    let mut worst: Option<(T, usize)> = None;
+    let mut loops = Vec::with_capacity(postures.len());
+    for (posture, q) in postures.iter().enumerate() {
+        let sampled = SampledLoop::new(plant, model, controller, q).map_err(|error| match error {
+            StabilityError::Singular { .. } => StabilityError::Singular { posture },
+            StabilityError::Inertia { .. } => StabilityError::Inertia { posture },
+            other => other,
+        })?;
+        let radius = sampled.spectral_radius(period, delay)?;
+        if worst.is_none_or(|(before, _)| radius > before) {
+            worst = Some((radius, posture));
+        }
+        loops.push(sampled);
+    }
+    let (radius, posture) = worst.ok_or(StabilityError::NoPosture)?;
+    // The worst posture first; then only those that are unstable where the others are not.
+    let mut limit = loops[posture].largest_stable_period(period, delay)?;
+    for sampled in &loops {
+        let bound = match limit {
+            StablePeriod::UpTo(bound) | StablePeriod::AtLeast(bound) => bound,
+            StablePeriod::NotEvenAt(_) => break,
+        };
+        if sampled.spectral_radius(bound, delay)? >= T::one() {
+            limit = sampled.largest_stable_period(bound, delay)?;
+        }
+    }
+    Ok(Report { radius, posture, period: limit })
+}

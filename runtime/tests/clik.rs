@@ -1,0 +1,196 @@
+//! Closed-loop inverse kinematics along the ghost path, every algorithm with its gains.
+
+mod common;
+
+use armgen_runtime::{
+    clik::{
+        Algorithm, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
+        Manipulability, NoObjective, Objective, Outcome, PseudoInverse,
+    },
+    linalg::Damping,
+    manipulability::manipulability,
+    reference::{OperationalReference, Pose, State},
+    robot::Kinematics,
+    task::{Row, Task},
+};
+use common::{below, close_percent, ghost, scara::Scara};
+use nalgebra::{vector, SVector, Vector4};
+use std::time::Duration;
+
+fn limits() -> JointLimits<f64, 4> {
+    JointLimits::rates([100.0; 4]).unwrap()
+}
+
+/// Largest |error| of each task row over the 20 s, and the last posture.
+fn follow<A: Algorithm<Scara<f64>, 4, M>, const M: usize>(task: Task<M>, algorithm: A) -> (SVector<f64, M>, Vector4<f64>) {
+    let (robot, trajectory) = (ghost::nominal(), ghost::ghost::<f64>());
+    let clik = Clik::new(task, algorithm, 1e-3, limits(), [1e-3; M]).unwrap();
+    let (mut q, mut worst) = (ghost::start(), SVector::<f64, M>::zeros());
+    for k in 0..=20_000 {
+        let step = clik.step(&robot, &q, &trajectory.sample(Duration::from_millis(k))).unwrap();
+        worst = worst.sup(&step.error.abs());
+        q = step.q;
+    }
+    (worst, q)
+}
+
+#[track_caller]
+fn check<const M: usize>(found: SVector<f64, M>, expected: [f64; M]) {
+    for i in 0..M {
+        close_percent(&format!("largest error of row {i}"), found[i], expected[i], 1.0);
+    }
+}
+
+#[test]
+fn jacobian_inverse() {
+    let (worst, _) = follow(ghost::task(), JacobianInverse::new([500.0, 500.0, 700.0, 2.0]).unwrap());
+    check(worst, [5.2370e-7, 1.0831e-6, 7.2115e-7, 7.5480e-5]);
+}
+
+const TRANSPOSE: [f64; 4] = [2000.0, 1300.0, 400.0, 350.0];
+
+#[test]
+fn jacobian_transpose() {
+    let (worst, _) = follow(ghost::task(), JacobianTranspose::new(TRANSPOSE).unwrap());
+    check(worst, [9.3381e-4, 1.5212e-3, 3.1250e-4, 1.8641e-3]);
+}
+
+#[test]
+fn the_transpose_stands_near_its_limit() {
+    let (robot, transpose) = (ghost::nominal(), JacobianTranspose::new(TRANSPOSE).unwrap());
+    let gain = |q: &Vector4<f64>| transpose.loop_gain(&ghost::task().jacobian(&robot.geometric_jacobian(q)), 1e-3);
+    let along = ghost::joint_reference().iter().take(20_001).map(|r| gain(&r.q)).fold(0.0, f64::max);
+    close_percent("loop gain along the path", along, 1.80, 0.3);
+    // The whole circle of shoulder angles with the arm nearly stretched.
+    let stretched = (0..360).map(|k| gain(&vector![f64::from(k).to_radians(), 0.01, 0.0, 0.0])).fold(0.0, f64::max);
+    close_percent("loop gain with the arm stretched", stretched, 3.22, 0.3);
+    let (worst, _) = follow(ghost::task(), JacobianTranspose::new(TRANSPOSE.map(|k| 1.2 * k)).unwrap());
+    assert!(worst.max() > 0.05, "a fifth more gain must diverge: {worst}");
+}
+
+fn relaxed() -> Task<3> {
+    Task::new([Row::Y, Row::Z, Row::Rz]).unwrap()
+}
+
+fn dexterous<O: Objective<Scara<f64>, 4>>(k_0: f64, objective: O) -> (SVector<f64, 3>, Vector4<f64>) {
+    follow(relaxed(), PseudoInverse::new([1000.0, 1500.0, 5.0], k_0, objective).unwrap())
+}
+
+fn w<const M: usize>(task: Task<M>, q: &Vector4<f64>) -> f64 {
+    manipulability(&task.jacobian(&ghost::nominal().geometric_jacobian(q)))
+}
+
+#[test]
+fn the_manipulability_of_the_whole_task_keeps_the_arm_dexterous() {
+    let (worst, q) = dexterous(10.0, Manipulability { task: ghost::task() });
+    println!("largest errors {worst}, w at the end: {}", w(ghost::task(), &q));
+    assert!(w(ghost::task(), &q) >= 0.249);
+    // Rows z and phi do not see the null space.
+    close_percent("largest error of z", worst[1], 5.0481e-7, 1.0);
+    close_percent("largest error of phi", worst[2], 3.4674e-5, 1.0);
+    below("largest error of y", worst[0], 1.0850e-6);
+}
+
+#[test]
+fn the_manipulability_of_the_relaxed_task_leads_into_a_singularity() {
+    let before = w(relaxed(), &ghost::start());
+    let (worst, q) = dexterous(10.0, Manipulability { task: relaxed() });
+    check(worst, [1.0850e-6, 5.0481e-7, 3.4674e-5]);
+    println!("relaxed w: {before} -> {}, theta2 -> {}", w(relaxed(), &q), q[1]);
+    close_percent("relaxed w at the start", before, 0.6253, 0.01);
+    assert!(w(relaxed(), &q) >= 1.22);
+    common::close("theta2 at the end", q[1], -0.012, 5e-4);
+}
+
+#[test]
+fn without_an_objective_dexterity_is_left_to_chance() {
+    let (worst, q) = dexterous(0.0, NoObjective);
+    println!("w at the end: {}, theta2 {}", w(ghost::task(), &q), q[1]);
+    assert!(worst.max() < 1e-3 && w(ghost::task(), &q) < 0.249);
+}
+
+fn second_order(integration: Integration) -> SVector<f64, 4> {
+    let (robot, trajectory, clik) = (ghost::nominal(), ghost::ghost::<f64>(), ghost::second_order(integration));
+    let (mut state, mut worst) = (State::at_rest(ghost::start()), SVector::<f64, 4>::zeros());
+    for k in 0..=20_000 {
+        let step = clik.step(&robot, &state, &trajectory.sample(Duration::from_millis(k))).unwrap();
+        worst = worst.sup(&step.error.abs());
+        state = step.next;
+    }
+    worst
+}
+
+#[test]
+fn second_order_by_explicit_euler() {
+    check(second_order(Integration::ExplicitEuler), [1.0603e-5, 2.0916e-5, 1.5404e-5, 1.5727e-4]);
+}
+
+#[test]
+fn second_order_consistent_with_the_hold() {
+    let worst = second_order(Integration::HoldConsistent);
+    for (i, bound) in [4e-6, 4e-6, 1e-10, 1e-10].iter().enumerate() {
+        below(&format!("largest error of row {i}"), worst[i], *bound);
+    }
+}
+
+fn damped() -> DampedLeastSquares<f64, 4> {
+    DampedLeastSquares::new([50.0; 4], Damping::new(0.03, 0.1).unwrap()).unwrap()
+}
+
+fn bounded() -> JointLimits<f64, 4> {
+    JointLimits::rates([3.0, 3.0, 1.0, 6.0]).unwrap()
+}
+
+fn goal(q: [f64; 4]) -> Pose<f64> {
+    Pose::of(&ghost::nominal(), &q.into())
+}
+
+#[test]
+fn the_damped_inverse_is_the_inverse_away_from_singularities() {
+    let algorithm = DampedLeastSquares::new([500.0, 500.0, 700.0, 2.0], Damping::new(0.03, 0.1).unwrap()).unwrap();
+    check(follow(ghost::task(), algorithm).0, [5.2370e-7, 1.0831e-6, 7.2115e-7, 7.5480e-5]);
+}
+
+#[test]
+fn approaches_end_with_a_name() {
+    let robot = ghost::nominal();
+    let clik = Clik::new(ghost::task(), damped(), 1e-3, bounded(), [1e-6; 4]).unwrap();
+    let near = |q: [f64; 4], goal: Pose<f64>| clik.approach(&robot, &q.into(), &goal, 20_000).unwrap();
+    // Off the goal, but within reach.
+    let reached = near([0.1, 1.0, 0.1, 0.0], goal([-0.5, 1.4, 0.3, 0.8]));
+    assert_eq!(reached.outcome, Outcome::Converged, "{reached:?}");
+    // From the stretched arm, the goal straight inwards: no joint rate points there, to first order.
+    let reached = near([0.0, 0.0, 0.1, 0.0], Pose { position: vector![0.7, 0.0, 0.4], ..goal([0.0, 0.0, 0.1, 0.0]) });
+    assert_eq!(reached.outcome, Outcome::Converged, "{reached:?}");
+    // A tenth of a metre too far.
+    let far = Pose { position: vector![0.0, 1.1, 0.4], ..goal([0.0, 1.0, 0.1, 0.0]) };
+    let reached = near([0.1, 1.0, 0.1, 0.0], far);
+    assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
+    common::close("distance left", reached.error.norm(), 0.1, 1e-4);
+    // Behind a joint limit.
+    let limits = bounded().with_range([-1.0, 0.2, 0.0, -3.0], [1.0, 2.5, 0.4, 3.0]).unwrap();
+    let clik = Clik::new(ghost::task(), damped(), 1e-3, limits, [1e-6; 4]).unwrap();
+    let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &goal([0.1, 1.0, 0.7, 0.0]), 20_000).unwrap();
+    assert_eq!(reached.outcome, Outcome::JointLimit { joint: 2 }, "{reached:?}");
+    assert_eq!(reached.q[2], 0.4);
+    // Too few steps.
+    let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &goal([-0.5, 1.4, 0.3, 0.8]), 10).unwrap();
+    assert_eq!((reached.outcome, reached.steps), (Outcome::OutOfSteps, 10));
+}
+
+#[test]
+fn errors() {
+    let robot = ghost::nominal();
+    let inverse = JacobianInverse::new([50.0; 4]).unwrap();
+    let clik = Clik::new(ghost::task(), inverse, 1e-3, bounded(), [1e-6; 4]).unwrap();
+    let rest = OperationalReference::at_rest(goal([0.1, 1.0, 0.1, 0.0]));
+    let singular = vector![0.1, 0.0, 0.1, 0.0];
+    assert_eq!(clik.step(&robot, &singular, &rest).unwrap_err(), ClikError::Singular);
+    assert_eq!(clik.step(&robot, &vector![0.1, f64::NAN, 0.1, 0.0], &rest).unwrap_err(), ClikError::StateNotFinite);
+    let mut lost = rest;
+    lost.velocity[1] = f64::INFINITY;
+    assert_eq!(clik.step(&robot, &vector![0.1, 1.0, 0.1, 0.0], &lost).unwrap_err(), ClikError::ReferenceNotFinite);
+    let second = ghost::second_order(Integration::HoldConsistent);
+    assert_eq!(second.step(&robot, &State::at_rest(singular), &rest).unwrap_err(), ClikError::Singular);
+    assert!(second.with_damping(Damping::new(0.03, 0.1).unwrap()).step(&robot, &State::at_rest(singular), &rest).is_ok());
+}

@@ -1,0 +1,268 @@
+//! Robust and adaptive control of the SCARA in joint space, with a load of 5 kg that the model does not know.
+
+mod common;
+
+use armgen_runtime::{
+    control::{Adaptive, BoundaryLayer, InverseDynamics, PdGravity, Robust},
+    reference::{JointReference, State},
+    simulation::{rk4, run, Phase, RunError, RunOptions, Sample},
+};
+use common::{below, close, close_percent, ghost, scara::NOMINAL};
+use nalgebra::{vector, SVector, Vector4};
+
+type Samples = Vec<Sample<f64, 4>>;
+
+fn follow(
+    reference: &[JointReference<f64, 4>],
+    mut controller: impl FnMut(&JointReference<f64, 4>, &State<f64, 4>) -> Vector4<f64>,
+) -> Result<Samples, (Samples, RunError<()>)> {
+    let (mut samples, mut k) = (Vec::with_capacity(22_001), 0);
+    let plant = ghost::loaded();
+    let options = RunOptions::new(ghost::PERIOD, ghost::WITH_HOLD);
+    let end = run(
+        &plant,
+        State::at_rest(ghost::start()),
+        options,
+        |_, measured| {
+            let tau = controller(&reference[k], measured);
+            k += 1;
+            Ok(tau)
+        },
+        |sample| samples.push(*sample),
+    );
+    match end {
+        Ok(_) => Ok(samples),
+        Err(error) => Err((samples, error)),
+    }
+}
+
+fn error(reference: &[JointReference<f64, 4>], samples: &Samples, k: usize) -> Vector4<f64> {
+    reference[k].q - samples[k].state.q
+}
+
+/// Largest |joint error| from 5 to 20 s.
+fn worst(reference: &[JointReference<f64, 4>], samples: &Samples) -> Vector4<f64> {
+    (5000..=20_000).fold(Vector4::zeros(), |worst, k| worst.sup(&error(reference, samples, k).abs()))
+}
+
+const LAYER: BoundaryLayer<f64> = BoundaryLayer { rho: 10.0, epsilon: 0.2 };
+const K_P: [f64; 4] = [1000.0, 1000.0, 2000.0, 1000.0];
+const K_D: [f64; 4] = [10.0, 10.0, 50.0, 1.0];
+
+#[test]
+fn robust_as_reported() {
+    let reference = ghost::joint_reference();
+    let model = ghost::nominal();
+    let robust = Robust::new(K_P, K_D, [1.0; 4], [1.0; 4], LAYER).unwrap();
+    let mut z = 0.0f64;
+    let samples = follow(&reference, |reference, measured| {
+        z = z.max(robust.z(reference, measured).norm());
+        robust.torque(&model, reference, measured).unwrap().tau
+    })
+    .unwrap();
+    let hold = error(&reference, &samples, 22_000);
+    println!("hold: {hold}");
+    close("e_1", hold[0], -2.17e-6, 0.01e-6);
+    close("e_2", hold[1], -6.589e-5, 0.002e-5);
+    close_percent("e_d3", hold[2], -1.0904e-3, 0.5);
+    close("e_4", hold[3], -4.96e-5, 0.02e-5);
+    below("largest |z|", z, 0.0022 + 5e-5);
+    let efforts = samples.iter().fold(Vector4::zeros(), |peak: Vector4<f64>, s| peak.sup(&s.tau.abs()));
+    println!("efforts: {efforts}");
+    for (i, bound) in [40.0, 17.0, 168.5, 2.2].iter().enumerate() {
+        below("effort", efforts[i], *bound);
+    }
+}
+
+#[test]
+fn robust_tuned() {
+    let reference = ghost::joint_reference();
+    let model = ghost::nominal();
+    let robust = Robust::new([1e4; 4], [200.0; 4], [5.4e7; 4], [1e3; 4], LAYER).unwrap();
+    let samples = follow(&reference, |reference, measured| robust.torque(&model, reference, measured).unwrap().tau).unwrap();
+    close_percent("e_d3 in hold", error(&reference, &samples, 22_000)[2], -1.504e-5, 2.0);
+}
+
+#[test]
+fn the_boundary_layer_bounds_the_added_term() {
+    // Far outside the layer the added acceleration is rho, whatever the error.
+    let model = ghost::nominal();
+    let q = ghost::start();
+    let reference = JointReference::at_rest(q);
+    let plain = InverseDynamics::new(K_P, K_D).unwrap();
+    let robust = Robust::new(K_P, K_D, [1.0; 4], [1e6; 4], LAYER).unwrap();
+    let measured = State { q, dq: vector![0.1, -0.2, 0.3, 0.4] };
+    let added =
+        robust.torque(&model, &reference, &measured).unwrap().tau - plain.torque(&model, &reference, &measured).unwrap().tau;
+    use armgen_runtime::robot::Dynamics;
+    let w = model.inertia_matrix(&q).cholesky().unwrap().solve(&added);
+    close("|w|", w.norm(), 10.0, 1e-9);
+    assert!(w.dot(&measured.dq) < 0.0);
+}
+
+#[test]
+fn pd_with_gravity_compensation_holds_and_misses_by_the_load() {
+    let q_d = ghost::start();
+    let reference = vec![JointReference::at_rest(q_d); 22_001];
+    let model = ghost::nominal();
+    let pd = PdGravity::new([2000.0, 2000.0, 5000.0, 100.0], [200.0, 200.0, 300.0, 10.0]).unwrap();
+    let samples = follow(&reference, |reference, measured| pd.torque(&model, reference, measured).unwrap().tau).unwrap();
+    let hold = error(&reference, &samples, 22_000);
+    // 5 kg against 5000 N/m.
+    assert!((hold - vector![0.0, 0.0, -5.0 * 9.81 / 5000.0, 0.0]).amax() < 1e-9, "{hold}");
+}
+
+#[test]
+fn inverse_dynamics_with_the_true_model_follows_exactly() {
+    let reference = ghost::joint_reference();
+    let model = ghost::loaded();
+    let controller = InverseDynamics::new([1e4; 4], [200.0; 4]).unwrap();
+    let samples = follow(&reference, |reference, measured| controller.torque(&model, reference, measured).unwrap().tau).unwrap();
+    below("largest joint error", worst(&reference, &samples).max(), 1e-6);
+    below("in hold", error(&reference, &samples, 22_000).amax(), 1e-12);
+}
+
+/// K_pi = 10 diag(1, 1, .001, 1, 1, 1, 1, 1, third, fourth, 1, 1, third, fourth).
+fn weights(third: f64, fourth: f64) -> [f64; 14] {
+    [1.0, 1.0, 0.001, 1.0, 1.0, 1.0, 1.0, 1.0, third, fourth, 1.0, 1.0, third, fourth].map(|k| 10.0 * k)
+}
+
+fn scaled() -> [f64; 14] {
+    weights(50f64.powi(4), 20f64.powi(4))
+}
+
+fn adaptive(lambda: [f64; 4], k_d: [f64; 4], k_pi: [f64; 14]) -> Adaptive<f64, 4, 14> {
+    Adaptive::new(lambda, k_d, k_pi, NOMINAL, 1e-3).unwrap()
+}
+
+/// The samples, and the estimate of m_l3 at each.
+fn adapt(reference: &[JointReference<f64, 4>], mut controller: Adaptive<f64, 4, 14>) -> (Samples, Vec<f64>) {
+    let (model, mut mass) = (ghost::nominal(), Vec::new());
+    let samples = follow(reference, |reference, measured| {
+        mass.push(controller.estimate()[2]);
+        controller.torque(&model, reference, measured).unwrap().tau
+    })
+    .unwrap();
+    (samples, mass)
+}
+
+#[test]
+fn adaptive_a() {
+    let reference = ghost::joint_reference();
+    let (samples, mass) = adapt(&reference, adaptive([500.0; 4], K_D, scaled()));
+    close("m_l3 at 5 s", mass[5000], 15.0, 0.05);
+    below("|m_l3 - 15| after 5 s", mass[5000..].iter().map(|m| (m - 15.0).abs()).fold(0.0, f64::max), 0.05);
+    close("peak of m_l3", mass.iter().copied().fold(0.0, f64::max), 19.0, 0.5);
+    below("largest joint error in [5, 20] s", worst(&reference, &samples).max(), 2e-6);
+}
+
+#[test]
+fn adaptive_a_without_adaptation() {
+    let reference = ghost::joint_reference();
+    let (samples, mass) = adapt(&reference, adaptive([500.0; 4], K_D, scaled()).with_frozen([true; 14]));
+    assert!(mass.iter().all(|m| *m == 10.0));
+    close_percent("e_d3 in hold", error(&reference, &samples, 22_000)[2], -1.308e-3, 0.5);
+}
+
+#[test]
+fn adaptive_b() {
+    let reference = ghost::joint_reference();
+    let (samples, mass) = adapt(&reference, adaptive([100.0; 4], [1000.0, 500.0, 2000.0, 100.0], scaled()));
+    below("|m_l3 - 15| from 1.3 s", mass[1300..].iter().map(|m| (m - 15.0).abs()).fold(0.0, f64::max), 0.015);
+    below("largest joint error in [5, 20] s", worst(&reference, &samples).max(), 5e-7);
+}
+
+fn as_reported() -> Adaptive<f64, 4, 14> {
+    adaptive([500.0, 500.0, 10_000.0, 500.0], K_D, weights(1.0, 1.0))
+}
+
+#[test]
+fn adaptive_as_reported_diverges_within_20_ms() {
+    let reference = ghost::joint_reference();
+    let (model, mut controller, mut refused) = (ghost::nominal(), as_reported(), None);
+    let (mut k, mut broken) = (0, None);
+    let end = follow(&reference, |reference, measured| {
+        if broken.is_none() && (reference.q - measured.q).amax() > 0.1 {
+            broken = Some(k);
+        }
+        k += 1;
+        match controller.torque(&model, reference, measured) {
+            Ok(torque) => torque.tau,
+            Err(error) => {
+                refused = Some(error);
+                Vector4::repeat(f64::NAN)
+            }
+        }
+    });
+    println!("an error of 0.1 rad or m after {broken:?} ms; refused: {refused:?}");
+    assert!(broken.is_some_and(|k| k <= 20));
+    assert!(end.is_err(), "it does not come back");
+}
+
+/// Plant and estimate, moved together in continuous time.
+#[derive(Clone, Copy)]
+struct Whole {
+    q: Vector4<f64>,
+    dq: Vector4<f64>,
+    estimate: SVector<f64, 14>,
+}
+
+impl Phase<f64> for Whole {
+    fn plus(&self, h: f64, rate: &Self) -> Self {
+        Whole { q: self.q + rate.q * h, dq: self.dq + rate.dq * h, estimate: self.estimate + rate.estimate * h }
+    }
+
+    fn error(&self, _: &Self) -> f64 {
+        0.0
+    }
+}
+
+#[test]
+fn adaptive_as_reported_is_stable_in_continuous_time() {
+    use armgen_runtime::robot::{Dynamics, Kinematics};
+    let reference = ghost::joint_reference();
+    let (model, plant, controller) = (ghost::nominal(), ghost::loaded(), as_reported());
+    let mut x = Whole { q: ghost::start(), dq: Vector4::zeros(), estimate: NOMINAL.into() };
+    let (mut e_z, mut five) = (0.0f64, 0.0);
+    let h = 5e-6;
+    for (k, held) in reference.iter().enumerate().take(6000) {
+        for sub in 0..200 {
+            let since = f64::from(sub) * h;
+            x = rk4(&x, h, |c, x: &Whole| {
+                // The reference moves under its held acceleration.
+                let t = since + c;
+                let now = JointReference {
+                    q: held.q + held.dq * t + held.ddq * (0.5 * t * t),
+                    dq: held.dq + held.ddq * t,
+                    ddq: held.ddq,
+                };
+                let (torque, rate) = controller.law(&model, &now, &State { q: x.q, dq: x.dq }, &x.estimate).unwrap();
+                Whole { q: x.dq, dq: plant.forward_dynamics(&x.q, &x.dq, &torque.tau), estimate: rate }
+            });
+        }
+        let desired = plant.direct_kinematics(&reference[k + 1].q)[(2, 3)];
+        e_z = e_z.max((desired - plant.direct_kinematics(&x.q)[(2, 3)]).abs());
+        if k == 4999 {
+            five = x.estimate[2];
+        }
+    }
+    below("largest |e_z| in 6 s", e_z, 1e-5);
+    println!("m_l3 at 5 s: {five}, at 6 s: {}", x.estimate[2]);
+    close("m_l3 at 5 s", five, 15.0, 0.1);
+}
+
+#[test]
+fn frozen_and_projected_parameters_stay_where_they_belong() {
+    use armgen_runtime::control::Interval;
+    let reference = ghost::joint_reference();
+    let mut frozen = [true; 14];
+    frozen[2] = false;
+    let (mut lower, mut upper) = (NOMINAL, NOMINAL);
+    (lower[2], upper[2]) = (5.0, 16.0);
+    let interval = Interval::new(lower, upper).unwrap();
+    let controller = adaptive([500.0; 4], K_D, scaled()).with_frozen(frozen).with_projection(interval);
+    let (_, mass) = adapt(&reference, controller);
+    assert!(mass.iter().all(|m| (5.0..=16.0).contains(m)), "the peak of 19 is cut");
+    assert!(mass.contains(&16.0));
+    close("m_l3 at 5 s", mass[5000], 15.0, 0.05);
+}

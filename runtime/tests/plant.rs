@@ -1,0 +1,143 @@
+//! The simulated plant: integration, energies, sensors, speed.
+
+mod common;
+
+use armgen_runtime::{
+    control::OperationalSpace,
+    reference::State,
+    simulation::{run, Integrator, Plant, RunError, RunOptions, Sensor},
+};
+use common::{below, ghost, scara::Scara};
+use nalgebra::{vector, Vector4};
+use std::time::{Duration, Instant};
+
+fn tuned() -> OperationalSpace<f64, 4, 4> {
+    OperationalSpace::new(ghost::task(), [1e4; 4], [200.0; 4], [1e5; 4], 1e-3).unwrap()
+}
+
+fn states(integrator: Integrator<f64>) -> Vec<State<f64, 4>> {
+    let (model, plant, trajectory, mut controller) = (ghost::nominal(), ghost::loaded(), ghost::ghost::<f64>(), tuned());
+    let mut options = RunOptions::new(ghost::PERIOD, ghost::WITH_HOLD);
+    options.integrator = integrator;
+    let mut states = Vec::new();
+    run(
+        &plant,
+        State::at_rest(ghost::start()),
+        options,
+        |t, measured| controller.torque(&model, &trajectory.sample(t), measured).map(|torque| torque.tau),
+        |sample| states.push(sample.state),
+    )
+    .unwrap();
+    states
+}
+
+fn apart(a: &[State<f64, 4>], b: &[State<f64, 4>]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a.q - b.q).amax().max((a.dq - b.dq).amax())).fold(0.0, f64::max)
+}
+
+#[test]
+fn one_and_ten_substeps_agree() {
+    let one = states(Integrator::RungeKutta4 { substeps: 1 });
+    below("1 against 10 substeps", apart(&one, &states(Integrator::RungeKutta4 { substeps: 10 })), 1e-9);
+    let adaptive = states(Integrator::DormandPrince { tolerance: 1e-12, most_steps: 100 });
+    below("1 substep against adaptive steps", apart(&one, &adaptive), 1e-9);
+    assert_eq!(one, states(Integrator::RungeKutta4 { substeps: 1 }), "equal runs give equal bits");
+}
+
+#[test]
+fn energy_is_kept_in_free_fall() {
+    let arm = Scara::<f64>::loaded().frictionless();
+    for integrator in [Integrator::RungeKutta4 { substeps: 1 }, Integrator::DormandPrince { tolerance: 1e-13, most_steps: 1000 }]
+    {
+        let start = State { q: vector![0.3, 1.1, 0.2, 0.4], dq: vector![2.0, -3.0, 0.5, 4.0] };
+        let mut plant = Plant::new(&arm, start, integrator).with_audit();
+        let mut worst = 0.0f64;
+        for _ in 0..2000 {
+            plant.advance(&Vector4::zeros(), 1e-3).unwrap();
+            worst = worst.max(plant.energy().unwrap().residual.abs());
+        }
+        below("energy drift in 2 s, J", worst, 1e-9);
+        assert!(plant.energy().unwrap().kinetic > 100.0, "it does fall: {:?}", plant.energy());
+    }
+}
+
+#[test]
+fn energy_adds_up_with_torques_and_friction() {
+    let arm = Scara::<f64>::loaded();
+    let start = State { q: vector![0.3, 1.1, 0.2, 0.4], dq: vector![2.0, -3.0, 0.5, 4.0] };
+    let mut plant = Plant::new(&arm, start, Integrator::RungeKutta4 { substeps: 2 }).with_audit();
+    for k in 0..2000 {
+        let t = f64::from(k) * 1e-3;
+        plant.advance(&vector![5.0 * t.sin(), -3.0, -100.0 * t.cos(), 1.0], 1e-3).unwrap();
+    }
+    let energy = plant.energy().unwrap();
+    println!("{energy:?}");
+    assert!(energy.dissipated > 1.0 && energy.supplied.abs() > 1.0);
+    below("residual, J", energy.residual.abs(), 1e-8);
+}
+
+fn with_sensor(sensor: Sensor<f64, 4>) -> Result<f64, RunError<armgen_runtime::control::ControlError>> {
+    let (model, plant, trajectory) = (ghost::nominal(), ghost::loaded(), ghost::ghost::<f64>());
+    let gains = ([5000.0, 5000.0, 10000.0, 5000.0], [50.0, 50.0, 100.0, 50.0]);
+    let mut controller = OperationalSpace::new(ghost::task(), gains.0, gains.1, [0.0; 4], 1e-3).unwrap();
+    let mut options = RunOptions::new(ghost::PERIOD, Duration::from_secs(3));
+    options.sensor = sensor;
+    let mut z = Vec::new();
+    run(
+        &plant,
+        State::at_rest(ghost::start()),
+        options,
+        |t, measured| controller.torque(&model, &trajectory.sample(t), measured).map(|torque| torque.tau),
+        |sample| z.push(sample.state.q[2]),
+    )?;
+    let mean = z[2000..].iter().sum::<f64>() / z[2000..].len() as f64;
+    Ok((z[2000..].iter().map(|z| (z - mean).powi(2)).sum::<f64>() / z[2000..].len() as f64).sqrt())
+}
+
+#[test]
+fn noise_and_delay_reach_the_arm() {
+    let still = with_sensor(Sensor::ideal()).unwrap();
+    let noisy = with_sensor(Sensor::new(0, 1e-5, 1e-3, 42)).unwrap();
+    let delayed = with_sensor(Sensor::new(1, 0.0, 0.0, 0)).unwrap();
+    println!("deviation of d3: {still:e}, with noise {noisy:e}, with a delay {delayed:e}");
+    assert!(noisy > 10.0 * still);
+    assert_eq!(noisy, with_sensor(Sensor::new(0, 1e-5, 1e-3, 42)).unwrap());
+    assert_ne!(noisy, with_sensor(Sensor::new(0, 1e-5, 1e-3, 43)).unwrap());
+}
+
+#[test]
+fn a_run_that_ends_early_says_when() {
+    let plant = ghost::loaded();
+    let options = || RunOptions::new(ghost::PERIOD, Duration::from_secs(1));
+    let start = State::at_rest(ghost::start());
+    let mut logged = 0;
+    let broken = run(
+        &plant,
+        start,
+        options(),
+        |t, _| if t < Duration::from_millis(5) { Ok(Vector4::zeros()) } else { Err("brake") },
+        |_| logged += 1,
+    );
+    assert_eq!(broken, Err(RunError::Controller { time: Duration::from_millis(5), error: "brake" }));
+    assert_eq!(logged, 5);
+    let lost = run(&plant, start, options(), |_, _| Ok::<_, ()>(Vector4::repeat(f64::NAN)), |_| {});
+    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1) }));
+    let mut none = options();
+    none.integrator = Integrator::RungeKutta4 { substeps: 0 };
+    assert!(matches!(run(&plant, start, none, |_, _| Ok::<_, ()>(Vector4::zeros()), |_| {}), Err(RunError::Integrator { .. })));
+}
+
+#[test]
+fn two_hundred_times_faster_than_real_time() {
+    let best = (0..3)
+        .map(|_| {
+            let start = Instant::now();
+            states(Integrator::RungeKutta4 { substeps: 1 });
+            start.elapsed().as_secs_f64()
+        })
+        .fold(f64::MAX, f64::min);
+    let ratio = 22.0 / best;
+    println!("{ratio:.0} times faster than real time");
+    assert!(ratio > 200.0, "{ratio}");
+}

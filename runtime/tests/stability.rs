@@ -1,0 +1,270 @@
+//! Spectral radii of the sampled loops at 81 postures along the ghost path, with the load in the plant and not in the model.
+
+mod common;
+
+use armgen_runtime::{
+    control::{Adaptive, BoundaryLayer, InverseDynamics, OperationalSpace, PdGravity, Robust},
+    reference::{JointReference, OperationalReference, Pose, State},
+    robot::Dynamics,
+    stability::{analyse, Delay, Linearise, Report, SampledLoop, StabilityError, StablePeriod},
+};
+use common::{
+    close, close_percent, ghost,
+    scara::{Scara, NOMINAL},
+};
+use nalgebra::{vector, SMatrix, SVector, Vector4};
+
+fn report<C: Linearise<Scara<f64>, 4>>(controller: &C, delay: Delay) -> Report<f64> {
+    let report = analyse(&ghost::loaded(), &ghost::nominal(), controller, &ghost::postures(), 1e-3, delay).unwrap();
+    println!("{report:?}");
+    report
+}
+
+#[track_caller]
+fn check<C: Linearise<Scara<f64>, 4>>(controller: &C, radius: f64, period: f64, percent: f64) {
+    let report = report(controller, Delay::None);
+    close("radius", report.radius, radius, 1e-4);
+    assert!(report.is_stable());
+    let StablePeriod::UpTo(found) = report.period else { panic!("{report:?}") };
+    close_percent("largest stable period", found, period, percent);
+}
+
+#[track_caller]
+fn check_delayed<C: Linearise<Scara<f64>, 4>>(controller: &C, radius: f64) {
+    let report = report(controller, Delay::OneSample);
+    close("radius with one sample of delay", report.radius, radius, 1e-4);
+    assert!(!report.is_stable());
+}
+
+const K_P: [f64; 4] = [1000.0, 1000.0, 2000.0, 1000.0];
+const K_D: [f64; 4] = [10.0, 10.0, 50.0, 1.0];
+
+fn robust(rho: f64) -> Robust<f64, 4> {
+    Robust::new(K_P, K_D, [1.0; 4], [1.0; 4], BoundaryLayer { rho, epsilon: 0.2 }).unwrap()
+}
+
+#[test]
+fn robust_as_reported() {
+    check(&robust(10.0), 0.994830, 25e-3, 2.0);
+}
+
+#[test]
+fn the_pd_part_alone() {
+    check(&InverseDynamics::new(K_P, K_D).unwrap(), 0.999750, 2.0e-3, 2.0);
+    check_delayed(&InverseDynamics::new(K_P, K_D).unwrap(), 1.000248);
+    // Without its added term the robust law is the same.
+    assert_eq!(report(&robust(0.0), Delay::None), report(&InverseDynamics::new(K_P, K_D).unwrap(), Delay::None));
+}
+
+fn robust_tuned() -> Robust<f64, 4> {
+    Robust::new([1e4; 4], [200.0; 4], [5.4e7; 4], [1e3; 4], BoundaryLayer { rho: 10.0, epsilon: 0.2 }).unwrap()
+}
+
+#[test]
+fn robust_with_tuned_gains() {
+    let report = report(&robust_tuned(), Delay::None);
+    close("radius", report.radius, 0.84131, 1e-4);
+    check_delayed(&robust_tuned(), 1.0459);
+}
+
+fn operational_space(k_p: [f64; 4], k_i: [f64; 4], k_d: [f64; 4]) -> OperationalSpace<f64, 4, 4> {
+    OperationalSpace::new(ghost::task(), k_p, k_d, k_i, 1e-3).unwrap()
+}
+
+fn operational_space_as_reported() -> OperationalSpace<f64, 4, 4> {
+    operational_space([5000.0, 5000.0, 10_000.0, 5000.0], [20.0, 20.0, 2000.0, 20.0], [50.0, 50.0, 100.0, 50.0])
+}
+
+#[test]
+fn operational_space_reported_and_tuned() {
+    let controller = operational_space_as_reported();
+    check(&controller, 0.9999960, 20e-3, 2.0);
+    close("radius", report(&controller, Delay::None).radius, 0.9999960, 1e-7);
+    let tuned = report(&operational_space([1e4; 4], [1e5; 4], [200.0; 4]), Delay::None);
+    assert!(tuned.is_stable());
+}
+
+fn adaptive(lambda: [f64; 4], k_d: [f64; 4], third: f64, fourth: f64, mass: f64) -> Adaptive<f64, 4, 14> {
+    let k_pi = [1.0, 1.0, 0.001, 1.0, 1.0, 1.0, 1.0, 1.0, third, fourth, 1.0, 1.0, third, fourth].map(|k| 10.0 * k);
+    let mut estimate = NOMINAL;
+    estimate[2] = mass;
+    Adaptive::new(lambda, k_d, k_pi, estimate, 1e-3).unwrap()
+}
+
+fn adaptive_scaled(lambda: f64, k_d: [f64; 4]) -> Adaptive<f64, 4, 14> {
+    adaptive([lambda; 4], k_d, 50f64.powi(4), 20f64.powi(4), 10.0)
+}
+
+#[test]
+fn adaptive_a() {
+    check(&adaptive_scaled(500.0, K_D), 0.999636, 3.99e-3, 0.5);
+}
+
+#[test]
+fn adaptive_b() {
+    check(&adaptive_scaled(100.0, [1000.0, 500.0, 2000.0, 100.0]), 0.99497, 8.60e-3, 0.5);
+}
+
+#[test]
+fn adaptive_as_reported_is_unstable() {
+    for (mass, radius, period) in [(10.0, 7.19, 0.2444e-3), (15.0, 9.01, 0.2000e-3)] {
+        let controller = adaptive([500.0, 500.0, 10_000.0, 500.0], K_D, 1.0, 1.0, mass);
+        let found = report(&controller, Delay::None);
+        close_percent("radius", found.radius, radius, 1.0);
+        let StablePeriod::UpTo(limit) = found.period else { panic!("{found:?}") };
+        close("largest stable period", limit, period, 0.5e-7);
+        assert!(!found.is_stable());
+        // Adaptation does not matter for it.
+        let frozen = report(&controller.with_frozen([true; 14]), Delay::None);
+        close_percent("radius without adaptation", frozen.radius, radius, 1.0);
+    }
+}
+
+/// Derivatives of the torque itself, by central differences, against the linearisation.
+#[track_caller]
+fn linearised<C: Linearise<Scara<f64>, 4>>(controller: &C, torque: impl Fn(&State<f64, 4>) -> Vector4<f64>) {
+    let q = ghost::start();
+    let feedback = controller.linearise(&ghost::nominal(), &q).unwrap();
+    let h = 1e-7;
+    for i in 0..4 {
+        let mut d = Vector4::zeros();
+        d[i] = h;
+        let dq = (torque(&State::at_rest(q + d)) - torque(&State::at_rest(q - d))) / (2.0 * h);
+        let dv = (torque(&State { q, dq: d }) - torque(&State { q, dq: -d })) / (2.0 * h);
+        let scale = 1.0 + feedback.position.amax();
+        assert!((feedback.position.column(i) - dq).amax() < 1e-6 * scale, "{i}: {} {dq}", feedback.position);
+        assert!((feedback.velocity.column(i) - dv).amax() < 1e-6 * scale, "{i}: {} {dv}", feedback.velocity);
+    }
+}
+
+#[test]
+fn linearisations_are_derivatives_of_the_torque() {
+    let model = ghost::nominal();
+    let rest = JointReference::at_rest(ghost::start());
+    let pd = PdGravity::new([2000.0, 2000.0, 5000.0, 100.0], [200.0, 200.0, 300.0, 10.0]).unwrap();
+    linearised(&pd, |x| pd.torque(&model, &rest, x).unwrap().tau);
+    let inverse = InverseDynamics::new(K_P, K_D).unwrap();
+    linearised(&inverse, |x| inverse.torque(&model, &rest, x).unwrap().tau);
+    linearised(&robust(10.0), |x| robust(10.0).torque(&model, &rest, x).unwrap().tau);
+    let adaptive = adaptive_scaled(500.0, K_D);
+    linearised(&adaptive, |x| adaptive.law(&model, &rest, x, adaptive.estimate()).unwrap().0.tau);
+    let operational = operational_space_as_reported();
+    let pose = OperationalReference::at_rest(Pose::of(&model, &ghost::start()));
+    linearised(&operational, |x| operational.clone().torque(&model, &pose, x).unwrap().tau);
+}
+
+#[test]
+fn memories_are_excited_ones_only() {
+    let q = ghost::start();
+    let feedback = adaptive_scaled(500.0, K_D).linearise(&ghost::nominal(), &q).unwrap();
+    assert_eq!(feedback.memory.ncols(), 1, "m_l3 alone is excited at rest");
+    let operational = operational_space([1e4; 4], [0.0, 0.0, 1e5, 0.0], [200.0; 4]).linearise(&ghost::nominal(), &q).unwrap();
+    assert_eq!(operational.memory.ncols(), 1);
+}
+
+/// The analysis against the thing itself: the error of the simulated loop shrinks by the spectral radius, sample by sample.
+#[test]
+fn a_simulated_loop_decays_by_its_radius() {
+    let (plant, model) = (ghost::loaded(), ghost::loaded());
+    let controller = InverseDynamics::new([400.0; 4], [10.0, 12.0, 14.0, 16.0]).unwrap();
+    let q = ghost::start();
+    let radius = SampledLoop::new(&plant, &model, &controller, &q).unwrap().spectral_radius(20e-3, Delay::None).unwrap();
+    let reference = JointReference::at_rest(q);
+    let mut state = State::at_rest(q + Vector4::repeat(1e-4));
+    let mut sizes = Vec::new();
+    use armgen_runtime::simulation::{Integrator, Plant};
+    let mut arm = Plant::new(&plant, state, Integrator::RungeKutta4 { substeps: 4 });
+    for _ in 0..400 {
+        arm.advance(&controller.torque(&model, &reference, &state).unwrap().tau, 20e-3).unwrap();
+        state = *arm.state();
+        sizes.push((state.q - q).norm().hypot(state.dq.norm() * 0.05));
+    }
+    let decay = (sizes[199] / sizes[49]).powf(1.0 / 150.0);
+    close("decay per sample", decay, radius, 2e-3);
+}
+
+/// A point mass on a line, without friction.
+struct Mass;
+
+impl armgen_runtime::robot::Kinematics<1> for Mass {
+    type Real = f64;
+    fn direct_kinematics(&self, q: &SVector<f64, 1>) -> nalgebra::Matrix4<f64> {
+        let mut t = nalgebra::Matrix4::identity();
+        t[(0, 3)] = q[0];
+        t
+    }
+    fn link_frames(&self, q: &SVector<f64, 1>) -> [nalgebra::Matrix4<f64>; 1] {
+        [self.direct_kinematics(q)]
+    }
+    fn geometric_jacobian(&self, _: &SVector<f64, 1>) -> SMatrix<f64, 6, 1> {
+        SVector::<f64, 6>::x()
+    }
+    fn geometric_jacobian_dot(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>) -> SMatrix<f64, 6, 1> {
+        SMatrix::zeros()
+    }
+}
+
+impl Dynamics<1> for Mass {
+    fn inertia_matrix(&self, _: &SVector<f64, 1>) -> SMatrix<f64, 1, 1> {
+        SMatrix::from_element(2.0)
+    }
+    fn coriolis_matrix(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>) -> SMatrix<f64, 1, 1> {
+        SMatrix::zeros()
+    }
+    fn gravity(&self, _: &SVector<f64, 1>) -> SVector<f64, 1> {
+        SVector::zeros()
+    }
+    fn friction(&self, _: &SVector<f64, 1>) -> SVector<f64, 1> {
+        SVector::zeros()
+    }
+    fn equations_of_motion(&self, q: &SVector<f64, 1>, dq: &SVector<f64, 1>) -> armgen_runtime::robot::EquationsOfMotion<f64, 1> {
+        armgen_runtime::robot::EquationsOfMotion {
+            inertia: self.inertia_matrix(q),
+            coriolis: self.coriolis_matrix(q, dq),
+            gravity: self.gravity(q),
+        }
+    }
+    fn inverse_dynamics(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>, ddq: &SVector<f64, 1>) -> SVector<f64, 1> {
+        ddq * 2.0
+    }
+    fn forward_dynamics(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>, tau: &SVector<f64, 1>) -> SVector<f64, 1> {
+        tau / 2.0
+    }
+    fn kinetic_energy(&self, _: &SVector<f64, 1>, dq: &SVector<f64, 1>) -> f64 {
+        dq[0] * dq[0]
+    }
+    fn potential_energy(&self, _: &SVector<f64, 1>) -> f64 {
+        0.0
+    }
+}
+
+#[test]
+fn a_sampled_mass_has_the_eigenvalues_of_the_closed_form() {
+    // z^2 - (2 - k_P h^2/2 - k_D h) z + (1 + k_P h^2/2 - k_D h) = 0, stable while k_P h < 2 k_D and k_D h < 2.
+    let loop_of =
+        |k_p: f64, k_d: f64| SampledLoop::new(&Mass, &Mass, &InverseDynamics::new([k_p], [k_d]).unwrap(), &vector![0.0]).unwrap();
+    for (k_p, k_d, h) in [(100.0f64, 5.0f64, 1e-2f64), (1e4, 200.0, 1e-3), (1e3, 1.0, 1e-3)] {
+        let (b, c) = (2.0 - k_p * h * h / 2.0 - k_d * h, 1.0 + k_p * h * h / 2.0 - k_d * h);
+        let disc = b * b - 4.0 * c;
+        let radius = if disc < 0.0 { c.sqrt() } else { ((b.abs() + disc.sqrt()) / 2.0).abs() };
+        close("radius", loop_of(k_p, k_d).spectral_radius(h, Delay::None).unwrap(), radius, 1e-7);
+    }
+    let StablePeriod::UpTo(limit) = loop_of(1000.0, 10.0).largest_stable_period(1e-3, Delay::None).unwrap() else { panic!() };
+    close("limit by the position gain", limit, 2.0 * 10.0 / 1000.0, 1e-7);
+    let StablePeriod::UpTo(limit) = loop_of(100.0, 50.0).largest_stable_period(1.0, Delay::None).unwrap() else { panic!() };
+    close("limit by the velocity gain", limit, 2.0 / 50.0, 1e-7);
+}
+
+#[test]
+fn what_has_no_answer_says_so() {
+    let (plant, model) = (ghost::loaded(), ghost::nominal());
+    let controller = operational_space_as_reported();
+    let singular = vector![0.0, 0.0, 0.0, 0.0];
+    let postures = [ghost::start(), singular];
+    let error = analyse(&plant, &model, &controller, &postures, 1e-3, Delay::None).unwrap_err();
+    assert_eq!(error, StabilityError::Singular { posture: 1 });
+    let error = analyse(&plant, &model, &controller, &[], 1e-3, Delay::None).unwrap_err();
+    assert_eq!(error, StabilityError::NoPosture);
+    let error = analyse(&plant, &model, &controller, &postures[..1], f64::NAN, Delay::None).unwrap_err();
+    assert_eq!(error, StabilityError::Period);
+}
