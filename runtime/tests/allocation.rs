@@ -146,7 +146,7 @@ fn clik() {
 
 #[test]
 fn trajectories_manipulability_and_plans() {
-    let trajectory = none("planning", || ghost::ghost::<f64>());
+    let trajectory = none("planning", ghost::ghost::<f64>);
     for k in (0..22_000).step_by(37) {
         none("sampling", || trajectory.sample(Duration::from_millis(k)));
     }
