@@ -4,7 +4,7 @@
 //! its regressor, and its scalar, `f32` or `f64`. Symbols and equation numbers are those of "the book": Siciliano, Sciavicco,
 //! Villani, Oriolo, *Robotics: Modelling, Planning and Control*. SI units and radians throughout.
 //!
-//! - **Allocation**: none, except in [`stability`] and [`simulation`], which run on a host and stand behind the feature `std`.
+//! - **Allocation**: none, except in `stability` and `simulation`, which run on a host and stand behind the feature `std`.
 //! - **Panics**: none. A function that can fail returns a small documented `enum`.
 //! - **Bits**: sine, cosine and root come from `libm` in every build and nothing is contracted into a fused multiply-add,
 //!   so one program gives the same bits on a host and on a microcontroller.

@@ -71,4 +71,9 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
         });
         (kept, stopped)
     }
+
+    /// Whether joint `i` stands at or beyond a limit at `q` and the rate `dq` leads further out.
+    pub(super) fn is_outwards(&self, i: usize, q: T, dq: T) -> bool {
+        self.range.as_ref().is_some_and(|(lower, upper)| (q >= upper[i] && dq > T::zero()) || (q <= lower[i] && dq < T::zero()))
+    }
 }

@@ -157,16 +157,14 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
             Integration::ExplicitEuler => dq * h,
             Integration::HoldConsistent => dq * h + ddq * (h * h * lit(0.5)),
         };
-        let (next_q, stopped) = self.limits.stop(q, &(q + way));
+        let (next_q, mut stopped) = self.limits.stop(q, &(q + way));
         let mut ddq = ddq;
-        if stopped.is_some() {
-            // The joint hits its stop: it does not leave it at once.
-            let wanted = q + way;
-            for i in 0..N {
-                if next_q[i] != wanted[i] && (wanted[i] - next_q[i]) * next_dq[i] > T::zero() {
-                    next_dq[i] = T::zero();
-                    ddq[i] = -dq[i] / h;
-                }
+        for i in 0..N {
+            // A joint at its stop has no rate outwards, whether it arrives there or was there already.
+            if self.limits.is_outwards(i, next_q[i], next_dq[i]) {
+                next_dq[i] = T::zero();
+                ddq[i] = -dq[i] / h;
+                stopped = stopped.or(Some(i));
             }
         }
         (ddq, State { q: next_q, dq: next_dq }, slowed, stopped)

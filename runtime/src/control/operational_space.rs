@@ -34,6 +34,8 @@ pub struct NullSpace<T, const N: usize> {
 impl<T: RealField + Copy, const N: usize> NullSpace<T, N> {
     /// Diagonals of K_N, 1/s^2, and D_N, 1/s, and the posture q_N, rad or m.
     ///
+    /// With K_N = 0 the joints may drift through the null space: the loop has eigenvalues at 1 and does not count as stable.
+    ///
     /// # Errors
     /// Where the stiffness is negative, the damping is not positive, or something is not finite.
     pub fn new(stiffness: [T; N], damping: [T; N], posture: [T; N]) -> Result<Self, GainError> {

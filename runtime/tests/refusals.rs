@@ -1,0 +1,234 @@
+//! What controllers refuse, limit and hold back.
+
+mod common;
+
+use armgen_runtime::{
+    clik::{Clik, Integration, JacobianInverse, JointLimits, Outcome},
+    control::{
+        Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
+        TorqueLimits,
+    },
+    gains::{Gain, GainError},
+    linalg::{Damping, DampingError},
+    reference::{JointReference, OperationalReference, Pose, State},
+    simulation::{Integrator, Plant},
+};
+use common::{below, ghost, scara::NOMINAL};
+use nalgebra::{vector, Vector4};
+
+const NAN: f64 = f64::NAN;
+
+#[test]
+fn gains_are_checked() {
+    let positive = |gain, index| Some(GainError::NotPositive { gain, index });
+    let finite = |gain, index| Some(GainError::NotFinite { gain, index });
+    let (two, one) = ([2.0, 2.0], [1.0, 1.0]);
+    assert_eq!(PdGravity::new([1.0, 0.0], one).err(), positive(Gain::Proportional, 1));
+    assert_eq!(PdGravity::new(two, [-1.0, 1.0]).err(), positive(Gain::Derivative, 0));
+    assert_eq!(InverseDynamics::new([1.0, NAN], one).err(), finite(Gain::Proportional, 1));
+    assert_eq!(InverseDynamics::new(two, [f64::INFINITY, 1.0]).err(), finite(Gain::Derivative, 0));
+    let layer = |rho, epsilon| BoundaryLayer { rho, epsilon };
+    assert_eq!(Robust::new(two, one, one, [1.0, 0.0], layer(1.0, 1.0)).err(), positive(Gain::LyapunovWeight, 1));
+    assert_eq!(Robust::new(two, one, one, one, layer(-1.0, 1.0)).err(), positive(Gain::UncertaintyBound, 0));
+    assert_eq!(Robust::new(two, one, one, one, layer(1.0, 0.0)).err(), positive(Gain::BoundaryLayer, 0));
+    assert_eq!(Adaptive::new(two, one, [1.0, 0.0, 1.0], [0.0; 3], 1e-3).err(), positive(Gain::Adaptation, 1));
+    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0, 0.0, NAN], 1e-3).err(), finite(Gain::Estimate, 2));
+    assert_eq!(Adaptive::new([2.0, 0.0], one, [1.0; 3], [0.0; 3], 1e-3).err(), positive(Gain::Filter, 1));
+    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0; 3], 0.0).err(), positive(Gain::Period, 0));
+    assert_eq!(Interval::new([0.0, 2.0], [1.0, 1.0]).err(), positive(Gain::Interval, 1));
+    let operational = |k_i, h| OperationalSpace::<f64, 4, 4>::new(ghost::task(), [1.0; 4], [1.0; 4], k_i, h);
+    assert_eq!(operational([0.0, 0.0, -1.0, 0.0], 1e-3).err(), positive(Gain::Integral, 2));
+    assert_eq!(operational([0.0; 4], NAN).err(), finite(Gain::Period, 0));
+    assert_eq!(operational([0.0; 4], 1e-3).unwrap().with_integral_limit([-1.0; 4]).err(), positive(Gain::IntegralLimit, 0));
+    assert_eq!(NullSpace::new([0.0, 0.0], [1.0, 0.0], [0.0; 2]).err(), positive(Gain::NullSpace, 1));
+    assert_eq!(TorqueLimits::new([1.0, 0.0]).err(), positive(Gain::TorqueLimit, 1));
+    assert_eq!(JointLimits::rates([1.0, NAN]).err(), finite(Gain::RateLimit, 1));
+    assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Gain::PositionLimit, 1));
+    assert_eq!(Damping::new(0.0, 1.0).err(), Some(DampingError::Threshold));
+    assert_eq!(Damping::new(1.0, NAN).err(), Some(DampingError::Factor));
+}
+
+/// Every way in which one number of a measurement can be lost.
+fn broken() -> impl Iterator<Item = State<f64, 4>> {
+    let good = State { q: ghost::start(), dq: vector![0.1, 0.2, 0.3, 0.4] };
+    (0..8).flat_map(move |i| {
+        [NAN, f64::INFINITY, f64::NEG_INFINITY].map(move |x| {
+            let mut state = good;
+            *(if i < 4 { &mut state.q[i] } else { &mut state.dq[i - 4] }) = x;
+            state
+        })
+    })
+}
+
+#[test]
+fn a_broken_measurement_gives_an_error_and_never_a_torque() {
+    let model = ghost::nominal();
+    let rest = JointReference::at_rest(ghost::start());
+    let pose = OperationalReference::at_rest(Pose::of(&model, &ghost::start()));
+    let pd = PdGravity::new([1e3; 4], [10.0; 4]).unwrap();
+    let inverse = InverseDynamics::new([1e3; 4], [10.0; 4]).unwrap();
+    let robust = Robust::new([1e3; 4], [10.0; 4], [1.0; 4], [1.0; 4], BoundaryLayer { rho: 10.0, epsilon: 0.2 }).unwrap();
+    let mut adaptive = Adaptive::new([500.0; 4], [10.0; 4], [10.0; 14], NOMINAL, 1e-3).unwrap();
+    let mut operational = OperationalSpace::new(ghost::task(), [1e3; 4], [10.0; 4], [10.0; 4], 1e-3).unwrap();
+    let (memory, integral) = (*adaptive.estimate(), *operational.integral());
+    let lost = Some(ControlError::MeasurementNotFinite);
+    for measured in broken() {
+        assert_eq!(pd.torque(&model, &rest, &measured).err(), lost);
+        assert_eq!(inverse.torque(&model, &rest, &measured).err(), lost);
+        assert_eq!(robust.torque(&model, &rest, &measured).err(), lost);
+        assert_eq!(adaptive.torque(&model, &rest, &measured).err(), lost);
+        assert_eq!(operational.torque(&model, &pose, &measured).err(), lost);
+    }
+    // Beyond the range of the scalar: no torque either.
+    let wild = State { q: ghost::start(), dq: Vector4::repeat(1e200) };
+    assert_eq!(inverse.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
+    assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
+    assert_eq!(operational.torque(&model, &pose, &wild).err(), Some(ControlError::TorqueNotFinite));
+    // Nothing of it stays in the memory.
+    assert_eq!(adaptive.estimate(), &memory);
+    assert_eq!(operational.integral(), &integral);
+    let nowhere = JointReference { dq: Vector4::repeat(NAN), ..rest };
+    assert_eq!(robust.torque(&model, &nowhere, &State::at_rest(ghost::start())).err(), Some(ControlError::ReferenceNotFinite));
+}
+
+#[test]
+fn torques_are_limited() {
+    let model = ghost::nominal();
+    let bound = [5.0, 4.0, 120.0, 0.5];
+    let limits = TorqueLimits::new(bound).unwrap();
+    let controller = InverseDynamics::new([1e4; 4], [200.0; 4]).unwrap();
+    let limited = controller.with_torque_limits(limits);
+    let reference = JointReference::at_rest(ghost::start());
+    let far = State::at_rest(ghost::start() + vector![0.5, -0.5, 0.1, 1.0]);
+    let (free, cut) = (controller.torque(&model, &reference, &far).unwrap(), limited.torque(&model, &reference, &far).unwrap());
+    assert!(cut.limited && !free.limited);
+    for i in 0..4 {
+        assert_eq!(cut.tau[i], free.tau[i].clamp(-bound[i], bound[i]));
+    }
+    let near = State::at_rest(ghost::start());
+    assert_eq!(controller.torque(&model, &reference, &near), limited.torque(&model, &reference, &near));
+}
+
+/// A step of 10 cm in x, with a motor too weak for it: how far does the tip shoot over?
+fn overshoot(limit_integral: bool, anti_windup: bool) -> f64 {
+    let (model, arm) = (ghost::nominal(), ghost::nominal());
+    let start = ghost::start();
+    let mut goal = Pose::of(&model, &start);
+    goal.position.x += 0.1;
+    let reference = OperationalReference::at_rest(goal);
+    let bound = [6.0, 4.0, 200.0, 5.0];
+    let mut controller = OperationalSpace::new(ghost::task(), [400.0; 4], [40.0; 4], [4000.0; 4], 1e-3).unwrap();
+    if limit_integral {
+        controller = controller.with_integral_limit([1e-3; 4]).unwrap();
+    }
+    if anti_windup {
+        controller = controller.with_torque_limits(TorqueLimits::new(bound).unwrap());
+    }
+    let mut plant = Plant::new(&arm, State::at_rest(start), Integrator::RungeKutta4 { substeps: 1 });
+    let mut over = 0.0f64;
+    for _ in 0..4000 {
+        let tau = controller.torque(&model, &reference, plant.state()).unwrap().tau;
+        // The motor's limit is there whether the controller knows of it or not.
+        let tau = Vector4::from_fn(|i, _| tau[i].clamp(-bound[i], bound[i]));
+        plant.advance(&tau, 1e-3).unwrap();
+        over = over.max(Pose::of(&arm, &plant.state().q).position.x - goal.position.x);
+    }
+    over
+}
+
+#[test]
+fn the_integral_does_not_wind_up() {
+    let (blind, aware, bounded) = (overshoot(false, false), overshoot(false, true), overshoot(true, false));
+    println!("overshoot: {blind} blind, {aware} with anti-windup, {bounded} with a limit of the integral alone");
+    assert!(aware < 0.2 * blind && bounded < 0.2 * blind);
+}
+
+#[test]
+fn a_singular_start_is_an_error_without_damping_and_named_with_it() {
+    let (model, arm) = (ghost::nominal(), ghost::nominal());
+    let singular = State::at_rest(vector![0.3, 0.0, 0.2, 0.4]);
+    let goal = OperationalReference::at_rest(Pose::of(&model, &vector![0.5, 1.0, 0.3, 0.0]));
+    let plain = OperationalSpace::new(ghost::task(), [100.0; 4], [20.0; 4], [0.0; 4], 1e-3).unwrap();
+    assert_eq!(plain.clone().torque(&model, &goal, &singular).err(), Some(ControlError::Singular));
+    let limits = TorqueLimits::new([60.0, 30.0, 250.0, 10.0]).unwrap();
+    let null_space = NullSpace::new([0.0; 4], [5.0; 4], [0.0; 4]).unwrap();
+    let mut damped = plain.with_damping(Damping::new(0.05, 0.2).unwrap()).with_torque_limits(limits).with_null_space(null_space);
+    let first = damped.torque(&model, &goal, &singular).unwrap();
+    assert!(first.damped);
+    let mut plant = Plant::new(&arm, singular, Integrator::RungeKutta4 { substeps: 1 });
+    let mut rates = 0.0f64;
+    for _ in 0..5000 {
+        plant.advance(&damped.torque(&model, &goal, plant.state()).unwrap().tau, 1e-3).unwrap();
+        rates = rates.max(plant.state().dq.amax());
+    }
+    let e = ghost::task().error(&goal.pose, &Pose::of(&arm, &plant.state().q));
+    below("largest rate", rates, 20.0);
+    below("error at the end", e.norm(), 1e-6);
+    assert!(!damped.torque(&model, &goal, plant.state()).unwrap().damped);
+}
+
+#[test]
+fn second_order_stays_within_limits() {
+    let robot = ghost::nominal();
+    let limits =
+        JointLimits::rates([2.0, 2.0, 0.5, 4.0]).unwrap().with_range([-2.0, 0.1, 0.0, -4.0], [2.0, 2.8, 0.3, 4.0]).unwrap();
+    for integration in [Integration::ExplicitEuler, Integration::HoldConsistent] {
+        let clik =
+            armgen_runtime::clik::SecondOrder::new(ghost::task(), [400.0; 4], [40.0; 4], 1e-3, integration, limits, [1e-6; 4])
+                .unwrap();
+        let goal = OperationalReference::at_rest(Pose::of(&robot, &vector![0.5, 1.0, 0.5, 0.0]));
+        let mut state = State::at_rest(vector![-1.5, 2.0, 0.1, 0.5]);
+        let mut outcomes = Vec::new();
+        for _ in 0..4000 {
+            let step = clik.step(&robot, &state, &goal).unwrap();
+            state = step.next;
+            assert!(state.q[2] <= 0.3 && (0..4).all(|i| state.dq[i].abs() <= limits.rate()[i]), "{state:?}");
+            if outcomes.last() != Some(&step.outcome) {
+                outcomes.push(step.outcome);
+            }
+        }
+        println!("{outcomes:?}");
+        assert_eq!(outcomes.last(), Some(&Outcome::JointLimit { joint: 2 }));
+        assert!(outcomes.contains(&Outcome::RateLimited));
+        assert!(outcomes.len() < 10, "no flicker");
+        assert_eq!(state.q[2], 0.3);
+    }
+}
+
+#[test]
+fn single_precision_controls_too() {
+    use armgen_runtime::simulation::{run, RunOptions};
+    use common::scara::Scara;
+    let (model, plant, trajectory) = (Scara::<f32>::nominal(), Scara::<f32>::loaded(), ghost::ghost::<f32>());
+    let mut operational = OperationalSpace::new(ghost::task(), [5e3f32; 4], [100.0; 4], [1e4; 4], 1e-3).unwrap();
+    let mut adaptive =
+        Adaptive::<f32, 4, 14>::new([100.0; 4], [1000.0, 500.0, 2000.0, 100.0], [1e3; 14], NOMINAL.map(|x| x as f32), 1e-3)
+            .unwrap();
+    let start = State::at_rest(ghost::start().cast::<f32>());
+    let mut worst = 0.0f32;
+    run(
+        &plant,
+        start,
+        RunOptions::new(ghost::PERIOD, ghost::CUT),
+        |t, measured| operational.torque(&model, &trajectory.sample(t), measured).map(|torque| torque.tau),
+        |sample| {
+            let e = ghost::task().error(&trajectory.sample(sample.time).pose, &Pose::of(&plant, &sample.state.q));
+            if sample.index > 2000 {
+                worst = worst.max(e.amax());
+            }
+        },
+    )
+    .unwrap();
+    below("largest error after 2 s", f64::from(worst), 2e-4);
+    let rest = JointReference::at_rest(start.q);
+    assert!(adaptive.torque(&model, &rest, &start).is_ok());
+    let limits = JointLimits::rates([3.0f32; 4]).unwrap();
+    let clik = Clik::new(ghost::task(), JacobianInverse::new([100.0f32; 4]).unwrap(), 1e-3, limits, [1e-4; 4]).unwrap();
+    let (mut q, mut worst) = (start.q, 0.0f32);
+    for k in 0..=20_000 {
+        let step = clik.step(&model, &q, &trajectory.sample(ghost::PERIOD * k)).unwrap();
+        worst = worst.max(step.error.amax());
+        q = step.q;
+    }
+    below("largest error of CLIK", f64::from(worst), 1e-4);
+}
