@@ -17,7 +17,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::Colour;
-use crate::program::{Options, Scalar};
+pub use crate::program::Scalar;
+
+use crate::program::Options;
 use crate::source::Source;
 
 /// A description to generate from.
@@ -25,17 +27,24 @@ use crate::source::Source;
 pub struct Robot {
     description: PathBuf,
     options: Options,
+    stem: Option<String>,
 }
 
 impl Robot {
     /// The description in `path`, relative to the folder of the crate that is built.
     pub fn new(path: impl AsRef<Path>) -> Robot {
-        Robot { description: path.as_ref().to_path_buf(), options: Options::default() }
+        Robot { description: path.as_ref().to_path_buf(), options: Options::default(), stem: None }
     }
 
     /// The scalar type behind `Real`; f64 unless chosen.
     pub fn scalar(mut self, scalar: Scalar) -> Robot {
         self.options.scalar = scalar;
+        self
+    }
+
+    /// The name of the written files without their ending, where it is not that of the description: for the same robot in two scalars, say.
+    pub fn file_stem(mut self, stem: impl Into<String>) -> Robot {
+        self.stem = Some(stem.into());
         self
     }
 
@@ -61,7 +70,8 @@ impl Robot {
             println!("cargo::warning={path}:{}:{}: {}", place.line, place.column, warning.message);
         }
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
-        let stem = self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
+        let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
+        let stem = self.stem.clone().unwrap_or_else(own);
         for (name, text) in [(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)] {
             let file = out.join(name);
             std::fs::write(&file, text).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;

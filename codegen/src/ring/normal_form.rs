@@ -58,6 +58,11 @@ impl NormalForm {
         self.terms.len()
     }
 
+    /// Number of terms with those of the coefficients multiplied out: a coefficient of several roots or general angles is a sum itself.
+    fn size(&self) -> usize {
+        self.terms.values().map(|coefficient| coefficient.terms().count()).sum()
+    }
+
     /// Whether this is 0.
     pub fn is_empty(&self) -> bool {
         self.terms.is_empty()
@@ -113,7 +118,7 @@ impl NormalForm {
         NormalForm { terms: self.terms.iter().map(|(key, c)| (key.clone(), -c)).collect() }
     }
 
-    /// The product, or `None` beyond `limit` terms.
+    /// The product, or `None` beyond `limit` terms, those of the coefficients counted one by one.
     pub fn times(&self, other: &NormalForm, limit: usize) -> Option<NormalForm> {
         let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
         let mut product = NormalForm::default();
@@ -135,7 +140,7 @@ impl NormalForm {
                     add_wave(&mut product, combine(a, b, sign), sine, factors.clone(), if negative { -&c } else { c.clone() });
                 }
             }
-            if product.len() > limit {
+            if product.size() > limit {
                 return None;
             }
         }
@@ -179,6 +184,8 @@ fn merge(a: &Factors, b: &Factors) -> Factors {
 
 impl Pool {
     /// The normal forms of expressions; `None` for one that needs, on the way or at the end, more than `limit` terms or a reciprocal.
+    ///
+    /// Terms of coefficients count one by one: products of general angles make sums as long as the waves do.
     pub fn normal_forms(&self, exprs: &[ExprId], limit: usize) -> Vec<Option<NormalForm>> {
         let needed = self.reachable(exprs);
         let mut forms: Vec<Option<Rc<NormalForm>>> = vec![None; self.len()];
@@ -192,7 +199,7 @@ impl Pool {
                         .or(Some(NormalForm::default()))
                 }
                 Node::Symbol(symbol) => Some(symbol_form(symbol)),
-                Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.len() <= limit),
+                Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.size() <= limit),
                 Node::Mul(a, b) => of(a).zip(of(b)).and_then(|(a, b)| a.times(&b, limit)),
                 Node::Reciprocal(_) => None,
             };
