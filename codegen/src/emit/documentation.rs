@@ -16,30 +16,30 @@ fn text(quantity: Quantity) -> Text {
         Quantity::DirectKinematics => (
             "End-effector frame in the base frame, T_e(q).",
             "T_e = A_1(q_1) ... A_n(q_n) T_tool                                (Siciliano et al., Sect. 2.8)",
-            "4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
+            "the 4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
              frame, the last column is its origin in m.",
         ),
         Quantity::LinkFrames => (
             "Frame of every link in the base frame, T_i(q).",
             "T_i = A_1(q_1) ... A_i(q_i)                                       (Siciliano et al., Sect. 2.8)",
-            "one 4 x 4 homogeneous transformation per link, `t[link][row][column]`, the frames as the description's convention defines them; \
+            "a 4 x 4 homogeneous transformation for each link, `t[link][row][column]`, the frames as the description's convention defines them; \
              translations in m.",
         ),
         Quantity::GeometricJacobian => (
             "Geometric Jacobian J(q) of the end effector, in the base frame.",
             "(v_e, omega_e) = J(q) dq                                          (Siciliano et al., Sect. 3.1)",
-            "6 rows, `j[row][joint]`: three linear (velocity of the end-effector frame's origin, m/s), then three angular (rad/s).",
+            "`j[row][joint]`, 6 rows: three linear (velocity of the end-effector frame's origin, m/s), then three angular (rad/s).",
         ),
         Quantity::GeometricJacobianDot => (
             "Time derivative of the geometric Jacobian along dq.",
             "d/dt (v_e, omega_e) = J ddq + (dJ/dt) dq",
-            "6 rows, `j[row][joint]`: three linear, then three angular, in the base frame.",
+            "`j[row][joint]`, 6 rows: three linear, then three angular, in the base frame.",
         ),
         Quantity::InertiaMatrix => (
             "Inertia matrix B(q) of links and rotors.",
             "B(q) = sum_i m_i J_Pi' J_Pi + J_Oi' R_i I_i R_i' J_Oi + rotors    (Siciliano et al., eq. 7.32)",
-            "symmetric, all entries filled, `b[row][column]`; kg m² between revolute joints, kg m for a revolute and a prismatic one, kg between \
-             prismatic ones.",
+            "`b[row][column]`, symmetric and positive definite, all entries filled; kg m² between revolute joints, kg m between a revolute and a \
+             prismatic one, kg between prismatic ones.",
         ),
         Quantity::CoriolisMatrix => (
             "Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric.",
@@ -49,12 +49,12 @@ fn text(quantity: Quantity) -> Text {
         Quantity::Gravity => (
             "Gravity term g(q) on the left of the equation of motion: the torque that holds the arm at rest.",
             "g(q) = dU/dq                                                      (Siciliano et al., eq. 7.39)",
-            "N m (revolute) or N (prismatic) by joint.",
+            "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         ),
         Quantity::Friction => (
             "Friction torque F(dq) on the left of the equation of motion: it has the sign of dq.",
             "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
-            "N m (revolute) or N (prismatic) by joint.",
+            "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         ),
         Quantity::EquationsOfMotion => (
             "B(q), C(q, dq) and g(q) at one state, sharing their work.",
@@ -64,12 +64,12 @@ fn text(quantity: Quantity) -> Text {
         Quantity::InverseDynamics => (
             "Torques that a motion needs, friction included.",
             "tau = B(q) ddq + C(q, dq) dq + F(dq) + g(q)                        (Siciliano et al., eq. 7.42)",
-            "N m (revolute) or N (prismatic) by joint.",
+            "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         ),
         Quantity::ForwardDynamics => (
             "Accelerations that torques cause, friction included.",
             "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.5)",
-            "rad/s² (revolute) or m/s² (prismatic) by joint.",
+            "an acceleration for each joint, rad/s² (revolute) or m/s² (prismatic).",
         ),
         Quantity::Regressor => (
             "Regressor Y(q, dq, dqr, ddqr): the dynamics as a linear function of the parameters.",
@@ -80,17 +80,17 @@ fn text(quantity: Quantity) -> Text {
         Quantity::KnownTorque => (
             "The torque of what is not among the parameters: tau_known of the regressor's equation.",
             "tau_known = B(q) ddqr + C(q, dq) dqr + F + g(q) - Y pi",
-            "N m (revolute) or N (prismatic) by joint.",
+            "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         ),
         Quantity::KineticEnergy => (
             "Kinetic energy of links and rotors.",
             "T = 1/2 dq' B(q) dq                                               (Siciliano et al., eq. 7.31)",
-            "J.",
+            "an energy, J.",
         ),
         Quantity::PotentialEnergy => (
             "Potential energy of gravity; zero where all masses, rotors included, lie at the origin of the base frame.",
             "U(q) = - sum_i m_i g0' p_li                                       (Siciliano et al., eq. 7.36)",
-            "J.",
+            "an energy, J.",
         ),
     };
     Text { title, formula, result }
@@ -122,7 +122,10 @@ pub(super) fn function(function: &Function) -> Vec<String> {
     lines.extend([blank(), " ```text".into(), format!(" {formula}"), " ```".into(), blank()]);
     lines.extend(function.arguments.iter().map(|&a| format!(" - {}", argument(a))));
     lines.push(format!(" - Returns {result}"));
-    lines.extend([blank(), format!(" Cost: {}. Derived by {}.", cost(&Cost::of(function)), function.method)]);
+    lines.extend([
+        blank(),
+        format!(" Cost: {}. Derived by {}. Allocates nothing, cannot fail.", cost(&Cost::of(function)), function.method),
+    ]);
     lines
 }
 
