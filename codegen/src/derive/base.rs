@@ -314,7 +314,7 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
         .collect()
 }
 
-/// A base parameter: named after the standard parameter that it is, or with an R where others are regrouped into it.
+/// A base parameter: named like the standard parameter that it is, with an R where it stands in the joint frame or others are regrouped into it.
 fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Entry {
     let mut nominal = Number::zero();
     let mut meaning = String::new();
@@ -337,7 +337,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
         };
     }
     if let [(entry, k)] = parts[..] {
-        if k.is_one() {
+        if k.is_one() && entry.name == parameter.name() {
             name = entry.name.clone();
             meaning = entry.meaning.clone();
         }
