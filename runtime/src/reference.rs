@@ -67,6 +67,12 @@ impl<T: RealField + Copy, const N: usize> JointReference<T, N> {
         Self { q, dq: SVector::zeros(), ddq: SVector::zeros() }
     }
 
+    /// The reference a time `t`, s, later, its acceleration held meanwhile: q + t dq + 1/2 t^2 ddq, dq + t ddq.
+    pub fn held(&self, t: T) -> Self {
+        let half = nalgebra::convert::<f64, T>(0.5);
+        Self { q: self.q + self.dq * t + self.ddq * (half * t * t), dq: self.dq + self.ddq * t, ddq: self.ddq }
+    }
+
     /// Whether every element is finite.
     pub fn is_finite(&self) -> bool {
         is_finite(&self.q) && is_finite(&self.dq) && is_finite(&self.ddq)

@@ -10,12 +10,14 @@
 //! is integrated, by fixed Runge-Kutta steps or by adaptive ones. Sensors may delay and disturb what the controller sees, from a seed:
 //! equal inputs give equal bits. The energy audit compares the change of T + U with the work of the torques and of friction.
 
+mod continuous;
 mod integrator;
 mod log;
 mod plant;
 mod run;
 mod sensor;
 
+pub use continuous::{run_continuous, ContinuousOptions, ContinuousSample};
 pub use integrator::{dormand_prince, rk4, Integrator, Phase, StepError};
 pub use log::Log;
 pub use plant::{Energy, Plant};

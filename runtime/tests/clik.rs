@@ -5,7 +5,7 @@ mod common;
 use armgen_runtime::{
     clik::{
         Algorithm, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
-        Manipulability, NoObjective, Objective, Outcome, PseudoInverse,
+        JointRangeDistance, Manipulability, NoObjective, Objective, Outcome, PseudoInverse,
     },
     linalg::Damping,
     manipulability::manipulability,
@@ -193,4 +193,52 @@ fn errors() {
     let second = ghost::second_order(Integration::HoldConsistent);
     assert_eq!(second.step(&robot, &State::at_rest(singular), &rest).unwrap_err(), ClikError::Singular);
     assert!(second.with_damping(Damping::new(0.03, 0.1).unwrap()).step(&robot, &State::at_rest(singular), &rest).is_ok());
+}
+
+#[test]
+fn a_damped_step_tells_what_is_left_of_the_error() {
+    let robot = ghost::nominal();
+    let clik = Clik::new(ghost::task(), damped(), 1e-3, bounded(), [1e-6; 4]).unwrap();
+    let q = vector![0.0, 0.01, 0.1, 0.0];
+    let at = Pose::of(&robot, &q);
+    let outcome = |dx: f64, dy: f64| {
+        let goal = Pose { position: at.position + vector![dx, dy, 0.0], ..at };
+        clik.step(&robot, &q, &OperationalReference::at_rest(goal)).unwrap().outcome
+    };
+    // The arm is stretched along x: it cannot move that way, and can move across.
+    assert_eq!(outcome(0.1, 0.0), Outcome::OutOfReach);
+    assert_eq!(outcome(0.0, 0.1), Outcome::Damped);
+    assert_eq!(outcome(0.0, 0.0), Outcome::Converged);
+}
+
+#[test]
+fn rates_are_slowed_down_along_their_direction() {
+    let limits = bounded();
+    let dq = vector![6.0, -12.0, 1.5, 1.0];
+    let (slow, slowed) = limits.slow_down(&dq);
+    assert!(slowed && (slow - dq / 4.0).amax() < 1e-15, "joint 2 sets the pace: {slow}");
+    assert_eq!(limits.slow_down(&(dq / 4.0)), (dq / 4.0, false));
+}
+
+#[test]
+fn the_distance_from_joint_limits_grows_along_its_gradient() {
+    let (lower, upper) = ([-1.0, 0.0, 0.0, -3.0], [3.0, 2.0, 0.4, 3.0]);
+    let objective = JointRangeDistance::new(lower, upper).unwrap();
+    // w = -1/(2 N) sum ((q - middle) / range)^2.
+    let w = |q: &Vector4<f64>| {
+        -(0..4).map(|i| ((q[i] - (lower[i] + upper[i]) / 2.0) / (upper[i] - lower[i])).powi(2)).sum::<f64>() / 8.0
+    };
+    let q = vector![2.0, 0.3, 0.1, -1.0];
+    let gradient = objective.gradient(&ghost::nominal(), &q).unwrap();
+    for i in 0..4 {
+        let mut h = Vector4::zeros();
+        h[i] = 1e-6;
+        common::close("dw/dq", gradient[i], (w(&(q + h)) - w(&(q - h))) / 2e-6, 1e-9);
+    }
+    // In use: it keeps joints nearer to the middle of their ranges.
+    let range = JointRangeDistance::new([-2.0, -2.6, 0.0, -3.0], [0.0, 2.6, 0.45, 3.0]).unwrap();
+    let (_, with) = dexterous(10.0, range);
+    let (_, without) = dexterous(0.0, NoObjective);
+    println!("theta2 at the end: {} with, {} without", with[1], without[1]);
+    assert!(with[1].abs() < without[1].abs());
 }

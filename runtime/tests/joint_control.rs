@@ -3,12 +3,13 @@
 mod common;
 
 use armgen_runtime::{
-    control::{Adaptive, BoundaryLayer, InverseDynamics, PdGravity, Robust},
+    control::{Adaptive, BoundaryLayer, ControlError, InverseDynamics, PdGravity, Robust},
     reference::{JointReference, State},
-    simulation::{rk4, run, Phase, RunError, RunOptions, Sample},
+    simulation::{run, run_continuous, ContinuousOptions, RunError, RunOptions, Sample},
 };
 use common::{below, close, close_percent, ghost, scara::NOMINAL};
 use nalgebra::{vector, SVector, Vector4};
+use std::time::Duration;
 
 type Samples = Vec<Sample<f64, 4>>;
 
@@ -199,56 +200,50 @@ fn adaptive_as_reported_diverges_within_20_ms() {
     assert!(end.is_err(), "it does not come back");
 }
 
-/// Plant and estimate, moved together in continuous time.
-#[derive(Clone, Copy)]
-struct Whole {
-    q: Vector4<f64>,
-    dq: Vector4<f64>,
-    estimate: SVector<f64, 14>,
-}
-
-impl Phase<f64> for Whole {
-    fn plus(&self, h: f64, rate: &Self) -> Self {
-        Whole { q: self.q + rate.q * h, dq: self.dq + rate.dq * h, estimate: self.estimate + rate.estimate * h }
-    }
-
-    fn error(&self, _: &Self) -> f64 {
-        0.0
-    }
+#[test]
+fn adaptive_as_reported_is_stable_in_continuous_time() {
+    use armgen_runtime::robot::Kinematics;
+    let reference = ghost::joint_reference();
+    let (model, plant, controller) = (ghost::nominal(), ghost::loaded(), as_reported());
+    let (mut e_z, mut mass) = (0.0f64, Vec::new());
+    let z = |q: &Vector4<f64>| plant.direct_kinematics(q)[(2, 3)];
+    run_continuous(
+        &plant,
+        State::at_rest(ghost::start()),
+        SVector::from(NOMINAL),
+        ContinuousOptions { period: ghost::PERIOD, duration: Duration::from_secs(6), substeps: 200 },
+        |k, t, state, estimate| {
+            let (torque, rate) = controller.law(&model, &reference[k as usize].held(t), state, estimate)?;
+            Ok::<_, ControlError>((torque.tau, rate))
+        },
+        |sample| {
+            e_z = e_z.max((z(&reference[sample.index as usize].q) - z(&sample.state.q)).abs());
+            mass.push(sample.memory[2]);
+        },
+    )
+    .unwrap();
+    below("largest |e_z| in 6 s", e_z, 1e-5);
+    close("m_l3 at 5 s", mass[5000], 15.0, 0.1);
+    close("m_l3 at 6 s", mass[6000], 15.0, 0.1);
 }
 
 #[test]
-fn adaptive_as_reported_is_stable_in_continuous_time() {
-    use armgen_runtime::robot::{Dynamics, Kinematics};
-    let reference = ghost::joint_reference();
-    let (model, plant, controller) = (ghost::nominal(), ghost::loaded(), as_reported());
-    let mut x = Whole { q: ghost::start(), dq: Vector4::zeros(), estimate: NOMINAL.into() };
-    let (mut e_z, mut five) = (0.0f64, 0.0);
-    let h = 5e-6;
-    for (k, held) in reference.iter().enumerate().take(6000) {
-        for sub in 0..200 {
-            let since = f64::from(sub) * h;
-            x = rk4(&x, h, |c, x: &Whole| {
-                // The reference moves under its held acceleration.
-                let t = since + c;
-                let now = JointReference {
-                    q: held.q + held.dq * t + held.ddq * (0.5 * t * t),
-                    dq: held.dq + held.ddq * t,
-                    ddq: held.ddq,
-                };
-                let (torque, rate) = controller.law(&model, &now, &State { q: x.q, dq: x.dq }, &x.estimate).unwrap();
-                Whole { q: x.dq, dq: plant.forward_dynamics(&x.q, &x.dq, &torque.tau), estimate: rate }
-            });
-        }
-        let desired = plant.direct_kinematics(&reference[k + 1].q)[(2, 3)];
-        e_z = e_z.max((desired - plant.direct_kinematics(&x.q)[(2, 3)]).abs());
-        if k == 4999 {
-            five = x.estimate[2];
-        }
-    }
-    below("largest |e_z| in 6 s", e_z, 1e-5);
-    println!("m_l3 at 5 s: {five}, at 6 s: {}", x.estimate[2]);
-    close("m_l3 at 5 s", five, 15.0, 0.1);
+fn a_run_in_continuous_time_that_ends_early_says_when() {
+    let plant = ghost::loaded();
+    let options = ContinuousOptions { period: ghost::PERIOD, duration: Duration::from_secs(1), substeps: 2 };
+    let start = State::at_rest(ghost::start());
+    let none = SVector::<f64, 0>::zeros();
+    let refused = run_continuous(
+        &plant,
+        start,
+        none,
+        options,
+        |k, _, _, _| if k < 3 { Ok((Vector4::zeros(), none)) } else { Err("brake") },
+        |_| {},
+    );
+    assert_eq!(refused, Err(RunError::Controller { time: Duration::from_millis(3), error: "brake" }));
+    let lost = run_continuous(&plant, start, none, options, |_, _, _, _| Ok::<_, ()>((Vector4::repeat(f64::NAN), none)), |_| {});
+    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1) }));
 }
 
 #[test]

@@ -109,6 +109,20 @@ fn torques_are_limited() {
     assert_eq!(controller.torque(&model, &reference, &near), limited.torque(&model, &reference, &near));
 }
 
+#[test]
+fn an_estimate_rests_while_a_torque_is_cut() {
+    let model = ghost::nominal();
+    let adaptive = || Adaptive::new([100.0; 4], [1000.0, 500.0, 2000.0, 100.0], [1.0; 14], NOMINAL, 1e-3).unwrap();
+    let reference = JointReference::at_rest(ghost::start());
+    let far = State::at_rest(ghost::start() + vector![0.0, 0.0, 0.1, 0.0]);
+    let mut free = adaptive();
+    free.torque(&model, &reference, &far).unwrap();
+    assert_ne!(free.estimate()[2], 10.0);
+    let mut cut = adaptive().with_torque_limits(TorqueLimits::new([100.0; 4]).unwrap());
+    assert!(cut.torque(&model, &reference, &far).unwrap().limited);
+    assert_eq!(cut.estimate()[2], 10.0);
+}
+
 /// A step of 10 cm in x, with a motor too weak for it: how far does the tip shoot over?
 fn overshoot(limit_integral: bool, anti_windup: bool) -> f64 {
     let (model, arm) = (ghost::nominal(), ghost::nominal());

@@ -67,7 +67,7 @@ pub enum RunError<E> {
         /// Why.
         error: StepError,
     },
-    /// The period is zero.
+    /// The period is zero, or is to be covered in no steps.
     NoPeriod,
 }
 

@@ -1,0 +1,107 @@
+//! The whole loop in continuous time: plant and controller memory, integrated together.
+//!
+//! What a proof by Lyapunov speaks of. A controller that is stable here may be unstable when sampled, and the comparison shows it.
+
+use super::{integrator::rk4, Phase, RunError};
+use crate::{linalg::is_finite, linalg::lit, reference::State, robot::Dynamics};
+use core::time::Duration;
+use nalgebra::{RealField, SVector};
+
+/// How a run in continuous time goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ContinuousOptions {
+    /// How often the state is logged, and the law told of a new sample of its reference.
+    pub period: Duration,
+    /// How long to run; the last sample is the last multiple of the period that is not beyond it.
+    pub duration: Duration,
+    /// Runge-Kutta steps a period, at least 1.
+    pub substeps: u32,
+}
+
+/// Arm and controller memory at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContinuousSample<T, const N: usize, const P: usize> {
+    /// Number of the sample, from 0.
+    pub index: u64,
+    /// Time since the start.
+    pub time: Duration,
+    /// The state of the arm.
+    pub state: State<T, N>,
+    /// The memory of the controller.
+    pub memory: SVector<T, P>,
+}
+
+#[derive(Clone, Copy)]
+struct Whole<T, const N: usize, const P: usize> {
+    q: SVector<T, N>,
+    dq: SVector<T, N>,
+    memory: SVector<T, P>,
+}
+
+impl<T: RealField + Copy, const N: usize, const P: usize> Phase<T> for Whole<T, N, P> {
+    #[inline]
+    fn plus(&self, h: T, rate: &Self) -> Self {
+        Self { q: self.q + rate.q * h, dq: self.dq + rate.dq * h, memory: self.memory + rate.memory * h }
+    }
+
+    fn error(&self, scale: &Self) -> T {
+        let q = Phase::<T>::error(&self.q, &scale.q);
+        let dq = Phase::<T>::error(&self.dq, &scale.dq);
+        let memory = Phase::<T>::error(&self.memory, &scale.memory);
+        [dq, memory].into_iter().fold(q, |a, b| if b > a || !b.is_finite() { b } else { a })
+    }
+}
+
+/// Runs the arm `robot` from `start` under `law`, whose memory starts as `memory`; calls `log` at every sample.
+///
+/// `law(k, t, state, memory)` returns the torque, N m or N, and the rate of the memory, at the time `t`, s, after sample `k`.
+///
+/// # Errors
+/// Where the law refuses, or the state diverges; nothing after that is logged.
+pub fn run_continuous<R, T, E, const N: usize, const P: usize>(
+    robot: &R,
+    start: State<T, N>,
+    memory: SVector<T, P>,
+    options: ContinuousOptions,
+    mut law: impl FnMut(u64, T, &State<T, N>, &SVector<T, P>) -> Result<(SVector<T, N>, SVector<T, P>), E>,
+    mut log: impl FnMut(&ContinuousSample<T, N, P>),
+) -> Result<State<T, N>, RunError<E>>
+where
+    R: Dynamics<N, Real = T>,
+    T: RealField + Copy,
+{
+    let ContinuousOptions { period, duration, substeps } = options;
+    if period.is_zero() || substeps == 0 {
+        return Err(RunError::NoPeriod);
+    }
+    let h = lit::<T>(period.as_secs_f64()) / lit(f64::from(substeps));
+    let mut x = Whole { q: start.q, dq: start.dq, memory };
+    let (mut index, mut time) = (0, Duration::ZERO);
+    loop {
+        let state = State { q: x.q, dq: x.dq };
+        if !(state.is_finite() && is_finite(&x.memory)) {
+            return Err(RunError::Diverged { time });
+        }
+        log(&ContinuousSample { index, time, state, memory: x.memory });
+        let next = time.saturating_add(period);
+        if next > duration {
+            return Ok(state);
+        }
+        let mut refused = None;
+        for step in 0..substeps {
+            let since = h * lit(f64::from(step));
+            x = rk4(&x, h, |c, x: &Whole<T, N, P>| match law(index, since + c, &State { q: x.q, dq: x.dq }, &x.memory) {
+                Ok((tau, memory)) => Whole { q: x.dq, dq: robot.forward_dynamics(&x.q, &x.dq, &tau), memory },
+                Err(error) => {
+                    refused.get_or_insert(error);
+                    *x
+                }
+            });
+            if let Some(error) = refused.take() {
+                return Err(RunError::Controller { time, error });
+            }
+        }
+        index += 1;
+        time = next;
+    }
+}
