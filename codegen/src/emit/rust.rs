@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 use sha2::{Digest, Sha256};
 
@@ -277,9 +277,11 @@ fn body(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStr
     let entries = function.outputs.iter().map(|output| {
         let text = operand(&texts, &output.operand);
         let tokens = &text.tokens;
+        // `--x` is no decrement in Rust, but the compiler warns of it.
+        let signed = matches!(tokens.clone().into_iter().next(), Some(TokenTree::Punct(p)) if p.as_char() == '-');
         match (output.negated, text.operation) {
             (false, _) => quote!(#tokens),
-            (true, None | Some(Operation::Multiply | Operation::Divide)) => quote!(-#tokens),
+            (true, None | Some(Operation::Multiply | Operation::Divide)) if !signed => quote!(-#tokens),
             (true, _) => quote!(-(#tokens)),
         }
     });
