@@ -278,7 +278,7 @@ impl Quantity {
             }
             Quantity::EquationsOfMotion => {
                 let b = derive::inertia::inertia_matrix(pool, arm);
-                let c = derive::coriolis::christoffel(pool, arm, &b);
+                let c = derive::coriolis::coriolis_matrix(pool, arm);
                 let g = derive::gravity::gravity(pool, arm);
                 [b.concat(), c.concat(), g].concat()
             }

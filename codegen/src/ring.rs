@@ -27,6 +27,7 @@ mod calculus;
 mod evaluate;
 
 use std::collections::{BTreeMap, HashMap};
+use std::hash::BuildHasherDefault;
 use std::rc::Rc;
 
 use crate::exact::{Number, Polynomial};
@@ -101,6 +102,25 @@ pub struct ConstantId(u32);
 /// Values at the two points of the field.
 pub type Fingerprint = [Element; 2];
 
+/// A hash for fingerprints: they are random already.
+#[derive(Clone, Copy, Default)]
+struct Identity(u64);
+
+impl std::hash::Hasher for Identity {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u64(u64::from(byte));
+        }
+    }
+    fn write_u64(&mut self, value: u64) {
+        self.0 = self.0.rotate_left(5) ^ value;
+    }
+    fn write_usize(&mut self, _: usize) {}
+}
+
 /// The arena of expressions.
 #[derive(Clone)]
 pub struct Pool {
@@ -110,7 +130,7 @@ pub struct Pool {
     constants: Vec<Rc<Number>>,
     constant_nodes: BTreeMap<Rc<Number>, ExprId>,
     /// Look-up only: its order reaches nothing.
-    known: HashMap<Fingerprint, ExprId>,
+    known: HashMap<Fingerprint, ExprId, BuildHasherDefault<Identity>>,
     at_origin: Vec<Option<Rc<Number>>>,
 }
 
@@ -171,7 +191,7 @@ impl Pool {
             fingerprints: Vec::new(),
             constants: Vec::new(),
             constant_nodes: BTreeMap::new(),
-            known: HashMap::new(),
+            known: HashMap::default(),
             at_origin: Vec::new(),
         };
         assert_eq!((pool.constant(&Number::zero()), pool.constant(&Number::one())), (ExprId::ZERO, ExprId::ONE));
@@ -227,6 +247,15 @@ impl Pool {
             }
             _ => None,
         }
+    }
+
+    fn value(&self, expr: ExprId) -> Number {
+        self.as_constant(expr).expect("asked for constants only")
+    }
+
+    /// Whether the expression is a constant.
+    pub fn is_constant(&self, expr: ExprId) -> bool {
+        matches!(self.node(expr), Node::Constant(_))
     }
 
     /// An exact constant.
@@ -304,7 +333,8 @@ impl Pool {
         if b == ExprId::ZERO {
             return a;
         }
-        if let (Some(x), Some(y)) = (self.as_constant(a), self.as_constant(b)) {
+        if self.is_constant(a) && self.is_constant(b) {
+            let (x, y) = (self.value(a), self.value(b));
             return self.constant(&(&x + &y));
         }
         // The node holds the sum with its first operand positive: x - y, never -x + y or -x - y.
@@ -334,19 +364,22 @@ impl Pool {
         if b == ExprId::ONE {
             return a.signed(negate);
         }
-        match (self.as_constant(a), self.as_constant(b)) {
-            (Some(x), Some(y)) => return self.constant(&(&x * &y)).signed(negate),
-            (None, Some(_)) => return self.mul(b, a).signed(negate),
+        match (self.is_constant(a), self.is_constant(b)) {
+            (true, true) => {
+                let product = &self.value(a) * &self.value(b);
+                return self.constant(&product).signed(negate);
+            }
+            (false, true) => return self.mul(b, a).signed(negate),
             // Two constant factors in a row are one.
-            (Some(x), None) => {
+            (true, false) => {
                 if let Node::Mul(c, rest) = self.node(b) {
-                    if let Some(y) = self.as_constant(c) {
-                        let factor = self.constant(&(&x * &y));
+                    if self.is_constant(c) {
+                        let factor = self.mul(a, c);
                         return self.mul(factor, rest).signed(negate);
                     }
                 }
             }
-            (None, None) => {}
+            (false, false) => {}
         }
         let (fa, fb) = (self.fingerprint(a), self.fingerprint(b));
         let fingerprint = [0, 1].map(|i| self.field.mul(fa[i], fb[i]));

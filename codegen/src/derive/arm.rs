@@ -52,6 +52,8 @@ pub struct Joint {
     pub sine: ExprId,
     /// cos(theta).
     pub cosine: ExprId,
+    /// Rate at which the joint frame turns about its z axis, seen from the parent's: dq, and 0 for a prismatic joint.
+    pub spin: ExprId,
     /// Origin of the joint frame in the parent's joint frame.
     pub origin: Vector,
     /// Rotation of the user's link frame in the joint frame.
@@ -144,8 +146,7 @@ fn turn_second(pool: &mut Pool, rotation: &Matrix, second: &[ExprId; 6]) -> [Exp
 impl Joint {
     /// A vector of this joint frame in the parent's: R v.
     pub fn outward(&self, pool: &mut Pool, v: &Vector) -> Vector {
-        let (s, c) = (self.sine, self.cosine);
-        let turned = [pool.dot(&[c, -s], &[v[0], v[1]]), pool.dot(&[s, c], &[v[0], v[1]]), v[2]];
+        let turned = self.about_axis(pool, v);
         pool.transform(&self.fixed, &turned)
     }
 
@@ -156,28 +157,37 @@ impl Joint {
         [pool.dot(&[c, s], &[turned[0], turned[1]]), pool.dot(&[c, -s], &[turned[1], turned[0]]), turned[2]]
     }
 
-    /// A body of this joint frame in the parent's.
-    ///
-    /// The turn about z uses u = c (Sxx - Syy) - 2 s Sxy: Sxx' = Syy + c u, Syy' = Sxx - c u, Sxy' = Sxy + s u.
-    pub fn body_outward(&self, pool: &mut Pool, body: &Body) -> Body {
+    /// A vector of this joint frame in the parent's axes turned by `fixed`: Rz v.
+    pub fn about_axis(&self, pool: &mut Pool, v: &Vector) -> Vector {
         let (s, c) = (self.sine, self.cosine);
-        let [xx, xy, yy, xz, yz, zz] = body.second;
-        let difference = pool.sub(xx, yy);
-        let two = pool.integer(2);
-        let twice = pool.mul(two, xy);
-        let u = pool.dot(&[c, -s], &[difference, twice]);
+        [pool.dot(&[c, -s], &[v[0], v[1]]), pool.dot(&[s, c], &[v[0], v[1]]), v[2]]
+    }
+
+    /// A tensor of this joint frame in the parent's axes turned by `fixed`: Rz M Rz'.
+    ///
+    /// With u = c (Mxx - Myy) - s (Mxy + Myx) it is Mxx' = Myy + c u, Myy' = Mxx - c u, Mxy' = Mxy + s u, Myx' = Myx + s u.
+    pub fn tensor_about_axis(&self, pool: &mut Pool, m: &Matrix) -> Matrix {
+        let (s, c) = (self.sine, self.cosine);
+        let difference = pool.sub(m[0][0], m[1][1]);
+        let sum = pool.add(m[0][1], m[1][0]);
+        let u = pool.dot(&[c, -s], &[difference, sum]);
         let (cu, su) = (pool.mul(c, u), pool.mul(s, u));
-        let about_z = [
-            pool.add(yy, cu),
-            pool.add(xy, su),
-            pool.sub(xx, cu),
-            pool.dot(&[c, -s], &[xz, yz]),
-            pool.dot(&[s, c], &[xz, yz]),
-            zz,
-        ];
+        let mut turned = *m;
+        turned[0][0] = pool.add(m[1][1], cu);
+        turned[1][1] = pool.sub(m[0][0], cu);
+        turned[0][1] = pool.add(m[0][1], su);
+        turned[1][0] = pool.add(m[1][0], su);
+        [turned[0][2], turned[1][2], _] = self.about_axis(pool, &[m[0][2], m[1][2], ExprId::ZERO]);
+        [turned[2][0], turned[2][1], _] = self.about_axis(pool, &[m[2][0], m[2][1], ExprId::ZERO]);
+        turned
+    }
+
+    /// A body of this joint frame in the parent's.
+    pub fn body_outward(&self, pool: &mut Pool, body: &Body) -> Body {
+        let about_z = self.tensor_about_axis(pool, &symmetric(&body.second));
+        let second = turn_second(pool, &self.fixed, &PAIRS.map(|(i, j)| about_z[i][j]));
         let first = self.outward(pool, &body.first);
-        let rotated = Body { mass: body.mass, first, second: turn_second(pool, &self.fixed, &about_z) };
-        rotated.moved(pool, &self.origin)
+        Body { mass: body.mass, first, second }.moved(pool, &self.origin)
     }
 
     /// The joint's rotation matrix R.
@@ -291,6 +301,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let (rotation, mut origin) = placement(pool, manipulator, view, &joint.placement);
     let (link_rotation, link_origin) = placement(pool, manipulator, view, &joint.link_frame);
     let (mut fixed, mut sine, mut cosine) = (rotation, ExprId::ZERO, ExprId::ONE);
+    let spin = if joint.kind == JointKind::Prismatic { ExprId::ZERO } else { pool.symbol(Symbol::Rate(index)) };
     if joint.kind == JointKind::Prismatic {
         let position = pool.symbol(Symbol::Position(index));
         let slide = pool.scale(position, &[rotation[0][2], rotation[1][2], rotation[2][2]]);
@@ -330,6 +341,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         fixed,
         sine,
         cosine,
+        spin,
         origin,
         link_rotation,
         link_origin,

@@ -77,32 +77,36 @@ fn polarised_cross(pool: &mut Pool, a: &Vector, b_r: &Vector, a_r: &Vector, b: &
     pool.scale(half, &sum)
 }
 
-/// U = [domega] + ½ ([omega][omega_r] + [omega_r][omega]): entries domega_k and products of rates.
-fn acceleration_field(pool: &mut Pool, w: &Vector, wr: &Vector, dw: &Vector) -> Matrix {
+/// U = [domega] + ½ ([omega][omega_r] + [omega_r][omega]) and domega, given its z column and z·domega.
+///
+/// A point on the joint axis belongs to both links: U z is the parent's, turned. With the products P of the rates,
+///
+/// ```text
+/// domega_x = P_yz - U_yz,  domega_y = U_xz - P_xz,  U_zx = P_xz - domega_y,  U_zy = P_yz + domega_x
+/// U_xy = P_xy - domega_z,  U_yx = P_xy + domega_z,  U_yy = -(P_xx + P_zz),  U_xx = U_zz + P_xx - P_zz
+/// ```
+fn acceleration_field(pool: &mut Pool, w: &Vector, wr: &Vector, column: &Vector, domega_z: ExprId) -> (Matrix, Vector) {
+    let mut product = |i: usize, j: usize| polarised_product(pool, w, wr, i, j);
+    let (xx, zz, xy, xz, yz) = (product(0, 0), product(2, 2), product(0, 1), product(0, 2), product(1, 2));
+    let domega = [pool.sub(yz, column[1]), pool.sub(column[0], xz), domega_z];
+    let difference = pool.sub(xx, zz);
+    let field = [
+        [pool.add(column[2], difference), pool.sub(xy, domega_z), column[0]],
+        [pool.add(xy, domega_z), -pool.add(xx, zz), column[1]],
+        [pool.sub(xz, domega[1]), pool.add(yz, domega[0]), column[2]],
+    ];
+    (field, domega)
+}
+
+/// ½ (a_i b_j + b_i a_j).
+fn polarised_product(pool: &mut Pool, a: &Vector, b: &Vector, i: usize, j: usize) -> ExprId {
+    if a == b {
+        return pool.mul(a[i], a[j]);
+    }
     let half = pool.fraction(1, 2);
-    let mut products = [[ExprId::ZERO; 3]; 3];
-    for i in 0..3 {
-        for j in 0..=i {
-            let product = if w == wr {
-                pool.mul(w[i], w[j])
-            } else {
-                let (a, b) = (pool.mul(w[i], wr[j]), pool.mul(wr[i], w[j]));
-                let sum = pool.add(a, b);
-                pool.mul(half, sum)
-            };
-            products[i][j] = product;
-            products[j][i] = product;
-        }
-    }
-    let mut field = products;
-    for i in 0..3 {
-        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-        field[i][i] = -pool.add(products[j][j], products[k][k]);
-        // [domega]_ij = -domega_k, [domega]_ji = domega_k
-        field[i][j] = pool.sub(products[i][j], dw[k]);
-        field[j][i] = pool.add(products[j][i], dw[k]);
-    }
-    field
+    let (left, right) = (pool.mul(a[i], b[j]), pool.mul(b[i], a[j]));
+    let sum = pool.add(left, right);
+    pool.mul(half, sum)
 }
 
 /// Motion of every link.
@@ -120,21 +124,24 @@ pub fn link_motions(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) 
         let carried = pool.transform(&outer.field, &joint.origin);
         let origin = pool.add_vectors(&outer.acceleration, &carried);
         let mut acceleration = joint.inward(pool, &origin);
-        let [mut omega, mut omega_r, mut domega] = [outer.omega, outer.omega_r, outer.domega].map(|v| joint.inward(pool, &v));
-        let (rate, reference) = (along_z(motion.rates[i]), along_z(motion.reference[i]));
-        let turning = polarised_cross(pool, &omega, &reference, &omega_r, &rate);
+        let [mut omega, mut omega_r] = [outer.omega, outer.omega_r].map(|v| joint.inward(pool, &v));
+        let axis = [0, 1, 2].map(|row| joint.fixed[row][2]);
+        let on_axis = pool.transform(&outer.field, &axis);
+        let column = joint.inward(pool, &on_axis);
+        let mut domega_z = pool.dot3(&axis, &outer.domega);
         if joint.is_revolute() {
-            domega = pool.add_vectors(&domega, &turning);
-            domega[2] = pool.add(domega[2], motion.accelerations[i]);
+            domega_z = pool.add(domega_z, motion.accelerations[i]);
             omega[2] = pool.add(omega[2], motion.rates[i]);
             omega_r[2] = pool.add(omega_r[2], motion.reference[i]);
         } else {
+            let (rate, reference) = (along_z(motion.rates[i]), along_z(motion.reference[i]));
+            let turning = polarised_cross(pool, &omega, &reference, &omega_r, &rate);
             let two = pool.integer(2);
             let coriolis = pool.scale(two, &turning);
             acceleration = pool.add_vectors(&acceleration, &coriolis);
             acceleration[2] = pool.add(acceleration[2], motion.accelerations[i]);
         }
-        let field = acceleration_field(pool, &omega, &omega_r, &domega);
+        let (field, domega) = acceleration_field(pool, &omega, &omega_r, &column, domega_z);
         motions.push(LinkMotion { omega, omega_r, domega, acceleration, field });
     }
     motions

@@ -154,6 +154,40 @@ fn grouping_changes_nothing() {
     });
 }
 
+/// C by its definition from the derivatives of B (the book, eq. 7.45).
+fn christoffel(pool: &mut Pool, arm: &Arm, b: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
+    let n = arm.dof();
+    let rates = arm.symbols(pool, Symbol::Rate);
+    let flat: Vec<ExprId> = b.concat();
+    // gradient[k][i][j] = ∂b_ij/∂q_k
+    let gradient: Vec<Vec<ExprId>> = (0..n).map(|k| pool.partial_derivative(&flat, k as u16)).collect();
+    let derivative = |i: usize, j: usize, k: usize| gradient[k][i * n + j];
+    let half = pool.fraction(1, 2);
+    let mut c = vec![vec![ExprId::ZERO; n]; n];
+    for i in 0..n {
+        for j in 0..n {
+            for k in 0..n {
+                let plus = pool.add(derivative(i, j, k), derivative(i, k, j));
+                let twice = pool.sub(plus, derivative(j, k, i));
+                let symbol = pool.mul(half, twice);
+                let term = pool.mul(symbol, rates[k]);
+                c[i][j] = pool.add(c[i][j], term);
+            }
+        }
+    }
+    c
+}
+
+#[test]
+fn coriolis_is_christoffels() {
+    check(|pool, arm, _| {
+        let b = inertia::inertia_matrix(pool, arm);
+        let textbook = christoffel(pool, arm, &b);
+        let c = coriolis::coriolis_matrix(pool, arm);
+        assert_equal(pool, &c.concat(), &textbook.concat());
+    });
+}
+
 #[test]
 fn inertia_rate_less_twice_coriolis_is_skew() {
     check(|pool, arm, _| {
