@@ -3,10 +3,11 @@
 mod common;
 
 use armgen_runtime::{
-    control::{Adaptive, BoundaryLayer, InverseDynamics, OperationalSpace, PdGravity, Robust},
+    control::{Adaptive, BoundaryLayer, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Dynamics,
     stability::{analyse, Delay, Linearise, Report, SampledLoop, StabilityError, StablePeriod},
+    task::{Row, Task},
 };
 use common::{
     close, close_percent, ghost,
@@ -151,6 +152,25 @@ fn linearisations_are_derivatives_of_the_torque() {
     let operational = operational_space_as_reported();
     let pose = OperationalReference::at_rest(Pose::of(&model, &ghost::start()));
     linearised(&operational, |x| operational.clone().torque(&model, &pose, x).unwrap().tau);
+    let relaxed = relaxed([30.0; 4]);
+    linearised(&relaxed, |x| relaxed.clone().torque(&model, &pose, x).unwrap().tau);
+}
+
+/// x relaxed: one joint motion is free, under a spring of this stiffness and a damper.
+fn relaxed(stiffness: [f64; 4]) -> OperationalSpace<f64, 4, 3> {
+    let task = Task::new([Row::Y, Row::Z, Row::Rz]).unwrap();
+    let null_space = NullSpace::new(stiffness, [12.0; 4], ghost::start().into()).unwrap();
+    OperationalSpace::new(task, [400.0; 3], [40.0; 3], [100.0; 3], 1e-3).unwrap().with_null_space(null_space)
+}
+
+#[test]
+fn a_null_space_without_a_spring_may_drift() {
+    let radius = |controller: OperationalSpace<f64, 4, 3>| {
+        let sampled = SampledLoop::new(&ghost::nominal(), &ghost::nominal(), &controller, &ghost::start()).unwrap();
+        sampled.spectral_radius(1e-3, Delay::None).unwrap()
+    };
+    assert!(radius(relaxed([30.0; 4])) < 0.9999);
+    close("without a spring", radius(relaxed([0.0; 4])), 1.0, 1e-9);
 }
 
 #[test]
