@@ -7,8 +7,19 @@
 //! - [`technical_project`]: every closed form of the SCARA's technical project, and the comparison with what is shown;
 //! - [`random`]: random arms and states from a seed;
 //! - [`precision`]: every tolerance, with its reason.
+//!
+//! And what they judge: this crate is the first downstream project of the generator, its `build.rs` generates every robot.
+//!
+//! - [`emitted`]: the emitted modules, compiled; [`interpreter`]: programs carried out without a compiler; [`functions`]: either of them;
+//! - [`judge`]: every function of a robot against the oracle at one state;
+//! - [`count`]: the operations that stand in an emitted text.
 
+pub mod count;
+pub mod emitted;
 pub mod formula;
+pub mod functions;
+pub mod interpreter;
+pub mod judge;
 pub mod oracle;
 pub mod precision;
 pub mod random;

@@ -8,6 +8,13 @@ pub const REFERENCE: f64 = 1e-12;
 pub const FORWARD_RESIDUAL: f64 = 1e-12;
 /// Emitted functions against the oracle on random arms up to eight joints, scaled alike.
 pub const ORACLE: f64 = 1e-12;
+/// Emitted functions in f32 against the oracle in f64: a state rounds by 6e-8 and so does every step; an energy is a sum of terms larger
+/// than itself, and loses most (1.3e-5 found, all others stay below 5e-6).
+pub const SINGLE: f64 = 2e-5;
+/// Forward dynamics in f32, the residual (1.1e-6 found).
+pub const SINGLE_RESIDUAL: f64 = 5e-6;
+/// Parameters at which B is sure to be positive: the nominal ones times a common factor and up to so much apart.
+pub const NEAR_NOMINAL: f64 = 1e-4;
 /// The check state of the technical project: its numbers are given to 16 digits.
 pub const CHECK_STATE: f64 = 1e-12;
 /// Two formulations inside the oracle, where one differentiates by dual numbers: exact to rounding.

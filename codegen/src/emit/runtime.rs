@@ -15,10 +15,12 @@ pub(super) fn implementation(module: &Module) -> TokenStream {
     let with_parameters = traits(&quote!(WithParameters), true);
     quote! {
         #[doc = #doc]
+        #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Nominal;
 
         /// The same robot with other parameters, in the order of `PARAMETER_NAMES`.
+        #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct WithParameters {
             /// The parameter vector.

@@ -46,6 +46,7 @@ pub fn print(module: &Module, origin: &Origin) -> String {
     let private = private_block(module);
     let tokens = quote! {
         /// The scalar of all functions.
+        #[allow(dead_code)]
         pub type Real = #real;
         #constants
         #(#functions)*
@@ -122,30 +123,43 @@ fn constants(module: &Module) -> TokenStream {
     meanings.push(" ```".into());
     quote! {
         /// Name of the robot.
+        #[allow(dead_code)]
         pub const NAME: &str = #name;
         /// Number of joints.
+        #[allow(dead_code)]
         pub const DOF: usize = #dof;
         /// Names of the joints, base to tip.
+        #[allow(dead_code)]
         pub const JOINT_NAMES: [&str; DOF] = [#(#joint_names),*];
         /// Whether a joint turns (q in rad) or slides (q in m).
+        #[allow(dead_code)]
         pub const JOINT_IS_REVOLUTE: [bool; DOF] = [#(#revolute),*];
         /// Lowest and highest joint variable, rad or m; infinite where the description gives none.
+        #[allow(dead_code, clippy::all)]
         pub const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#position),*];
         /// Highest joint rate, rad/s or m/s; infinite where the description gives none.
+        #[allow(dead_code, clippy::all)]
         pub const VELOCITY_LIMITS: [Real; DOF] = [#(#velocity),*];
         /// Highest joint torque, N m or N; infinite where the description gives none.
+        #[allow(dead_code, clippy::all)]
         pub const EFFORT_LIMITS: [Real; DOF] = [#(#effort),*];
         /// Number of rows of the operational space.
+        #[allow(dead_code)]
         pub const TASK_ROWS: usize = #rows;
         /// Rows of the geometric Jacobian that make up the operational space: 0 1 2 along x y z, 3 4 5 about x y z, in the base frame.
+        #[allow(dead_code)]
         pub const TASK: [usize; TASK_ROWS] = [#(#task),*];
         /// Number of parameters.
+        #[allow(dead_code)]
         pub const PARAMETERS: usize = #parameters;
         #(#[doc = #meanings])*
+        #[allow(dead_code)]
         pub const PARAMETER_NAMES: [&str; PARAMETERS] = [#(#parameter_names),*];
         /// Values of the parameters in the description.
+        #[allow(dead_code, clippy::all)]
         pub const NOMINAL_PARAMETERS: [Real; PARAMETERS] = [#(#nominal),*];
         /// The terms of the equation of motion at one state.
+        #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct EquationsOfMotion {
             /// Inertia matrix B(q): symmetric, positive definite.
@@ -309,7 +323,7 @@ fn function(module: &Module, function: &Function) -> TokenStream {
     let (returns, result) = result(function.quantity.shape(), &entries, module.joints.len());
     quote! {
         #(#[doc = #documentation])*
-        #[allow(clippy::all)]
+        #[allow(dead_code, clippy::all)]
         pub fn #name(#(#arguments),*) -> #returns {
             #ignored
             #(#sines)*

@@ -1,0 +1,95 @@
+//! The operations that stand in an emitted text, counted apart from the generator: by reading the text.
+
+use std::collections::BTreeMap;
+
+use syn::visit::{self, Visit};
+
+/// Operations in the body of a function.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    /// `*`
+    pub mul: usize,
+    /// `+` and binary `-`
+    pub add: usize,
+    /// `/`
+    pub div: usize,
+    /// Sign changes of anything but a literal.
+    pub neg: usize,
+    /// Calls of `sin_cos`.
+    pub sincos: usize,
+}
+
+/// Operations of every public function of a module.
+///
+/// Panics where the text is not Rust, or holds what no emitted function may: another operator or call, an index that is no literal,
+/// a loop, a branch, a macro, an unsafe block.
+pub fn count(text: &str) -> BTreeMap<String, Operations> {
+    let file = syn::parse_file(text).expect("the emitted text is Rust");
+    let functions = file.items.iter().filter_map(|item| match item {
+        syn::Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => Some(function),
+        _ => None,
+    });
+    functions
+        .map(|function| {
+            let mut operations = Operations::default();
+            operations.visit_block(&function.block);
+            (function.sig.ident.to_string(), operations)
+        })
+        .collect()
+}
+
+impl<'a> Visit<'a> for Operations {
+    fn visit_expr(&mut self, expr: &'a syn::Expr) {
+        use syn::{BinOp, Expr, UnOp};
+        match expr {
+            Expr::Binary(binary) => match binary.op {
+                BinOp::Mul(_) => self.mul += 1,
+                BinOp::Add(_) | BinOp::Sub(_) => self.add += 1,
+                BinOp::Div(_) => self.div += 1,
+                _ => panic!("an operator that is not + - * /"),
+            },
+            Expr::Unary(unary) => {
+                assert!(matches!(unary.op, UnOp::Neg(_)), "a unary operator that is not -");
+                self.neg += usize::from(!matches!(*unary.expr, Expr::Lit(_)));
+            }
+            Expr::Call(call) => {
+                let Expr::Path(path) = &*call.func else { panic!("a call of something that has no name") };
+                match path.path.get_ident().map(ToString::to_string).as_deref() {
+                    Some("sin_cos") => self.sincos += 1,
+                    Some("sign") => (),
+                    _ => panic!("a call of something else than sin_cos and sign"),
+                }
+            }
+            Expr::Index(index) => assert!(matches!(*index.index, Expr::Lit(_)), "an index that is no literal"),
+            Expr::Array(_) | Expr::Lit(_) | Expr::Paren(_) | Expr::Path(_) | Expr::Struct(_) | Expr::Tuple(_) => (),
+            _ => panic!("an expression that has no place in an emitted function"),
+        }
+        visit::visit_expr(self, expr);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(body: &str, [mul, add, div, neg, sincos]: [usize; 5]) {
+        let counted = count(&format!("pub fn f() {{ {body} }} fn private() {{ 1 * 2 }}"));
+        assert_eq!(counted, BTreeMap::from([("f".to_owned(), Operations { mul, add, div, neg, sincos })]), "{body}");
+    }
+
+    #[test]
+    fn operations_are_counted() {
+        check("let (s1, _) = sin_cos(q[0]); let t = s1 * q[1] - 2.0 + -0.5 * x / y; [-t, t, -1.0]", [2, 2, 1, 1, 1]);
+        check("let _ = q; [0.0]", [0; 5]);
+        check("E { a: [[x + y * z; 1][0]], b: -(x + sign(dq[0])) }".replace("; 1][0]", "]").as_str(), [1, 2, 0, 1, 0]);
+    }
+
+    #[test]
+    fn what_has_no_place_is_refused() {
+        for body in ["q[i]", "if x { y } else { z }", "x.sin()", "f(x)", "x % y", "loop {}", "!x", "unsafe { x }", "m!(x)"] {
+            let text = format!("pub fn f() {{ let t = {body}; t }}");
+            assert!(std::panic::catch_unwind(|| count(&text)).is_err(), "{body}");
+        }
+    }
+}

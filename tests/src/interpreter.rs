@@ -1,0 +1,103 @@
+//! Programs interpreted: the steps that would be printed as Rust, carried out in f64, so that a robot can be judged without a compiler.
+
+use armgen_codegen::manipulator;
+use armgen_codegen::program::{Function, Module, Operand, Operation, Options};
+use armgen_codegen::ring::Symbol;
+use armgen_codegen::source::Source;
+use armgen_codegen::Model;
+
+use crate::functions::{Arguments, Functions};
+
+/// The programs of a robot.
+#[derive(Clone, Debug)]
+pub struct Interpreted {
+    /// The programs.
+    pub module: Module,
+}
+
+impl Interpreted {
+    /// The programs of the robot that a text describes.
+    ///
+    /// Errors: the text is not valid; all that is wrong with it.
+    pub fn new(text: &str) -> Result<Self, String> {
+        let source = Source::new("robot.yaml", text);
+        let (valid, diagnostics) = manipulator::read(&source);
+        match valid {
+            Some((manipulator, _)) => Ok(Interpreted { module: Model::new(manipulator).module(&Options::default()) }),
+            None => Err(diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)),
+        }
+    }
+}
+
+impl Functions for Interpreted {
+    fn dof(&self) -> usize {
+        self.module.joints.len()
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        self.module.parameters.iter().map(|(name, ..)| name.clone()).collect()
+    }
+
+    fn nominal(&self) -> Vec<f64> {
+        self.module.parameters.iter().map(|(_, value, _)| value.to_f64()).collect()
+    }
+
+    fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
+        let found = self.module.functions.iter().find(|f| f.name() == function);
+        run(found.unwrap_or_else(|| panic!("no function `{function}`")), arguments)
+    }
+}
+
+/// Carries out a program.
+///
+/// Panics where it uses a step before it is there, or an input that is not among its arguments.
+pub fn run(function: &Function, arguments: &Arguments) -> Vec<f64> {
+    let mut values: Vec<f64> = Vec::with_capacity(function.steps.len());
+    for step in &function.steps {
+        let (a, b) = (operand(function, &values, arguments, &step.left), operand(function, &values, arguments, &step.right));
+        values.push(match step.operation {
+            Operation::Add => a + b,
+            Operation::Subtract => a - b,
+            Operation::Multiply => a * b,
+            Operation::Divide => a / b,
+        });
+    }
+    let output = |o: &armgen_codegen::program::Output| {
+        let value = operand(function, &values, arguments, &o.operand);
+        if o.negated {
+            -value
+        } else {
+            value
+        }
+    };
+    function.outputs.iter().map(output).collect()
+}
+
+fn operand(function: &Function, values: &[f64], arguments: &Arguments, operand: &Operand) -> f64 {
+    let symbol = match operand {
+        Operand::Step(i) => return values[*i as usize],
+        Operand::Constant(value) => return value.to_f64(),
+        Operand::Input(symbol) => *symbol,
+    };
+    use armgen_codegen::equations::Argument;
+    let given = |argument: Argument, vector: &[f64], i: u16| {
+        assert!(function.arguments.contains(&argument), "{} does not take {argument:?}", function.name());
+        vector[usize::from(i)]
+    };
+    let a = arguments;
+    match symbol {
+        Symbol::Sine(i) => given(Argument::Q, &a.q, i).sin(),
+        Symbol::Cosine(i) => given(Argument::Q, &a.q, i).cos(),
+        Symbol::Position(i) => given(Argument::Q, &a.q, i),
+        Symbol::Rate(i) => given(Argument::Dq, &a.dq, i),
+        Symbol::RateSign(i) => match given(Argument::Dq, &a.dq, i) {
+            0.0 => 0.0,
+            rate => rate.signum(),
+        },
+        Symbol::Acceleration(i) => given(Argument::Ddq, &a.ddq, i),
+        Symbol::ReferenceRate(i) => given(Argument::Dqr, &a.dqr, i),
+        Symbol::ReferenceAcceleration(i) => given(Argument::Ddqr, &a.ddqr, i),
+        Symbol::Torque(i) => given(Argument::Tau, &a.tau, i),
+        Symbol::Parameter(i) => given(Argument::Pi, &a.pi, i),
+    }
+}

@@ -1,0 +1,278 @@
+//! Every function of a robot against the oracle, at one state.
+//!
+//! The plain functions are compared with the oracle's model of the description. The `_with` forms are compared with the oracle's model
+//! at the same parameters, and, because a base parameter is the generator's own choice, by linear identities that need no model:
+//!
+//! ```text
+//! tau(pi; dq, dqr, ddqr) = Y pi + tau_known          tau_0 = tau(pi; 0, 0, 0)
+//! g = tau_0                                          B e_j = tau(pi; 0, 0, e_j) - tau_0
+//! F_c = tau(pi; dq, 0, 0) - tau_0                    (C + F_v) e_j = tau(pi; dq, e_j, 0) - tau(pi; dq, 0, 0)
+//! T = ½ dq' B dq                                     U(b) - U(a) = ∫ g dq from a to b
+//! ```
+
+use crate::functions::{Arguments, Functions};
+use crate::oracle::{rank, times, Description, Matrix, Model, RegressorChoice};
+use crate::precision::{agree, NEAR_NOMINAL};
+use crate::random::{self, Random, State};
+
+/// How close the judged functions have to come.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerance {
+    /// Of every function but forward dynamics, by `precision::deviation`.
+    pub values: f64,
+    /// Of the residual of forward dynamics.
+    pub residual: f64,
+}
+
+/// A case: who is judged by which description, and where.
+struct Case<'a> {
+    what: String,
+    robot: &'a dyn Functions,
+    description: &'a Description,
+    model: Model,
+    tolerance: Tolerance,
+    seed: u64,
+}
+
+/// Judges every function of `robot` at random states and parameters; `what` names it in a failure, `text` is its description.
+#[track_caller]
+pub fn judge(what: &str, robot: &dyn Functions, text: &str, seed: u64, tolerance: Tolerance) {
+    let description = Description::read(text).unwrap_or_else(|error| panic!("{what}: {error}\n{text}"));
+    let model = description.model().unwrap_or_else(|error| panic!("{what}: {error}\n{text}"));
+    let what = format!("{what}, seed {seed}");
+    assert_eq!(robot.dof(), model.dof(), "{what}");
+    let case = Case { what, robot, description: &description, model, tolerance, seed };
+    let mut state = random::state(robot.dof(), seed);
+    case.judge_at(&state);
+    // At rest the sign of a rate is 0; a joint that stands still must not be pushed by its Coulomb friction.
+    for (i, rate) in state.dq.iter_mut().enumerate() {
+        if (i as u64 + seed).is_multiple_of(2) {
+            *rate = 0.0;
+        }
+    }
+    case.judge_friction(&state);
+    case.judge_parameters();
+}
+
+fn arguments(state: &State, pi: &[f64]) -> Arguments {
+    let State { q, dq, ddq, dqr, ddqr } = state.clone();
+    Arguments { pi: pi.to_vec(), q, dq, ddq, dqr, ddqr, tau: Vec::new() }
+}
+
+fn unit(n: usize, k: usize, length: f64) -> Vec<f64> {
+    (0..n).map(|i| if i == k { length } else { 0.0 }).collect()
+}
+
+fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn column(m: &[f64], n: usize, j: usize) -> Vec<f64> {
+    (0..n).map(|i| m[i * n + j]).collect()
+}
+
+impl Case<'_> {
+    #[track_caller]
+    fn check(&self, what: &str, found: &[f64], expected: &[f64]) {
+        agree(&format!("{}: {what}", self.what), found, expected, self.tolerance.values);
+    }
+
+    fn judge_at(&self, state: &State) {
+        let (robot, model) = (self.robot, &self.model);
+        let a = arguments(state, &robot.nominal());
+        let State { q, dq, ddq, dqr, ddqr } = state;
+        let expect = |function: &str, expected: Vec<f64>| self.check(function, &robot.call(function, &a), &expected);
+        expect("direct_kinematics", model.direct_kinematics(q).concat());
+        expect("link_frames", model.link_frames(q).concat().concat());
+        expect("geometric_jacobian", model.geometric_jacobian(q).concat());
+        expect("geometric_jacobian_dot", model.geometric_jacobian_dot(q, dq).concat());
+        self.expect_dynamics("", model, &a);
+        self.expect_forward_dynamics("forward_dynamics", model, a.clone());
+
+        // The regressor of the file's choice, column by column where the oracle knows the columns; and what it adds up to.
+        let y = robot.call("regressor", &a);
+        let known = robot.call("known_torque", &a);
+        match self.description.regressor(q, dq, dqr, ddqr) {
+            Some(expected) => {
+                let expected = expected.unwrap_or_else(|error| panic!("{}: {error}", self.what));
+                self.check("nominal parameters", &robot.nominal(), &expected.parameters);
+                self.check("regressor", &y, &expected.y.concat());
+                self.check("known_torque", &known, &expected.known);
+            }
+            None => self.judge_base_columns(),
+        }
+        let tau = self.torque(&a, &robot.nominal());
+        self.check("Y pi + tau_known", &tau, &model.inverse_dynamics_4(q, dq, dqr, ddqr));
+        let with_own = Arguments { dqr: dq.clone(), ddqr: ddq.clone(), ..a.clone() };
+        let tau = self.torque(&with_own, &robot.nominal());
+        self.check("Y(q, dq, dq, ddq) pi + tau_known", &tau, &robot.call("inverse_dynamics", &a));
+    }
+
+    /// The functions of the dynamics but for the forward one, plain (`""`) or `_with`, against a model.
+    fn expect_dynamics(&self, ending: &str, model: &Model, a: &Arguments) {
+        let expect = |function: &str, expected: &[f64]| {
+            let function = format!("{function}{ending}");
+            self.check(&function, &self.robot.call(&function, a), expected);
+        };
+        let (b, c) = (model.inertia_matrix(&a.q).concat(), model.coriolis_matrix(&a.q, &a.dq).concat());
+        let g = model.gravity(&a.q);
+        expect("inertia_matrix", &b);
+        expect("coriolis_matrix", &c);
+        expect("gravity", &g);
+        expect("friction", &model.friction(&a.dq));
+        // Together, but each to its own scale.
+        let terms = self.robot.call(&format!("equations_of_motion{ending}"), a);
+        let n = self.robot.dof();
+        self.check("equations_of_motion: B", &terms[..n * n], &b);
+        self.check("equations_of_motion: C", &terms[n * n..2 * n * n], &c);
+        self.check("equations_of_motion: g", &terms[2 * n * n..], &g);
+        expect("inverse_dynamics", &model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
+        expect("kinetic_energy", &[model.kinetic_energy(&a.q, &a.dq)]);
+        expect("potential_energy", &[model.potential_energy(&a.q)]);
+    }
+
+    /// The accelerations come back from the torques that they need.
+    fn expect_forward_dynamics(&self, function: &str, model: &Model, mut a: Arguments) {
+        a.tau = model.inverse_dynamics(&a.q, &a.dq, &a.ddq);
+        let residual = model.forward_residual(&a.q, &self.robot.call(function, &a), &a.ddq, &a.tau);
+        assert!(residual <= self.tolerance.residual, "{}: {function}: residual {residual:e}", self.what);
+    }
+
+    fn judge_friction(&self, state: &State) {
+        let a = arguments(state, &self.robot.nominal());
+        self.check("friction with joints at rest", &self.robot.call("friction", &a), &self.model.friction(&a.dq));
+        self.check("friction_with", &self.robot.call("friction_with", &a), &self.model.friction(&a.dq));
+        let tau = self.robot.call("inverse_dynamics", &a);
+        self.check("tau with joints at rest", &tau, &self.model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
+        let tau = self.torque(&a, &a.pi);
+        self.check("Y pi with joints at rest", &tau, &self.model.inverse_dynamics_4(&a.q, &a.dq, &a.dqr, &a.ddqr));
+    }
+
+    /// Y pi + tau_known of the robot itself.
+    fn torque(&self, a: &Arguments, pi: &[f64]) -> Vec<f64> {
+        let y = self.robot.call("regressor", a);
+        let rows: Matrix =
+            if pi.is_empty() { vec![vec![]; a.q.len()] } else { y.chunks(pi.len()).map(<[f64]>::to_vec).collect() };
+        times(&rows, pi).iter().zip(self.robot.call("known_torque", a)).map(|(y, known)| y + known).collect()
+    }
+
+    /// Base parameters: as many as the standard regressor has rank, spanning the same, independent.
+    fn judge_base_columns(&self) {
+        let n = self.robot.dof();
+        let (mut base, mut standard): (Matrix, Matrix) = Default::default();
+        for k in 0..(10 * n as u64 + 20) {
+            let state = random::state(n, 77_000 + k);
+            let y = self.robot.call("regressor", &arguments(&state, &[]));
+            base.extend(y.chunks(y.len() / n).map(<[f64]>::to_vec));
+            standard.extend(self.model.standard_regressor(&state.q, &state.dq, &state.dqr, &state.ddqr).y);
+        }
+        let both: Matrix = base.iter().zip(&standard).map(|(b, s)| [b.as_slice(), s].concat()).collect();
+        let (rank_of_base, rank_of_standard, rank_of_both) = (rank(&base), rank(&standard), rank(&both));
+        let count = self.robot.parameter_names().len();
+        let found = (rank_of_base, rank_of_standard, rank_of_both);
+        assert_eq!(found, (count, count, count), "{}: ranks of base, standard, both", self.what);
+    }
+
+    /// The `_with` forms at random parameters.
+    fn judge_parameters(&self) {
+        let mut random = Random::new(self.seed ^ 0x0070_6900);
+        let nominal = self.robot.nominal();
+        // Of the size of the nominal ones, some of the other sign: the equations are linear in all of them.
+        let pi: Vec<f64> = nominal
+            .iter()
+            .map(|x| match x {
+                0.0 => random.real(-0.1, 0.1),
+                x => x * random.real(0.5, 1.5) * if random.chance(20) { -1.0 } else { 1.0 },
+            })
+            .collect();
+        let a = arguments(&random::state(self.robot.dof(), self.seed + 500), &pi);
+        if let Some(model) = self.model_at(&pi) {
+            self.expect_dynamics("_with", &model, &a);
+        }
+        self.judge_identities(&a);
+
+        // B has to stay positive for its factors, so all parameters grow alike, but for a little.
+        let pi: Vec<f64> = nominal.iter().map(|x| x * 1.3 * random.real(1.0, 1.0 + NEAR_NOMINAL)).collect();
+        let near = Arguments { pi: pi.clone(), ..a };
+        match self.model_at(&pi) {
+            Some(model) => self.expect_forward_dynamics("forward_dynamics_with", &model, near),
+            None => {
+                let near = Arguments { tau: self.robot.call("inverse_dynamics_with", &near), ..near };
+                let found = self.robot.call("forward_dynamics_with", &near);
+                let b = self.robot.call("inertia_matrix_with", &near);
+                let rows: Matrix = b.chunks(self.robot.dof()).map(<[f64]>::to_vec).collect();
+                let scale = near.tau.iter().fold(1.0f64, |m, x| m.max(x.abs()));
+                let residual: Vec<f64> = times(&rows, &minus(&found, &near.ddq)).iter().map(|x| x / scale).collect();
+                agree(
+                    &format!("{}: forward_dynamics_with", self.what),
+                    &residual,
+                    &vec![0.0; residual.len()],
+                    self.tolerance.residual,
+                );
+            }
+        }
+    }
+
+    /// The oracle's model at other parameters; `None` for base parameters.
+    fn model_at(&self, pi: &[f64]) -> Option<Model> {
+        match self.description.regressor_choice() {
+            RegressorChoice::Base => None,
+            RegressorChoice::Standard => Some(self.model.with_standard_parameters(pi)),
+            RegressorChoice::Names(names) => {
+                let values: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(pi.iter().copied()).collect();
+                Some(self.description.model_with(&values).unwrap_or_else(|error| panic!("{}: {error}", self.what)))
+            }
+        }
+    }
+
+    /// The `_with` forms against the regressor, by linearity.
+    fn judge_identities(&self, a: &Arguments) {
+        let n = self.robot.dof();
+        let call = |function: &str| self.robot.call(function, a);
+        let rest = vec![0.0; n];
+        let tau = |dq: &[f64], dqr: &[f64], ddqr: &[f64]| {
+            let a = Arguments { dq: dq.to_vec(), dqr: dqr.to_vec(), ddqr: ddqr.to_vec(), ..a.clone() };
+            self.torque(&a, &a.pi)
+        };
+        let (b, c) = (call("inertia_matrix_with"), call("coriolis_matrix_with"));
+        let still = tau(&rest, &rest, &rest);
+        self.check("g_with by Y", &call("gravity_with"), &still);
+        let coulomb = minus(&tau(&a.dq, &rest, &rest), &still);
+        let friction = |dq: Vec<f64>| self.robot.call("friction_with", &Arguments { dq, ..a.clone() });
+        let mut viscous = vec![0.0; n];
+        for j in 0..n {
+            // Rounded to the scale of tau, whatever is subtracted.
+            let with_gravity: Vec<f64> = column(&b, n, j).iter().zip(&still).map(|(b, g)| b + g).collect();
+            self.check("B_with by Y", &tau(&rest, &rest, &unit(n, j, 1.0)), &with_gravity);
+            viscous[j] = minus(&friction(unit(n, j, 2.0)), &friction(unit(n, j, 1.0)))[j];
+            let sum: Vec<f64> =
+                (0..n).map(|i| c[i * n + j] + if i == j { viscous[j] } else { 0.0 } + coulomb[i] + still[i]).collect();
+            self.check("C_with by Y", &tau(&a.dq, &unit(n, j, 1.0), &rest), &sum);
+        }
+        let both: Vec<f64> = (0..n).map(|i| viscous[i] * a.dq[i] + coulomb[i]).collect();
+        self.check("friction_with by Y", &call("friction_with"), &both);
+        self.check("tau_with by Y", &call("inverse_dynamics_with"), &tau(&a.dq, &a.dq, &a.ddq));
+        let rows: Matrix = b.chunks(n).map(<[f64]>::to_vec).collect();
+        self.check("T_with", &call("kinetic_energy_with"), &[0.5 * dot(&a.dq, &times(&rows, &a.dq))]);
+        let parts = [b, c, call("gravity_with")].concat();
+        self.check("equations_of_motion_with", &call("equations_of_motion_with"), &parts);
+
+        // Gauss-Legendre with five points along a short straight line: exact to rounding.
+        let step: Vec<f64> = a.dq.iter().map(|v| 0.02 * v).collect();
+        let at = |s: f64| Arguments { q: a.q.iter().zip(&step).map(|(q, d)| q + s * d).collect(), ..a.clone() };
+        let (inner, outer) =
+            ((5.0 - 2.0 * (10.0f64 / 7.0).sqrt()).sqrt() / 3.0, (5.0 + 2.0 * (10.0f64 / 7.0).sqrt()).sqrt() / 3.0);
+        let (near, far) = ((322.0 + 13.0 * 70.0f64.sqrt()) / 900.0, (322.0 - 13.0 * 70.0f64.sqrt()) / 900.0);
+        let points = [(0.0, 128.0 / 225.0), (inner, near), (-inner, near), (outer, far), (-outer, far)];
+        let work: f64 = points
+            .iter()
+            .map(|(x, weight)| 0.5 * weight * dot(&self.robot.call("gravity_with", &at(0.5 + 0.5 * x)), &step))
+            .sum();
+        let u = |s: f64| self.robot.call("potential_energy_with", &at(s))[0];
+        self.check("U_with by g", &[u(1.0)], &[u(0.0) + work]);
+    }
+}
