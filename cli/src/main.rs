@@ -38,7 +38,8 @@ const EXAMPLES: &str = "Examples:
   armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
   armgen run                                   move the robot that this program was built with
 
-Exit codes: 0 done, 1 something is wrong in a file or outside its expectation, 2 a file cannot be read.";
+Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
+2 a file cannot be opened or is not UTF-8.";
 
 /// From a robot arm's data sheet to its exact equations of motion, and to plain no_std Rust
 #[derive(Debug, Parser)]

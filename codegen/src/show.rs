@@ -93,7 +93,7 @@ pub enum Content {
     /// Each a sum of waves.
     Closed(Vec<NormalForm>),
     /// Expressions that share steps.
-    Program(Derivation),
+    Program(Box<Derivation>),
 }
 
 /// The entries of a quantity in one notation.
@@ -239,7 +239,7 @@ fn matrix(model: &Model, quantity: Quantity, name: String, derivation: Derivatio
             .then(|| model.parameters.entries.iter().map(|entry| entry.name.clone()).collect()),
         content: match derivation.closed_forms() {
             Some(forms) => Content::Closed(forms),
-            None => Content::Program(derivation),
+            None => Content::Program(Box::new(derivation)),
         },
         parameters: model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
     }

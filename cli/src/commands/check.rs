@@ -42,7 +42,8 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
         warnings => format!("valid, with {}", input::counted(warnings, "warning")),
     };
     let title = terminal::bold(&format!("{}: {verdict}", source.name()), &std::io::stdout());
-    [title + "\n", arm(description, manipulator), joints(source, description, manipulator), identification::report(model)].join("\n")
+    [title + "\n", arm(description, manipulator), joints(source, description, manipulator), identification::report(model)]
+        .join("\n")
 }
 
 /// The arm as a whole.
@@ -109,9 +110,11 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
         let [a, alpha, mut d, mut theta] = dh;
         // The joint variable is added to theta or to d.
         let moved = if revolute { &mut theta } else { &mut d };
-        *moved = match moved.as_str() {
-            "0" => format!("q{}", i + 1),
-            offset => format!("q{} + {}", i + 1, if offset.starts_with('-') { format!("({offset})") } else { offset.into() }),
+        *moved = match moved.strip_prefix('-') {
+            _ if moved == "0" => format!("q{}", i + 1),
+            Some(rest) if !rest.contains(['+', '-']) => format!("q{} - {}", i + 1, rest.trim_start()),
+            Some(_) => format!("q{} + ({moved})", i + 1),
+            None => format!("q{} + {moved}", i + 1),
         };
         let number = |p: &Polynomial| decimal(&derive::parameters::nominal(manipulator, p));
         let limit = |value: &Option<Number>| value.as_ref().map_or(String::new(), decimal);

@@ -44,9 +44,7 @@ fn text(robot: &str, costs: &[(String, Cost, &str)]) -> String {
 fn json(robot: &str, costs: &[(String, Cost, &str)]) -> String {
     let functions: Map<String, Value> = costs
         .iter()
-        .map(|(name, c, _)| {
-            (name.clone(), json!({"mul": c.mul, "add": c.add, "div": c.div, "neg": c.neg, "sincos": c.sincos}))
-        })
+        .map(|(name, c, _)| (name.clone(), json!({"mul": c.mul, "add": c.add, "div": c.div, "neg": c.neg, "sincos": c.sincos})))
         .collect();
     let text = serde_json::to_string_pretty(&json!({"robot": robot, "functions": functions}));
     text.expect("strings and numbers always have a JSON form") + "\n"

@@ -56,7 +56,8 @@ impl Shown {
     /// Steps and entries that are not zero, in blocks; of a symmetric matrix the upper half.
     fn aligned(&self, formulas: &Formulas) -> String {
         let symmetric = self.is_symmetric();
-        let mut all: Vec<(String, &str)> = formulas.steps.iter().map(|(name, formula)| (name.clone(), formula.as_str())).collect();
+        let mut all: Vec<(String, &str)> =
+            formulas.steps.iter().map(|(name, formula)| (name.clone(), formula.as_str())).collect();
         let steps = all.len();
         let mut zeros = false;
         for i in 0..self.rows {

@@ -81,9 +81,7 @@ pub(super) fn formulas(derivation: &Derivation, printer: &Printer<'_>) -> Formul
             Node::Reciprocal(a) => {
                 let of = of(a);
                 match notation {
-                    Notation::Text => {
-                        (format!("1/{}", of.at_least(Binding::Whole, notation)), of.operands + 1, Binding::Product)
-                    }
+                    Notation::Text => (format!("1/{}", of.at_least(Binding::Whole, notation)), of.operands + 1, Binding::Product),
                     Notation::Latex => (format!("\\frac{{1}}{{{}}}", of.text), of.operands + 1, Binding::Quotient),
                 }
             }

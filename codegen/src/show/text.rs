@@ -29,7 +29,8 @@ impl Shown {
             let count = formulas.steps.len();
             write!(text, ", in {count} {}", if count == 1 { "step" } else { "steps" }).expect("writing to a string");
         }
-        let table = (self.is_closed() && self.columns > 1 && self.column_names.is_none()).then(|| self.table(&formulas)).flatten();
+        let table =
+            (self.is_closed() && self.columns > 1 && self.column_names.is_none()).then(|| self.table(&formulas)).flatten();
         match table {
             Some(table) => text + "\n" + &table,
             None => self.lines(text, &formulas),
