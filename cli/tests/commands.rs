@@ -150,6 +150,22 @@ fn show_takes_names_of_quantities() {
 }
 
 #[test]
+fn the_determinant_comes_with_its_factors() {
+    let shown = json(&["show", &file("robots/scara.yaml"), "determinant", "--format", "json"]);
+    let determinant = &shown["quantities"][0];
+    assert_eq!(determinant["entries"], serde_json::json!([["1/4*sin(q2)"]]));
+    assert_eq!(determinant["factors"], serde_json::json!(["1/4*sin(q2)"]));
+    assert_eq!(determinant["singular"], serde_json::json!(["q2 = k pi"]));
+    let shown = json(&["show", &file("robots/ur5.yaml"), "determinant", "--format", "json"]);
+    let singular = shown["quantities"][0]["singular"].as_array().expect("a list");
+    assert_eq!(singular.iter().filter(|s| s.is_null()).count(), 1, "one factor depends on several joints");
+    // Seven joints, six rows.
+    let output = check(&["show", &file("robots/panda7.yaml"), "determinant", "--format", "json"], 0);
+    assert!(err(&output).contains("note: determinant: the task has 6 rows"), "{}", err(&output));
+    assert_eq!(serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["quantities"], serde_json::json!([]));
+}
+
+#[test]
 fn symbolic_forms_use_the_names() {
     let text = out(&check(&["show", &file("robots/scara.yaml"), "inertia_matrix", "--symbolic"], 0));
     assert!(text.contains("m_l3") && text.contains("I_m4"), "{text}");

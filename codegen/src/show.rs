@@ -29,7 +29,8 @@ use crate::derive::arm::Arm;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterKind, View};
 use crate::derive::regressor::{derivative_by_parameter, regressor};
-use crate::equations::{Derivation, Quantity, Shape};
+use crate::derive::{self, determinant::Factor};
+use crate::equations::{Derivation, Quantity, Shape, CLOSED_FORM_TERMS};
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -44,7 +45,12 @@ pub enum Item {
     With(Quantity),
     /// The frame of one link, by index.
     LinkFrame(usize),
+    /// The determinant of the task Jacobian.
+    Determinant,
 }
+
+/// The name of the determinant of the task Jacobian, which is no emitted function.
+const DETERMINANT: &str = "determinant";
 
 /// Numbers or names for the parameters of the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,6 +91,8 @@ pub struct Shown {
     pub content: Content,
     /// Names of the symbols [`Symbol::Parameter`], by index.
     pub parameters: Vec<String>,
+    /// Of the determinant: its factors, and where each is zero.
+    pub factors: Option<Vec<Factor>>,
 }
 
 /// The entries of a quantity.
@@ -106,13 +114,18 @@ pub struct Formulas {
 }
 
 impl Item {
-    /// All that is shown where nothing is asked for: every function but `equations_of_motion`, which only gathers three others.
+    /// All that is shown where nothing is asked for: every function but `equations_of_motion`, which only gathers three others, and the
+    /// determinant.
     pub fn all() -> Vec<Item> {
-        Quantity::ALL.iter().filter(|q| **q != Quantity::EquationsOfMotion).map(|&q| Item::Plain(q)).collect()
+        let functions = Quantity::ALL.iter().filter(|q| **q != Quantity::EquationsOfMotion).map(|&q| Item::Plain(q));
+        functions.chain([Item::Determinant]).collect()
     }
 
     /// What a name stands for; nothing if it is no name of a quantity of an arm with `dof` joints.
     pub fn named(name: &str, dof: usize) -> Vec<Item> {
+        if name == DETERMINANT {
+            return vec![Item::Determinant];
+        }
         if let Some(number) = name.strip_prefix("link_frame_").and_then(|n| n.parse::<usize>().ok()) {
             return if (1..=dof).contains(&number) { vec![Item::LinkFrame(number - 1)] } else { Vec::new() };
         }
@@ -131,7 +144,7 @@ impl Item {
     pub fn names() -> Vec<String> {
         let plain = Quantity::ALL.iter().map(|q| q.name().to_string());
         let with = Quantity::ALL.iter().filter(|q| q.has_parameters()).map(|q| format!("{}_with", q.name()));
-        plain.chain(with).collect()
+        plain.chain(with).chain([DETERMINANT.to_string()]).collect()
     }
 }
 
@@ -139,15 +152,15 @@ impl Sheet {
     /// The quantities asked for, each once, in the order of asking.
     pub fn new(model: &Model, items: &[Item], reading: Reading) -> Sheet {
         let mut seen = BTreeSet::new();
-        let mut quantities = Vec::new();
+        let mut sheet = Sheet { robot: model.manipulator.name.clone(), quantities: Vec::new(), absent: Vec::new() };
         for &item in items {
-            for shown in shown(model, item, reading) {
-                if seen.insert(shown.name.clone()) {
-                    quantities.push(shown);
-                }
+            match shown(model, item, reading) {
+                Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),
+                Err(reason) => sheet.absent.push((DETERMINANT.into(), reason)),
             }
         }
-        Sheet { robot: model.manipulator.name.clone(), quantities, absent: Vec::new() }
+        sheet.absent.dedup();
+        sheet
     }
 }
 
@@ -166,6 +179,13 @@ impl Shown {
             }
             Content::Program(derivation) => steps::formulas(derivation, &printer),
         }
+    }
+
+    /// The factors of the determinant in one notation, and where each is zero.
+    pub fn factors(&self, notation: Notation) -> Option<Vec<(String, Option<String>)>> {
+        let printer = Printer { notation, parameters: &self.parameters };
+        let factors = self.factors.as_ref()?;
+        Some(factors.iter().map(|factor| (printer.form(&factor.form), factor.singular.clone())).collect())
     }
 
     /// Whether this is a square matrix equal to its transpose.
@@ -191,15 +211,16 @@ impl Shown {
     }
 }
 
-/// The matrices of an item.
-fn shown(model: &Model, item: Item, reading: Reading) -> Vec<Shown> {
+/// The matrices of an item, or why there is none.
+fn shown(model: &Model, item: Item, reading: Reading) -> Result<Vec<Shown>, String> {
     let view = match (item, reading) {
         (Item::With(_), _) => View::Vector(&model.parameters),
         (_, Reading::Nominal) => View::Nominal,
         (_, Reading::Symbolic) => View::Symbolic,
     };
     let dof = model.manipulator.dof();
-    match item {
+    Ok(match item {
+        Item::Determinant => vec![determinant(model, view)?],
         Item::Plain(Quantity::LinkFrames) => {
             let derivation = Quantity::LinkFrames.by_recursion(model, view);
             (0..dof).map(|i| frame(model, &derivation, i)).collect()
@@ -215,7 +236,30 @@ fn shown(model: &Model, item: Item, reading: Reading) -> Vec<Shown> {
             shown.parameters = model.parameters.entries.iter().map(|entry| entry.name.clone()).collect();
             vec![shown]
         }
-    }
+    })
+}
+
+/// The determinant with its factors; its closed form if that is not too long.
+fn determinant(model: &Model, view: View<'_>) -> Result<Shown, String> {
+    let found = derive::determinant::determinant(model, view)?;
+    Ok(Shown {
+        name: DETERMINANT.into(),
+        symbol: ["det J(q)".into(), "\\det J(q)".into()],
+        letter: ["det J", "\\det J"],
+        rows: 1,
+        columns: 1,
+        column_names: None,
+        factors: (!found.factors.is_empty()).then_some(found.factors),
+        content: match found.form {
+            Some(form) if form.len() <= CLOSED_FORM_TERMS => Content::Closed(vec![form]),
+            _ => Content::Program(Box::new(Derivation { pool: found.pool, entries: vec![found.value], method: "minors" })),
+        },
+        parameters: names(model),
+    })
+}
+
+fn names(model: &Model) -> Vec<String> {
+    model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect()
 }
 
 fn frame(model: &Model, frames: &Derivation, i: usize) -> Shown {
@@ -241,7 +285,8 @@ fn matrix(model: &Model, quantity: Quantity, name: String, derivation: Derivatio
             Some(forms) => Content::Closed(forms),
             None => Content::Program(Box::new(derivation)),
         },
-        parameters: model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+        parameters: names(model),
+        factors: None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! For programs: `{"robot", "quantities": [{"name", "symbol", "rows", "columns", "entries", "form", "steps"}]}`.
 //!
 //! `entries` are plain formulas by rows; `form` is `closed`, or `program`, and then `steps` are pairs of name and formula.
+//! The determinant also has `factors`, whose product it is, and `singular`, where each is zero: null where more than one joint decides.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
@@ -29,7 +30,7 @@ impl Serialize for Shown {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let formulas = self.formulas(Notation::Text);
         let rows: Vec<&[String]> = formulas.entries.chunks(self.columns.max(1)).collect();
-        let mut shown = serializer.serialize_struct("Shown", 7)?;
+        let mut shown = serializer.serialize_struct("Shown", 9)?;
         shown.serialize_field("name", &self.name)?;
         shown.serialize_field("symbol", &self.symbol[0])?;
         shown.serialize_field("rows", &self.rows)?;
@@ -38,6 +39,11 @@ impl Serialize for Shown {
         shown.serialize_field("form", if self.is_closed() { "closed" } else { "program" })?;
         if !self.is_closed() {
             shown.serialize_field("steps", &formulas.steps)?;
+        }
+        if let Some(factors) = self.factors(Notation::Text) {
+            let (factors, singular): (Vec<_>, Vec<_>) = factors.into_iter().unzip();
+            shown.serialize_field("factors", &factors)?;
+            shown.serialize_field("singular", &singular)?;
         }
         shown.end()
     }

@@ -4,6 +4,7 @@
 
 use std::fmt::Write;
 
+use super::text::zero;
 use super::{break_sum, Formulas, Sheet, Shown};
 use crate::ring::print::Notation;
 
@@ -14,7 +15,7 @@ const WIDTH: usize = 70;
 const MATRIX_COLUMNS: usize = 10;
 
 /// An aligned block holds so many lines: it cannot be broken between pages.
-const LINES: usize = 30;
+const LINES: usize = 24;
 
 impl Sheet {
     /// The sheet as LaTeX, for the body of a document with `\usepackage{amsmath}`.
@@ -33,10 +34,25 @@ impl Sheet {
 impl Shown {
     fn latex(&self) -> String {
         let formulas = self.formulas(Notation::Latex);
-        match self.matrix(&formulas) {
+        let body = match self.matrix(&formulas) {
             Some(matrix) => format!("\\[\n  {} = {matrix}\n\\]\n", self.symbol[1]),
             None => self.aligned(&formulas),
+        };
+        body + &self.latex_factors()
+    }
+
+    /// The factors of the determinant, and where they are zero.
+    fn latex_factors(&self) -> String {
+        let mut lines = Vec::new();
+        for (factor, singular) in self.factors(Notation::Latex).unwrap_or_default() {
+            lines.extend(break_sum(&factor, WIDTH, &measure).into_iter().map(|piece| format!("& {piece}")));
+            let words = zero(singular.as_deref()).replace('_', "\\_").replace('^', "\\textasciicircum ");
+            lines.push(format!("&\\qquad\\text{{{words}}}"));
         }
+        if lines.is_empty() {
+            return String::new();
+        }
+        format!("with the factors\n\\[\n  \\begin{{aligned}}\n    {}\n  \\end{{aligned}}\n\\]\n", lines.join(" \\\\\n    "))
     }
 
     /// The whole matrix, if it fits.

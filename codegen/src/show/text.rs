@@ -31,10 +31,23 @@ impl Shown {
         }
         let table =
             (self.is_closed() && self.columns > 1 && self.column_names.is_none()).then(|| self.table(&formulas)).flatten();
-        match table {
+        let body = match table {
             Some(table) => text + "\n" + &table,
             None => self.lines(text, &formulas),
+        };
+        body + &self.text_factors()
+    }
+
+    /// The factors of the determinant, and where they are zero.
+    fn text_factors(&self) -> String {
+        let mut text = String::new();
+        for (factor, singular) in self.factors(Notation::Text).unwrap_or_default() {
+            const INDENT: usize = 10;
+            let pieces = break_sum(&factor, WIDTH - INDENT, &|s| s.chars().count());
+            let factor = pieces.join(&format!("\n{:INDENT$}", ""));
+            writeln!(text, "  factor  {factor}\n{:INDENT$}{}", "", zero(singular.as_deref())).expect("writing to a string");
         }
+        text
     }
 
     /// The whole matrix, if it fits.
@@ -84,5 +97,14 @@ impl Shown {
             writeln!(text, "  {name:<width$} = {}", pieces.join(&separator)).expect("writing to a string");
         }
         text
+    }
+}
+
+/// Where a factor is zero.
+pub(super) fn zero(singular: Option<&str>) -> String {
+    match singular {
+        Some(place) if place.contains('=') => format!("zero at {place}"),
+        Some(place) => format!("zero {place}"),
+        None => "zero where several joints together make it so".into(),
     }
 }
