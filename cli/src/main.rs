@@ -1,2 +1,168 @@
-//! The program armgen.
-fn main() {}
+//! The program armgen: a robot arm's description checked, its equations shown, counted and generated, and the built robot moved.
+//!
+//! ```text
+//! main.rs      arguments, dispatch
+//! commands/    one file per command
+//! input.rs     descriptions from files
+//! terminal.rs  standard output and error: colour, closed pipes
+//! table.rs     aligned tables
+//! ```
+
+mod commands;
+mod input;
+mod table;
+mod terminal;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+
+/// Exit code: the file is valid, or the task was done.
+const DONE: u8 = 0;
+/// Exit code: something is wrong inside the file, or a result is not as expected.
+const FAULTY: u8 = 1;
+/// Exit code: a file cannot be opened or is not UTF-8.
+const UNREADABLE: u8 = 2;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default());
+
+const EXAMPLES: &str = "Examples:
+  armgen check robot.yaml                      what the file says, and what is wrong with it
+  armgen show robot.yaml inertia_matrix        B(q) with the numbers of the file
+  armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
+  armgen run                                   move the robot that this program was built with
+
+Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
+2 a file cannot be opened or is not UTF-8.";
+
+/// From a robot arm's data sheet to its exact equations of motion, and to plain no_std Rust
+#[derive(Debug, Parser)]
+#[command(name = "armgen", version, styles = STYLES, after_help = EXAMPLES, max_term_width = 100, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Check a description: a summary of the arm, or every fault with its place
+    #[command(after_help = "Examples:
+  armgen check robot.yaml
+  armgen check robots/*.yaml
+
+The summary goes to standard output; errors and warnings go to standard error, each with FILE:LINE:COLUMN.
+Exit codes: 0 valid (perhaps with warnings), 1 faulty, 2 a file cannot be opened or is not UTF-8.")]
+    Check {
+        /// Descriptions of robot arms
+        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
+    },
+    /// Show the equations in closed form, or as numbered steps where they are long
+    #[command(after_help = "Examples:
+  armgen show robot.yaml                                  everything
+  armgen show robot.yaml inertia_matrix gravity           B(q) and g(q)
+  armgen show robot.yaml inertia_matrix --symbolic        with the names under `parameters`
+  armgen show robot.yaml determinant                      where the task's Jacobian is singular
+  armgen show robot.yaml --format latex > equations.tex   for a document with amsmath
+
+A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), one frame as `link_frame_2`, or `determinant`.")]
+    Show {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// What to show; everything if nothing is named
+        #[arg(value_name = "QUANTITY")]
+        quantities: Vec<String>,
+        /// Print the names of parameters instead of their values
+        #[arg(long)]
+        symbolic: bool,
+        /// Form of the output
+        #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
+        format: ShowFormat,
+    },
+    /// Generate the Rust module of an arm
+    #[command(after_help = "Examples:
+  armgen generate robot.yaml --out src/robot.rs           then: mod robot;
+  armgen generate robot.yaml --scalar f32 > robot_f32.rs
+
+The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.")]
+    Generate {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// File to write; standard output if not given
+        #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+        out: Option<PathBuf>,
+        /// The floating-point type of the module
+        #[arg(long, value_enum, default_value_t = ScalarName::F64)]
+        scalar: ScalarName,
+    },
+    /// Count the operations of every emitted function
+    #[command(after_help = "Examples:
+  armgen count robot.yaml
+  armgen count robot.yaml --format json
+
+mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine.")]
+    Count {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// Form of the output
+        #[arg(long, value_enum, default_value_t = CountFormat::Text)]
+        format: CountFormat,
+    },
+    /// Print completions for a shell
+    #[command(after_help = "Examples:
+  armgen completions bash > ~/.local/share/bash-completion/completions/armgen
+  armgen completions zsh > ~/.zfunc/_armgen
+  armgen completions fish > ~/.config/fish/completions/armgen.fish")]
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ShowFormat {
+    /// For a terminal
+    Text,
+    /// For a document with amsmath
+    Latex,
+    /// For programs
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum CountFormat {
+    /// For a terminal
+    Text,
+    /// For programs
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ScalarName {
+    /// 64 bits
+    F64,
+    /// 32 bits
+    F32,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let code = match arguments.command {
+        Command::Check { files } => commands::check::run(&files),
+        Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
+        Command::Generate { file, out, scalar } => commands::generate::run(&file, out.as_deref(), scalar),
+        Command::Count { file, format } => commands::count::run(&file, format),
+        Command::Completions { shell } => commands::completions::run(shell),
+    };
+    ExitCode::from(code)
+}

@@ -22,6 +22,7 @@ pub mod exact;
 pub mod manipulator;
 pub mod program;
 pub mod ring;
+pub mod show;
 pub mod source;
 
 use derive::parameters::ParameterVector;

@@ -1,0 +1,7 @@
+//! The commands: each takes its arguments and gives the exit code.
+
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod count;
+pub(crate) mod generate;
+pub(crate) mod show;

@@ -1,0 +1,178 @@
+//! `armgen check`: what a description says, and what is wrong with it.
+
+mod identification;
+
+use std::path::{Path, PathBuf};
+
+use armgen_codegen::description::{Convention, Expression, RobotDescription};
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::manipulator::{JointKind, Manipulator, RegressorChoice, Scalar};
+use armgen_codegen::source::Source;
+use armgen_codegen::{derive, Model};
+
+use crate::table::{Align, Table};
+use crate::{input, terminal, DONE};
+
+/// Checks every file; the exit code is the worst of them.
+pub(crate) fn run(files: &[PathBuf]) -> u8 {
+    let mut worst = DONE;
+    for (i, file) in files.iter().enumerate() {
+        let code = match checked(file) {
+            Ok(summary) => terminal::print(&if i > 0 { format!("\n{summary}") } else { summary }),
+            Err(code) => code,
+        };
+        worst = worst.max(code);
+    }
+    worst
+}
+
+fn checked(file: &Path) -> Result<String, u8> {
+    let source = input::source(file)?;
+    let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64)?;
+    let (description, _) = RobotDescription::parse(&source);
+    let model = Model::new(manipulator);
+    Ok(summary(&source, &description.unwrap_or_default(), &model, &diagnostics))
+}
+
+fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics) -> String {
+    let manipulator = &model.manipulator;
+    let verdict = match diagnostics.warnings() {
+        0 => "valid".to_string(),
+        warnings => format!("valid, with {}", input::counted(warnings, "warning")),
+    };
+    let title = terminal::bold(&format!("{}: {verdict}", source.name()), &std::io::stdout());
+    [title + "\n", arm(description, manipulator), joints(source, description, manipulator), identification::report(model)]
+        .join("\n")
+}
+
+/// The arm as a whole.
+fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
+    let mut table = Table::new([("", Align::Left), ("", Align::Left)]);
+    let mut row = |name: &str, text: String| table.row([name.to_string(), text]);
+    row("robot", manipulator.name.clone());
+    row("joints", manipulator.dof().to_string());
+    let convention = match description.convention.as_ref().map(|c| c.value) {
+        Some(Convention::Modified) => "modified Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
+        _ => "standard Denavit-Hartenberg: Rz(theta) Tz(d) Tx(a) Rx(alpha)",
+    };
+    row("convention", convention.into());
+    let at_nominal = |p: &Polynomial| derive::parameters::nominal(manipulator, p);
+    let gravity: Vec<String> = manipulator.gravity.iter().map(|g| decimal(&at_nominal(g))).collect();
+    row("gravity", format!("({}) m/s²", gravity.join(", ")));
+    let rotors = manipulator.joints.iter().filter_map(|j| j.motor.as_ref()).map(|m| &m.mass);
+    let links = manipulator.joints.iter().map(|j| &j.link.mass);
+    let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));
+    row("mass of links and rotors", format!("{} kg", decimal(&total)));
+    if let Some(payload) = &manipulator.payload {
+        row("payload", format!("{} kg", decimal(&at_nominal(&payload.mass))));
+    }
+    let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
+    let (m, n) = (rows.len(), manipulator.dof());
+    let against = match m.cmp(&n) {
+        std::cmp::Ordering::Equal => "as many rows as joints".to_string(),
+        std::cmp::Ordering::Less => format!("{} to spare", input::counted(n - m, "joint")),
+        std::cmp::Ordering::Greater => format!("{m} rows for {}: not all can be followed", input::counted(n, "joint")),
+    };
+    row("task", format!("{} ({against})", rows.join(", ")));
+    let names = manipulator.parameters.len();
+    row("named parameters", names.to_string());
+    let regressor = match &manipulator.regressor {
+        RegressorChoice::Standard => "standard",
+        RegressorChoice::Base => "base",
+        RegressorChoice::Names(_) => "names of the file",
+    };
+    row("regressor", regressor.into());
+    table.text()
+}
+
+/// One row per joint: the Denavit-Hartenberg row as written, masses, motors and limits in numbers.
+fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
+    use Align::{Left, Right};
+    let mut table = Table::new([
+        ("joint", Left),
+        ("type", Left),
+        ("a", Right),
+        ("alpha", Right),
+        ("d", Right),
+        ("theta", Right),
+        ("mass", Right),
+        ("ratio", Right),
+        ("position", Left),
+        ("velocity", Right),
+        ("effort", Right),
+    ]);
+    let written = description.joints.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
+    for (i, joint) in manipulator.joints.iter().enumerate() {
+        let revolute = joint.kind == JointKind::Revolute;
+        let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
+        let dh = written.get(i).map_or_else(Default::default, |j| [text(&j.a), text(&j.alpha), text(&j.d), text(&j.theta)]);
+        let [a, alpha, mut d, mut theta] = dh;
+        // The joint variable is added to theta or to d.
+        let moved = if revolute { &mut theta } else { &mut d };
+        *moved = match moved.strip_prefix('-') {
+            _ if moved == "0" => format!("q{}", i + 1),
+            Some(rest) if !rest.contains(['+', '-']) => format!("q{} - {}", i + 1, rest.trim_start()),
+            Some(_) => format!("q{} + ({moved})", i + 1),
+            None => format!("q{} + {moved}", i + 1),
+        };
+        let number = |p: &Polynomial| decimal(&derive::parameters::nominal(manipulator, p));
+        let limit = |value: &Option<Number>| value.as_ref().map_or(String::new(), decimal);
+        table.row([
+            format!("{} {}", i + 1, joint.name),
+            if revolute { "revolute" } else { "prismatic" }.into(),
+            a,
+            alpha,
+            d,
+            theta,
+            number(&joint.link.mass),
+            joint.motor.as_ref().map_or(String::new(), |motor| number(&motor.ratio)),
+            joint.limits.position.as_ref().map_or(String::new(), |[low, high]| format!("{} to {}", decimal(low), decimal(high))),
+            limit(&joint.limits.velocity),
+            limit(&joint.limits.effort),
+        ]);
+    }
+    table.text()
+}
+
+/// A number for people: six digits at most.
+fn decimal(number: &Number) -> String {
+    let value = number.to_f64();
+    let size = value.abs();
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !(1e-4..1e6).contains(&size) {
+        let text = format!("{value:.5e}");
+        let (digits, exponent) = text.split_once('e').expect("the exponent was asked for");
+        let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+        return format!("{digits}e{exponent}");
+    }
+    let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use armgen_codegen::exact::Rational;
+
+    #[test]
+    fn numbers_have_six_digits_at_most() {
+        let check = |numerator: i64, denominator: i64, expected: &str| {
+            let number = Number::from(Rational::from(numerator) / Rational::from(denominator));
+            assert_eq!(decimal(&number), expected);
+        };
+        check(0, 1, "0");
+        check(20, 1, "20");
+        check(-981, 100, "-9.81");
+        check(1, 3, "0.333333");
+        check(1, 20000, "5e-5");
+        check(123_456_789, 1, "1.23457e8");
+        check(100_000, 1, "100000");
+    }
+}

@@ -1,0 +1,109 @@
+//! What a motion can tell about the parameters.
+//!
+//! Torques measured along a motion determine pi only through Y pi. A column of Y that is a combination of others, Y_d = Σ k_i Y_i for every
+//! state, adds nothing: only the sums pi_i + Σ k_i pi_d act on the torques, and only they can be identified, whatever the motion
+//! (Siciliano et al., Sect. 7.2.1 and 7.3.1).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use armgen_codegen::derive::base::{dependence, rank, regressor_of, Dependence};
+use armgen_codegen::derive::parameters::ParameterKind;
+use armgen_codegen::exact::Number;
+use armgen_codegen::Model;
+
+use super::decimal;
+use crate::table::{Align, Table};
+
+/// A line of this length or less.
+const WIDTH: usize = 100;
+
+/// The report for the regressor that the description chooses.
+pub(super) fn report(model: &Model) -> String {
+    let vector = &model.parameters;
+    if vector.is_empty() {
+        return "  The regressor has no parameters: nothing of this arm acts on the torques.\n".into();
+    }
+    let names: Vec<&str> = vector.entries.iter().map(|entry| entry.name.as_str()).collect();
+    match &vector.kind {
+        ParameterKind::Base(_) => {
+            let mut table = Table::new([("base parameter", Align::Left), ("value", Align::Right), ("combination", Align::Left)]);
+            for entry in &vector.entries {
+                table.row([entry.name.clone(), decimal(&entry.nominal), entry.meaning.clone()]);
+            }
+            let title = "The minimal parameter set: a motion can identify each of these";
+            format!("  {title}, {} in all.\n\n{}", vector.len(), table.text())
+        }
+        ParameterKind::Standard(_) => {
+            let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
+            let rank = rank(&pool, &y);
+            format!(
+                "  The regressor has {} parameters and rank {rank}: a motion can identify {rank} combinations of them.\n  \
+                 With `regressor: base` this program lists them.\n",
+                vector.len()
+            )
+        }
+        ParameterKind::Names(_) => {
+            let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
+            of_names(&names, &dependence(&pool, &y))
+        }
+    }
+}
+
+fn of_names(names: &[&str], dependence: &Dependence) -> String {
+    let rank = dependence.independent.len();
+    let mut sums: BTreeMap<usize, Vec<(usize, &Number)>> = BTreeMap::new();
+    for (column, combination) in &dependence.dependent {
+        for (independent, coefficient) in combination {
+            sums.entry(*independent).or_default().push((*column, coefficient));
+        }
+    }
+    let silent: BTreeSet<usize> = dependence.dependent.iter().filter(|(_, c)| c.is_empty()).map(|(column, _)| *column).collect();
+    let alone: Vec<&str> = dependence.independent.iter().filter(|c| !sums.contains_key(c)).map(|&c| names[c]).collect();
+
+    let mut text = format!("  The regressor has {} parameters and rank {rank}: ", names.len());
+    if rank == names.len() {
+        text += "a motion can identify each of them.\n";
+        return text;
+    }
+    text += &format!("a motion can identify {rank} of {}.\n\n", names.len());
+    if !alone.is_empty() {
+        text += &list("identifiable alone: ", &alone, ", ");
+    }
+    for (&independent, others) in &sums {
+        let mut sum = vec![names[independent].to_string()];
+        for (column, coefficient) in others {
+            let negative = coefficient.leads_negative();
+            let size = if negative { -*coefficient } else { (*coefficient).clone() };
+            let sign = if negative { "-" } else { "+" };
+            sum.push(match (size.is_one(), size.terms().count()) {
+                (true, _) => format!("{sign} {}", names[*column]),
+                (false, 1) => format!("{sign} {size}*{}", names[*column]),
+                (false, _) => format!("{sign} ({size})*{}", names[*column]),
+            });
+        }
+        text += &list("only as a sum:      ", &sum.iter().map(String::as_str).collect::<Vec<_>>(), " ");
+    }
+    if !silent.is_empty() {
+        text += &list("not at all:         ", &silent.iter().map(|&c| names[c]).collect::<Vec<_>>(), ", ");
+    }
+    text
+}
+
+/// Words after a title, broken into lines with a hanging indent.
+fn list(title: &str, words: &[&str], separator: &str) -> String {
+    let indent = title.len() + 2;
+    let mut text = format!("  {title}");
+    let mut column = indent;
+    for (i, word) in words.iter().enumerate() {
+        let last = i + 1 == words.len();
+        let length = word.chars().count() + if last { 0 } else { separator.len() };
+        if i > 0 && column + length > WIDTH {
+            text = text.trim_end().to_string() + &format!("\n{:indent$}", "");
+            column = indent;
+        }
+        text += word;
+        text += if last { "" } else { separator };
+        column += length;
+    }
+    text + "\n"
+}

@@ -1,0 +1,51 @@
+//! `armgen count`: operations of every emitted function.
+
+use std::path::Path;
+
+use armgen_codegen::program::{Cost, Options};
+use serde_json::{json, Map, Value};
+
+use crate::table::{Align, Table};
+use crate::{input, terminal, CountFormat};
+
+pub(crate) fn run(file: &Path, format: CountFormat) -> u8 {
+    let model = match input::model(file) {
+        Ok(model) => model,
+        Err(code) => return code,
+    };
+    let module = model.module(&Options::default());
+    let costs: Vec<(String, Cost, &str)> =
+        module.functions.iter().map(|function| (function.name(), Cost::of(function), function.method)).collect();
+    terminal::print(&match format {
+        CountFormat::Text => text(&module.name, &costs),
+        CountFormat::Json => json(&module.name, &costs),
+    })
+}
+
+fn text(robot: &str, costs: &[(String, Cost, &str)]) -> String {
+    use Align::{Left, Right};
+    let mut table = Table::new([
+        ("function", Left),
+        ("mul", Right),
+        ("add", Right),
+        ("div", Right),
+        ("neg", Right),
+        ("sincos", Right),
+        ("derived by", Left),
+    ]);
+    for (name, cost, method) in costs {
+        let counts = [cost.mul, cost.add, cost.div, cost.neg, cost.sincos].map(|n| n.to_string());
+        let [mul, add, div, neg, sincos] = counts;
+        table.row([name.clone(), mul, add, div, neg, sincos, (*method).to_string()]);
+    }
+    format!("{robot}: operations of the emitted functions\n\n{}", table.text())
+}
+
+fn json(robot: &str, costs: &[(String, Cost, &str)]) -> String {
+    let functions: Map<String, Value> = costs
+        .iter()
+        .map(|(name, c, _)| (name.clone(), json!({"mul": c.mul, "add": c.add, "div": c.div, "neg": c.neg, "sincos": c.sincos})))
+        .collect();
+    let text = serde_json::to_string_pretty(&json!({"robot": robot, "functions": functions}));
+    text.expect("strings and numbers always have a JSON form") + "\n"
+}

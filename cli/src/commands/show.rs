@@ -1,0 +1,52 @@
+//! `armgen show`: the equations for people and for programs.
+
+use std::path::Path;
+
+use armgen_codegen::show::{Item, Reading, Sheet};
+use armgen_codegen::Model;
+
+use crate::{input, terminal, ShowFormat, FAULTY};
+
+pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: ShowFormat) -> u8 {
+    let model = match input::model(file) {
+        Ok(model) => model,
+        Err(code) => return code,
+    };
+    let items = match items(&model, quantities) {
+        Ok(items) => items,
+        Err(message) => {
+            terminal::error(&message);
+            return FAULTY;
+        }
+    };
+    let sheet = Sheet::new(&model, &items, if symbolic { Reading::Symbolic } else { Reading::Nominal });
+    if format == ShowFormat::Json && !quantities.is_empty() {
+        for (name, reason) in &sheet.absent {
+            terminal::note(&format!("{name}: {reason}"));
+        }
+    }
+    terminal::print(&match format {
+        ShowFormat::Text => sheet.text(),
+        ShowFormat::Latex => sheet.latex(),
+        ShowFormat::Json => sheet.json(),
+    })
+}
+
+fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
+    if quantities.is_empty() {
+        return Ok(Item::all());
+    }
+    let dof = model.manipulator.dof();
+    let mut items = Vec::new();
+    for name in quantities {
+        let named = Item::named(name, dof);
+        if named.is_empty() {
+            return Err(format!(
+                "there is no quantity `{name}`\n  known are {}, link_frame_1 to link_frame_{dof}",
+                Item::names().join(", ")
+            ));
+        }
+        items.extend(named);
+    }
+    Ok(items)
+}

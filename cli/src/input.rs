@@ -1,0 +1,56 @@
+//! Descriptions from files: read, checked, and what is wrong with them on standard error.
+
+use std::path::Path;
+
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::manipulator::{self, Manipulator, Scalar};
+use armgen_codegen::source::Source;
+use armgen_codegen::Model;
+
+use crate::terminal;
+use crate::{FAULTY, UNREADABLE};
+
+/// The text of a file, or the exit code after a message that says why there is none.
+pub(crate) fn source(path: &Path) -> Result<Source, u8> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|error| {
+        terminal::error(&format!("cannot read {name}: {error}"));
+        UNREADABLE
+    })?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count() + 1;
+        terminal::error(&format!("{name} is not UTF-8: line {line} holds a byte that belongs to no character; save it as UTF-8"));
+        UNREADABLE
+    })?;
+    Ok(Source::new(name, text))
+}
+
+/// The valid arm of a file; all that is wrong with it, warnings too, goes to standard error.
+pub(crate) fn manipulator(source: &Source, scalar: Scalar) -> Result<(Manipulator, Diagnostics), u8> {
+    let (valid, diagnostics) = manipulator::read_for(source, scalar);
+    if !diagnostics.is_empty() {
+        terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
+    }
+    match valid {
+        Some((manipulator, _)) => Ok((manipulator, diagnostics)),
+        None => {
+            let (errors, warnings) = (diagnostics.errors(), diagnostics.warnings());
+            let also = if warnings == 0 { String::new() } else { format!(" and {}", counted(warnings, "warning")) };
+            terminal::error(&format!("{}: {}{also}", source.name(), counted(errors, "error")));
+            Err(FAULTY)
+        }
+    }
+}
+
+/// The model of a file's arm.
+pub(crate) fn model(path: &Path) -> Result<Model, u8> {
+    let source = source(path)?;
+    let (manipulator, _) = manipulator(&source, Scalar::F64)?;
+    Ok(Model::new(manipulator))
+}
+
+/// `1 error`, `2 errors`.
+pub(crate) fn counted(count: usize, word: &str) -> String {
+    format!("{count} {word}{}", if count == 1 { "" } else { "s" })
+}

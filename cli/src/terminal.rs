@@ -1,0 +1,62 @@
+//! Standard output and error. Colour only on a terminal; whoever closes the pipe early has read enough.
+
+use std::io::{ErrorKind, IsTerminal, Write};
+
+use armgen_codegen::diagnostic::Colour;
+
+use crate::{DONE, FAULTY};
+
+/// Whether a stream takes colours: a terminal that is not dumb, unless NO_COLOR is set.
+pub(crate) fn colour(stream: &impl IsTerminal) -> Colour {
+    let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
+    if stream.is_terminal() && !refused && !dumb {
+        Colour::Always
+    } else {
+        Colour::Never
+    }
+}
+
+/// Bold, where the stream takes colours.
+pub(crate) fn bold(text: &str, stream: &impl IsTerminal) -> String {
+    match colour(stream) {
+        Colour::Always => format!("\u{1b}[1m{text}\u{1b}[0m"),
+        Colour::Never => text.to_string(),
+    }
+}
+
+/// Writes to standard output and gives the exit code: a reader that has gone is no fault, a full disk is.
+pub(crate) fn print(text: &str) -> u8 {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => DONE,
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => DONE,
+        Err(reason) => {
+            error(&format!("cannot write to standard output: {reason}"));
+            FAULTY
+        }
+    }
+}
+
+/// Writes to standard error; if that fails there is nobody left to tell.
+pub(crate) fn diagnose(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// `error: ...` on standard error.
+pub(crate) fn error(message: &str) {
+    labelled("error", "31", message);
+}
+
+/// `note: ...` on standard error.
+pub(crate) fn note(message: &str) {
+    labelled("note", "32", message);
+}
+
+fn labelled(label: &str, code: &str, message: &str) {
+    let label = match colour(&std::io::stderr()) {
+        Colour::Always => format!("\u{1b}[1;{code}m{label}\u{1b}[0m"),
+        Colour::Never => label.to_string(),
+    };
+    diagnose(&format!("{label}: {message}\n"));
+}

@@ -1,0 +1,244 @@
+//! The program as its users run it: exit codes, what goes to which stream, the forms of output.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+/// A file of the repository.
+fn file(path: &str) -> String {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the repository exists");
+    root.join(path).to_str().expect("a UTF-8 path").to_string()
+}
+
+/// A folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
+
+fn armgen(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_armgen"))
+        .args(arguments)
+        .env_remove("COLUMNS")
+        .stdin(Stdio::null())
+        .output()
+        .expect("the program runs")
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("the output is UTF-8")
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("the messages are UTF-8")
+}
+
+#[track_caller]
+fn check(arguments: &[&str], code: i32) -> Output {
+    let output = armgen(arguments);
+    assert_eq!(output.status.code(), Some(code), "armgen {arguments:?}\n{}", err(&output));
+    output
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_slice(&check(arguments, 0).stdout).expect("the output is JSON")
+}
+
+#[test]
+fn a_valid_file_gives_a_summary_and_code_0() {
+    let output = check(&["check", &file("robots/scara.yaml")], 0);
+    let text = out(&output);
+    assert!(text.contains("valid, with 1 warning"), "{text}");
+    assert!(text.contains("a motion can identify 11 of 14"), "{text}");
+    assert!(text.contains("m_l1 + 16*I_l1 + 16*I_m1\n"), "{text}");
+    assert!(text.contains("I_l2 + I_m2\n"), "{text}");
+    assert!(err(&output).contains("warning[triangle-inequality]"), "warnings go to standard error");
+    assert!(!text.contains("warning["));
+}
+
+#[test]
+fn a_base_parameter_is_listed_with_its_combination() {
+    let text = out(&check(&["check", &file("tests/robots/base_set.yaml")], 0));
+    assert!(text.contains("26 in all"), "{text}");
+    assert!(text.contains("-1/2*mcy2 + Ixy2"), "{text}");
+}
+
+#[test]
+fn a_faulty_file_gives_every_place_and_code_1() {
+    let path = file("tests/bad/many-faults.yaml");
+    for command in ["check", "show", "generate", "count"] {
+        let output = check(&[command, &path], 1);
+        assert_eq!(out(&output), "", "nothing but messages");
+        assert!(err(&output).contains(&format!("--> {path}:")), "{}", err(&output));
+        assert!(err(&output).lines().last().expect("messages").contains("errors"), "{}", err(&output));
+    }
+    check(&["check", &file("tests/bad/empty-file.yaml")], 1);
+    check(&["check", &file("tests/bad/yaml-syntax-bracket.yaml")], 1);
+}
+
+#[test]
+fn an_unreadable_file_gives_code_2() {
+    let folder = folder("unreadable");
+    let latin = folder.join("latin1.yaml");
+    fs::write(&latin, b"name: a\n# caf\xe9\n").expect("a file");
+    let output = check(&["check", latin.to_str().expect("UTF-8")], 2);
+    assert!(err(&output).contains("not UTF-8: line 2"), "{}", err(&output));
+    let output = check(&["check", folder.join("none.yaml").to_str().expect("UTF-8")], 2);
+    assert!(err(&output).contains("cannot read"), "{}", err(&output));
+    check(&["check", folder.to_str().expect("UTF-8")], 2);
+    // The worst of several decides.
+    check(&["check", &file("robots/scara.yaml"), &file("tests/bad/empty-file.yaml")], 1);
+}
+
+#[test]
+fn show_as_json_keeps_its_schema() {
+    let shown = json(&["show", &file("robots/scara.yaml"), "--format", "json"]);
+    assert_eq!(shown["robot"], "scara");
+    let quantities = shown["quantities"].as_array().expect("a list");
+    let names: Vec<&str> = quantities.iter().map(|q| q["name"].as_str().expect("a name")).collect();
+    for name in ["direct_kinematics", "link_frame_1", "link_frame_4", "forward_dynamics", "regressor", "potential_energy"] {
+        assert!(names.contains(&name), "{name} in {names:?}");
+    }
+    assert!(!names.contains(&"equations_of_motion") && !names.contains(&"link_frames"));
+    for quantity in quantities {
+        let (rows, columns) = (quantity["rows"].as_u64().expect("rows"), quantity["columns"].as_u64().expect("columns"));
+        let entries = quantity["entries"].as_array().expect("rows of entries");
+        assert_eq!(entries.len() as u64, rows);
+        for row in entries {
+            let row = row.as_array().expect("a row");
+            assert_eq!(row.len() as u64, columns);
+            assert!(row.iter().all(Value::is_string));
+        }
+        assert!(quantity["symbol"].is_string());
+        match quantity["form"].as_str() {
+            Some("closed") => assert!(quantity.get("steps").is_none()),
+            Some("program") => {
+                let steps = quantity["steps"].as_array().expect("steps");
+                assert!(!steps.is_empty());
+                assert!(steps.iter().all(|s| s.as_array().is_some_and(|s| s.len() == 2 && s.iter().all(Value::is_string))));
+            }
+            other => panic!("form {other:?}"),
+        }
+    }
+    let of = |name: &str| quantities.iter().find(|q| q["name"] == name).expect("shown");
+    assert_eq!(of("inertia_matrix")["entries"][0][0], "10*cos(q2) + 10763/500");
+    assert_eq!((&of("gravity")["rows"], &of("gravity")["columns"]), (&4.into(), &1.into()));
+    assert_eq!((&of("kinetic_energy")["rows"], &of("kinetic_energy")["columns"]), (&1.into(), &1.into()));
+    assert_eq!(of("forward_dynamics")["form"], "program");
+}
+
+#[test]
+fn show_takes_names_of_quantities() {
+    let scara = file("robots/scara.yaml");
+    let names = |arguments: &[&str]| -> Vec<String> {
+        let all = [&["show", &scara, "--format", "json"], arguments].concat();
+        let shown = json(&all);
+        shown["quantities"].as_array().expect("a list").iter().map(|q| q["name"].as_str().expect("a name").into()).collect()
+    };
+    assert_eq!(names(&["gravity", "link_frame_2", "gravity"]), ["gravity", "link_frame_2"]);
+    assert_eq!(names(&["link_frames"]), ["link_frame_1", "link_frame_2", "link_frame_3", "link_frame_4"]);
+    assert_eq!(names(&["equations_of_motion"]), ["inertia_matrix", "coriolis_matrix", "gravity"]);
+    assert_eq!(names(&["inertia_matrix_with"]), ["inertia_matrix_with"]);
+    for unknown in ["gravitas", "link_frame_0", "link_frame_5", "regressor_with"] {
+        let output = check(&["show", &scara, unknown], 1);
+        assert!(err(&output).contains(&format!("`{unknown}`")), "{}", err(&output));
+        assert!(err(&output).contains("inertia_matrix"), "the names are listed");
+    }
+}
+
+#[test]
+fn the_determinant_comes_with_its_factors() {
+    let shown = json(&["show", &file("robots/scara.yaml"), "determinant", "--format", "json"]);
+    let determinant = &shown["quantities"][0];
+    assert_eq!(determinant["entries"], serde_json::json!([["1/4*sin(q2)"]]));
+    assert_eq!(determinant["factors"], serde_json::json!(["1/4*sin(q2)"]));
+    assert_eq!(determinant["singular"], serde_json::json!(["q2 = k pi"]));
+    let shown = json(&["show", &file("robots/ur5.yaml"), "determinant", "--format", "json"]);
+    let singular = shown["quantities"][0]["singular"].as_array().expect("a list");
+    assert_eq!(singular.iter().filter(|s| s.is_null()).count(), 1, "one factor depends on several joints");
+    // Seven joints, six rows.
+    let output = check(&["show", &file("robots/panda7.yaml"), "determinant", "--format", "json"], 0);
+    assert!(err(&output).contains("note: determinant: the task has 6 rows"), "{}", err(&output));
+    assert_eq!(serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["quantities"], serde_json::json!([]));
+}
+
+#[test]
+fn symbolic_forms_use_the_names() {
+    let text = out(&check(&["show", &file("robots/scara.yaml"), "inertia_matrix", "--symbolic"], 0));
+    assert!(text.contains("m_l3") && text.contains("I_m4"), "{text}");
+    let text = out(&check(&["show", &file("robots/scara.yaml"), "inertia_matrix"], 0));
+    assert!(!text.contains("m_l3"), "{text}");
+}
+
+#[test]
+fn count_as_json_keeps_its_schema() {
+    let counted = json(&["count", &file("robots/scara.yaml"), "--format", "json"]);
+    assert_eq!(counted["robot"], "scara");
+    let functions = counted["functions"].as_object().expect("an object");
+    for cost in functions.values() {
+        let keys: Vec<&String> = cost.as_object().expect("an object").keys().collect();
+        assert_eq!(keys, ["add", "div", "mul", "neg", "sincos"]);
+        assert!(cost.as_object().expect("an object").values().all(Value::is_u64));
+    }
+    let work = |name: &str| functions[name]["mul"].as_u64().expect("a count") + functions[name]["add"].as_u64().expect("a count");
+    assert!(work("inertia_matrix") <= 4 && work("coriolis_matrix") <= 5 && work("gravity") == 0);
+    assert_eq!(functions["equations_of_motion"]["sincos"], 1);
+}
+
+#[test]
+fn generate_writes_the_same_bytes_everywhere() {
+    let printed = check(&["generate", &file("robots/scara.yaml")], 0).stdout;
+    let path = folder("generate").join("robot.rs");
+    let path = path.to_str().expect("UTF-8");
+    let output = check(&["generate", &file("robots/scara.yaml"), "--out", path], 0);
+    assert!(output.stdout.is_empty());
+    assert_eq!(fs::read(path).expect("the file is written"), printed);
+    assert!(String::from_utf8(printed).expect("UTF-8").contains("pub type Real = f64;"));
+    let single = out(&check(&["generate", &file("robots/scara.yaml"), "--scalar", "f32"], 0));
+    assert!(single.contains("pub type Real = f32;"));
+    check(&["generate", &file("robots/scara.yaml"), "--out", folder("generate").to_str().expect("UTF-8")], 1);
+}
+
+#[test]
+fn no_colour_where_nobody_sees_it() {
+    for arguments in
+        [vec!["--help"], vec!["check", &file("robots/scara.yaml")], vec!["check", &file("tests/bad/many-faults.yaml")]]
+    {
+        let output = armgen(&arguments);
+        assert!(!out(&output).contains('\u{1b}') && !err(&output).contains('\u{1b}'), "armgen {arguments:?}");
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_fault() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_armgen"))
+        .args(["show", &file("robots/ur5.yaml")])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(0), "{}", err(&output));
+    assert_eq!(err(&output), "");
+}
+
+#[test]
+fn completions_for_every_shell() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(out(&check(&["completions", shell], 0)).contains("symbolic"));
+    }
+}
+
+#[test]
+fn help_has_examples() {
+    for command in ["", "check", "show", "generate", "count", "completions"] {
+        let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
+        let text = out(&check(&arguments, 0));
+        assert!(text.contains("Examples:\n"), "armgen {arguments:?}");
+        insta::assert_snapshot!(format!("help {command}").trim().replace(' ', "_"), text);
+    }
+}

@@ -1,0 +1,50 @@
+//! For programs: `{"robot", "quantities": [{"name", "symbol", "rows", "columns", "entries", "form", "steps"}]}`.
+//!
+//! `entries` are plain formulas by rows; `form` is `closed`, or `program`, and then `steps` are pairs of name and formula.
+//! The determinant also has `factors`, whose product it is, and `singular`, where each is zero: null where more than one joint decides.
+
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
+use super::{Sheet, Shown};
+use crate::ring::print::Notation;
+
+impl Sheet {
+    /// The sheet as JSON text, closed by a line break.
+    pub fn json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("strings and numbers always have a JSON form");
+        text.push('\n');
+        text
+    }
+}
+
+impl Serialize for Sheet {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut sheet = serializer.serialize_struct("Sheet", 2)?;
+        sheet.serialize_field("robot", &self.robot)?;
+        sheet.serialize_field("quantities", &self.quantities)?;
+        sheet.end()
+    }
+}
+
+impl Serialize for Shown {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let formulas = self.formulas(Notation::Text);
+        let rows: Vec<&[String]> = formulas.entries.chunks(self.columns.max(1)).collect();
+        let mut shown = serializer.serialize_struct("Shown", 9)?;
+        shown.serialize_field("name", &self.name)?;
+        shown.serialize_field("symbol", &self.symbol[0])?;
+        shown.serialize_field("rows", &self.rows)?;
+        shown.serialize_field("columns", &self.columns)?;
+        shown.serialize_field("entries", &rows)?;
+        shown.serialize_field("form", if self.is_closed() { "closed" } else { "program" })?;
+        if !self.is_closed() {
+            shown.serialize_field("steps", &formulas.steps)?;
+        }
+        if let Some(factors) = self.factors(Notation::Text) {
+            let (factors, singular): (Vec<_>, Vec<_>) = factors.into_iter().unzip();
+            shown.serialize_field("factors", &factors)?;
+            shown.serialize_field("singular", &singular)?;
+        }
+        shown.end()
+    }
+}

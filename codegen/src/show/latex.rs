@@ -1,0 +1,153 @@
+//! For a paper: displayed formulas for a document that uses the package amsmath.
+//!
+//! A matrix that fits a line is a `bmatrix`; of another each entry that is not zero gets a line, broken where it is long.
+
+use std::fmt::Write;
+
+use super::text::zero;
+use super::{break_sum, Formulas, Sheet, Shown};
+use crate::ring::print::Notation;
+
+/// Width of a displayed line, in characters as [`measure`] counts them.
+const WIDTH: usize = 70;
+
+/// A `bmatrix` of amsmath has at most so many columns.
+const MATRIX_COLUMNS: usize = 10;
+
+/// An aligned block holds so many lines: it cannot be broken between pages.
+const LINES: usize = 24;
+
+impl Sheet {
+    /// The sheet as LaTeX, for the body of a document with `\usepackage{amsmath}`.
+    pub fn latex(&self) -> String {
+        let mut text = format!("% {}, for a document with \\usepackage{{amsmath}}\n", self.robot);
+        for shown in &self.quantities {
+            write!(text, "\n% {}\n{}", shown.name, shown.latex()).expect("writing to a string");
+        }
+        for (name, reason) in &self.absent {
+            write!(text, "\n% {name}: {reason}\n").expect("writing to a string");
+        }
+        text
+    }
+}
+
+impl Shown {
+    fn latex(&self) -> String {
+        let formulas = self.formulas(Notation::Latex);
+        let body = match self.matrix(&formulas) {
+            Some(matrix) => format!("\\[\n  {} = {matrix}\n\\]\n", self.symbol[1]),
+            None => self.aligned(&formulas),
+        };
+        body + &self.latex_factors()
+    }
+
+    /// The factors of the determinant, and where they are zero.
+    fn latex_factors(&self) -> String {
+        let mut lines = Vec::new();
+        for (factor, singular) in self.factors(Notation::Latex).unwrap_or_default() {
+            lines.extend(break_sum(&factor, WIDTH, &measure).into_iter().map(|piece| format!("& {piece}")));
+            let words = zero(singular.as_deref()).replace('_', "\\_").replace('^', "\\textasciicircum ");
+            lines.push(format!("&\\qquad\\text{{{words}}}"));
+        }
+        if lines.is_empty() {
+            return String::new();
+        }
+        format!("with the factors\n\\[\n  \\begin{{aligned}}\n    {}\n  \\end{{aligned}}\n\\]\n", lines.join(" \\\\\n    "))
+    }
+
+    /// The whole matrix, if it fits.
+    fn matrix(&self, formulas: &Formulas) -> Option<String> {
+        let widths = (0..self.columns).map(|j| formulas.entries.iter().skip(j).step_by(self.columns).map(|e| measure(e)).max());
+        let width: usize = widths.map(|w| w.unwrap_or(0) + 2).sum();
+        if !self.is_closed() || width > WIDTH || self.columns > MATRIX_COLUMNS || self.column_names.is_some() {
+            return None;
+        }
+        if self.rows == 1 && self.columns == 1 {
+            return Some(formulas.entries[0].clone());
+        }
+        let rows: Vec<String> = formulas.entries.chunks(self.columns).map(|row| format!("    {}", row.join(" & "))).collect();
+        Some(format!("\\begin{{bmatrix}}\n{}\n  \\end{{bmatrix}}", rows.join(" \\\\\n")))
+    }
+
+    /// Steps and entries that are not zero, in blocks; of a symmetric matrix the upper half.
+    fn aligned(&self, formulas: &Formulas) -> String {
+        let symmetric = self.is_symmetric();
+        let mut all: Vec<(String, &str)> =
+            formulas.steps.iter().map(|(name, formula)| (name.clone(), formula.as_str())).collect();
+        let steps = all.len();
+        let mut zeros = false;
+        for i in 0..self.rows {
+            for j in if symmetric { i } else { 0 }..self.columns {
+                match formulas.entries[i * self.columns + j].as_str() {
+                    "0" => zeros = true,
+                    formula => all.push((self.latex_entry_name(i, j), formula)),
+                }
+            }
+        }
+        let notes: Vec<&str> =
+            [(symmetric, "symmetric"), (zeros, "other entries 0")].iter().filter(|(holds, _)| *holds).map(|(_, n)| *n).collect();
+        let mut lines: Vec<String> = Vec::new();
+        for (name, formula) in &all {
+            for (k, piece) in break_sum(formula, WIDTH, &measure).iter().enumerate() {
+                lines.push(match k {
+                    0 => format!("{name} &= {piece}"),
+                    _ => format!("&\\quad {piece}"),
+                });
+            }
+        }
+        let mut text = format!("\\noindent ${}$", self.symbol[1]);
+        if all.len() == steps {
+            return text + " is zero.\n";
+        }
+        if !notes.is_empty() {
+            write!(text, " ({})", notes.join(", ")).expect("writing to a string");
+        }
+        text.push_str(":\n");
+        for block in lines.chunks(LINES) {
+            write!(text, "\\[\n  \\begin{{aligned}}\n    {}\n  \\end{{aligned}}\n\\]\n", block.join(" \\\\\n    "))
+                .expect("writing to a string");
+        }
+        text
+    }
+
+    fn latex_entry_name(&self, row: usize, column: usize) -> String {
+        let letter = self.letter[1];
+        let indexed = |index: String| {
+            // The letter may have an index of its own.
+            match letter.split_once('_') {
+                Some((letter, own)) => format!("{letter}_{{{own},{index}}}"),
+                None => format!("{letter}_{{{index}}}"),
+            }
+        };
+        match (self.rows, self.columns) {
+            (1, 1) => letter.into(),
+            (_, 1) => indexed((row + 1).to_string()),
+            (rows, columns) if rows < 10 && columns < 10 => indexed(format!("{}{}", row + 1, column + 1)),
+            _ => indexed(format!("{},{}", row + 1, column + 1)),
+        }
+    }
+}
+
+/// About how many characters a formula is wide: a command is one, a name of a function three; a fraction is as wide as its parts.
+fn measure(formula: &str) -> usize {
+    let mut count = 0;
+    let mut rest = formula;
+    while let Some(c) = rest.chars().next() {
+        rest = &rest[c.len_utf8()..];
+        match c {
+            '\\' => {
+                let end = rest.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(rest.len());
+                count += match &rest[..end] {
+                    "sin" | "cos" => 3,
+                    "" | "left" | "right" | "frac" | "dot" | "ddot" => 0,
+                    "operatorname" | "mathit" | "mathcal" => 0,
+                    _ => 1,
+                };
+                rest = &rest[end..];
+            }
+            '{' | '}' | '_' | '^' | ' ' => {}
+            _ => count += 1,
+        }
+    }
+    count
+}

@@ -1,0 +1,86 @@
+//! What is shown of small arms, in each notation.
+
+use super::*;
+use crate::manipulator;
+use crate::source::Source;
+
+const PENDULUM: &str = "
+name: pendulum
+convention: standard
+gravity: [0, -9.81, 0]
+parameters: {m: 2, l: 1/2}
+joints:
+  - name: pivot
+    type: revolute
+    a: l
+    alpha: 0
+    d: 0
+    theta: 0
+    link: {mass: m, inertia: {zz: 0.01}}
+regressor: [m]
+";
+
+fn sheet(text: &str, names: &[&str], reading: Reading) -> Sheet {
+    let (valid, diagnostics) = manipulator::read(&Source::new("test.yaml", text));
+    assert!(!diagnostics.has_errors(), "{:?}", diagnostics.iter().map(|d| &d.message).collect::<Vec<_>>());
+    let model = Model::new(valid.expect("valid").0);
+    let items: Vec<Item> = names.iter().flat_map(|name| Item::named(name, model.manipulator.dof())).collect();
+    assert!(names.is_empty() || !items.is_empty());
+    Sheet::new(&model, if names.is_empty() { Item::all() } else { items }.as_slice(), reading)
+}
+
+#[track_caller]
+fn check(names: &[&str], reading: Reading, expected: &str) {
+    assert_eq!(sheet(PENDULUM, names, reading).text().trim_end(), expected.trim());
+}
+
+#[test]
+fn numbers_or_names() {
+    check(&["inertia_matrix"], Reading::Nominal, "inertia_matrix: B(q)\n  b = 51/100");
+    check(&["inertia_matrix"], Reading::Symbolic, "inertia_matrix: B(q)\n  b = 1/100 + m*l^2");
+    check(&["gravity"], Reading::Symbolic, "gravity: g(q)\n  g = 981/100*cos(q1)*m*l");
+    check(&["regressor"], Reading::Nominal, "regressor: Y(q, dq, dqr, ddqr)\n  y[1, m] = 981/200*cos(q1) + 1/4*ddqr1");
+    check(&["regressor"], Reading::Symbolic, "regressor: Y(q, dq, dqr, ddqr)\n  y[1, m] = 981/100*cos(q1)*l + ddqr1*l^2");
+    check(&["known_torque"], Reading::Symbolic, "known_torque: tau_known(q, dq, dqr, ddqr)\n  tau_known = 1/100*ddqr1");
+    check(&["gravity_with"], Reading::Nominal, "gravity_with: g(q)\n  g = 981/200*cos(q1)*m");
+}
+
+#[test]
+fn an_entry_too_long_for_a_closed_form_becomes_steps() {
+    let sheet = sheet(PENDULUM, &["forward_dynamics"], Reading::Symbolic);
+    assert_eq!(
+        sheet.quantities[0].formulas(Notation::Text),
+        Formulas {
+            steps: vec![
+                ("t1".into(), "m*l".into()),
+                ("t2".into(), "(tau1 - t1*(981/100*cos(q1)))*(1/(1/200 + t1*l + 1/200))".into()),
+            ],
+            entries: vec!["t2".into()]
+        }
+    );
+}
+
+#[test]
+fn latex_names_and_numbers() {
+    let text = sheet(PENDULUM, &["gravity", "kinetic_energy"], Reading::Symbolic).latex();
+    assert!(text.contains("g(q) = \\frac{981}{100}"), "{text}");
+    assert!(text.contains("\\frac{1}{200}"), "{text}");
+}
+
+#[test]
+fn sums_break_at_their_outermost_signs() {
+    let measure = |s: &str| s.chars().count();
+    assert_eq!(break_sum("a + (b + c)*d - e", 12, &measure), ["a", "+ (b + c)*d", "- e"]);
+    assert_eq!(break_sum("a + b", 80, &measure), ["a + b"]);
+}
+
+#[test]
+fn a_determinant_that_does_not_exist_says_why() {
+    let sheet = sheet(PENDULUM, &["determinant"], Reading::Nominal);
+    assert!(sheet.quantities.is_empty());
+    assert_eq!(
+        sheet.absent,
+        [("determinant".into(), "the task has 6 rows and the arm 1 joints: its Jacobian is not square".into())]
+    );
+    assert_eq!(sheet.text(), "determinant: the task has 6 rows and the arm 1 joints: its Jacobian is not square\n");
+}

@@ -1,0 +1,110 @@
+//! For a terminal: matrices that fit as tables, others one line per entry that is not zero.
+
+use std::fmt::Write;
+
+use super::{break_sum, Formulas, Sheet, Shown};
+use crate::ring::print::Notation;
+
+/// Lines are at most so long where a formula can be broken.
+const WIDTH: usize = 110;
+
+impl Sheet {
+    /// The sheet as plain text.
+    pub fn text(&self) -> String {
+        let mut parts: Vec<String> = self.quantities.iter().map(Shown::text).collect();
+        parts.extend(self.absent.iter().map(|(name, reason)| format!("{name}: {reason}\n")));
+        parts.join("\n")
+    }
+}
+
+impl Shown {
+    fn text(&self) -> String {
+        let formulas = self.formulas(Notation::Text);
+        let mut text = format!("{}: {}", self.name, self.symbol[0]);
+        match (self.rows, self.columns) {
+            (1, 1) => {}
+            (rows, columns) => write!(text, ", {rows} x {columns}").expect("writing to a string"),
+        }
+        if !self.is_closed() {
+            let count = formulas.steps.len();
+            write!(text, ", in {count} {}", if count == 1 { "step" } else { "steps" }).expect("writing to a string");
+        }
+        let table =
+            (self.is_closed() && self.columns > 1 && self.column_names.is_none()).then(|| self.table(&formulas)).flatten();
+        let body = match table {
+            Some(table) => text + "\n" + &table,
+            None => self.lines(text, &formulas),
+        };
+        body + &self.text_factors()
+    }
+
+    /// The factors of the determinant, and where they are zero.
+    fn text_factors(&self) -> String {
+        let mut text = String::new();
+        for (factor, singular) in self.factors(Notation::Text).unwrap_or_default() {
+            const INDENT: usize = 10;
+            let pieces = break_sum(&factor, WIDTH - INDENT, &|s| s.chars().count());
+            let factor = pieces.join(&format!("\n{:INDENT$}", ""));
+            writeln!(text, "  factor  {factor}\n{:INDENT$}{}", "", zero(singular.as_deref())).expect("writing to a string");
+        }
+        text
+    }
+
+    /// The whole matrix, if it fits.
+    fn table(&self, formulas: &Formulas) -> Option<String> {
+        let rows: Vec<&[String]> = formulas.entries.chunks(self.columns).collect();
+        let widths: Vec<usize> = (0..self.columns).map(|j| rows.iter().map(|row| row[j].len()).max().unwrap_or(0)).collect();
+        if widths.iter().sum::<usize>() + 3 * self.columns > WIDTH {
+            return None;
+        }
+        let mut table = String::new();
+        for row in rows {
+            let cells: Vec<String> = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}")).collect();
+            writeln!(table, "  [ {} ]", cells.join("   ")).expect("writing to a string");
+        }
+        Some(table)
+    }
+
+    /// One line per step and per entry that is not zero; of a symmetric matrix the upper half.
+    fn lines(&self, title: String, formulas: &Formulas) -> String {
+        let symmetric = self.is_symmetric();
+        let mut entries = Vec::new();
+        let mut zeros = 0;
+        for i in 0..self.rows {
+            for j in if symmetric { i } else { 0 }..self.columns {
+                match formulas.entries[i * self.columns + j].as_str() {
+                    "0" => zeros += 1,
+                    formula => entries.push((self.entry_name(i, j), formula)),
+                }
+            }
+        }
+        let mut text = title;
+        text.push_str(match (symmetric, zeros, entries.is_empty()) {
+            (_, _, true) => ", all 0",
+            (true, 0, _) => ", symmetric",
+            (true, _, _) => ", symmetric, other entries 0",
+            (false, 0, _) => "",
+            (false, _, _) => ", other entries 0",
+        });
+        text.push('\n');
+        let steps = formulas.steps.iter().map(|(name, formula)| (name.clone(), formula.as_str()));
+        let all: Vec<(String, &str)> = steps.chain(entries).collect();
+        let width = all.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        for (name, formula) in all {
+            let indent = width + 5;
+            let pieces = break_sum(formula, WIDTH.saturating_sub(indent), &|s| s.chars().count());
+            let separator = format!("\n{:indent$}", "");
+            writeln!(text, "  {name:<width$} = {}", pieces.join(&separator)).expect("writing to a string");
+        }
+        text
+    }
+}
+
+/// Where a factor is zero.
+pub(super) fn zero(singular: Option<&str>) -> String {
+    match singular {
+        Some(place) if place.contains('=') => format!("zero at {place}"),
+        Some(place) => format!("zero {place}"),
+        None => "zero where several joints together make it so".into(),
+    }
+}
