@@ -26,11 +26,28 @@ pub(crate) fn source(path: &Path) -> Result<Source, u8> {
     Ok(Source::new(name, text))
 }
 
-/// The valid arm of a file; all that is wrong with it, warnings too, goes to standard error.
-pub(crate) fn manipulator(source: &Source, scalar: Scalar) -> Result<(Manipulator, Diagnostics), u8> {
+/// How much of a valid file's warnings goes to standard error.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Warnings {
+    /// All of them, as they stand.
+    Shown,
+    /// One line that says how many there are.
+    Counted,
+}
+
+/// The valid arm of a file; what is wrong with it goes to standard error.
+pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -> Result<(Manipulator, Diagnostics), u8> {
     let (valid, diagnostics) = manipulator::read_for(source, scalar);
-    if !diagnostics.is_empty() {
-        terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
+    if warnings == Warnings::Shown || diagnostics.has_errors() {
+        if !diagnostics.is_empty() {
+            terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
+        }
+    } else if diagnostics.warnings() > 0 {
+        let name = source.name();
+        terminal::diagnose(&format!(
+            "{name}: {}; `armgen check {name}` shows it all",
+            counted(diagnostics.warnings(), "warning")
+        ));
     }
     match valid {
         Some((manipulator, _)) => Ok((manipulator, diagnostics)),
@@ -46,7 +63,7 @@ pub(crate) fn manipulator(source: &Source, scalar: Scalar) -> Result<(Manipulato
 /// The model of a file's arm.
 pub(crate) fn model(path: &Path) -> Result<Model, u8> {
     let source = source(path)?;
-    let (manipulator, _) = manipulator(&source, Scalar::F64)?;
+    let (manipulator, _) = manipulator(&source, Scalar::F64, Warnings::Counted)?;
     Ok(Model::new(manipulator))
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn run(files: &[PathBuf]) -> u8 {
 
 fn checked(file: &Path) -> Result<String, u8> {
     let source = input::source(file)?;
-    let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64)?;
+    let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64, input::Warnings::Shown)?;
     let (description, _) = RobotDescription::parse(&source);
     let model = Model::new(manipulator);
     Ok(summary(&source, &description.unwrap_or_default(), &model, &diagnostics))

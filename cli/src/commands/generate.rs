@@ -18,7 +18,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName) -> u8 {
         Ok(source) => source,
         Err(code) => return code,
     };
-    let manipulator = match input::manipulator(&source, scalar) {
+    let manipulator = match input::manipulator(&source, scalar, input::Warnings::Counted) {
         Ok((manipulator, _)) => manipulator,
         Err(code) => return code,
     };
