@@ -45,7 +45,7 @@ pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -
     } else if diagnostics.warnings() > 0 {
         let name = source.name();
         terminal::diagnose(&format!(
-            "{name}: {}; `armgen check {name}` shows it all",
+            "{name}: {}; `armgen check {name}` shows it all\n",
             counted(diagnostics.warnings(), "warning")
         ));
     }
