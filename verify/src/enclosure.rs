@@ -66,7 +66,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
     let exact = |n: IBig| Interval { low: n.clone(), high: n };
     Some(match formula {
         Formula::Rational(value) => {
-            let (n, d) = (IBig::from(value.numerator().clone()) << bits, IBig::from(value.denominator().clone()));
+            let (n, d) = (value.numerator().clone() << bits, IBig::from(value.denominator().clone()));
             Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }
         }
         Formula::Pi => {
@@ -198,7 +198,7 @@ impl Float {
         }
     }
 
-    fn from_rational(self, value: &Rational) -> f64 {
+    fn round(self, value: &Rational) -> f64 {
         match self {
             Float::F64 => value.to_f64().value(),
             Float::F32 => f64::from(value.to_f32().value()),
@@ -208,11 +208,11 @@ impl Float {
     /// The float nearest to a constant.
     pub fn nearest(self, formula: &Formula) -> Option<f64> {
         if let Some(value) = formula.as_rational() {
-            return Some(self.from_rational(value)).filter(|v| v.is_finite());
+            return Some(self.round(value)).filter(|v| v.is_finite());
         }
         PRECISIONS.iter().find_map(|&bits| {
             let (low, high) = enclose(formula, bits)?;
-            let (low, high) = (self.from_rational(&low), self.from_rational(&high));
+            let (low, high) = (self.round(&low), self.round(&high));
             (low == high && low.is_finite()).then_some(low)
         })
     }

@@ -185,7 +185,7 @@ impl Element for Formula {
             (Formula::Rational(a), Formula::Rational(b)) => Formula::Rational(a + b),
             (zero, other) if zero.is_zero() => other.clone(),
             (other, zero) if zero.is_zero() => other.clone(),
-            (Formula::Sum(terms), other) => Formula::Sum([terms.as_slice(), &[other.clone()]].concat()),
+            (Formula::Sum(terms), other) => Formula::Sum([terms.as_slice(), std::slice::from_ref(other)].concat()),
             (a, b) => Formula::Sum(vec![a.clone(), b.clone()]),
         }
     }
@@ -299,7 +299,7 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
         }
         divisor += if divisor == 2 { 1 } else { 2 };
     }
-    let root = (&rest).sqrt();
+    let root = rest.sqrt();
     if &root * &root == rest {
         whole *= root;
     } else {

@@ -10,9 +10,21 @@
 //! over as text ([`formula`]), and nothing after it: no expression, no field, no derivation, no optimiser, no emitter. The exact values of
 //! literals come from the generator or from a certificate, and need no trust ([`claims`]).
 //!
+//! ```no_run
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use armgen_codegen::source::Source;
+//! let source = Source::new("robot.yaml", std::fs::read_to_string("robot.yaml")?);
+//! let report = armgen_verify::verify(&source, &std::fs::read_to_string("robot.rs")?, None);
+//! println!("{report}");
+//! std::fs::write("robot.cert.json", armgen_verify::certificate::Certificate::of(&report).to_json())?;
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! What is not covered: that the compiler and libm do what they promise, the size of rounding errors, and documentation comments.
 
 pub mod arithmetic;
+pub mod certificate;
 pub mod checker;
 pub mod claims;
 pub mod constants;
@@ -28,8 +40,10 @@ pub mod report;
 
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
 use armgen_codegen::source::Source;
+use armgen_codegen::Generated;
 use sha2::{Digest, Sha256};
 
+use certificate::Certificate;
 use checker::{Checker, Effort};
 use claims::Claims;
 use contract::Promise;
@@ -66,21 +80,52 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
     Ok(Prepared { module, checker })
 }
 
-/// Verifies the text of a module against the text of its description, with claimed exact values for its literals.
+/// Verifies the text of a module against the text of its description.
 ///
-/// Faults of the description are rendered into [`Report::faults`].
-pub fn verify(source: &Source, text: &str, claims: Claims, effort: Effort) -> Report {
-    let (input, output) = (hash(source.text()), hash(text));
-    let mut report = Report {
-        robot: String::new(),
-        scalar: String::new(),
-        faults: Vec::new(),
-        constants: Vec::new(),
-        functions: Vec::new(),
-        identities: Vec::new(),
-        input,
-        output,
+/// The exact values of literals come from `certificate` or, without one, from a run of the generator; neither is trusted. A certificate of
+/// other texts is a fault. Faults of the description are rendered into [`Report::faults`].
+pub fn verify(source: &Source, text: &str, certificate: Option<&Certificate>) -> Report {
+    let claims = match certificate {
+        Some(certificate) => certificate.claims(),
+        None => Ok(generated_claims(source, text)),
     };
+    let mut report = match claims {
+        Ok(claims) => verify_with(source, text, claims, Effort::default()),
+        Err(fault) => Report { faults: vec![fault], ..Report::of(hash(source.text()), hash(text)) },
+    };
+    if let Some(certificate) = certificate {
+        if certificate.input.sha256 != report.input {
+            report.faults.push("the certificate is of another description: its hash of the input differs".into());
+        }
+        if certificate.output.sha256 != report.output {
+            report.faults.push("the certificate is of another module: its hash of the output differs".into());
+        }
+    }
+    report
+}
+
+/// Verifies what the generator has just made from a description.
+pub fn certify(source: &Source, generated: &Generated) -> Report {
+    verify_with(source, &generated.module, Claims::from_numbers(&generated.constants), Effort::default())
+}
+
+/// The constants of the generator for the scalar of a text.
+fn generated_claims(source: &Source, text: &str) -> Claims {
+    let scalar = match Module::read(text) {
+        Ok(Module { real: Float::F32, .. }) => Scalar::F32,
+        Ok(_) => Scalar::F64,
+        Err(_) => return Claims::none(),
+    };
+    // Whatever else the text was generated with, a constant has its exact value all the same.
+    #[allow(clippy::needless_update)]
+    let options = armgen_codegen::program::Options { scalar, ..Default::default() };
+    let (generated, _) = armgen_codegen::generate(source, &options);
+    generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
+}
+
+/// Verifies with chosen claims and effort.
+pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) -> Report {
+    let mut report = Report::of(hash(source.text()), hash(text));
     let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
     let Some((manipulator, _)) = read else {
         report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
