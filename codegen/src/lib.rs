@@ -25,9 +25,12 @@ pub mod ring;
 pub mod show;
 pub mod source;
 
+use std::collections::BTreeMap;
+
 use derive::parameters::ParameterVector;
 use diagnostic::Diagnostics;
 use emit::rust::Origin;
+use exact::Number;
 use manipulator::Manipulator;
 use program::{Module, Options};
 use ring::field::Field;
@@ -40,6 +43,8 @@ pub struct Generated {
     pub module: String,
     /// The implementation of the runtime's traits for it.
     pub runtime: String,
+    /// The exact constants behind the literals of the module, by function.
+    pub constants: BTreeMap<String, Vec<Number>>,
 }
 
 /// A valid arm with what its equations are formed in.
@@ -77,7 +82,10 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         return (None, diagnostics);
     }
     let origin = Origin::of(source);
-    let generated =
-        Generated { module: emit::rust::print(&module, &origin), runtime: emit::rust::print_runtime(&module, &origin) };
+    let generated = Generated {
+        module: emit::rust::print(&module, &origin),
+        runtime: emit::rust::print_runtime(&module, &origin),
+        constants: module.constants(),
+    };
     (Some(generated), diagnostics)
 }

@@ -3,6 +3,7 @@
 //! A function is a list of steps, each an operation on inputs, constants and earlier steps, and a list of outputs.
 //! Absent from here on: graphs, sharing, mathematics.
 
+mod constants;
 mod cost;
 mod schedule;
 

@@ -1,0 +1,27 @@
+//! The exact constants of a module, for those who check its text: a literal is only the float nearest to one of them.
+
+use std::collections::BTreeMap;
+
+use super::{Module, Operand};
+use crate::exact::Number;
+
+impl Module {
+    /// The constants of each function by its name, each once in the order of the steps, and the nominal parameters as `NOMINAL_PARAMETERS`.
+    pub fn constants(&self) -> BTreeMap<String, Vec<Number>> {
+        let mut constants: BTreeMap<String, Vec<Number>> = BTreeMap::new();
+        for function in &self.functions {
+            let steps = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
+            let mut list: Vec<Number> = Vec::new();
+            for operand in steps.chain(function.outputs.iter().map(|output| &output.operand)) {
+                match operand {
+                    Operand::Constant(value) if !list.contains(value) => list.push(value.clone()),
+                    _ => {}
+                }
+            }
+            constants.insert(function.name(), list);
+        }
+        let nominal = self.parameters.iter().map(|(_, value, _)| value.clone());
+        constants.insert("NOMINAL_PARAMETERS".into(), nominal.collect());
+        constants
+    }
+}

@@ -1,0 +1,257 @@
+//! Arithmetic modulo a random prime.
+//!
+//! p lies between 2^62 and 2^63 and p = 1 mod 24, so that -1, 2 and 3 have square roots; primes that lack a root which the robot needs are
+//! passed over. About 2^62/(ln 2^62.5 · 8) = 2^53 primes of this kind exist: an equality that holds by chance modulo one of them is found
+//! by the next, as every point has a prime of its own.
+
+use std::collections::BTreeMap;
+
+use dashu_base::{Signed, UnsignedAbs};
+use dashu_int::UBig;
+
+use super::{Arithmetic, Element, Stream};
+use crate::formula::{Atoms, Formula, Rational, Root};
+
+/// An integer modulo a prime.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Residue {
+    value: u64,
+    prime: u64,
+}
+
+impl Residue {
+    /// The representative in 0..p.
+    pub fn value(self) -> u64 {
+        self.value
+    }
+
+    fn power(self, mut exponent: u64) -> Residue {
+        let (mut result, mut base) = (Residue { value: 1, prime: self.prime }, self);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = result.times(&base);
+            }
+            base = base.times(&base);
+            exponent >>= 1;
+        }
+        result
+    }
+
+    /// A square root, if there is one (Cipolla's method: (a + sqrt(a² - n))^((p+1)/2) in the field of p² elements).
+    fn sqrt(self, stream: &mut Stream) -> Option<Residue> {
+        let (p, one) = (self.prime, Residue { value: 1, prime: self.prime });
+        if self.is_zero() {
+            return Some(self);
+        }
+        if self.power((p - 1) / 2) != one {
+            return None;
+        }
+        let (a, w) = loop {
+            let a = Residue { value: stream.below(p), prime: p };
+            let w = a.times(&a).minus(&self);
+            if !w.is_zero() && w.power((p - 1) / 2) != one {
+                break (a, w);
+            }
+        };
+        let multiply = |x: (Residue, Residue), y: (Residue, Residue)| {
+            (x.0.times(&y.0).plus(&x.1.times(&y.1).times(&w)), x.0.times(&y.1).plus(&x.1.times(&y.0)))
+        };
+        let (mut result, mut base) = ((one, one.minus(&one)), (a, one));
+        let mut exponent = p.div_ceil(2);
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                result = multiply(result, base);
+            }
+            base = multiply(base, base);
+            exponent >>= 1;
+        }
+        debug_assert!(result.1.is_zero() && result.0.times(&result.0) == self);
+        Some(result.0)
+    }
+}
+
+impl Element for Residue {
+    fn plus(&self, other: &Self) -> Self {
+        let sum = self.value + other.value;
+        Residue { value: if sum >= self.prime { sum - self.prime } else { sum }, prime: self.prime }
+    }
+    fn minus(&self, other: &Self) -> Self {
+        let value = if self.value >= other.value { self.value - other.value } else { self.value + self.prime - other.value };
+        Residue { value, prime: self.prime }
+    }
+    fn times(&self, other: &Self) -> Self {
+        if self.value == 0 || other.value == 0 {
+            return Residue { value: 0, prime: self.prime };
+        }
+        Residue { value: multiply(self.value, other.value, self.prime), prime: self.prime }
+    }
+    fn negated(&self) -> Self {
+        Residue { value: if self.value == 0 { 0 } else { self.prime - self.value }, prime: self.prime }
+    }
+    fn inverse(&self) -> Option<Self> {
+        (!self.is_zero()).then(|| self.power(self.prime - 2))
+    }
+    fn is_zero(&self) -> bool {
+        self.value == 0
+    }
+}
+
+fn multiply(a: u64, b: u64, p: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(p)) as u64
+}
+
+/// A field of residues with the values of the atoms of a robot.
+#[derive(Clone, Debug)]
+pub struct Prime {
+    prime: u64,
+    stream: Stream,
+    pi: Residue,
+    roots: BTreeMap<Root, Residue>,
+    angles: BTreeMap<Formula, (Residue, Residue)>,
+}
+
+/// How many primes are tried before a robot's roots are given up: each further independent root halves the chance of a prime.
+const PRIMES_TRIED: usize = 1 << 16;
+
+impl Prime {
+    /// The field of the next random prime in which all roots of `atoms` exist; `None` if there are too many of them.
+    pub fn new(stream: &mut Stream, atoms: &Atoms) -> Option<Prime> {
+        for _ in 0..PRIMES_TRIED {
+            let prime = random_prime(stream);
+            let mut field = Prime {
+                prime,
+                stream: Stream::new(stream.bits()),
+                pi: Residue { value: 0, prime },
+                roots: BTreeMap::new(),
+                angles: BTreeMap::new(),
+            };
+            field.pi = field.draw();
+            for angle in &atoms.angles {
+                let point = field.draw_angle();
+                field.angles.insert(angle.clone(), point);
+            }
+            if field.find_roots(atoms).is_some() {
+                return Some(field);
+            }
+        }
+        None
+    }
+
+    fn find_roots(&mut self, atoms: &Atoms) -> Option<()> {
+        for root in &atoms.roots {
+            let square = match root {
+                Root::Integer(n) => self.unsigned(n),
+                Root::Nested(inner) => self.constant(inner)?,
+            };
+            let value = square.sqrt(&mut self.stream)?;
+            self.roots.insert(root.clone(), value);
+        }
+        Some(())
+    }
+
+    /// The prime.
+    pub fn prime(&self) -> u64 {
+        self.prime
+    }
+
+    fn unsigned(&self, n: &UBig) -> Residue {
+        let remainder = n % UBig::from(self.prime);
+        Residue { value: u64::try_from(remainder).expect("a remainder is below the prime"), prime: self.prime }
+    }
+
+    fn rational(&self, value: &Rational) -> Option<Residue> {
+        let size = self.unsigned(&value.numerator().unsigned_abs()).over(&self.unsigned(value.denominator()))?;
+        Some(if value.is_negative() { size.negated() } else { size })
+    }
+}
+
+impl Arithmetic for Prime {
+    type Element = Residue;
+
+    fn integer(&self, value: i64) -> Residue {
+        let size = Residue { value: value.unsigned_abs() % self.prime, prime: self.prime };
+        if value < 0 {
+            size.negated()
+        } else {
+            size
+        }
+    }
+
+    fn constant(&self, formula: &Formula) -> Option<Residue> {
+        formula.evaluate(&|r| self.rational(r), &|root| self.roots.get(root).copied(), &|| Some(self.pi), &|angle| {
+            self.angles.get(angle).copied()
+        })
+    }
+
+    fn draw(&mut self) -> Residue {
+        Residue { value: 1 + self.stream.below(self.prime - 1), prime: self.prime }
+    }
+}
+
+fn random_prime(stream: &mut Stream) -> u64 {
+    loop {
+        let candidate = (1 << 62) + stream.below(1 << 62);
+        let candidate = candidate - candidate % 24 + 1;
+        if candidate >= 1 << 62 && is_prime(candidate) {
+            return candidate;
+        }
+    }
+}
+
+/// Whether an odd n above 40 is prime: Miller and Rabin with the first twelve primes as bases decides below 3.3e24 (Sorenson, Webster 2015).
+fn is_prime(n: u64) -> bool {
+    const BASES: [u64; 12] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37];
+    if BASES.iter().any(|&b| n.is_multiple_of(b)) {
+        return false;
+    }
+    let twos = (n - 1).trailing_zeros();
+    BASES.iter().all(|&base| {
+        let mut x = Residue { value: base, prime: n }.power((n - 1) >> twos).value;
+        if x == 1 || x == n - 1 {
+            return true;
+        }
+        (1..twos).any(|_| {
+            x = multiply(x, x, n);
+            x == n - 1
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Formula {
+        Formula::parse(text).expect("a formula")
+    }
+
+    #[test]
+    fn constants_keep_their_relations() {
+        let texts = ["sqrt(2)", "sqrt(3)", "sqrt(5)", "sqrt(7 + sqrt(2))", "sin(7/10)", "cos(7/10)"];
+        let formulas: Vec<Formula> = texts.iter().map(|t| parse(t)).collect();
+        let atoms = Atoms::of(&formulas);
+        let mut stream = Stream::new(1);
+        for _ in 0..3 {
+            let field = Prime::new(&mut stream, &atoms).expect("few roots");
+            assert_eq!(field.prime() % 24, 1);
+            let of = |text: &str| field.constant(&parse(text)).expect("no division by zero");
+            assert_eq!(of("sqrt(6)"), of("sqrt(2)*sqrt(3)"));
+            assert_eq!(of("sqrt(2)^2"), of("2"));
+            assert_eq!(of("sqrt(7 + sqrt(2))^2"), of("7 + sqrt(2)"));
+            assert_eq!(of("sin(7/10)^2"), of("1 - cos(7/10)^2"));
+            assert_eq!(of("1/3 - 5/6"), of("-1/2"));
+            assert_ne!(of("sqrt(2)"), of("sqrt(3)"));
+        }
+    }
+
+    #[test]
+    fn inverses_and_primes() {
+        assert!(is_prime(0xffff_ffff_0000_0001) && is_prime((1 << 61) - 1));
+        assert!(!is_prime((1u64 << 62) - 57 + 2) || (1u64 << 62) - 55 != 0);
+        assert!(!is_prime(3_215_031_751) && !is_prime(1_000_003 * 999_983));
+        let field = Prime::new(&mut Stream::new(2), &Atoms::default()).expect("no roots");
+        let (seven, third) = (field.integer(7), field.integer(-3));
+        assert_eq!(seven.over(&third).unwrap().times(&third), seven);
+        assert_eq!(field.integer(0).inverse(), None);
+    }
+}

@@ -1,0 +1,212 @@
+//! Fractions with square roots adjoined: Q(√a1)(√a2)..., each ak a number of the field below it.
+//!
+//! An element of the k-th field is a pair (x, y) of elements of the one below, x + y √ak, stored flat; products and inverses follow from
+//! (x + y√a)(u + v√a) = (xu + yv a) + (xv + yu)√a. Where √ak already exists below, what arises is a ring with zero divisors: an equality
+//! there still is an equality of numbers.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use dashu_int::IBig;
+
+use super::{Arithmetic, Element, Stream};
+use crate::formula::{Atoms, Formula, Rational, Root};
+
+/// The squares of the adjoined roots, each in the coordinates of the field below.
+#[derive(Debug, Default, PartialEq)]
+struct Squares(Vec<Vec<Rational>>);
+
+/// A number of the tower.
+#[derive(Clone, Debug)]
+pub struct Surd {
+    coordinates: Vec<Rational>,
+    squares: Arc<Squares>,
+}
+
+/// As many roots are adjoined: a product costs up to 4^k products of fractions.
+const MOST_ROOTS: usize = 5;
+
+impl PartialEq for Surd {
+    fn eq(&self, other: &Surd) -> bool {
+        self.coordinates == other.coordinates
+    }
+}
+
+fn is_zero(a: &[Rational]) -> bool {
+    a.iter().all(Rational::is_zero)
+}
+
+fn add(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| {
+            if a.is_zero() {
+                b.clone()
+            } else if b.is_zero() {
+                a.clone()
+            } else {
+                a + b
+            }
+        })
+        .collect()
+}
+
+fn negate(a: &[Rational]) -> Vec<Rational> {
+    a.iter().map(|a| -a.clone()).collect()
+}
+
+fn multiply(squares: &[Vec<Rational>], a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+    if is_zero(a) || is_zero(b) {
+        return vec![Rational::ZERO; a.len()];
+    }
+    let Some((square, below)) = squares.split_last() else { return vec![&a[0] * &b[0]] };
+    let half = a.len() / 2;
+    let ((x, y), (u, v)) = (a.split_at(half), b.split_at(half));
+    let mut low = multiply(below, x, u);
+    if !is_zero(y) && !is_zero(v) {
+        low = add(&low, &multiply(below, &multiply(below, y, v), square));
+    }
+    low.extend(add(&multiply(below, x, v), &multiply(below, y, u)));
+    low
+}
+
+fn invert(squares: &[Vec<Rational>], a: &[Rational]) -> Option<Vec<Rational>> {
+    if is_zero(a) {
+        return None;
+    }
+    let Some((square, below)) = squares.split_last() else { return Some(vec![Rational::ONE / &a[0]]) };
+    let (x, y) = a.split_at(a.len() / 2);
+    // 1/(x + y√a) = (x - y√a)/(x² - a y²)
+    let norm = add(&multiply(below, x, x), &negate(&multiply(below, &multiply(below, y, y), square)));
+    let inverse = invert(below, &norm)?;
+    let mut result = multiply(below, x, &inverse);
+    result.extend(negate(&multiply(below, y, &inverse)));
+    Some(result)
+}
+
+impl Element for Surd {
+    fn plus(&self, other: &Self) -> Self {
+        Surd { coordinates: add(&self.coordinates, &other.coordinates), squares: self.squares.clone() }
+    }
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
+    fn times(&self, other: &Self) -> Self {
+        Surd { coordinates: multiply(&self.squares.0, &self.coordinates, &other.coordinates), squares: self.squares.clone() }
+    }
+    fn negated(&self) -> Self {
+        Surd { coordinates: negate(&self.coordinates), squares: self.squares.clone() }
+    }
+    fn inverse(&self) -> Option<Self> {
+        Some(Surd { coordinates: invert(&self.squares.0, &self.coordinates)?, squares: self.squares.clone() })
+    }
+    fn is_zero(&self) -> bool {
+        is_zero(&self.coordinates)
+    }
+}
+
+/// The tower of a robot, with random fractions for its angles without roots and for pi.
+#[derive(Clone, Debug)]
+pub struct Tower {
+    squares: Arc<Squares>,
+    stream: Stream,
+    pi: Surd,
+    roots: BTreeMap<Root, usize>,
+    angles: BTreeMap<Formula, (Surd, Surd)>,
+}
+
+impl Tower {
+    /// The tower in which all roots of `atoms` exist; `None` if there are too many of them.
+    pub fn new(stream: &mut Stream, atoms: &Atoms) -> Option<Tower> {
+        if atoms.roots.len() > MOST_ROOTS {
+            return None;
+        }
+        let levels = atoms.roots.len();
+        let mut tower = Tower {
+            squares: Arc::new(Squares(Vec::new())),
+            stream: Stream::new(stream.bits()),
+            pi: Surd { coordinates: vec![Rational::ZERO; 1 << levels], squares: Arc::default() },
+            roots: BTreeMap::new(),
+            angles: BTreeMap::new(),
+        };
+        // The squares are found in the full width, the levels above still without a square of their own, and cut to the level below.
+        let mut squares: Vec<Vec<Rational>> = (0..levels).map(|level| vec![Rational::ZERO; 1 << level]).collect();
+        tower.squares = Arc::new(Squares(squares.clone()));
+        tower.pi = tower.draw();
+        for angle in &atoms.angles {
+            let point = tower.draw_angle();
+            tower.angles.insert(angle.clone(), point);
+        }
+        for (level, root) in atoms.roots.iter().enumerate() {
+            let square = match root {
+                Root::Integer(n) => tower.rational(&Rational::from(n.clone())),
+                Root::Nested(inner) => tower.constant(inner)?,
+            };
+            squares[level] = square.coordinates[..1 << level].to_vec();
+            tower.squares = Arc::new(Squares(squares.clone()));
+            tower.roots.insert(root.clone(), level);
+        }
+        let squares = tower.squares.clone();
+        let renew = |surd: &mut Surd| surd.squares = squares.clone();
+        renew(&mut tower.pi);
+        for (sine, cosine) in tower.angles.values_mut() {
+            renew(sine);
+            renew(cosine);
+        }
+        Some(tower)
+    }
+
+    fn rational(&self, value: &Rational) -> Surd {
+        let mut coordinates = vec![Rational::ZERO; 1 << self.squares.0.len()];
+        coordinates[0] = value.clone();
+        Surd { coordinates, squares: self.squares.clone() }
+    }
+}
+
+impl Arithmetic for Tower {
+    type Element = Surd;
+
+    fn integer(&self, value: i64) -> Surd {
+        self.rational(&Rational::from(value))
+    }
+
+    fn constant(&self, formula: &Formula) -> Option<Surd> {
+        formula.evaluate(
+            &|r| Some(self.rational(r)),
+            &|root| {
+                let mut unit = self.integer(0);
+                unit.coordinates[1 << self.roots.get(root)?] = Rational::ONE;
+                Some(unit)
+            },
+            &|| Some(self.pi.clone()),
+            &|angle| self.angles.get(angle).cloned(),
+        )
+    }
+
+    /// A small fraction: one of some ten thousand.
+    fn draw(&mut self) -> Surd {
+        let sign = if self.stream.below(2) == 0 { 1 } else { -1 };
+        let (numerator, denominator) = (sign * (1 + self.stream.below(127) as i64), 1 + self.stream.below(127));
+        self.rational(&Rational::from_parts(IBig::from(numerator), denominator.into()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roots_of_roots_square_to_what_they_are_roots_of() {
+        let parse = |text: &str| Formula::parse(text).expect("a formula");
+        let formulas: Vec<Formula> = ["sqrt(6)", "sqrt(5 + sqrt(2))", "cos(7/10)", "pi"].iter().map(|t| parse(t)).collect();
+        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas)).expect("three roots");
+        let of = |text: &str| tower.constant(&parse(text)).expect("no division by zero");
+        assert_eq!(of("sqrt(6)*sqrt(2)"), of("2*sqrt(3)"));
+        assert_eq!(of("sqrt(5 + sqrt(2))^2"), of("5 + sqrt(2)"));
+        assert_eq!(of("sin(7/10)^2 + cos(7/10)^2"), of("1"));
+        let odd = of("1 + sqrt(2) - 3*sqrt(6) + 1/7*sqrt(5 + sqrt(2))*pi");
+        assert_eq!(odd.times(&odd.inverse().unwrap()), of("1"));
+        assert_ne!(of("sqrt(2)"), of("sqrt(3)"));
+        assert_eq!(of("(1/(1 + sqrt(2)))"), of("sqrt(2) - 1"));
+    }
+}

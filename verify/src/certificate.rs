@@ -1,0 +1,157 @@
+//! The certificate beside a generated module, `robot.cert.json`: what was verified, and the exact values of all literals, so that anybody can
+//! verify again without the generator.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::claims::Claims;
+use crate::report::{Exact, Report, Verdict};
+
+/// A certificate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certificate {
+    /// Version of this format.
+    pub certificate: u32,
+    /// Program and version that made it.
+    pub made_by: String,
+    /// Name of the robot.
+    pub robot: String,
+    /// Options of the generation that can be read from the text.
+    pub options: BTreeMap<String, String>,
+    /// The description.
+    pub input: Text,
+    /// The module.
+    pub output: Text,
+    /// Whether all that follows is as it should be.
+    pub verified: bool,
+    /// What is wrong with the whole.
+    pub faults: Vec<String>,
+    /// Functions.
+    pub functions: Vec<FunctionEntry>,
+    /// Constants.
+    pub constants: Vec<ConstantEntry>,
+    /// Identities.
+    pub identities: Vec<IdentityEntry>,
+}
+
+/// A text by its hash.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Text {
+    /// SHA-256, hexadecimal.
+    pub sha256: String,
+}
+
+/// A function.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FunctionEntry {
+    /// Its name.
+    pub name: String,
+    /// `equal`, or what is wrong and where.
+    pub verdict: String,
+    /// Random points in prime fields.
+    pub points: usize,
+    /// Random rational points.
+    pub exact_points: usize,
+    /// Upper bound of the odds that a wrong function passes: `2^-200`.
+    pub odds_of_a_miss: String,
+    /// Literals in the order of the text, each with its exact value.
+    pub literals: Vec<(String, String)>,
+}
+
+/// A constant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConstantEntry {
+    /// Its name.
+    pub name: String,
+    /// `equal`, or what is wrong and where.
+    pub verdict: String,
+    /// Its numbers, each with its exact value.
+    pub literals: Vec<(String, String)>,
+}
+
+/// An identity.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IdentityEntry {
+    /// The identity as a formula.
+    pub identity: String,
+    /// `holds`, `does not hold`, or why it was not checked.
+    pub verdict: String,
+    /// Random points in prime fields.
+    pub points: usize,
+}
+
+/// The version that is written.
+const FORMAT: u32 = 1;
+
+fn literals(exact: &[Exact]) -> Vec<(String, String)> {
+    exact.iter().map(|e| (e.literal.clone(), e.value.to_string())).collect()
+}
+
+impl Certificate {
+    /// The certificate of a report.
+    pub fn of(report: &Report) -> Certificate {
+        let functions = report.functions.iter().map(|f| FunctionEntry {
+            name: f.name.clone(),
+            verdict: f.verdict.to_string(),
+            points: f.points,
+            exact_points: f.exact_points,
+            odds_of_a_miss: if f.verdict == Verdict::Equal { format!("2^{:.0}", f.log2_odds.ceil()) } else { String::new() },
+            literals: literals(&f.literals),
+        });
+        let constants = report.constants.iter().map(|c| ConstantEntry {
+            name: c.name.clone(),
+            verdict: c.verdict.to_string(),
+            literals: literals(&c.literals),
+        });
+        let identities = report.identities.iter().map(|i| IdentityEntry {
+            identity: i.name.clone(),
+            verdict: match &i.holds {
+                Ok(true) => "holds".into(),
+                Ok(false) => "does not hold".into(),
+                Err(why) => format!("not checked: {why}"),
+            },
+            points: i.points,
+        });
+        Certificate {
+            certificate: FORMAT,
+            made_by: format!("armgen {}", env!("CARGO_PKG_VERSION")),
+            robot: report.robot.clone(),
+            options: BTreeMap::from([("scalar".to_string(), report.scalar.clone())]),
+            input: Text { sha256: report.input.clone() },
+            output: Text { sha256: report.output.clone() },
+            verified: report.passed(),
+            faults: report.faults.clone(),
+            functions: functions.collect(),
+            constants: constants.collect(),
+            identities: identities.collect(),
+        }
+    }
+
+    /// The certificate as text.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("a certificate has text keys only");
+        text.push('\n');
+        text
+    }
+
+    /// Reads a certificate.
+    pub fn from_json(text: &str) -> Result<Certificate, String> {
+        let certificate: Certificate = serde_json::from_str(text).map_err(|e| format!("the certificate cannot be read: {e}"))?;
+        if certificate.certificate != FORMAT {
+            return Err(format!("the certificate has format {}, this program reads {FORMAT}", certificate.certificate));
+        }
+        Ok(certificate)
+    }
+
+    /// The exact values that it claims for literals.
+    pub fn claims(&self) -> Result<Claims, String> {
+        let of = |name: &str, literals: &[(String, String)]| {
+            (name.to_string(), literals.iter().map(|(_, value)| value.clone()).collect::<Vec<String>>())
+        };
+        let functions = self.functions.iter().map(|f| of(&f.name, &f.literals));
+        let lists: Vec<(String, Vec<String>)> =
+            functions.chain(self.constants.iter().map(|c| of(&c.name, &c.literals))).collect();
+        Claims::from_texts(lists.iter().map(|(name, texts)| (name.as_str(), texts.as_slice())))
+    }
+}

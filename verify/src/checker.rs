@@ -1,0 +1,349 @@
+//! Functions of a module against the equations, at random points of all arithmetics.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use armgen_codegen::manipulator::Manipulator;
+
+use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
+use crate::arithmetic::prime::Prime;
+use crate::arithmetic::tower::Tower;
+use crate::arithmetic::{Arithmetic, Element, Stream};
+use crate::claims::{Claims, Resolved};
+use crate::contract::Promise;
+use crate::enclosure::Float;
+use crate::equations::arm::Arm;
+use crate::equations::parameters::Vector;
+use crate::equations::state::State;
+use crate::formula::{Atoms, Formula};
+use crate::program::Program;
+use crate::reader::{Function, Module};
+use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::report::{Exact, FunctionReport, Verdict};
+
+/// How much is tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Points in prime fields, each with a prime of its own.
+    pub points: usize,
+    /// Rational points.
+    pub exact_points: usize,
+    /// Where the random points come from.
+    pub seed: u64,
+}
+
+impl Default for Effort {
+    fn default() -> Effort {
+        Effort { points: 4, exact_points: 1, seed: 0 }
+    }
+}
+
+/// A random point of an arithmetic with what every function must return there.
+pub struct Point<K: Arithmetic> {
+    /// The arithmetic.
+    pub arithmetic: K,
+    /// The point.
+    pub reference: Reference<K::Element>,
+    constants: RefCell<BTreeMap<Formula, Option<K::Element>>>,
+}
+
+impl<K: Arithmetic> Point<K> {
+    /// Values of exact constants here; `None` if one divides by zero.
+    pub fn literals(&self, formulas: &[Formula]) -> Option<Vec<K::Element>> {
+        let mut known = self.constants.borrow_mut();
+        formulas
+            .iter()
+            .map(|formula| match known.get(formula) {
+                Some(value) => value.clone(),
+                None => {
+                    let value = self.arithmetic.constant(formula);
+                    known.insert(formula.clone(), value.clone());
+                    value
+                }
+            })
+            .collect()
+    }
+
+    /// The first entry of a program that is not what the equations say; `None` if there is none.
+    fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<usize> {
+        let expected = self.reference.values.get(&program.name)?;
+        let Some(literals) = self.literals(literals) else { return Some(0) };
+        let values = program.run(&self.reference.state, &literals);
+        if base && program.name == "potential_energy_with" {
+            return self.energy_difference(program, &literals, &values);
+        }
+        values.iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected))
+    }
+
+    /// With base parameters the potential energy is defined up to a constant: its change between two configurations is compared.
+    fn energy_difference(&self, program: &Program, literals: &[K::Element], here: &[Option<K::Element>]) -> Option<usize> {
+        let (there, expected_there) = self.reference.elsewhere.as_ref()?;
+        let expected_here = &self.reference.values.get(&program.name)?[0];
+        let change = program.run(there, literals).first().cloned().flatten()?.minus(here.first()?.as_ref()?);
+        (change != expected_there.minus(expected_here)).then_some(0)
+    }
+}
+
+/// The equations of an arm at random points, ready for any module that claims to be its.
+pub struct Checker {
+    manipulator: Manipulator,
+    vector: Vector,
+    claims: Claims,
+    points: Vec<Point<Prime>>,
+    exact: Vec<Point<Tower>>,
+    roots: usize,
+    circles: usize,
+}
+
+/// Collects the constants of a description: an arithmetic whose numbers are of no interest.
+struct Collector(RefCell<Vec<Formula>>);
+
+impl Arithmetic for Collector {
+    type Element = f64;
+    fn integer(&self, value: i64) -> f64 {
+        value as f64
+    }
+    fn constant(&self, formula: &Formula) -> Option<f64> {
+        self.0.borrow_mut().push(formula.clone());
+        Some(0.0)
+    }
+    fn draw(&mut self) -> f64 {
+        0.0
+    }
+}
+
+fn constants_of(manipulator: &Manipulator) -> Vec<Formula> {
+    let collector = Collector(RefCell::default());
+    let names = Arm::nominal(&collector, manipulator).unwrap_or_default();
+    let _ = Arm::new(&collector, manipulator, &names);
+    collector.0.into_inner()
+}
+
+impl Checker {
+    /// Random points for an arm whose parameter vector is `vector`; `extras` for modules with functions beyond the required ones.
+    pub fn new(
+        manipulator: Manipulator,
+        vector: Vector,
+        claims: Claims,
+        effort: Effort,
+        extras: bool,
+    ) -> Result<Checker, String> {
+        let constants = constants_of(&manipulator);
+        let atoms = Atoms::of(constants.iter().chain(claims.formulas()));
+        let mut stream = Stream::new(effort.seed);
+        let (mut points, mut exact) = (Vec::new(), Vec::new());
+        for _ in 0..effort.points {
+            let mut field =
+                Prime::new(&mut stream, &atoms).ok_or("the constants have too many square roots for a prime field")?;
+            let reference = Reference::new(&mut field, &manipulator, &vector, Wanted { extras, base: BaseParameters::Solved })?;
+            points.push(Point { arithmetic: field, reference, constants: RefCell::default() });
+        }
+        for _ in 0..effort.exact_points {
+            let Some(mut tower) = Tower::new(&mut stream, &atoms) else { break };
+            let reference = Reference::new(&mut tower, &manipulator, &vector, Wanted { extras, base: BaseParameters::LeftOut })?;
+            exact.push(Point { arithmetic: tower, reference, constants: RefCell::default() });
+        }
+        let circles = manipulator.joints.len() + atoms.angles.len();
+        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles })
+    }
+
+    /// The arm.
+    pub fn manipulator(&self) -> &Manipulator {
+        &self.manipulator
+    }
+
+    /// What the parameter vector is.
+    pub fn vector(&self) -> &Vector {
+        &self.vector
+    }
+
+    /// The claimed constants.
+    pub fn claims(&self) -> &Claims {
+        &self.claims
+    }
+
+    /// Points in prime fields.
+    pub fn points(&self) -> &[Point<Prime>] {
+        &self.points
+    }
+
+    /// Number of entries of the parameter vector.
+    pub fn parameters(&self) -> usize {
+        match &self.vector {
+            Vector::Names(ids) => ids.len(),
+            Vector::Standard(all) => all.len(),
+            Vector::Base(base, _) => base.len(),
+        }
+    }
+
+    fn is_base(&self) -> bool {
+        matches!(self.vector, Vector::Base(..))
+    }
+
+    /// Whether Lagrange's and Newton and Euler's equations agree at all points.
+    pub fn derivations_agree(&self) -> bool {
+        self.points.iter().all(|p| p.reference.two_derivations_agree)
+            && self.exact.iter().all(|p| p.reference.two_derivations_agree)
+    }
+
+    /// All functions of a module, those that it lacks last.
+    pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
+        let mut reports: Vec<FunctionReport> =
+            module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
+        if let Some(odds) = Odds::new(self, &reports) {
+            for report in reports.iter_mut().filter(|report| report.verdict == Verdict::Equal) {
+                if let Some(program) = module.program(&report.name) {
+                    report.log2_odds = odds.of(program, report) * self.points.len() as f64;
+                }
+            }
+        }
+        for name in Promise::required() {
+            if !module.functions.iter().any(|(other, _)| *other == name) {
+                reports.push(refused(&name, "the module does not have it".into()));
+            }
+        }
+        reports
+    }
+
+    /// One function.
+    pub fn function(&self, name: &str, function: &Result<Function, String>, real: Float) -> FunctionReport {
+        let function = match function {
+            Ok(function) => function,
+            Err(why) => return refused(name, why.clone()),
+        };
+        let Some((promise, with_parameters)) = Promise::of(name) else {
+            return refused(name, "not a function that the checker knows the equations of".into());
+        };
+        let signature = promise.signature(with_parameters);
+        if function.signature != signature {
+            return refused(name, format!("its signature is `{}`, not `{signature}`", function.signature));
+        }
+        let program = &function.program;
+        let (n, p, m) = (self.manipulator.joints.len(), self.parameters(), self.manipulator.task.len());
+        let places = promise.shape.places(n, p, m);
+        if program.outputs.iter().map(|o| &o.place).ne(&places) {
+            return refused(name, format!("its result does not have the {} entries that it should", places.len()));
+        }
+        if let Some(why) = beyond_the_end(program, n, p) {
+            return refused(name, why);
+        }
+        if !self.points.iter().all(|point| point.reference.values.contains_key(name)) {
+            return refused(name, "there is no equation to compare it with for this robot".into());
+        }
+        self.compare(program, real)
+    }
+
+    fn compare(&self, program: &Program, real: Float) -> FunctionReport {
+        let resolved = self.claims.resolve(&program.name, &program.literals, real);
+        let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
+        let verdict = match difference {
+            None => self.misprint(program, &chosen, real).unwrap_or(Verdict::Equal),
+            Some((entry, why)) => Verdict::Different { entry, why },
+        };
+        let literals = program.literals.iter().zip(&chosen);
+        let exact_points = self.exact.iter().filter(|point| point.reference.values.contains_key(&program.name)).count();
+        FunctionReport {
+            name: program.name.clone(),
+            verdict,
+            points: self.points.len(),
+            exact_points,
+            log2_odds: 0.0,
+            literals: literals.map(|(l, value)| Exact { literal: l.text.clone(), value: value.clone() }).collect(),
+        }
+    }
+
+    /// Where several constants round to the same literal, the choice that equals the equations; else the first.
+    fn first_choice_that_holds(&self, program: &Program, resolved: &Resolved) -> (Vec<Formula>, Option<(String, String)>) {
+        let mut first = None;
+        for choice in resolved.choices() {
+            match self.difference(program, &choice) {
+                None => return (choice, None),
+                Some(difference) => {
+                    first.get_or_insert((choice, Some(difference)));
+                }
+            }
+        }
+        first.expect("there is at least one choice")
+    }
+
+    fn difference(&self, program: &Program, literals: &[Formula]) -> Option<(String, String)> {
+        let base = self.is_base();
+        let modular = self.points.iter().enumerate().filter_map(|(i, point)| {
+            point
+                .difference(program, literals, base)
+                .map(|entry| (entry, format!("at point {} modulo {}", i + 1, point.arithmetic.prime())))
+        });
+        let exact = self.exact.iter().enumerate().filter_map(|(i, point)| {
+            point.difference(program, literals, base).map(|entry| (entry, format!("at rational point {}", i + 1)))
+        });
+        let (entry, place) = modular.chain(exact).min_by_key(|(entry, _)| *entry)?;
+        Some((program.outputs[entry].place.clone(), format!("differs from the equations {place}")))
+    }
+
+    /// A literal that is not the float nearest to the exact value with which the function is right.
+    fn misprint(&self, program: &Program, chosen: &[Formula], real: Float) -> Option<Verdict> {
+        let (index, literal) =
+            program.literals.iter().enumerate().find(|(i, literal)| !real.is_nearest(literal.value, &chosen[*i]))?;
+        let entry = program.entries_with(index).next().map_or(String::new(), |e| program.outputs[e].place.clone());
+        let why = format!("literal {} is not the float nearest to {}", literal.text, chosen[index]);
+        Some(Verdict::Different { entry, why })
+    }
+}
+
+/// Degrees and heights of what the equations say, for the odds of a miss.
+struct Odds {
+    degrees: Degrees,
+    reference: Reference<Degree>,
+    circles: usize,
+    roots: usize,
+}
+
+impl Odds {
+    fn new(checker: &Checker, reports: &[FunctionReport]) -> Option<Odds> {
+        let literals = reports.iter().flat_map(|r| &r.literals).map(|exact| &exact.value);
+        let mut degrees = Degrees::new(constants_of(&checker.manipulator).iter().chain(literals));
+        let wanted = Wanted { extras: true, base: BaseParameters::Free };
+        let reference = Reference::new(&mut degrees, &checker.manipulator, &checker.vector, wanted).ok()?;
+        Some(Odds { degrees, reference, circles: checker.circles, roots: checker.roots })
+    }
+
+    /// log2 of the odds that a program of this degree passes one point although it differs.
+    fn of(&self, program: &Program, report: &FunctionReport) -> f64 {
+        let literal = |exact: &Exact| self.degrees.constant(&exact.value);
+        let Some(literals) = report.literals.iter().map(literal).collect::<Option<Vec<_>>>() else { return 0.0 };
+        let outputs = program.run(&self.reference.state, &literals);
+        let Some(expected) = self.reference.values.get(&program.name) else { return 0.0 };
+        let of_entry = |(output, expected): (&Option<Degree>, &Degree)| match output {
+            Some(output) => {
+                let (degree, height) = output.of_difference(expected);
+                log2_odds(degree, height, self.circles, self.roots)
+            }
+            None => 0.0,
+        };
+        outputs.iter().zip(expected).map(of_entry).fold(f64::NEG_INFINITY, f64::max).min(0.0)
+    }
+}
+
+fn refused(name: &str, why: String) -> FunctionReport {
+    let verdict = Verdict::Refused(why);
+    FunctionReport { name: name.into(), verdict, points: 0, exact_points: 0, log2_odds: 0.0, literals: Vec::new() }
+}
+
+/// An index that its argument does not have: the reader knows arguments by name only.
+fn beyond_the_end(program: &Program, n: usize, p: usize) -> Option<String> {
+    use crate::program::Step;
+    program.steps.iter().find_map(|step| match step {
+        Step::Input(argument, index) if *index >= Promise::length(*argument, n, p) => {
+            Some(format!("index {index} is beyond the end of its argument"))
+        }
+        Step::Sine(angle) | Step::Cosine(angle) => {
+            angle.iter().find(|(joint, _)| *joint >= n).map(|(joint, _)| format!("index {joint} is beyond the end of `q`"))
+        }
+        _ => None,
+    })
+}
+
+/// A state of any arithmetic with parameters put in.
+pub fn with_parameters<E: Element>(state: &State<E>, pi: Vec<E>) -> State<E> {
+    State { pi, ..state.clone() }
+}

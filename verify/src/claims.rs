@@ -1,0 +1,124 @@
+//! The exact values behind the literals of a text.
+//!
+//! A literal is a float; what it stands for is an exact constant that only the generator knows. The generator hands its constants over,
+//! or a certificate lists them, and neither needs to be trusted: a claimed value must have the literal as its nearest float, and the
+//! function, run with the claimed values, must equal the equations exactly. A literal that no claim fits stands for the decimal number it is.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::exact::Number;
+
+use crate::arithmetic::Element;
+use crate::enclosure::Float;
+use crate::equations::arm::formula;
+use crate::formula::{decimal, Formula, Rational};
+use crate::program::Literal;
+
+/// Claimed constants by function (or constant) name, in the order of the text where that is known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Claims {
+    by_name: BTreeMap<String, Vec<Formula>>,
+}
+
+impl Claims {
+    /// None: every literal stands for its decimal number.
+    pub fn none() -> Claims {
+        Claims::default()
+    }
+
+    /// What a generator hands over.
+    pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
+        let by_name = constants.iter().map(|(name, numbers)| (name.clone(), numbers.iter().map(formula).collect())).collect();
+        Claims { by_name }
+    }
+
+    /// What a certificate lists.
+    pub fn from_texts<'a>(constants: impl IntoIterator<Item = (&'a str, &'a [String])>) -> Result<Claims, String> {
+        let mut by_name = BTreeMap::new();
+        for (name, texts) in constants {
+            let formulas: Result<Vec<Formula>, String> = texts.iter().map(|text| Formula::parse(text)).collect();
+            by_name.insert(name.to_string(), formulas.map_err(|e| format!("`{name}`: {e}"))?);
+        }
+        Ok(Claims { by_name })
+    }
+
+    /// All claimed constants.
+    pub fn formulas(&self) -> impl Iterator<Item = &Formula> {
+        self.by_name.values().flatten()
+    }
+
+    /// The claims for a name, in order.
+    pub fn of(&self, name: &str) -> &[Formula] {
+        self.by_name.get(name).map_or(&[], Vec::as_slice)
+    }
+
+    /// Claimed values for the literals of a function, each with the literal as its nearest float.
+    pub fn resolve(&self, name: &str, literals: &[Literal], real: Float) -> Resolved {
+        let claims = self.of(name);
+        // In order, where the certificate lists one for each.
+        let in_order = claims.len() == literals.len()
+            && claims.iter().zip(literals).all(|(claim, literal)| real.is_nearest(literal.value, claim));
+        if in_order {
+            return Resolved { values: claims.to_vec(), others: BTreeMap::new() };
+        }
+        let mut by_value: BTreeMap<u64, Vec<Formula>> = BTreeMap::new();
+        for claim in claims {
+            let Some(value) = real.nearest(claim) else { continue };
+            let size = if value.is_sign_negative() { claim.negated() } else { claim.clone() };
+            let list = by_value.entry(value.abs().to_bits()).or_default();
+            if !list.contains(&size) {
+                list.push(size);
+            }
+        }
+        let mut others = BTreeMap::new();
+        let mut values = Vec::new();
+        for (index, literal) in literals.iter().enumerate() {
+            let fitting = by_value.get(&literal.value.to_bits()).map_or(&[][..], Vec::as_slice);
+            let fitting: Vec<&Formula> = fitting.iter().filter(|claim| real.is_nearest(literal.value, claim)).collect();
+            match fitting.split_first() {
+                Some((first, rest)) => {
+                    values.push((*first).clone());
+                    if !rest.is_empty() {
+                        others.insert(index, rest.iter().map(|&f| f.clone()).collect());
+                    }
+                }
+                // The reader has refused what is no decimal number.
+                None => values.push(decimal(&literal.text).unwrap_or(Formula::Rational(Rational::ZERO))),
+            }
+        }
+        Resolved { values, others }
+    }
+}
+
+/// The exact values of a function's literals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resolved {
+    /// One for each literal.
+    pub values: Vec<Formula>,
+    /// Literals for which several claimed constants round to the same float: the other ones.
+    pub others: BTreeMap<usize, Vec<Formula>>,
+}
+
+/// As many choices among constants with the same float are tried.
+const MOST_CHOICES: usize = 256;
+
+impl Resolved {
+    /// All choices of values, the first one first, as far as they are not too many.
+    pub fn choices(&self) -> Vec<Vec<Formula>> {
+        let mut choices = vec![self.values.clone()];
+        for (&index, others) in &self.others {
+            if choices.len() * (others.len() + 1) > MOST_CHOICES {
+                break;
+            }
+            let before = choices.clone();
+            for other in others {
+                for choice in &before {
+                    let mut choice = choice.clone();
+                    choice[index] = other.clone();
+                    choices.push(choice);
+                }
+            }
+        }
+        choices
+    }
+}

@@ -1,0 +1,186 @@
+//! Constants of a module against the description.
+
+use armgen_codegen::manipulator::{JointKind, Manipulator};
+
+use crate::checker::Checker;
+use crate::claims::Claims;
+use crate::enclosure::Float;
+use crate::equations::arm::{formula, Arm};
+use crate::equations::parameters::Vector;
+use crate::formula::{Formula, Plain};
+use crate::program::Literal;
+use crate::reader::{Constant, Module};
+use crate::report::{ConstantReport, Exact, Verdict};
+
+/// A constant as it should be.
+enum Expected {
+    Text(String),
+    Integer(u64),
+    Truth(bool),
+    Number(Formula),
+    Infinite(bool),
+    Array(Vec<Expected>),
+}
+
+/// The first entry that is not as expected.
+fn compare(found: &Constant, expected: &Expected, real: Float, entry: &str) -> Option<(String, String)> {
+    let differs = |text: String| Some((entry.to_string(), text));
+    match (found, expected) {
+        (Constant::Text(a), Expected::Text(b)) if a == b => None,
+        (Constant::Text(a), Expected::Text(b)) => differs(format!("is \"{a}\", not \"{b}\"")),
+        (Constant::Integer(a), Expected::Integer(b)) if a == b => None,
+        (Constant::Integer(a), Expected::Integer(b)) => differs(format!("is {a}, not {b}")),
+        (Constant::Truth(a), Expected::Truth(b)) if a == b => None,
+        (Constant::Infinite(a), Expected::Infinite(b)) if a == b => None,
+        (Constant::Number(negative, literal), Expected::Number(exact)) => {
+            let value = if *negative { -literal.value } else { literal.value };
+            // 0 and -0 are one number here.
+            if real.is_nearest(value + 0.0, exact) {
+                None
+            } else {
+                let sign = if *negative { "-" } else { "" };
+                differs(format!("is {sign}{}, not the float nearest to {exact}", literal.text))
+            }
+        }
+        (Constant::Array(found), Expected::Array(expected)) if found.len() == expected.len() => found
+            .iter()
+            .zip(expected)
+            .enumerate()
+            .find_map(|(i, (found, expected))| compare(found, expected, real, &format!("{entry}[{i}]"))),
+        (Constant::Array(found), Expected::Array(expected)) => {
+            differs(format!("has {} entries, not {}", found.len(), expected.len()))
+        }
+        _ => differs("is not what the description says".into()),
+    }
+}
+
+fn numbers(constant: &Constant, expected: &Expected, into: &mut Vec<Exact>) {
+    match (constant, expected) {
+        (Constant::Number(negative, literal), Expected::Number(exact)) => {
+            let sign = if *negative { "-" } else { "" };
+            into.push(Exact { literal: format!("{sign}{}", literal.text), value: exact.clone() });
+        }
+        (Constant::Array(a), Expected::Array(b)) => a.iter().zip(b).for_each(|(a, b)| numbers(a, b, into)),
+        _ => {}
+    }
+}
+
+/// Names of the parameters as the module lists them.
+pub fn parameter_names(module: &Module) -> Vec<String> {
+    match module.constants.get("PARAMETER_NAMES") {
+        Some((_, Constant::Array(names))) => names
+            .iter()
+            .map(|name| match name {
+                Constant::Text(name) => name.clone(),
+                _ => String::new(),
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The exact nominal parameters: from the description, or with base parameters as claimed (they are compared with the description's at the
+/// points of the checker).
+pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
+    let names = Arm::nominal(&Plain, manipulator)?;
+    match vector {
+        Vector::Names(ids) => Some(ids.iter().map(|&id| names[id].clone()).collect()),
+        Vector::Standard(all) => {
+            let arm = Arm::new(&Plain, manipulator, &names)?;
+            Some(all.iter().map(|parameter| parameter.value(&arm)).collect())
+        }
+        Vector::Base(base, _) => {
+            let claimed = claims.of("NOMINAL_PARAMETERS");
+            if claimed.len() == base.len() {
+                return Some(claimed.to_vec());
+            }
+            let (_, Constant::Array(entries)) = module.constants.get("NOMINAL_PARAMETERS")? else { return None };
+            let literal = |entry: &Constant| match entry {
+                Constant::Number(negative, Literal { text, .. }) => {
+                    let size = crate::formula::decimal(text).ok()?;
+                    Some(if *negative { crate::arithmetic::Element::negated(&size) } else { size })
+                }
+                _ => None,
+            };
+            entries.iter().map(literal).collect()
+        }
+    }
+}
+
+fn expected(checker: &Checker, nominal: &[Formula], names: &[String]) -> Vec<(&'static str, &'static str, Expected)> {
+    let manipulator = checker.manipulator();
+    let joints = &manipulator.joints;
+    let array = |entries: Vec<Expected>| Expected::Array(entries);
+    let texts = |texts: Vec<String>| array(texts.into_iter().map(Expected::Text).collect());
+    let bound = |bound: Option<&armgen_codegen::exact::Number>, negative: bool| match bound {
+        Some(value) => Expected::Number(formula(value)),
+        None => Expected::Infinite(negative),
+    };
+    let position = joints.iter().map(|j| {
+        let pair = j.limits.position.as_ref();
+        array(vec![bound(pair.map(|p| &p[0]), true), bound(pair.map(|p| &p[1]), false)])
+    });
+    let velocity = joints.iter().map(|j| bound(j.limits.velocity.as_ref(), false));
+    let effort = joints.iter().map(|j| bound(j.limits.effort.as_ref(), false));
+    let parameter_names = checker.vector().names(manipulator).unwrap_or_else(|| names.to_vec());
+    vec![
+        ("NAME", "&str", Expected::Text(manipulator.name.clone())),
+        ("DOF", "usize", Expected::Integer(joints.len() as u64)),
+        ("JOINT_NAMES", "[&str;DOF]", texts(joints.iter().map(|j| j.name.clone()).collect())),
+        (
+            "JOINT_IS_REVOLUTE",
+            "[bool;DOF]",
+            array(joints.iter().map(|j| Expected::Truth(j.kind == JointKind::Revolute)).collect()),
+        ),
+        ("POSITION_LIMITS", "[[Real;2];DOF]", array(position.collect())),
+        ("VELOCITY_LIMITS", "[Real;DOF]", array(velocity.collect())),
+        ("EFFORT_LIMITS", "[Real;DOF]", array(effort.collect())),
+        ("TASK_ROWS", "usize", Expected::Integer(manipulator.task.len() as u64)),
+        ("TASK", "[usize;TASK_ROWS]", array(manipulator.task.iter().map(|row| Expected::Integer(row.index() as u64)).collect())),
+        ("PARAMETERS", "usize", Expected::Integer(parameter_names.len() as u64)),
+        ("PARAMETER_NAMES", "[&str;PARAMETERS]", texts(parameter_names)),
+        ("NOMINAL_PARAMETERS", "[Real;PARAMETERS]", array(nominal.iter().cloned().map(Expected::Number).collect())),
+    ]
+}
+
+/// All constants of a module.
+pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<ConstantReport> {
+    let names = parameter_names(module);
+    let expected = expected(checker, nominal, &names);
+    let mut reports = Vec::new();
+    for (name, ty, expected) in &expected {
+        let mut literals = Vec::new();
+        let verdict = match module.constants.get(*name) {
+            None => Verdict::Refused("the module does not have it".into()),
+            Some((found, _)) if found != ty => Verdict::Refused(format!("its type is `{found}`, not `{ty}`")),
+            Some((_, value)) => {
+                numbers(value, expected, &mut literals);
+                match compare(value, expected, module.real, "") {
+                    None => Verdict::Equal,
+                    Some((entry, why)) => Verdict::Different { entry, why },
+                }
+            }
+        };
+        reports.push(ConstantReport { name: (*name).into(), verdict, literals });
+    }
+    if let Some(report) = reports.iter_mut().find(|r| r.name == "NOMINAL_PARAMETERS" && r.verdict == Verdict::Equal) {
+        if let Some(entry) = wrong_base_parameter(checker, nominal) {
+            let why = format!("is not the combination of standard parameters that its name stands for: {}", nominal[entry]);
+            report.verdict = Verdict::Different { entry: format!("[{entry}]"), why };
+        }
+    }
+    for name in module.constants.keys().filter(|name| !expected.iter().any(|(known, ..)| known == name)) {
+        let why = "not a constant that the checker knows".to_string();
+        reports.push(ConstantReport { name: name.clone(), verdict: Verdict::Refused(why), literals: Vec::new() });
+    }
+    reports
+}
+
+/// With base parameters: the first whose claimed exact value is not what the standard parameters of the description add up to.
+fn wrong_base_parameter(checker: &Checker, nominal: &[Formula]) -> Option<usize> {
+    checker.points().iter().find_map(|point| {
+        let right = point.reference.nominal_base.as_ref()?;
+        let Some(claimed) = point.literals(nominal) else { return Some(0) };
+        claimed.iter().zip(right).position(|(a, b)| a != b)
+    })
+}

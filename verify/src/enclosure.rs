@@ -1,0 +1,297 @@
+//! Whether a float is the one nearest to an exact constant.
+//!
+//! The constant is enclosed between two multiples of 2^-bits, ever more tightly, until the enclosure lies on one side of the boundary between
+//! the float and its neighbours: the midpoints. A constant that is a fraction is compared with them directly, ties to even.
+//!
+//! Square roots by integer roots, pi = 4 atan(1/2) + 4 atan(1/3), sine and cosine by their series.
+
+use std::cmp::Ordering;
+
+use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
+use dashu_int::{IBig, UBig};
+
+use crate::formula::{Formula, Rational, Root};
+
+/// Numbers of bits tried in turn.
+const PRECISIONS: [usize; 5] = [128, 256, 1024, 4096, 12_288];
+
+/// Two integers a, b for the numbers between a/2^bits and b/2^bits.
+#[derive(Clone, Debug)]
+struct Interval {
+    low: IBig,
+    high: IBig,
+}
+
+/// Two fractions around a constant, about 2^-bits apart; `None` if it is no number (a root of a negative, a division by 0) or out of reach.
+pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
+    let working = bits + 64;
+    let interval = interval(formula, working)?;
+    let fraction = |n: IBig| Rational::from_parts(n, UBig::ONE << working);
+    Some((fraction(interval.low), fraction(interval.high)))
+}
+
+fn floor_shift(n: IBig, bits: usize) -> IBig {
+    n >> bits
+}
+
+fn ceil_shift(n: IBig, bits: usize) -> IBig {
+    -((-n) >> bits)
+}
+
+fn floor_div(a: &IBig, b: &IBig) -> IBig {
+    let quotient = a / b;
+    if &quotient * b != *a && (a.is_negative() != b.is_negative()) {
+        quotient - IBig::ONE
+    } else {
+        quotient
+    }
+}
+
+fn multiply(a: &Interval, b: &Interval, bits: usize) -> Interval {
+    let products = [&a.low * &b.low, &a.low * &b.high, &a.high * &b.low, &a.high * &b.high];
+    let low = products.iter().min().expect("four products").clone();
+    let high = products.iter().max().expect("four products").clone();
+    Interval { low: floor_shift(low, bits), high: ceil_shift(high, bits) }
+}
+
+fn invert(a: &Interval, bits: usize) -> Option<Interval> {
+    if a.low.is_zero() || a.high.is_zero() || a.low.is_negative() != a.high.is_negative() {
+        return None;
+    }
+    let one = IBig::ONE << (2 * bits);
+    Some(Interval { low: floor_div(&one, &a.high), high: -floor_div(&-one, &a.low) })
+}
+
+fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
+    let exact = |n: IBig| Interval { low: n.clone(), high: n };
+    Some(match formula {
+        Formula::Rational(value) => {
+            let (n, d) = (value.numerator().clone() << bits, IBig::from(value.denominator().clone()));
+            Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }
+        }
+        Formula::Pi => {
+            let (half, third) = (arctangent(2, bits), arctangent(3, bits));
+            Interval { low: (half.low + third.low) * IBig::from(4), high: (half.high + third.high) * IBig::from(4) }
+        }
+        Formula::Root(Root::Integer(n)) => {
+            let floor = IBig::from((n << (2 * bits)).sqrt());
+            Interval { high: &floor + IBig::ONE, low: floor }
+        }
+        Formula::Root(Root::Nested(inner)) => {
+            let inner = interval(inner, bits)?;
+            if inner.low.is_negative() {
+                return None;
+            }
+            let root = |n: &IBig| IBig::from((n.clone().unsigned_abs() << bits).sqrt());
+            Interval { low: root(&inner.low), high: root(&inner.high) + IBig::ONE }
+        }
+        Formula::Sine(angle) => series(&interval(angle, bits)?, 1, bits)?,
+        Formula::Cosine(angle) => series(&interval(angle, bits)?, 0, bits)?,
+        Formula::Sum(terms) => {
+            let mut sum = exact(IBig::ZERO);
+            for term in terms {
+                let term = interval(term, bits)?;
+                sum = Interval { low: sum.low + term.low, high: sum.high + term.high };
+            }
+            sum
+        }
+        Formula::Product(factors) => {
+            let mut product = exact(IBig::ONE << bits);
+            for factor in factors {
+                product = multiply(&product, &interval(factor, bits)?, bits);
+            }
+            product
+        }
+        Formula::Power(base, exponent) => {
+            let base = interval(base, bits)?;
+            let one = exact(IBig::ONE << bits);
+            let power = (0..exponent.unsigned_abs()).fold(one, |power, _| multiply(&power, &base, bits));
+            if *exponent < 0 {
+                invert(&power, bits)?
+            } else {
+                power
+            }
+        }
+    })
+}
+
+/// atan(1/n) = Σ (-1)^k / ((2k+1) n^(2k+1)); each truncation is below one unit, the rest of the series below the first term left out.
+fn arctangent(n: u32, bits: usize) -> Interval {
+    let mut power = (IBig::ONE << bits) / IBig::from(n);
+    let (mut sum, mut k) = (IBig::ZERO, 0u32);
+    while !power.is_zero() {
+        let term = &power / IBig::from(2 * k + 1);
+        sum = if k.is_multiple_of(2) { sum + term } else { sum - term };
+        power /= IBig::from(n * n);
+        k += 1;
+    }
+    // A term inherits less than two units from its power and loses less than one itself.
+    let slack = IBig::from(3 * k + 3);
+    Interval { low: &sum - &slack, high: sum + slack }
+}
+
+/// sin (first = 1) or cos (first = 0) of an angle below 256 rad, by the series at its lower end, widened by its width (slopes are at most 1).
+fn series(angle: &Interval, first: u32, bits: usize) -> Option<Interval> {
+    const GUARD: usize = 800;
+    if angle.low.clone().abs() >> bits >= IBig::from(256) {
+        return None;
+    }
+    let work = bits + GUARD;
+    let x = angle.low.clone() << GUARD;
+    let square: IBig = (&x * &x) >> work;
+    let mut term = if first == 1 { x } else { IBig::ONE << work };
+    let (mut sum, mut k, mut steps) = (IBig::ZERO, first, 0u32);
+    // Terms first grow up to e^256 < 2^370 and so do the errors carried along; the guard bits cover them.
+    while !term.is_zero() && term != IBig::NEG_ONE {
+        sum += &term;
+        term = -((term * &square) >> work) / IBig::from((k + 1) * (k + 2));
+        k += 2;
+        steps += 1;
+    }
+    let width = &angle.high - &angle.low + IBig::from(2);
+    debug_assert!(steps < 1 << 16);
+    let value = sum >> GUARD;
+    Some(Interval { low: &value - &width, high: value + width })
+}
+
+/// A float format, as far as rounding to it goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Float {
+    /// 64 bits.
+    F64,
+    /// 32 bits.
+    F32,
+}
+
+impl Float {
+    /// The unit roundoff 2^-53 or 2^-24.
+    pub fn unit(self) -> f64 {
+        match self {
+            Float::F64 => f64::EPSILON / 2.0,
+            Float::F32 => f64::from(f32::EPSILON) / 2.0,
+        }
+    }
+
+    /// The value that a literal has in this format; exact as f64.
+    pub fn read(self, text: &str) -> Option<f64> {
+        match self {
+            Float::F64 => text.parse::<f64>().ok(),
+            Float::F32 => text.parse::<f32>().ok().map(f64::from),
+        }
+    }
+
+    /// Neighbours of a finite float.
+    fn neighbours(self, value: f64) -> (f64, f64) {
+        match self {
+            Float::F64 => (value.next_down(), value.next_up()),
+            Float::F32 => {
+                let value = value as f32;
+                (f64::from(value.next_down()), f64::from(value.next_up()))
+            }
+        }
+    }
+
+    fn is_even(self, value: f64) -> bool {
+        match self {
+            Float::F64 => value.to_bits() & 1 == 0,
+            Float::F32 => (value as f32).to_bits() & 1 == 0,
+        }
+    }
+
+    fn round(self, value: &Rational) -> f64 {
+        match self {
+            Float::F64 => value.to_f64().value(),
+            Float::F32 => f64::from(value.to_f32().value()),
+        }
+    }
+
+    /// The float nearest to a constant.
+    pub fn nearest(self, formula: &Formula) -> Option<f64> {
+        if let Some(value) = formula.as_rational() {
+            return Some(self.round(value)).filter(|v| v.is_finite());
+        }
+        PRECISIONS.iter().find_map(|&bits| {
+            let (low, high) = enclose(formula, bits)?;
+            let (low, high) = (self.round(&low), self.round(&high));
+            (low == high && low.is_finite()).then_some(low)
+        })
+    }
+
+    /// Whether `value` is the float nearest to the constant (ties to even): by comparison with the midpoints to its neighbours.
+    pub fn is_nearest(self, value: f64, formula: &Formula) -> bool {
+        if !value.is_finite() {
+            return false;
+        }
+        let exact = |x: f64| Rational::try_from(x).ok();
+        let Some(own) = exact(value) else { return false };
+        let (below, above) = self.neighbours(value);
+        // Beyond the largest float the midpoint is where the next one would be.
+        let midpoint = |neighbour: f64, other: f64| match exact(neighbour) {
+            Some(neighbour) => Some((&own + neighbour) / Rational::from(2)),
+            None => Some((&own * Rational::from(3) - exact(other)?) / Rational::from(2)),
+        };
+        let (Some(low), Some(high)) = (midpoint(below, above), midpoint(above, below)) else { return false };
+        let inside = |x: &Rational| match (x.cmp(&low), x.cmp(&high)) {
+            (Ordering::Greater, Ordering::Less) => Some(true),
+            (Ordering::Equal, _) | (_, Ordering::Equal) => None,
+            _ => Some(false),
+        };
+        if let Some(x) = formula.as_rational() {
+            return inside(x).unwrap_or(self.is_even(value));
+        }
+        for bits in PRECISIONS {
+            let Some((x, y)) = enclose(formula, bits) else { return false };
+            match (inside(&x), inside(&y)) {
+                (Some(true), Some(true)) => return true,
+                (Some(false), Some(false)) if (x < low) == (y < low) => return false,
+                _ => {}
+            }
+        }
+        false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Formula {
+        Formula::parse(text).expect("a formula")
+    }
+
+    #[test]
+    fn the_nearest_float_and_no_other() {
+        let cases = [
+            ("pi", std::f64::consts::PI),
+            ("sqrt(2)", std::f64::consts::SQRT_2),
+            ("1/10", 0.1),
+            ("sin(1)", 0.841_470_984_807_896_5),
+            ("cos(1)", 0.540_302_305_868_139_8),
+            ("-sqrt(3)/2", -0.866_025_403_784_438_6),
+            ("sqrt(2 + sqrt(3))", 1.931_851_652_578_136_6),
+            ("9007199254740993", 9_007_199_254_740_992.0),
+            ("pi^(-1)", std::f64::consts::FRAC_1_PI),
+            ("0", 0.0),
+        ];
+        for (text, value) in cases {
+            let formula = parse(text);
+            assert_eq!(Float::F64.nearest(&formula), Some(value), "{text}");
+            assert!(Float::F64.is_nearest(value, &formula), "{text}");
+            assert!(!Float::F64.is_nearest(value.next_up(), &formula), "{text}");
+            assert!(!Float::F64.is_nearest(value.next_down(), &formula), "{text}");
+            let single = value as f32;
+            assert!(Float::F32.is_nearest(f64::from(single), &formula), "{text}");
+            assert!(!Float::F32.is_nearest(f64::from(single.next_up()), &formula), "{text}");
+        }
+    }
+
+    #[test]
+    fn large_angles_and_impossible_numbers() {
+        assert_eq!(Float::F64.nearest(&parse("sin(200)")), Some(200f64.sin()));
+        assert_eq!(Float::F64.nearest(&parse("sin(1000)")), None);
+        assert_eq!(Float::F64.nearest(&parse("sqrt(1 - sqrt(2))")), None);
+        assert_eq!(Float::F64.nearest(&parse("1/(sqrt(2) - sqrt(2))")), None);
+        assert!(!Float::F64.is_nearest(f64::INFINITY, &parse("1e400")));
+        assert!(!Float::F64.is_nearest(f64::MAX, &parse("1e309")));
+    }
+}

@@ -1,0 +1,251 @@
+//! The arm with its constants as exact numbers, parameters filled in.
+
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::manipulator::{self, JointKind, Manipulator};
+
+use super::vector::{Matrix, Vector};
+use crate::arithmetic::{Arithmetic, Element};
+use crate::formula::Formula;
+
+/// A frame in another.
+#[derive(Clone, Debug)]
+pub struct Frame<E> {
+    /// Its axes as columns.
+    pub rotation: Matrix<E>,
+    /// Its origin.
+    pub origin: Vector<E>,
+}
+
+/// A rigid body in a frame.
+#[derive(Clone, Debug)]
+pub struct Body<E> {
+    /// Mass.
+    pub mass: E,
+    /// Centre of mass.
+    pub com: Vector<E>,
+    /// Inertia about the centre of mass.
+    pub inertia: Matrix<E>,
+}
+
+/// A rotor on the parent link.
+#[derive(Clone, Debug)]
+pub struct Motor<E> {
+    /// k_r.
+    pub ratio: E,
+    /// Inertia about its axis.
+    pub inertia: E,
+    /// Mass.
+    pub mass: E,
+    /// Place in the parent's link frame.
+    pub position: Vector<E>,
+    /// Axis in the parent's link frame.
+    pub axis: Vector<E>,
+    /// Viscous friction at the rotor.
+    pub viscous: E,
+}
+
+/// A joint and the link it moves.
+#[derive(Clone, Debug)]
+pub struct Joint<E> {
+    /// Whether it turns.
+    pub revolute: bool,
+    /// The link that carries it.
+    pub parent: Option<usize>,
+    /// Joint frame at q = 0 in the parent's joint frame.
+    pub placement: Frame<E>,
+    /// Link frame in the joint frame.
+    pub link_frame: Frame<E>,
+    /// The link, in its link frame.
+    pub link: Body<E>,
+    /// Its motor.
+    pub motor: Option<Motor<E>>,
+    /// Viscous friction at the joint.
+    pub viscous: E,
+    /// Coulomb friction at the joint.
+    pub coulomb: E,
+}
+
+/// The arm.
+#[derive(Clone, Debug)]
+pub struct Arm<E> {
+    /// Base to tip; parents first.
+    pub joints: Vec<Joint<E>>,
+    /// Acceleration of gravity in the base frame.
+    pub gravity: Vector<E>,
+    /// The link with the end effector.
+    pub tip: usize,
+    /// End effector in the tip's link frame.
+    pub tool: Frame<E>,
+    /// Load, in the end-effector frame.
+    pub payload: Option<Body<E>>,
+    /// 0.
+    pub zero: E,
+    /// 1.
+    pub one: E,
+}
+
+/// A number of the description as a formula: its text is all that is taken over.
+pub fn formula(number: &Number) -> Formula {
+    Formula::parse(&number.to_string()).expect("the description prints its numbers as formulas")
+}
+
+struct Builder<'a, K: Arithmetic> {
+    arithmetic: &'a K,
+    parameters: &'a [K::Element],
+}
+
+impl<K: Arithmetic> Builder<'_, K> {
+    fn number(&self, number: &Number) -> Option<K::Element> {
+        self.arithmetic.constant(&formula(number))
+    }
+
+    fn polynomial(&self, polynomial: &Polynomial) -> Option<K::Element> {
+        let mut sum = self.arithmetic.integer(0);
+        for (powers, coefficient) in polynomial.terms() {
+            let mut term = self.number(coefficient)?;
+            for (parameter, &power) in powers {
+                for _ in 0..power {
+                    term = term.times(&self.parameters[parameter.0 as usize]);
+                }
+            }
+            sum = sum.plus(&term);
+        }
+        Some(sum)
+    }
+
+    fn vector(&self, vector: &[Polynomial; 3]) -> Option<Vector<K::Element>> {
+        Some([self.polynomial(&vector[0])?, self.polynomial(&vector[1])?, self.polynomial(&vector[2])?])
+    }
+
+    fn row(&self, row: &[Number; 3]) -> Option<Vector<K::Element>> {
+        Some([self.number(&row[0])?, self.number(&row[1])?, self.number(&row[2])?])
+    }
+
+    fn frame(&self, placement: &manipulator::Placement) -> Option<Frame<K::Element>> {
+        let [x, y, z] = &placement.rotation;
+        let rotation = [self.row(x)?, self.row(y)?, self.row(z)?];
+        Some(Frame { rotation, origin: self.vector(&placement.translation)? })
+    }
+
+    fn body(&self, body: &manipulator::Body) -> Option<Body<K::Element>> {
+        let mut six = Vec::new();
+        for entry in &body.inertia {
+            six.push(self.polynomial(entry)?);
+        }
+        Some(Body { mass: self.polynomial(&body.mass)?, com: self.vector(&body.com)?, inertia: symmetric(&six) })
+    }
+
+    fn optional(&self, polynomial: Option<&Polynomial>) -> Option<K::Element> {
+        match polynomial {
+            Some(polynomial) => self.polynomial(polynomial),
+            None => Some(self.arithmetic.integer(0)),
+        }
+    }
+
+    fn joint(&self, joint: &manipulator::Joint) -> Option<Joint<K::Element>> {
+        let motor = match &joint.motor {
+            None => None,
+            Some(motor) => Some(Motor {
+                ratio: self.polynomial(&motor.ratio)?,
+                inertia: self.optional(motor.inertia.as_ref())?,
+                mass: self.polynomial(&motor.mass)?,
+                position: self.vector(&motor.position)?,
+                axis: self.row(&motor.axis)?,
+                viscous: self.optional(motor.viscous.as_ref())?,
+            }),
+        };
+        Some(Joint {
+            revolute: joint.kind == JointKind::Revolute,
+            parent: joint.parent.map(|link| link.0 as usize),
+            placement: self.frame(&joint.placement)?,
+            link_frame: self.frame(&joint.link_frame)?,
+            link: self.body(&joint.link)?,
+            motor,
+            viscous: self.optional(joint.viscous.as_ref())?,
+            coulomb: self.optional(joint.coulomb.as_ref())?,
+        })
+    }
+}
+
+/// A symmetric matrix from xx xy yy xz yz zz.
+pub fn symmetric<E: Element>(six: &[E]) -> Matrix<E> {
+    [[0, 1, 3], [1, 2, 4], [3, 4, 5]].map(|row| row.map(|i| six[i].clone()))
+}
+
+impl<E: Element> Arm<E> {
+    /// The arm where the named quantities of the description have the values `parameters`; `None` for a division by 0.
+    pub fn new<K: Arithmetic<Element = E>>(arithmetic: &K, manipulator: &Manipulator, parameters: &[E]) -> Option<Arm<E>> {
+        let builder = Builder { arithmetic, parameters };
+        let mut joints = Vec::new();
+        for joint in &manipulator.joints {
+            joints.push(builder.joint(joint)?);
+        }
+        let payload = match &manipulator.payload {
+            None => None,
+            Some(body) => Some(builder.body(body)?),
+        };
+        Some(Arm {
+            joints,
+            gravity: builder.vector(&manipulator.gravity)?,
+            tip: manipulator.tip.0 as usize,
+            tool: builder.frame(&manipulator.tool)?,
+            payload,
+            zero: arithmetic.integer(0),
+            one: arithmetic.integer(1),
+        })
+    }
+
+    /// The nominal values of the named quantities.
+    pub fn nominal<K: Arithmetic<Element = E>>(arithmetic: &K, manipulator: &Manipulator) -> Option<Vec<E>> {
+        manipulator.parameters.iter().map(|p| arithmetic.constant(&formula(&p.nominal))).collect()
+    }
+
+    /// The same arm in other numbers.
+    pub fn map<F: Element>(&self, f: &impl Fn(&E) -> F) -> Arm<F> {
+        let vector = |v: &Vector<E>| -> Vector<F> { [0, 1, 2].map(|i| f(&v[i])) };
+        let matrix = |m: &Matrix<E>| -> Matrix<F> { [0, 1, 2].map(|i| vector(&m[i])) };
+        let frame = |frame: &Frame<E>| Frame { rotation: matrix(&frame.rotation), origin: vector(&frame.origin) };
+        let body = |body: &Body<E>| Body { mass: f(&body.mass), com: vector(&body.com), inertia: matrix(&body.inertia) };
+        let joints = self.joints.iter().map(|joint| Joint {
+            revolute: joint.revolute,
+            parent: joint.parent,
+            placement: frame(&joint.placement),
+            link_frame: frame(&joint.link_frame),
+            link: body(&joint.link),
+            motor: joint.motor.as_ref().map(|motor| Motor {
+                ratio: f(&motor.ratio),
+                inertia: f(&motor.inertia),
+                mass: f(&motor.mass),
+                position: vector(&motor.position),
+                axis: vector(&motor.axis),
+                viscous: f(&motor.viscous),
+            }),
+            viscous: f(&joint.viscous),
+            coulomb: f(&joint.coulomb),
+        });
+        Arm {
+            joints: joints.collect(),
+            gravity: vector(&self.gravity),
+            tip: self.tip,
+            tool: frame(&self.tool),
+            payload: self.payload.as_ref().map(body),
+            zero: f(&self.zero),
+            one: f(&self.one),
+        }
+    }
+
+    /// Number of joints.
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// ½.
+    pub fn half(&self) -> E {
+        self.one.plus(&self.one).inverse().expect("2 is not 0")
+    }
+
+    /// The zero vector.
+    pub fn nothing(&self) -> Vector<E> {
+        [0; 3].map(|_| self.zero.clone())
+    }
+}

@@ -1,0 +1,156 @@
+//! B, C, g and the energies after Lagrange: sums over the bodies, derivatives by dual numbers.
+
+use super::arm::Arm;
+use super::pose::Pose;
+use super::state::State;
+use super::vector::{apply, dot, product, scale, solve, transpose, Vector};
+use crate::arithmetic::dual::Dual;
+use crate::arithmetic::Element;
+
+/// A body where it is: mass, centre of mass, the link it is part of, and its inertia about the centre of mass in the base frame.
+struct Placed<E> {
+    mass: E,
+    com: Vector<E>,
+    link: Option<usize>,
+    inertia: Option<[[E; 3]; 3]>,
+}
+
+/// Links, load, and the masses of rotors.
+fn bodies<E: Element>(arm: &Arm<E>, pose: &Pose<E>) -> Vec<Placed<E>> {
+    let mut bodies = Vec::new();
+    let load = arm.payload.as_ref().map(|body| (arm.tip, &pose.tool, body));
+    let links = arm.joints.iter().enumerate().map(|(i, joint)| (i, &pose.links[i], &joint.link));
+    for (link, frame, body) in links.chain(load) {
+        let inertia = product(&product(&frame.rotation, &body.inertia), &transpose(&frame.rotation));
+        bodies.push(Placed { mass: body.mass.clone(), com: frame.point(&body.com), link: Some(link), inertia: Some(inertia) });
+    }
+    for joint in &arm.joints {
+        if let Some(motor) = &joint.motor {
+            let com = joint.parent.map_or_else(|| motor.position.clone(), |p| pose.links[p].point(&motor.position));
+            bodies.push(Placed { mass: motor.mass.clone(), com, link: joint.parent, inertia: None });
+        }
+    }
+    bodies
+}
+
+/// B(q), row by row: the book, eq. 7.32; the rotor of joint i turns with its parent link and with k_r about its own axis besides.
+pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>> {
+    let pose = Pose::new(arm, state);
+    let n = arm.dof();
+    let mut b = vec![vec![arm.zero.clone(); n]; n];
+    let mut accumulate = |columns: &[usize], entry: &dyn Fn(usize, usize) -> E| {
+        for &i in columns {
+            for &j in columns.iter().filter(|&&j| j >= i) {
+                b[i][j] = b[i][j].plus(&entry(i, j));
+            }
+        }
+    };
+    for body in bodies(arm, &pose) {
+        let Some(link) = body.link else { continue };
+        let jacobian = pose.jacobian(Some(link), &body.com);
+        let columns = &pose.ancestors[link];
+        if !body.mass.is_zero() {
+            let weighted: Vec<Vector<E>> = jacobian.iter().map(|(v, _)| scale(&body.mass, v)).collect();
+            accumulate(columns, &|i, j| dot(&weighted[i], &jacobian[j].0));
+        }
+        if let Some(inertia) = &body.inertia {
+            let turned: Vec<Vector<E>> = jacobian.iter().map(|(_, w)| apply(inertia, w)).collect();
+            accumulate(columns, &|i, j| dot(&turned[i], &jacobian[j].1));
+        }
+    }
+    for (i, joint) in arm.joints.iter().enumerate() {
+        let Some(motor) = &joint.motor else { continue };
+        let mut spin = vec![arm.zero.clone(); n];
+        let mut columns = vec![i];
+        if let Some(parent) = joint.parent {
+            let axis = pose.links[parent].direction(&motor.axis);
+            for (j, (_, w)) in pose.jacobian(Some(parent), &pose.links[parent].origin).iter().enumerate() {
+                spin[j] = dot(&axis, w);
+            }
+            columns.extend(&pose.ancestors[parent]);
+        }
+        spin[i] = spin[i].plus(&motor.ratio);
+        accumulate(&columns, &|i, j| motor.inertia.times(&spin[i]).times(&spin[j]));
+    }
+    for i in 0..n {
+        for j in 0..i {
+            b[i][j] = b[j][i].clone();
+        }
+    }
+    b
+}
+
+/// ∂B/∂q_k for each k.
+pub fn inertia_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<Vec<E>>> {
+    let zero = &arm.zero;
+    let moving = arm.map(&|e| Dual::constant(e));
+    (0..arm.dof())
+        .map(|k| {
+            let mut along = vec![zero.clone(); arm.dof()];
+            along[k] = arm.one.clone();
+            let b = inertia_matrix(&moving, &state.moving(&along, &vec![zero.clone(); arm.dof()]));
+            b.into_iter().map(|row| row.into_iter().map(|e| e.rate).collect()).collect()
+        })
+        .collect()
+}
+
+/// C(q, dq), row by row: C_ij = Σ_k ½ (∂B_ij/∂q_k + ∂B_ik/∂q_j - ∂B_jk/∂q_i) dq_k.
+pub fn coriolis_matrix<E: Element>(derivatives: &[Vec<Vec<E>>], dq: &[E], half: &E) -> Vec<Vec<E>> {
+    let n = dq.len();
+    let entry = |i: usize, j: usize| {
+        let mut sum = half.minus(half);
+        for k in 0..n {
+            let symbol = derivatives[k][i][j].plus(&derivatives[j][i][k]).minus(&derivatives[i][j][k]);
+            sum = sum.plus(&symbol.times(&dq[k]));
+        }
+        sum.times(half)
+    };
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+}
+
+/// U(q) = -Σ m g0'p, rotors on the base included.
+pub fn potential_energy<E: Element>(arm: &Arm<E>, state: &State<E>) -> E {
+    let pose = Pose::new(arm, state);
+    bodies(arm, &pose).iter().fold(arm.zero.clone(), |sum, body| sum.minus(&body.mass.times(&dot(&arm.gravity, &body.com))))
+}
+
+/// g(q) = ∂U/∂q.
+pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
+    let zero = &arm.zero;
+    let moving = arm.map(&|e| Dual::constant(e));
+    (0..arm.dof())
+        .map(|k| {
+            let mut along = vec![zero.clone(); arm.dof()];
+            along[k] = arm.one.clone();
+            potential_energy(&moving, &state.moving(&along, &vec![zero.clone(); arm.dof()])).rate
+        })
+        .collect()
+}
+
+/// F_i = (k_r² F_m + F_v) rate_i + F_c sign_i.
+pub fn friction<E: Element>(arm: &Arm<E>, rates: &[E], signs: &[E]) -> Vec<E> {
+    arm.joints
+        .iter()
+        .enumerate()
+        .map(|(i, joint)| {
+            let mut viscous = joint.viscous.clone();
+            if let Some(motor) = &joint.motor {
+                viscous = viscous.plus(&motor.ratio.times(&motor.ratio).times(&motor.viscous));
+            }
+            viscous.times(&rates[i]).plus(&joint.coulomb.times(&signs[i]))
+        })
+        .collect()
+}
+
+/// M v.
+pub fn times_vector<E: Element>(m: &[Vec<E>], v: &[E]) -> Vec<E> {
+    m.iter()
+        .map(|row| row.iter().zip(v).map(|(a, b)| a.times(b)).reduce(|a, b| a.plus(&b)).expect("at least one joint"))
+        .collect()
+}
+
+/// The solution of B x = right, if B is regular.
+pub fn accelerations<E: Element>(b: &[Vec<E>], right: &[E]) -> Option<Vec<E>> {
+    let columns: Vec<Vec<E>> = right.iter().map(|r| vec![r.clone()]).collect();
+    Some(solve(b, &columns)?.into_iter().map(|mut row| row.remove(0)).collect())
+}

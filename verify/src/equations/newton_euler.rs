@@ -1,0 +1,253 @@
+//! Torques after Newton and Euler, body by body in the base frame: a second derivation beside Lagrange's, and linear in the ten parameters of
+//! each body as it stands.
+//!
+//! For a body with mass m, first moment h = ∫ r dm and inertia I about the origin of its frame, which accelerates with a (gravity taken off)
+//! and turns with ω, α:
+//!
+//! ```text
+//! F = m a + α × h + ω × (ω × h)        N = I α + ω × (I ω) + h × a
+//! τ_j = z_j · (N + (p - p_j) × F) (revolute),  z_j · F (prismatic),  for each joint j that moves the body
+//! ```
+//!
+//! A rotor has the angular momentum I_m s z with s = z·ω + k_r dq: its rate of change acts on the parent link, k_r I_m ds/dt on its joint.
+//!
+//! The regressor has two rates: C(q, dq) dqr = ½ (V(dq + dqr) - V(dq) - V(dqr)), where V(u) = C(q, u) u is what a motion with rates u and no
+//! acceleration needs without gravity; Christoffel's C is the one for which this form is symmetric.
+
+use super::arm::{symmetric, Arm, Body};
+use super::pose::Pose;
+use super::vector::{add, apply, cross, dot, scale, sub, Vector};
+use crate::arithmetic::Element;
+
+/// The ten inertial parameters of a body in its frame: m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the frame's origin.
+pub type Ten<E> = [E; 10];
+
+/// The ten parameters of a body, by Steiner: I = I_c + m (c'c 1 - c c').
+pub fn ten<E: Element>(body: &Body<E>) -> Ten<E> {
+    let (m, c) = (&body.mass, &body.com);
+    let moment = scale(m, c);
+    let square = dot(&moment, c);
+    let entry = |i: usize, j: usize| {
+        let shifted = body.inertia[i][j].minus(&moment[i].times(&c[j]));
+        if i == j {
+            shifted.plus(&square)
+        } else {
+            shifted
+        }
+    };
+    let [hx, hy, hz] = moment.clone();
+    [m.clone(), hx, hy, hz, entry(0, 0), entry(0, 1), entry(1, 1), entry(0, 2), entry(1, 2), entry(2, 2)]
+}
+
+/// The body with these ten parameters; `None` without a mass.
+pub fn body<E: Element>(ten: &[E]) -> Option<Body<E>> {
+    let inverse = ten[0].inverse()?;
+    let com = [1, 2, 3].map(|i| ten[i].times(&inverse));
+    let about_origin = symmetric(&ten[4..10]);
+    let square = dot(&scale(&ten[0], &com), &com);
+    let inertia = [0, 1, 2].map(|i| {
+        [0, 1, 2].map(|j| {
+            let shifted = about_origin[i][j].plus(&ten[0].times(&com[i]).times(&com[j]));
+            if i == j {
+                shifted.minus(&square)
+            } else {
+                shifted
+            }
+        })
+    });
+    Some(Body { mass: ten[0].clone(), com, inertia })
+}
+
+/// Rates and accelerations with which a motion is evaluated, and the acceleration of gravity.
+#[derive(Clone, Debug)]
+pub struct Motion<E> {
+    /// Joint rates.
+    pub rates: Vec<E>,
+    /// Joint accelerations.
+    pub accelerations: Vec<E>,
+    /// Acceleration of gravity, base frame.
+    pub gravity: Vector<E>,
+}
+
+/// ω, α and the acceleration of the joint frame's origin (gravity taken off), all in the base frame.
+#[derive(Clone, Debug)]
+struct Turning<E> {
+    omega: Vector<E>,
+    alpha: Vector<E>,
+    a: Vector<E>,
+}
+
+impl<E: Element> Turning<E> {
+    /// The acceleration of a point at `lever` from the origin.
+    fn at(&self, lever: &Vector<E>) -> Vector<E> {
+        let centripetal = cross(&self.omega, &cross(&self.omega, lever));
+        add(&self.a, &add(&cross(&self.alpha, lever), &centripetal))
+    }
+}
+
+/// A motion of an arm at a state, ready for the torques that any body in it needs.
+pub struct Moving<'a, E> {
+    arm: &'a Arm<E>,
+    pose: &'a Pose<E>,
+    motion: Motion<E>,
+    links: Vec<Turning<E>>,
+}
+
+/// What carries a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Carrier {
+    /// A link, in its link frame.
+    Link(usize),
+    /// The end effector.
+    Tool,
+}
+
+impl<'a, E: Element> Moving<'a, E> {
+    /// Velocities and accelerations of all links, base to tip.
+    pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, motion: Motion<E>) -> Moving<'a, E> {
+        let mut links: Vec<Turning<E>> = Vec::new();
+        for (i, joint) in arm.joints.iter().enumerate() {
+            let nothing = || arm.nothing();
+            let rest = Turning { omega: nothing(), alpha: nothing(), a: motion.gravity.clone().map(|g| g.negated()) };
+            let (before, from) = match joint.parent {
+                Some(parent) => (links[parent].clone(), pose.joints[parent].origin.clone()),
+                None => (rest, nothing()),
+            };
+            let z = pose.joints[i].z();
+            let (turn, change) = (scale(&motion.rates[i], &z), scale(&motion.accelerations[i], &z));
+            let mut a = before.at(&sub(&pose.joints[i].origin, &from));
+            let (mut omega, mut alpha) = (before.omega.clone(), before.alpha.clone());
+            if joint.revolute {
+                alpha = add(&alpha, &add(&change, &cross(&omega, &turn)));
+                omega = add(&omega, &turn);
+            } else {
+                // Sliding along z in a turning link: ddq z + 2 ω × z dq.
+                let twice = add(&turn, &turn);
+                a = add(&a, &add(&change, &cross(&omega, &twice)));
+            }
+            links.push(Turning { omega, alpha, a });
+        }
+        Moving { arm, pose, motion, links }
+    }
+
+    /// Adds the torques that a body needs.
+    pub fn add_body(&self, carrier: Carrier, ten: &[E], torques: &mut [E]) {
+        let (link, frame) = match carrier {
+            Carrier::Link(link) => (link, &self.pose.links[link]),
+            Carrier::Tool => (self.arm.tip, &self.pose.tool),
+        };
+        if ten.iter().all(Element::is_zero) {
+            return;
+        }
+        let turning = &self.links[link];
+        let a = frame.into_frame(&turning.at(&sub(&frame.origin, &self.pose.joints[link].origin)));
+        let (omega, alpha) = (frame.into_frame(&turning.omega), frame.into_frame(&turning.alpha));
+        let h = [1, 2, 3].map(|i| ten[i].clone());
+        let inertia = symmetric(&ten[4..10]);
+        let force = add(&scale(&ten[0], &a), &add(&cross(&alpha, &h), &cross(&omega, &cross(&omega, &h))));
+        let spin = cross(&omega, &apply(&inertia, &omega));
+        let moment = add(&apply(&inertia, &alpha), &add(&spin, &cross(&h, &a)));
+        self.add_wrench(Some(link), &frame.origin, &frame.direction(&force), &frame.direction(&moment), torques);
+    }
+
+    fn add_wrench(&self, link: Option<usize>, point: &Vector<E>, force: &Vector<E>, moment: &Vector<E>, torques: &mut [E]) {
+        for &j in link.map_or(&[][..], |link| &self.pose.ancestors[link]) {
+            let z = self.pose.joints[j].z();
+            let torque = if self.arm.joints[j].revolute {
+                dot(&z, &add(moment, &cross(&sub(point, &self.pose.joints[j].origin), force)))
+            } else {
+                dot(&z, force)
+            };
+            torques[j] = torques[j].plus(&torque);
+        }
+    }
+
+    /// Adds the torques that the mass of the rotor of joint `i` needs.
+    pub fn add_rotor_mass(&self, i: usize, torques: &mut [E]) {
+        let joint = &self.arm.joints[i];
+        let (Some(motor), Some(parent)) = (&joint.motor, joint.parent) else { return };
+        let point = self.pose.links[parent].point(&motor.position);
+        let a = self.links[parent].at(&sub(&point, &self.pose.joints[parent].origin));
+        let nothing = self.arm.nothing();
+        self.add_wrench(Some(parent), &point, &scale(&motor.mass, &a), &nothing, torques);
+    }
+
+    /// Adds the torques that a rotor inertia at joint `i` needs.
+    pub fn add_rotor_inertia(&self, i: usize, inertia: &E, torques: &mut [E]) {
+        let joint = &self.arm.joints[i];
+        let Some(motor) = &joint.motor else { return };
+        let mut change = motor.ratio.times(&self.motion.accelerations[i]);
+        if let Some(parent) = joint.parent {
+            let turning = &self.links[parent];
+            let axis = self.pose.links[parent].direction(&motor.axis);
+            change = change.plus(&dot(&axis, &turning.alpha));
+            let spin = dot(&axis, &turning.omega).plus(&motor.ratio.times(&self.motion.rates[i]));
+            // d/dt (I s z) = I (ds/dt z + s ω × z)
+            let rate = add(&scale(&change, &axis), &scale(&spin, &cross(&turning.omega, &axis)));
+            let nothing = self.arm.nothing();
+            let point = self.pose.links[parent].origin.clone();
+            self.add_wrench(Some(parent), &point, &nothing, &scale(inertia, &rate), torques);
+        }
+        torques[i] = torques[i].plus(&motor.ratio.times(inertia).times(&change));
+    }
+
+    /// The torques of the whole arm, without friction.
+    pub fn torques(&self) -> Vec<E> {
+        let mut torques = vec![self.arm.zero.clone(); self.arm.dof()];
+        for (i, joint) in self.arm.joints.iter().enumerate() {
+            self.add_body(Carrier::Link(i), &ten(&joint.link), &mut torques);
+            self.add_rotor_mass(i, &mut torques);
+            if let Some(motor) = &joint.motor {
+                self.add_rotor_inertia(i, &motor.inertia, &mut torques);
+            }
+        }
+        if let Some(load) = &self.arm.payload {
+            self.add_body(Carrier::Tool, &ten(load), &mut torques);
+        }
+        torques
+    }
+}
+
+/// B ddqr + C(q, dq) dqr + g as a sum over motions, ready for any body.
+pub struct Reference<'a, E> {
+    /// Motions with their weights: accelerations and gravity alone; then V(dq + dqr), V(dq), V(dqr).
+    parts: Vec<(E, Moving<'a, E>)>,
+}
+
+impl<'a, E: Element> Reference<'a, E> {
+    /// The motions of a reference.
+    pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, dq: &[E], dqr: &[E], ddqr: &[E]) -> Reference<'a, E> {
+        let (zero, half) = (&arm.zero, arm.half());
+        let still = vec![zero.clone(); arm.dof()];
+        let nothing = arm.nothing();
+        let sum: Vec<E> = dq.iter().zip(dqr).map(|(a, b)| a.plus(b)).collect();
+        let velocity = |rates: &[E]| Motion { rates: rates.to_vec(), accelerations: still.clone(), gravity: nothing.clone() };
+        let slow = Motion { rates: still.clone(), accelerations: ddqr.to_vec(), gravity: arm.gravity.clone() };
+        let parts = [
+            (arm.one.clone(), slow),
+            (half.clone(), velocity(&sum)),
+            (half.negated(), velocity(dq)),
+            (half.negated(), velocity(dqr)),
+        ];
+        Reference { parts: parts.into_iter().map(|(k, motion)| (k, Moving::new(arm, pose, motion))).collect() }
+    }
+
+    /// The torques that `add` adds, over all motions.
+    pub fn torques(&self, add: &dyn Fn(&Moving<'a, E>, &mut [E])) -> Vec<E> {
+        let (_, first) = &self.parts[0];
+        let mut total = vec![first.arm.zero.clone(); first.arm.dof()];
+        for (weight, moving) in &self.parts {
+            let mut torques = vec![first.arm.zero.clone(); first.arm.dof()];
+            add(moving, &mut torques);
+            for (total, torque) in total.iter_mut().zip(&torques) {
+                *total = total.plus(&weight.times(torque));
+            }
+        }
+        total
+    }
+
+    /// The torques of the whole arm, without friction.
+    pub fn whole(&self) -> Vec<E> {
+        self.torques(&|moving, torques| torques.clone_from_slice(&moving.torques()))
+    }
+}

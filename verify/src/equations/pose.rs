@@ -1,0 +1,116 @@
+//! Where everything is: frames of joints, links and end effector in the base frame, and the columns of Jacobians.
+
+use super::arm::{Arm, Frame};
+use super::state::State;
+use super::vector::{add, apply, cross, product, sub, transpose, Vector};
+use crate::arithmetic::Element;
+
+/// Frames in the base frame at one state.
+#[derive(Clone, Debug)]
+pub struct Pose<E> {
+    /// Joint frames: origin on the axis, z along it.
+    pub joints: Vec<Frame<E>>,
+    /// Link frames as the description defines them.
+    pub links: Vec<Frame<E>>,
+    /// The end effector.
+    pub tool: Frame<E>,
+    /// For each link the joints that move it, from its own to the base.
+    pub ancestors: Vec<Vec<usize>>,
+    revolute: Vec<bool>,
+    zero: E,
+}
+
+impl<E: Element> Frame<E> {
+    /// The frame `inner`, given in this one, in the frame that this one is given in.
+    pub fn then(&self, inner: &Frame<E>) -> Frame<E> {
+        Frame { rotation: product(&self.rotation, &inner.rotation), origin: self.point(&inner.origin) }
+    }
+
+    /// A point of this frame in the outer one.
+    pub fn point(&self, point: &Vector<E>) -> Vector<E> {
+        add(&apply(&self.rotation, point), &self.origin)
+    }
+
+    /// A direction of this frame in the outer one.
+    pub fn direction(&self, direction: &Vector<E>) -> Vector<E> {
+        apply(&self.rotation, direction)
+    }
+
+    /// A direction of the outer frame in this one.
+    pub fn into_frame(&self, direction: &Vector<E>) -> Vector<E> {
+        apply(&transpose(&self.rotation), direction)
+    }
+
+    /// The third axis.
+    pub fn z(&self) -> Vector<E> {
+        [0, 1, 2].map(|i| self.rotation[i][2].clone())
+    }
+}
+
+impl<E: Element> Pose<E> {
+    /// The pose at a state.
+    pub fn new(arm: &Arm<E>, state: &State<E>) -> Pose<E> {
+        let (zero, one) = (&arm.zero, &arm.one);
+        let mut joints: Vec<Frame<E>> = Vec::new();
+        let mut ancestors: Vec<Vec<usize>> = Vec::new();
+        for (i, joint) in arm.joints.iter().enumerate() {
+            // motion: Rz(q) or Tz(q)
+            let motion = if joint.revolute {
+                let (s, c) = &state.angles[i];
+                let rotation = [
+                    [c.clone(), s.negated(), zero.clone()],
+                    [s.clone(), c.clone(), zero.clone()],
+                    [zero.clone(), zero.clone(), one.clone()],
+                ];
+                Frame { rotation, origin: arm.nothing() }
+            } else {
+                let rotation = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { one.clone() } else { zero.clone() }));
+                Frame { rotation, origin: [zero.clone(), zero.clone(), state.q[i].clone()] }
+            };
+            let moved = joint.placement.then(&motion);
+            let (frame, mut path) = match joint.parent {
+                Some(parent) => (joints[parent].then(&moved), ancestors[parent].clone()),
+                None => (moved, Vec::new()),
+            };
+            joints.push(frame);
+            path.insert(0, i);
+            ancestors.push(path);
+        }
+        let links: Vec<Frame<E>> = joints.iter().zip(&arm.joints).map(|(frame, joint)| frame.then(&joint.link_frame)).collect();
+        let tool = links[arm.tip].then(&arm.tool);
+        Pose { joints, links, tool, ancestors, revolute: arm.joints.iter().map(|j| j.revolute).collect(), zero: zero.clone() }
+    }
+
+    /// The same pose with each link's own frame taken to be its joint frame.
+    pub fn with_links_in_joint_frames(mut self) -> Pose<E> {
+        self.links.clone_from(&self.joints);
+        self
+    }
+
+    /// Linear and angular velocity per unit of each joint's rate, of a point fixed in link `link` (`None`: fixed in the base).
+    pub fn jacobian(&self, link: Option<usize>, point: &Vector<E>) -> Vec<(Vector<E>, Vector<E>)> {
+        let nothing = || [0; 3].map(|_| self.zero.clone());
+        let mut columns = vec![(nothing(), nothing()); self.joints.len()];
+        for &j in link.map_or(&[][..], |link| &self.ancestors[link]) {
+            let z = self.joints[j].z();
+            columns[j] = if self.revolute[j] { (cross(&z, &sub(point, &self.joints[j].origin)), z) } else { (z, nothing()) };
+        }
+        columns
+    }
+
+    /// The geometric Jacobian, row by row: linear, then angular.
+    pub fn geometric_jacobian(&self, tip: usize) -> Vec<E> {
+        let columns = self.jacobian(Some(tip), &self.tool.origin);
+        let linear = (0..3).flat_map(|row| columns.iter().map(move |(v, _)| v[row].clone()));
+        let angular = (0..3).flat_map(|row| columns.iter().map(move |(_, w)| w[row].clone()));
+        linear.chain(angular).collect()
+    }
+
+    /// A frame as a 4 x 4 matrix, row by row.
+    pub fn homogeneous(&self, frame: &Frame<E>, one: &E) -> Vec<E> {
+        let mut entries: Vec<E> =
+            (0..3).flat_map(|row| frame.rotation[row].iter().chain([&frame.origin[row]]).cloned().collect::<Vec<_>>()).collect();
+        entries.extend([self.zero.clone(), self.zero.clone(), self.zero.clone(), one.clone()]);
+        entries
+    }
+}

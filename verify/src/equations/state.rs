@@ -1,0 +1,100 @@
+//! A state: values of all inputs of the equations.
+
+use crate::arithmetic::dual::Dual;
+use crate::arithmetic::{Arithmetic, Element};
+use crate::program::{Argument, Inputs};
+
+/// Values of joint variables, rates, accelerations, references, torques and parameters.
+#[derive(Clone, Debug)]
+pub struct State<E> {
+    /// Sine and cosine of each joint variable. Those of prismatic joints occur in no equation, and no function may use them.
+    pub angles: Vec<(E, E)>,
+    /// Joint variables. Those of revolute joints occur in no equation but through sine and cosine, and no function may use them.
+    pub q: Vec<E>,
+    /// Joint rates.
+    pub dq: Vec<E>,
+    /// Joint accelerations.
+    pub ddq: Vec<E>,
+    /// Reference rates.
+    pub dqr: Vec<E>,
+    /// Reference accelerations.
+    pub ddqr: Vec<E>,
+    /// Joint torques.
+    pub tau: Vec<E>,
+    /// Signs of the joint rates: independent inputs here, as in the equations.
+    pub signs: Vec<E>,
+    /// The parameter vector.
+    pub pi: Vec<E>,
+    /// 0.
+    pub zero: E,
+    /// 1.
+    pub one: E,
+}
+
+impl<E: Element> State<E> {
+    /// A random state; `pi` is filled in by who knows what it means.
+    pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, n: usize) -> State<E> {
+        let mut many = |_| (0..n).map(|_| arithmetic.draw()).collect::<Vec<E>>();
+        let [q, dq, ddq, dqr, ddqr, tau, signs] = [0; 7].map(&mut many);
+        let angles = (0..n).map(|_| arithmetic.draw_angle()).collect();
+        let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, pi: Vec::new(), zero, one }
+    }
+
+    /// This state moving: joint variables with `along` as their rates of change, rates with `rates` as theirs, all else at rest.
+    pub fn moving(&self, along: &[E], rates: &[E]) -> State<Dual<E>> {
+        let still = |v: &[E]| v.iter().map(Dual::constant).collect::<Vec<_>>();
+        let with = |v: &[E], rates: &[E]| {
+            v.iter().zip(rates).map(|(value, rate)| Dual { value: value.clone(), rate: rate.clone() }).collect::<Vec<_>>()
+        };
+        let angles = self.angles.iter().zip(along).map(|((s, c), rate)| {
+            let sine = Dual { value: s.clone(), rate: c.times(rate) };
+            (sine, Dual { value: c.clone(), rate: s.times(rate).negated() })
+        });
+        State {
+            angles: angles.collect(),
+            q: with(&self.q, along),
+            dq: with(&self.dq, rates),
+            ddq: still(&self.ddq),
+            dqr: still(&self.dqr),
+            ddqr: still(&self.ddqr),
+            tau: still(&self.tau),
+            signs: still(&self.signs),
+            pi: still(&self.pi),
+            zero: Dual::constant(&self.zero),
+            one: Dual::constant(&self.one),
+        }
+    }
+}
+
+impl<E: Element> Inputs<E> for State<E> {
+    fn entry(&self, argument: Argument, index: usize) -> E {
+        let values = match argument {
+            Argument::Pi => &self.pi,
+            Argument::Q => &self.q,
+            Argument::Dq => &self.dq,
+            Argument::Ddq => &self.ddq,
+            Argument::Dqr => &self.dqr,
+            Argument::Ddqr => &self.ddqr,
+            Argument::Tau => &self.tau,
+        };
+        values[index].clone()
+    }
+
+    fn sine_cosine(&self, angle: &[(usize, i64)]) -> (E, E) {
+        let mut sum = (self.zero.clone(), self.one.clone());
+        for &(joint, factor) in angle {
+            let (s, c) = &self.angles[joint];
+            let s = if factor < 0 { s.negated() } else { s.clone() };
+            for _ in 0..factor.unsigned_abs() {
+                // sin(a + b), cos(a + b)
+                sum = (sum.0.times(c).plus(&sum.1.times(&s)), sum.1.times(c).minus(&sum.0.times(&s)));
+            }
+        }
+        sum
+    }
+
+    fn sign(&self, joint: usize) -> E {
+        self.signs[joint].clone()
+    }
+}

@@ -1,0 +1,503 @@
+//! Exact constants as plain formulas: `1/2*sqrt(3) - 2*pi`, `0.85*sin(7/10)`.
+//!
+//! The constants of a description and the claimed values of literals both come as such text and take the same way from there: parsed here,
+//! then evaluated in an [`Arithmetic`](crate::arithmetic::Arithmetic) or enclosed to any precision ([`crate::enclosure`]).
+//!
+//! ```text
+//! sum = [-] product { (+|-) product }    product = power { (*|/) power }    power = primary [ ^ integer | ^( integer ) ]
+//! primary = decimal | pi | sqrt(sum) | sin(sum) | cos(sum) | ( sum )
+//! ```
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
+use dashu_int::{IBig, UBig};
+
+use crate::arithmetic::{Arithmetic, Element};
+
+/// An exact fraction.
+pub type Rational = dashu_ratio::RBig;
+
+/// What is not a fraction and has a square that is simpler.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Root {
+    /// The square root of an integer: a prime, or what trial division leaves.
+    Integer(UBig),
+    /// The square root of any other number.
+    Nested(Box<Formula>),
+}
+
+/// An exact constant.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Formula {
+    /// A fraction.
+    Rational(Rational),
+    /// pi.
+    Pi,
+    /// A positive square root.
+    Root(Root),
+    /// The sine of an angle in rad.
+    Sine(Box<Formula>),
+    /// The cosine of an angle in rad.
+    Cosine(Box<Formula>),
+    /// A sum.
+    Sum(Vec<Formula>),
+    /// A product.
+    Product(Vec<Formula>),
+    /// An integer power.
+    Power(Box<Formula>, i32),
+}
+
+/// The roots and angles that occur in formulas; a root stands after those inside it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Atoms {
+    /// Roots.
+    pub roots: Vec<Root>,
+    /// Angles of sines and cosines.
+    pub angles: BTreeSet<Formula>,
+}
+
+const LONGEST: usize = 200_000;
+const DEEPEST: usize = 64;
+const LARGEST_POWER: i32 = 400;
+const TRIAL_DIVISION: u32 = 10_000;
+
+impl Formula {
+    /// Reads a formula.
+    pub fn parse(text: &str) -> Result<Formula, String> {
+        if text.len() > LONGEST {
+            return Err(format!("a formula of {} characters is longer than any constant of a robot", text.len()));
+        }
+        let mut parser = Parser { rest: text, depth: 0 };
+        let formula = parser.sum()?;
+        parser.skip();
+        if parser.rest.is_empty() {
+            Ok(formula)
+        } else {
+            Err(format!("`{}` is not part of a formula", parser.rest.chars().take(20).collect::<String>()))
+        }
+    }
+
+    /// The fraction, if this is one.
+    pub fn as_rational(&self) -> Option<&Rational> {
+        match self {
+            Formula::Rational(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    /// The value where fractions, roots, pi and angles (sine, cosine) have the values given; `None` where one has none, or for a division by 0.
+    pub fn evaluate<E: Element>(
+        &self,
+        rational: &dyn Fn(&Rational) -> Option<E>,
+        root: &dyn Fn(&Root) -> Option<E>,
+        pi: &dyn Fn() -> Option<E>,
+        angle: &dyn Fn(&Formula) -> Option<(E, E)>,
+    ) -> Option<E> {
+        let of = |formula: &Formula| formula.evaluate(rational, root, pi, angle);
+        match self {
+            Formula::Rational(value) => rational(value),
+            Formula::Pi => pi(),
+            Formula::Root(inner) => root(inner),
+            Formula::Sine(inner) => Some(angle(inner)?.0),
+            Formula::Cosine(inner) => Some(angle(inner)?.1),
+            Formula::Sum(terms) => {
+                let (first, rest) = terms.split_first()?;
+                rest.iter().try_fold(of(first)?, |sum, term| Some(sum.plus(&of(term)?)))
+            }
+            Formula::Product(factors) => {
+                let (first, rest) = factors.split_first()?;
+                rest.iter().try_fold(of(first)?, |product, factor| Some(product.times(&of(factor)?)))
+            }
+            Formula::Power(base, exponent) => {
+                let base = of(base)?;
+                let one = rational(&Rational::ONE)?;
+                let power = (0..exponent.unsigned_abs()).fold(one, |power, _| power.times(&base));
+                if *exponent < 0 {
+                    power.inverse()
+                } else {
+                    Some(power)
+                }
+            }
+        }
+    }
+
+    /// The product, fractions taken together in front.
+    fn by(self, other: Formula) -> Formula {
+        let mut scale = Rational::ONE;
+        let mut factors = Vec::new();
+        for formula in [self, other] {
+            let parts = if let Formula::Product(parts) = formula { parts } else { vec![formula] };
+            for part in parts {
+                match part {
+                    Formula::Rational(value) => scale *= value,
+                    other => factors.push(other),
+                }
+            }
+        }
+        if scale.is_zero() || factors.is_empty() {
+            return Formula::Rational(scale);
+        }
+        if !scale.is_one() {
+            factors.insert(0, Formula::Rational(scale));
+        }
+        if factors.len() == 1 {
+            factors.remove(0)
+        } else {
+            Formula::Product(factors)
+        }
+    }
+
+    /// Whether it is written with a minus sign in front.
+    fn leads_negative(&self) -> bool {
+        match self {
+            Formula::Rational(value) => value.is_negative(),
+            Formula::Product(factors) => matches!(factors.first(), Some(Formula::Rational(value)) if value.is_negative()),
+            _ => false,
+        }
+    }
+
+    fn collect(&self, atoms: &mut Atoms) {
+        match self {
+            Formula::Rational(_) | Formula::Pi => {}
+            Formula::Root(root) => {
+                if let Root::Nested(inner) = root {
+                    inner.collect(atoms);
+                }
+                if !atoms.roots.contains(root) {
+                    atoms.roots.push(root.clone());
+                }
+            }
+            Formula::Sine(angle) | Formula::Cosine(angle) => {
+                atoms.angles.insert((**angle).clone());
+            }
+            Formula::Sum(parts) | Formula::Product(parts) => parts.iter().for_each(|part| part.collect(atoms)),
+            Formula::Power(base, _) => base.collect(atoms),
+        }
+    }
+}
+
+/// Formulas calculate with themselves: what arises is the formula of the result.
+impl Element for Formula {
+    fn plus(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Formula::Rational(a), Formula::Rational(b)) => Formula::Rational(a + b),
+            (zero, other) if zero.is_zero() => other.clone(),
+            (other, zero) if zero.is_zero() => other.clone(),
+            (Formula::Sum(terms), other) => Formula::Sum([terms.as_slice(), std::slice::from_ref(other)].concat()),
+            (a, b) => Formula::Sum(vec![a.clone(), b.clone()]),
+        }
+    }
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
+    fn times(&self, other: &Self) -> Self {
+        self.clone().by(other.clone())
+    }
+    fn negated(&self) -> Self {
+        Formula::Rational(Rational::from(-1)).by(self.clone())
+    }
+    fn inverse(&self) -> Option<Self> {
+        match self {
+            Formula::Rational(value) if value.is_zero() => None,
+            Formula::Rational(value) => Some(Formula::Rational(Rational::ONE / value)),
+            other => Some(Formula::Power(Box::new(other.clone()), -1)),
+        }
+    }
+    fn is_zero(&self) -> bool {
+        self.as_rational().is_some_and(Rational::is_zero)
+    }
+}
+
+/// Formulas as an arithmetic: the constants of an arm with nothing put in for them.
+#[derive(Clone, Copy, Debug)]
+pub struct Plain;
+
+impl Arithmetic for Plain {
+    type Element = Formula;
+
+    fn integer(&self, value: i64) -> Formula {
+        Formula::Rational(Rational::from(value))
+    }
+
+    fn constant(&self, formula: &Formula) -> Option<Formula> {
+        Some(formula.clone())
+    }
+
+    /// There is nothing random among formulas: a fixed number stands for it.
+    fn draw(&mut self) -> Formula {
+        self.integer(1)
+    }
+}
+
+impl fmt::Display for Formula {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Formula::Rational(value) => write!(f, "{value}"),
+            Formula::Pi => f.write_str("pi"),
+            Formula::Root(Root::Integer(n)) => write!(f, "sqrt({n})"),
+            Formula::Root(Root::Nested(inner)) => write!(f, "sqrt({inner})"),
+            Formula::Sine(angle) => write!(f, "sin({angle})"),
+            Formula::Cosine(angle) => write!(f, "cos({angle})"),
+            Formula::Sum(terms) => {
+                for (i, term) in terms.iter().enumerate() {
+                    match (i, term.leads_negative()) {
+                        (0, _) => write!(f, "{term}")?,
+                        (_, false) => write!(f, " + {term}")?,
+                        (_, true) => write!(f, " - {}", term.negated())?,
+                    }
+                }
+                Ok(())
+            }
+            Formula::Product(factors) => {
+                for (i, factor) in factors.iter().enumerate() {
+                    let times = if i > 0 { "*" } else { "" };
+                    match factor {
+                        Formula::Sum(_) => write!(f, "{times}({factor})")?,
+                        factor => write!(f, "{times}{factor}")?,
+                    }
+                }
+                Ok(())
+            }
+            Formula::Power(base, exponent) => write!(f, "({base})^({exponent})"),
+        }
+    }
+}
+
+impl Atoms {
+    /// The roots and angles of some formulas.
+    pub fn of<'a>(formulas: impl IntoIterator<Item = &'a Formula>) -> Atoms {
+        let mut atoms = Atoms::default();
+        formulas.into_iter().for_each(|formula| formula.collect(&mut atoms));
+        atoms
+    }
+}
+
+/// The square root of a fraction: sqrt(p/q) = sqrt(p q)/q with the squares taken out.
+fn root_of_rational(value: &Rational) -> Result<Formula, String> {
+    if value.is_negative() {
+        return Err(format!("the square root of {value} is not a number"));
+    }
+    if value.is_zero() {
+        return Ok(Formula::Rational(Rational::ZERO));
+    }
+    let denominator = value.denominator().clone();
+    let mut rest = value.numerator().unsigned_abs() * &denominator;
+    let mut whole = UBig::ONE;
+    let mut roots = Vec::new();
+    let mut divisor = 2u32;
+    while divisor <= TRIAL_DIVISION && UBig::from(divisor) * divisor <= rest {
+        let prime = UBig::from(divisor);
+        while (&rest % (&prime * &prime)).is_zero() {
+            rest /= &prime * &prime;
+            whole *= &prime;
+        }
+        if (&rest % &prime).is_zero() {
+            rest /= &prime;
+            roots.push(prime);
+        }
+        divisor += if divisor == 2 { 1 } else { 2 };
+    }
+    let root = rest.sqrt();
+    if &root * &root == rest {
+        whole *= root;
+    } else {
+        roots.push(rest);
+    }
+    let scale = Formula::Rational(Rational::from_parts(IBig::from(whole), denominator));
+    Ok(roots.into_iter().fold(scale, |product, n| product.by(Formula::Root(Root::Integer(n)))))
+}
+
+struct Parser<'a> {
+    rest: &'a str,
+    depth: usize,
+}
+
+impl Parser<'_> {
+    fn skip(&mut self) {
+        self.rest = self.rest.trim_start();
+    }
+
+    fn take(&mut self, symbol: char) -> bool {
+        self.skip();
+        match self.rest.strip_prefix(symbol) {
+            Some(rest) => {
+                self.rest = rest;
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn expect(&mut self, symbol: char) -> Result<(), String> {
+        if self.take(symbol) {
+            Ok(())
+        } else {
+            Err(format!("expected `{symbol}` before `{}`", self.rest.chars().take(20).collect::<String>()))
+        }
+    }
+
+    fn sum(&mut self) -> Result<Formula, String> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(format!("a formula nested more than {DEEPEST} deep"));
+        }
+        let negative = self.take('-');
+        let first = self.product()?;
+        let mut terms = vec![if negative { first.negated() } else { first }];
+        loop {
+            if self.take('+') {
+                terms.push(self.product()?);
+            } else if self.take('-') {
+                terms.push(self.product()?.negated());
+            } else {
+                break;
+            }
+        }
+        self.depth -= 1;
+        if let Some(sum) = terms.iter().map(Formula::as_rational).try_fold(Rational::ZERO, |sum, r| Some(sum + r?)) {
+            return Ok(Formula::Rational(sum));
+        }
+        Ok(if terms.len() == 1 { terms.remove(0) } else { Formula::Sum(terms) })
+    }
+
+    fn product(&mut self) -> Result<Formula, String> {
+        let mut product = self.power()?;
+        loop {
+            if self.take('*') {
+                product = product.by(self.power()?);
+            } else if self.take('/') {
+                product = match self.power()? {
+                    Formula::Rational(r) if r.is_zero() => return Err("a division by zero".into()),
+                    Formula::Rational(r) => product.by(Formula::Rational(Rational::ONE / r)),
+                    divisor => product.by(Formula::Power(Box::new(divisor), -1)),
+                };
+            } else {
+                return Ok(product);
+            }
+        }
+    }
+
+    fn power(&mut self) -> Result<Formula, String> {
+        let base = self.primary()?;
+        if !self.take('^') {
+            return Ok(base);
+        }
+        let parenthesis = self.take('(');
+        let negative = self.take('-');
+        let size: i32 = self.digits().parse().map_err(|_| "an exponent is a small integer".to_string())?;
+        if parenthesis {
+            self.expect(')')?;
+        }
+        if size > LARGEST_POWER {
+            return Err(format!("an exponent of {size}"));
+        }
+        Ok(Formula::Power(Box::new(base), if negative { -size } else { size }))
+    }
+
+    fn digits(&mut self) -> String {
+        self.skip();
+        let end = self.rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(self.rest.len());
+        let (digits, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        digits.into()
+    }
+
+    fn primary(&mut self) -> Result<Formula, String> {
+        self.skip();
+        if self.take('(') {
+            let inner = self.sum()?;
+            self.expect(')')?;
+            return Ok(inner);
+        }
+        if self.rest.starts_with(|c: char| c.is_ascii_digit()) {
+            return self.decimal();
+        }
+        let end = self.rest.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        if word == "pi" {
+            return Ok(Formula::Pi);
+        }
+        if !["sqrt", "sin", "cos"].contains(&word) {
+            return Err(format!("`{word}` where a number, pi, sqrt, sin or cos can stand"));
+        }
+        self.expect('(')?;
+        let inner = self.sum()?;
+        self.expect(')')?;
+        Ok(match (word, inner) {
+            ("sqrt", Formula::Rational(value)) => root_of_rational(&value)?,
+            ("sqrt", inner) => Formula::Root(Root::Nested(Box::new(inner))),
+            ("sin", inner) => Formula::Sine(Box::new(inner)),
+            (_, inner) => Formula::Cosine(Box::new(inner)),
+        })
+    }
+
+    fn decimal(&mut self) -> Result<Formula, String> {
+        let mut digits = self.digits();
+        let mut scale = 0i32;
+        if self.rest.starts_with('.') {
+            self.rest = &self.rest[1..];
+            let fraction = self.digits();
+            scale -= fraction.len() as i32;
+            digits += &fraction;
+        }
+        if self.rest.starts_with(['e', 'E']) {
+            self.rest = &self.rest[1..];
+            let negative = self.take('-');
+            if !negative {
+                self.take('+');
+            }
+            let exponent: i32 = self.digits().parse().ok().filter(|&e| e <= 400).ok_or("an exponent beyond every float")?;
+            scale += if negative { -exponent } else { exponent };
+        }
+        let size: UBig = digits.parse().map_err(|_| "digits expected".to_string())?;
+        let power = UBig::from(10u8).pow(scale.unsigned_abs() as usize);
+        let value = if scale < 0 { Rational::from_parts(IBig::from(size), power) } else { Rational::from(size * power) };
+        debug_assert!(value == value.clone().abs());
+        Ok(Formula::Rational(value))
+    }
+}
+
+/// The exact value of a decimal literal as it stands in the text.
+pub fn decimal(text: &str) -> Result<Formula, String> {
+    let mut parser = Parser { rest: text, depth: 0 };
+    let value = parser.decimal()?;
+    if parser.rest.is_empty() {
+        Ok(value)
+    } else {
+        Err(format!("`{text}` is not a decimal number"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_roots_take_one_form() {
+        let parse = |text: &str| Formula::parse(text).expect("a formula");
+        assert_eq!(parse("1/2 - 0.25"), parse("25e-2"));
+        assert_eq!(parse("sqrt(4/9)"), parse("2/3"));
+        assert_eq!(parse("sqrt(8)"), parse("2*sqrt(2)"));
+        assert_eq!(parse("-sqrt(2)"), parse("1/2*sqrt(2)*(-2)"));
+        for text in ["-1/2*sqrt(3) - pi*(1/(1 + sqrt(2)))", "sqrt(5 - sqrt(3))^3 - 2*cos(7/10)", "2*(pi - 3)", "-(1 - pi)"] {
+            let once = parse(text);
+            assert_eq!(parse(&once.to_string()), once, "{text} is printed as {once}");
+        }
+        for wrong in ["", "1 +", "2 * x", "sqrt(-1)", "1/0", "(1", "1)", "2^999", "1e500"] {
+            assert!(Formula::parse(wrong).is_err(), "{wrong}");
+        }
+        assert!(Formula::parse(&"(".repeat(100)).is_err());
+    }
+
+    #[test]
+    fn atoms_come_before_what_holds_them() {
+        let formula = Formula::parse("sqrt(2 + sqrt(3)) + cos(7/10)*sqrt(5)").expect("a formula");
+        let atoms = Atoms::of([&formula]);
+        assert_eq!(atoms.roots.len(), 3);
+        assert_eq!(atoms.roots[0], Root::Integer(UBig::from(3u8)));
+        assert_eq!(atoms.angles.len(), 1);
+    }
+}

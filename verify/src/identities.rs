@@ -1,0 +1,180 @@
+//! Identities among the functions of a module, with no equation of the checker's own in between: the emitted functions themselves are run in
+//! dual numbers where a derivative is needed.
+
+use crate::arithmetic::dual::Dual;
+use crate::arithmetic::prime::{Prime, Residue};
+use crate::arithmetic::Element;
+use crate::checker::{with_parameters, Checker, Point};
+use crate::contract::PROMISES;
+use crate::equations::parameters::Vector;
+use crate::equations::state::State;
+use crate::formula::Formula;
+use crate::program::Program;
+use crate::reader::Module;
+use crate::report::{FunctionReport, IdentityReport};
+
+/// The functions of a module with the exact values of their literals, at one point.
+struct Running<'a> {
+    module: &'a Module,
+    reports: &'a [FunctionReport],
+    point: &'a Point<Prime>,
+    nominal: &'a [Formula],
+}
+
+type Entries = Vec<Residue>;
+type Moving = Dual<Residue>;
+
+impl Running<'_> {
+    fn program(&self, name: &str) -> Result<(&Program, Entries), String> {
+        let missing = || format!("`{name}` could not be read");
+        let program = self.module.program(name).ok_or_else(missing)?;
+        let report = self.reports.iter().find(|r| r.name == name).ok_or_else(missing)?;
+        let formulas: Vec<Formula> = report.literals.iter().map(|literal| literal.value.clone()).collect();
+        let literals = self.point.literals(&formulas).ok_or_else(missing)?;
+        if literals.len() != program.literals.len() {
+            return Err(missing());
+        }
+        Ok((program, literals))
+    }
+
+    fn run(&self, name: &str, state: &State<Residue>) -> Result<Entries, String> {
+        let (program, literals) = self.program(name)?;
+        let entries: Option<Entries> = program.run(state, &literals).into_iter().collect();
+        entries.ok_or(format!("`{name}` divides by zero"))
+    }
+
+    /// The rates of change of a function's entries.
+    fn rates(&self, name: &str, state: &State<Moving>) -> Result<Entries, String> {
+        let (program, literals) = self.program(name)?;
+        let literals: Vec<Moving> = literals.iter().map(Dual::constant).collect();
+        let entries: Option<Entries> = program.run(state, &literals).into_iter().map(|e| Some(e?.rate)).collect();
+        entries.ok_or(format!("`{name}` divides by zero"))
+    }
+
+    fn state(&self) -> &State<Residue> {
+        &self.point.reference.state
+    }
+
+    fn nominal(&self) -> Result<Entries, String> {
+        self.point.literals(self.nominal).ok_or("the nominal parameters are not known".into())
+    }
+}
+
+fn dot(a: &[Residue], b: &[Residue]) -> Residue {
+    a.iter().zip(b).map(|(a, b)| a.times(b)).reduce(|a, b| a.plus(&b)).expect("at least one joint")
+}
+
+fn rows(m: &[Residue], v: &[Residue]) -> Entries {
+    m.chunks(v.len()).map(|row| dot(row, v)).collect()
+}
+
+fn sum(a: &[Residue], b: &[Residue]) -> Entries {
+    a.iter().zip(b).map(|(a, b)| a.plus(b)).collect()
+}
+
+type Identity = (&'static str, fn(&Running<'_>) -> Result<bool, String>);
+
+const IDENTITIES: [Identity; 9] = [
+    ("B = B'", |run| {
+        let b = run.run("inertia_matrix", run.state())?;
+        let n = run.state().q.len();
+        Ok((0..n).all(|i| (0..n).all(|j| b[i * n + j] == b[j * n + i])))
+    }),
+    ("dB/dt - 2C = -(dB/dt - 2C)'", |run| {
+        let state = run.state();
+        let n = state.q.len();
+        let moving = state.moving(&state.dq, &state.ddq);
+        let (rate, c) = (run.rates("inertia_matrix", &moving)?, run.run("coriolis_matrix", state)?);
+        let skew: Entries = rate.iter().zip(&c).map(|(b, c)| b.minus(&c.plus(c))).collect();
+        Ok((0..n).all(|i| (0..n).all(|j| skew[i * n + j].plus(&skew[j * n + i]).is_zero())))
+    }),
+    ("Y pi + tau_known = tau", |run| {
+        let mut state = run.state().clone();
+        state.dqr.clone_from(&state.dq);
+        state.ddqr.clone_from(&state.ddq);
+        let (y, known) = (run.run("regressor", &state)?, run.run("known_torque", &state)?);
+        let nominal = run.nominal()?;
+        let tau = run.run("inverse_dynamics", &state)?;
+        Ok(nominal.is_empty() && known == tau || !nominal.is_empty() && sum(&rows(&y, &nominal), &known) == tau)
+    }),
+    ("g = dU/dq", |run| {
+        let state = run.state();
+        let g = run.run("gravity", state)?;
+        for (k, g) in g.iter().enumerate() {
+            let mut along = vec![state.zero; state.q.len()];
+            along[k] = state.one;
+            let moving = state.moving(&along, &vec![state.zero; state.q.len()]);
+            if run.rates("potential_energy", &moving)?[0] != *g {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }),
+    ("T = 1/2 dq'B dq", |run| {
+        let state = run.state();
+        let (t, b) = (run.run("kinetic_energy", state)?[0], run.run("inertia_matrix", state)?);
+        Ok(t.plus(&t) == dot(&rows(&b, &state.dq), &state.dq))
+    }),
+    ("d(T + U)/dt = dq'(tau - F)", |run| {
+        let state = run.state();
+        let moving = state.moving(&state.dq, &state.ddq);
+        let power = run.rates("kinetic_energy", &moving)?[0].plus(&run.rates("potential_energy", &moving)?[0]);
+        let (tau, f) = (run.run("inverse_dynamics", state)?, run.run("friction", state)?);
+        let net: Entries = tau.iter().zip(&f).map(|(tau, f)| tau.minus(f)).collect();
+        Ok(power == dot(&net, &state.dq))
+    }),
+    ("forward dynamics inverts inverse dynamics", |run| {
+        let mut state = run.state().clone();
+        state.tau = run.run("inverse_dynamics", &state)?;
+        Ok(run.run("forward_dynamics", &state)? == state.ddq)
+    }),
+    ("dJ/dt is the rate of J along dq", |run| {
+        let state = run.state();
+        let moving = state.moving(&state.dq, &state.ddq);
+        Ok(run.rates("geometric_jacobian", &moving)? == run.run("geometric_jacobian_dot", state)?)
+    }),
+    ("equations_of_motion = (B, C, g)", |run| {
+        let state = run.state();
+        let parts = ["inertia_matrix", "coriolis_matrix", "gravity"].map(|name| run.run(name, state));
+        let [b, c, g] = parts;
+        Ok(run.run("equations_of_motion", state)? == [b?, c?, g?].concat())
+    }),
+];
+
+/// All identities of a module whose functions have been read and whose literals are known.
+pub fn check(checker: &Checker, module: &Module, reports: &[FunctionReport], nominal: &[Formula]) -> Vec<IdentityReport> {
+    let over_points = |holds: &dyn Fn(&Running<'_>) -> Result<bool, String>| {
+        for point in checker.points() {
+            if !holds(&Running { module, reports, point, nominal })? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    };
+    let points = checker.points().len();
+    let mut identities: Vec<IdentityReport> = IDENTITIES
+        .iter()
+        .map(|(name, holds)| IdentityReport { name: (*name).into(), holds: over_points(holds), points })
+        .collect();
+    let base = matches!(checker.vector(), Vector::Base(..));
+    let at_nominal = |run: &Running<'_>| -> Result<bool, String> {
+        let state = with_parameters(run.state(), run.nominal()?);
+        for promise in PROMISES.iter().filter(|p| p.parameters && !(base && p.name == "potential_energy")) {
+            if run.run(promise.name, &state)? != run.run(&format!("{}_with", promise.name), &state)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    };
+    identities.push(IdentityReport {
+        name: "functions at run-time parameters, at the nominal ones, are the plain functions".into(),
+        holds: over_points(&at_nominal),
+        points,
+    });
+    identities.push(IdentityReport {
+        name: "the checker's equations after Lagrange and after Newton and Euler agree".into(),
+        holds: Ok(checker.derivations_agree()),
+        points,
+    });
+    identities
+}

@@ -1,0 +1,155 @@
+//! Whether an emitted module is right: a certificate that its text equals the equations of its description.
+//!
+//! ```text
+//! text of the module   -> reader    -> constants and straight-line programs
+//! text of robot.yaml   -> Manipulator -> equations, the plain way, at random points
+//! programs at these points = equations there, exactly; every literal the float nearest to the exact value it is run with
+//! ```
+//!
+//! Shared with the generator is the reading of robot.yaml into a [`Manipulator`](armgen_codegen::manipulator::Manipulator), its numbers taken
+//! over as text ([`formula`]), and nothing after it: no expression, no field, no derivation, no optimiser, no emitter. The exact values of
+//! literals come from the generator or from a certificate, and need no trust ([`claims`]).
+//!
+//! ```no_run
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use armgen_codegen::source::Source;
+//! let source = Source::new("robot.yaml", std::fs::read_to_string("robot.yaml")?);
+//! let report = armgen_verify::verify(&source, &std::fs::read_to_string("robot.rs")?, None);
+//! println!("{report}");
+//! std::fs::write("robot.cert.json", armgen_verify::certificate::Certificate::of(&report).to_json())?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! What is not covered: that the compiler and libm do what they promise, the size of rounding errors, and documentation comments.
+
+pub mod arithmetic;
+pub mod certificate;
+pub mod checker;
+pub mod claims;
+pub mod constants;
+pub mod contract;
+pub mod enclosure;
+pub mod equations;
+pub mod formula;
+pub mod identities;
+pub mod program;
+pub mod reader;
+pub mod reference;
+pub mod report;
+
+use armgen_codegen::manipulator::{self, Manipulator, Scalar};
+use armgen_codegen::source::Source;
+use armgen_codegen::Generated;
+use sha2::{Digest, Sha256};
+
+use certificate::Certificate;
+use checker::{Checker, Effort};
+use claims::Claims;
+use contract::Promise;
+use enclosure::Float;
+use equations::parameters::Vector;
+use formula::Formula;
+use reader::Module;
+use report::{Report, Verdict};
+
+/// SHA-256 of a text, hexadecimal.
+pub fn hash(text: &str) -> String {
+    Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// A seed that follows from both texts: random points that neither can have been written for.
+fn seed(input: &str, output: &str) -> u64 {
+    u64::from_str_radix(&hash(&format!("{input} {output}"))[..16], 16).unwrap_or(0)
+}
+
+/// The module read and the equations at random points, ready to be compared.
+pub struct Prepared {
+    /// The module.
+    pub module: Module,
+    /// The equations.
+    pub checker: Checker,
+}
+
+/// Reads a module and prepares the equations of its arm.
+pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Effort) -> Result<Prepared, String> {
+    let module = Module::read(text)?;
+    let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
+    let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
+    let checker = Checker::new(manipulator, vector, claims, effort, extras)?;
+    Ok(Prepared { module, checker })
+}
+
+/// Verifies the text of a module against the text of its description.
+///
+/// The exact values of literals come from `certificate` or, without one, from a run of the generator; neither is trusted. A certificate of
+/// other texts is a fault. Faults of the description are rendered into [`Report::faults`].
+pub fn verify(source: &Source, text: &str, certificate: Option<&Certificate>) -> Report {
+    let claims = match certificate {
+        Some(certificate) => certificate.claims(),
+        None => Ok(generated_claims(source, text)),
+    };
+    let mut report = match claims {
+        Ok(claims) => verify_with(source, text, claims, Effort::default()),
+        Err(fault) => Report { faults: vec![fault], ..Report::of(hash(source.text()), hash(text)) },
+    };
+    if let Some(certificate) = certificate {
+        if certificate.input.sha256 != report.input {
+            report.faults.push("the certificate is of another description: its hash of the input differs".into());
+        }
+        if certificate.output.sha256 != report.output {
+            report.faults.push("the certificate is of another module: its hash of the output differs".into());
+        }
+    }
+    report
+}
+
+/// Verifies what the generator has just made from a description.
+pub fn certify(source: &Source, generated: &Generated) -> Report {
+    verify_with(source, &generated.module, Claims::from_numbers(&generated.constants), Effort::default())
+}
+
+/// The constants of the generator for the scalar of a text.
+fn generated_claims(source: &Source, text: &str) -> Claims {
+    let scalar = match Module::read(text) {
+        Ok(Module { real: Float::F32, .. }) => Scalar::F32,
+        Ok(_) => Scalar::F64,
+        Err(_) => return Claims::none(),
+    };
+    // Whatever else the text was generated with, a constant has its exact value all the same.
+    #[allow(clippy::needless_update)]
+    let options = armgen_codegen::program::Options { scalar, ..Default::default() };
+    let (generated, _) = armgen_codegen::generate(source, &options);
+    generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
+}
+
+/// Verifies with chosen claims and effort.
+pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) -> Report {
+    let mut report = Report::of(hash(source.text()), hash(text));
+    let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
+    let Some((manipulator, _)) = read else {
+        report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
+        return report;
+    };
+    report.robot.clone_from(&manipulator.name);
+    let effort = Effort { seed: effort.seed ^ seed(&report.input, &report.output), ..effort };
+    match prepare(manipulator, text, claims, effort) {
+        Ok(prepared) => fill(&mut report, &prepared),
+        Err(fault) => report.faults.push(fault),
+    }
+    report
+}
+
+fn fill(report: &mut Report, prepared: &Prepared) {
+    let Prepared { module, checker } = prepared;
+    report.scalar = match module.real {
+        Float::F64 => "f64".into(),
+        Float::F32 => "f32".into(),
+    };
+    let nominal = constants::nominal_parameters(checker.manipulator(), checker.vector(), checker.claims(), module);
+    let nominal: Vec<Formula> = nominal.unwrap_or_default();
+    report.constants = constants::check(checker, module, &nominal);
+    report.functions = checker.functions(module);
+    report.identities = identities::check(checker, module, &report.functions, &nominal);
+    debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
+}

@@ -1,0 +1,159 @@
+//! Straight-line programs as read from an emitted module, and their execution in any numbers.
+
+use std::fmt;
+
+use crate::arithmetic::Element;
+
+/// Arguments of emitted functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Argument {
+    /// The parameter vector.
+    Pi,
+    /// Joint variables.
+    Q,
+    /// Joint rates.
+    Dq,
+    /// Joint accelerations.
+    Ddq,
+    /// Reference rates.
+    Dqr,
+    /// Reference accelerations.
+    Ddqr,
+    /// Joint torques.
+    Tau,
+}
+
+impl Argument {
+    /// The argument of this name.
+    pub fn named(name: &str) -> Option<Argument> {
+        Some(match name {
+            "pi" => Argument::Pi,
+            "q" => Argument::Q,
+            "dq" => Argument::Dq,
+            "ddq" => Argument::Ddq,
+            "dqr" => Argument::Dqr,
+            "ddqr" => Argument::Ddqr,
+            "tau" => Argument::Tau,
+            _ => return None,
+        })
+    }
+}
+
+/// One step; operands are the numbers of earlier steps.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// An entry of an argument.
+    Input(Argument, usize),
+    /// A literal, by its number in the function's text.
+    Literal(usize),
+    /// Sine of an integer combination of joint variables.
+    Sine(Vec<(usize, i64)>),
+    /// Cosine of one.
+    Cosine(Vec<(usize, i64)>),
+    /// Sign of a joint rate.
+    Sign(usize),
+    /// -a
+    Negate(usize),
+    /// a + b
+    Add(usize, usize),
+    /// a - b
+    Subtract(usize, usize),
+    /// a b
+    Multiply(usize, usize),
+    /// a / b
+    Divide(usize, usize),
+}
+
+/// A literal in the text: digits without a sign.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Literal {
+    /// Its digits as they stand.
+    pub text: String,
+    /// What they read as in the module's scalar.
+    pub value: f64,
+}
+
+/// An entry of a result: where it stands and which step it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// `[0][1]`, `.inertia[0][1]`, or nothing for a scalar.
+    pub place: String,
+    /// The step.
+    pub step: usize,
+}
+
+/// A function of the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// Its name.
+    pub name: String,
+    /// Arguments in order.
+    pub arguments: Vec<Argument>,
+    /// Steps in order.
+    pub steps: Vec<Step>,
+    /// Literals in the order of the text.
+    pub literals: Vec<Literal>,
+    /// Entries of the result, row by row.
+    pub outputs: Vec<Output>,
+}
+
+impl fmt::Display for Output {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.place)
+    }
+}
+
+/// Values of the inputs of a program.
+pub trait Inputs<E> {
+    /// An entry of an argument.
+    fn entry(&self, argument: Argument, index: usize) -> E;
+    /// Sine and cosine of an integer combination of joint variables.
+    fn sine_cosine(&self, angle: &[(usize, i64)]) -> (E, E);
+    /// Sign of a joint rate.
+    fn sign(&self, joint: usize) -> E;
+}
+
+impl Program {
+    /// The entries of the result; `None` for those that divide by 0.
+    pub fn run<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
+        let values = self.values(inputs, literals);
+        self.outputs.iter().map(|output| values[output.step].clone()).collect()
+    }
+
+    /// The value of every step.
+    pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
+        let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());
+        for step in &self.steps {
+            let of = |i: &usize| values[*i].as_ref();
+            let both = |a: &usize, b: &usize| Some((values[*a].as_ref()?, values[*b].as_ref()?));
+            let value = match step {
+                Step::Input(argument, index) => Some(inputs.entry(*argument, *index)),
+                Step::Literal(index) => Some(literals[*index].clone()),
+                Step::Sine(angle) => Some(inputs.sine_cosine(angle).0),
+                Step::Cosine(angle) => Some(inputs.sine_cosine(angle).1),
+                Step::Sign(joint) => Some(inputs.sign(*joint)),
+                Step::Negate(a) => of(a).map(Element::negated),
+                Step::Add(a, b) => both(a, b).map(|(a, b)| a.plus(b)),
+                Step::Subtract(a, b) => both(a, b).map(|(a, b)| a.minus(b)),
+                Step::Multiply(a, b) => both(a, b).map(|(a, b)| a.times(b)),
+                Step::Divide(a, b) => both(a, b).and_then(|(a, b)| a.over(b)),
+            };
+            values.push(value);
+        }
+        values
+    }
+
+    /// The entries that a literal takes part in.
+    pub fn entries_with(&self, literal: usize) -> impl Iterator<Item = usize> + '_ {
+        let mut touched = vec![false; self.steps.len()];
+        for (i, step) in self.steps.iter().enumerate() {
+            touched[i] = match step {
+                Step::Literal(index) => *index == literal,
+                Step::Negate(a) => touched[*a],
+                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => touched[*a] || touched[*b],
+                Step::Input(..) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => false,
+            };
+        }
+        (0..self.outputs.len()).filter(move |&i| touched[self.outputs[i].step])
+    }
+}

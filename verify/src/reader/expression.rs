@@ -1,0 +1,277 @@
+//! From the body of a function to its steps.
+
+use std::collections::BTreeMap;
+
+use syn::{BinOp, Block, Expr, ItemFn, Lit, Member, Pat, Stmt, UnOp};
+
+use super::{constant, harmless, signature, text};
+use crate::enclosure::Float;
+use crate::program::{Argument, Literal, Output, Program, Step};
+
+/// A value while reading: a step, or several.
+#[derive(Clone, Debug)]
+enum Value {
+    /// An entry.
+    Step(usize),
+    /// A whole argument.
+    Argument(Argument),
+    /// An array or a tuple, by its opening bracket.
+    List(char, Vec<Value>),
+    /// A struct.
+    Struct(Vec<(String, Value)>),
+}
+
+type Scope = BTreeMap<String, Value>;
+
+struct Compiler<'a> {
+    private: &'a BTreeMap<String, &'a ItemFn>,
+    real: Float,
+    steps: Vec<Step>,
+    literals: Vec<Literal>,
+    calls: Vec<String>,
+}
+
+const MOST_STEPS: usize = 4_000_000;
+
+/// Reads a public function.
+pub(super) fn compile(
+    function: &ItemFn,
+    arguments: &[(String, String)],
+    private: &BTreeMap<String, &ItemFn>,
+    real: Float,
+) -> Result<Program, String> {
+    let mut compiler = Compiler { private, real, steps: Vec::new(), literals: Vec::new(), calls: Vec::new() };
+    let mut scope = Scope::new();
+    let mut known = Vec::new();
+    for (name, _) in arguments {
+        let argument = Argument::named(name).ok_or(format!("argument `{name}` is not one that emitted functions have"))?;
+        known.push(argument);
+        scope.insert(name.clone(), Value::Argument(argument));
+    }
+    let result = compiler.block(&function.block, scope)?;
+    let mut outputs = Vec::new();
+    flatten(&result, String::new(), &mut outputs)?;
+    let name = function.sig.ident.to_string();
+    Ok(Program { name, arguments: known, steps: compiler.steps, literals: compiler.literals, outputs })
+}
+
+fn flatten(value: &Value, place: String, outputs: &mut Vec<Output>) -> Result<(), String> {
+    match value {
+        Value::Step(step) => outputs.push(Output { place, step: *step }),
+        Value::Argument(_) => return Err("an argument is returned whole".into()),
+        Value::List('(', values) => {
+            for (i, value) in values.iter().enumerate() {
+                flatten(value, format!("{place}.{i}"), outputs)?;
+            }
+        }
+        Value::List(_, values) => {
+            for (i, value) in values.iter().enumerate() {
+                flatten(value, format!("{place}[{i}]"), outputs)?;
+            }
+        }
+        Value::Struct(fields) => {
+            for (name, value) in fields {
+                flatten(value, format!("{place}.{name}"), outputs)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Compiler<'_> {
+    fn push(&mut self, step: Step) -> Result<Value, String> {
+        if self.steps.len() >= MOST_STEPS {
+            return Err(format!("more than {MOST_STEPS} steps"));
+        }
+        self.steps.push(step);
+        Ok(Value::Step(self.steps.len() - 1))
+    }
+
+    fn block(&mut self, block: &Block, mut scope: Scope) -> Result<Value, String> {
+        let Some((last, lines)) = block.stmts.split_last() else { return Err("an empty body".into()) };
+        for line in lines {
+            let Stmt::Local(local) = line else { return Err(format!("`{}` is not a `let`", shortened(line))) };
+            harmless(&local.attrs)?;
+            let Some(init) = &local.init else { return Err(format!("`{}` has no value", shortened(line))) };
+            if init.diverge.is_some() {
+                return Err(format!("`{}` has an else", shortened(line)));
+            }
+            let value = self.expression(&init.expr, &scope)?;
+            bind(&local.pat, value, &mut scope)?;
+        }
+        match last {
+            Stmt::Expr(expression, None) => self.expression(expression, &scope),
+            other => Err(format!("the body ends in `{}`, not in a value", shortened(other))),
+        }
+    }
+
+    fn step(&mut self, expression: &Expr, scope: &Scope) -> Result<usize, String> {
+        match self.expression(expression, scope)? {
+            Value::Step(step) => Ok(step),
+            _ => Err(format!("`{}` is not a number", shortened(expression))),
+        }
+    }
+
+    fn expression(&mut self, expression: &Expr, scope: &Scope) -> Result<Value, String> {
+        match expression {
+            Expr::Paren(inner) if inner.attrs.is_empty() => self.expression(&inner.expr, scope),
+            Expr::Group(inner) => self.expression(&inner.expr, scope),
+            Expr::Reference(inner) if inner.mutability.is_none() => self.expression(&inner.expr, scope),
+            Expr::Path(path) => {
+                let name = text(path);
+                scope.get(&name).cloned().ok_or(format!("`{name}` is not a name that stands before"))
+            }
+            Expr::Lit(literal) => match &literal.lit {
+                Lit::Float(float) => {
+                    let literal = constant::float(float, self.real)?;
+                    self.literals.push(literal);
+                    self.push(Step::Literal(self.literals.len() - 1))
+                }
+                other => Err(format!("`{}` where a decimal number can stand", text(other))),
+            },
+            Expr::Index(index) => {
+                let base = self.expression(&index.expr, scope)?;
+                let position = integer(&index.index)?;
+                match base {
+                    Value::Argument(argument) => self.push(Step::Input(argument, position)),
+                    Value::List('[', values) => {
+                        values.get(position).cloned().ok_or(format!("`{}` is beyond the end", text(index)))
+                    }
+                    _ => Err(format!("`{}` is not an array", shortened(&index.expr))),
+                }
+            }
+            Expr::Field(field) => {
+                let found = match (self.expression(&field.base, scope)?, &field.member) {
+                    (Value::List('(', values), Member::Unnamed(index)) => values.get(index.index as usize).cloned(),
+                    (Value::Struct(fields), Member::Named(name)) => {
+                        fields.into_iter().find(|(field, _)| name == field).map(|(_, value)| value)
+                    }
+                    _ => None,
+                };
+                found.ok_or(format!("`{}` has no such field", text(field)))
+            }
+            Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+                let inner = self.step(&unary.expr, scope)?;
+                self.push(Step::Negate(inner))
+            }
+            Expr::Binary(binary) => {
+                let (a, b) = (self.step(&binary.left, scope)?, self.step(&binary.right, scope)?);
+                self.push(match binary.op {
+                    BinOp::Add(_) => Step::Add(a, b),
+                    BinOp::Sub(_) => Step::Subtract(a, b),
+                    BinOp::Mul(_) => Step::Multiply(a, b),
+                    BinOp::Div(_) => Step::Divide(a, b),
+                    other => return Err(format!("operator `{}`", text(&other))),
+                })
+            }
+            Expr::Array(array) => {
+                let values: Result<_, _> = array.elems.iter().map(|e| self.expression(e, scope)).collect();
+                Ok(Value::List('[', values?))
+            }
+            Expr::Tuple(tuple) => {
+                let values: Result<_, _> = tuple.elems.iter().map(|e| self.expression(e, scope)).collect();
+                Ok(Value::List('(', values?))
+            }
+            Expr::Struct(structure) if text(&structure.path) == "EquationsOfMotion" && structure.rest.is_none() => {
+                let mut fields = Vec::new();
+                for field in &structure.fields {
+                    fields.push((text(&field.member), self.expression(&field.expr, scope)?));
+                }
+                // The order of the declaration, whatever the order here.
+                let rank = |name: &str| ["inertia", "coriolis", "gravity"].iter().position(|n| *n == name);
+                fields.sort_by_key(|(name, _)| rank(name));
+                Ok(Value::Struct(fields))
+            }
+            Expr::Call(call) => {
+                let name = text(&call.func);
+                let arguments: Result<Vec<Value>, String> = call.args.iter().map(|a| self.expression(a, scope)).collect();
+                self.call(&name, arguments?)
+            }
+            other => Err(format!("`{}` is not a step that emitted functions have", shortened(other))),
+        }
+    }
+
+    fn call(&mut self, name: &str, arguments: Vec<Value>) -> Result<Value, String> {
+        let Some(function) = self.private.get(name) else { return Err(format!("call of `{name}`")) };
+        match (name, arguments.as_slice()) {
+            ("sin_cos", [Value::Step(angle)]) => {
+                let angle = self.angle(*angle)?;
+                let (sine, cosine) = (self.push(Step::Sine(angle.clone()))?, self.push(Step::Cosine(angle))?);
+                return Ok(Value::List('(', vec![sine, cosine]));
+            }
+            ("sign", [Value::Step(rate)]) => {
+                return match self.steps[*rate] {
+                    Step::Input(Argument::Dq, joint) => self.push(Step::Sign(joint)),
+                    _ => Err("sign of something that is not a joint rate".into()),
+                }
+            }
+            ("sin_cos" | "sign", _) => return Err(format!("`{name}` takes one number")),
+            _ => {}
+        }
+        if self.calls.iter().any(|caller| caller == name) {
+            return Err(format!("`{name}` calls itself"));
+        }
+        let (parameters, _) = signature(function).map_err(|e| format!("`{name}`: {e}"))?;
+        if parameters.len() != arguments.len() {
+            return Err(format!("`{name}` takes {} arguments", parameters.len()));
+        }
+        let scope = parameters.into_iter().map(|(name, _)| name).zip(arguments).collect();
+        self.calls.push(name.to_string());
+        let value = self.block(&function.block, scope).map_err(|e| format!("in `{name}`: {e}"))?;
+        self.calls.pop();
+        Ok(value)
+    }
+
+    /// A step as an integer combination of joint variables.
+    fn angle(&self, step: usize) -> Result<Vec<(usize, i64)>, String> {
+        let combine = |a: Vec<(usize, i64)>, b: Vec<(usize, i64)>, sign: i64| {
+            let mut sum: BTreeMap<usize, i64> = a.into_iter().collect();
+            for (joint, factor) in b {
+                *sum.entry(joint).or_default() += sign * factor;
+            }
+            sum.into_iter().filter(|&(_, factor)| factor != 0).collect()
+        };
+        match self.steps[step] {
+            Step::Input(Argument::Q, joint) => Ok(vec![(joint, 1)]),
+            Step::Negate(a) => Ok(combine(Vec::new(), self.angle(a)?, -1)),
+            Step::Add(a, b) => Ok(combine(self.angle(a)?, self.angle(b)?, 1)),
+            Step::Subtract(a, b) => Ok(combine(self.angle(a)?, self.angle(b)?, -1)),
+            _ => Err("sine of something that is not a sum of joint variables".into()),
+        }
+    }
+}
+
+fn bind(pattern: &Pat, value: Value, scope: &mut Scope) -> Result<(), String> {
+    match (pattern, value) {
+        (Pat::Wild(_), _) => Ok(()),
+        (Pat::Ident(name), value) if name.by_ref.is_none() && name.mutability.is_none() && name.subpat.is_none() => {
+            scope.insert(name.ident.to_string(), value);
+            Ok(())
+        }
+        (Pat::Tuple(patterns), Value::List('(', values)) if patterns.elems.len() == values.len() => {
+            patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| bind(pattern, value, scope))
+        }
+        (Pat::Slice(patterns), Value::List('[', values)) if patterns.elems.len() == values.len() => {
+            patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| bind(pattern, value, scope))
+        }
+        (pattern, _) => Err(format!("`let {}` does not fit its value", text(pattern))),
+    }
+}
+
+fn integer(expression: &Expr) -> Result<usize, String> {
+    match expression {
+        Expr::Lit(literal) => match &literal.lit {
+            Lit::Int(i) if i.suffix().is_empty() => i.base10_parse().map_err(|e| format!("index `{i}`: {e}")),
+            other => Err(format!("index `{}`", text(other))),
+        },
+        other => Err(format!("index `{}` is not a constant", shortened(other))),
+    }
+}
+
+fn shortened(tokens: &impl quote::ToTokens) -> String {
+    let all = text(tokens);
+    if all.chars().count() <= 60 {
+        return all;
+    }
+    all.chars().take(57).chain("...".chars()).collect()
+}

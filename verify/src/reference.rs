@@ -1,0 +1,269 @@
+//! What every function must return at one random state, from the equations.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::manipulator::Manipulator;
+
+use crate::arithmetic::dual::Dual;
+use crate::arithmetic::{Arithmetic, Element};
+use crate::equations::arm::Arm;
+use crate::equations::lagrange::{
+    accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, times_vector,
+};
+use crate::equations::newton_euler::{Motion, Moving};
+use crate::equations::parameters::{base_map, reference_torques, standard_columns, with_standard, LinkFrames, Standard, Vector};
+use crate::equations::pose::Pose;
+use crate::equations::state::State;
+use crate::equations::vector::solve;
+
+/// Values of all functions by name.
+pub type Values<E> = BTreeMap<String, Vec<E>>;
+
+/// A random state, what each function must return there, and what belongs to base parameters.
+#[derive(Clone, Debug)]
+pub struct Reference<E> {
+    /// The state, its parameter vector random.
+    pub state: State<E>,
+    /// Values by function.
+    pub values: Values<E>,
+    /// Another configuration with the same parameters, and the potential energy there: with base parameters U is defined up to a constant.
+    pub elsewhere: Option<(State<E>, E)>,
+    /// The nominal parameter vector where it follows from the standard one.
+    pub nominal_base: Option<Vec<E>>,
+    /// Whether Lagrange's and Newton and Euler's torques agree.
+    pub two_derivations_agree: bool,
+}
+
+/// The quantities of an arm.
+fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>, suffix: &str) -> Option<bool> {
+    let mut put = |name: &str, value: Vec<E>| values.insert(format!("{name}{suffix}"), value);
+    let half = arm.half();
+    let b = inertia_matrix(arm, state);
+    let derivatives = inertia_derivatives(arm, state);
+    let c = coriolis_matrix(&derivatives, &state.dq, &half);
+    let g = gravity(arm, state);
+    let f = friction(arm, &state.dq, &state.signs);
+    let sum = |a: &[E], b: &[E]| -> Vec<E> { a.iter().zip(b).map(|(a, b)| a.plus(b)).collect() };
+    let rest = sum(&sum(&times_vector(&c, &state.dq), &f), &g);
+    let without_friction = sum(&sum(&times_vector(&b, &state.ddq), &times_vector(&c, &state.dq)), &g);
+    let momentum = times_vector(&b, &state.dq);
+    let kinetic = state.dq.iter().zip(&momentum).fold(arm.zero.clone(), |t, (rate, p)| t.plus(&rate.times(p))).times(&half);
+    let right: Vec<E> = state.tau.iter().zip(&rest).map(|(tau, rest)| tau.minus(rest)).collect();
+    let forward = accelerations(&b, &right)?;
+
+    put("inertia_matrix", b.concat());
+    put("coriolis_matrix", c.concat());
+    put("gravity", g.clone());
+    put("friction", f);
+    put("equations_of_motion", [b.concat(), c.concat(), g].concat());
+    put("inverse_dynamics", sum(&times_vector(&b, &state.ddq), &rest));
+    put("forward_dynamics", forward.clone());
+    put("kinetic_energy", vec![kinetic]);
+    put("potential_energy", vec![potential_energy(arm, state)]);
+    put("momentum", momentum);
+    let transposed: Vec<Vec<E>> = (0..arm.dof()).map(|i| c.iter().map(|row| row[i].clone()).collect()).collect();
+    put("coriolis_transpose_times", times_vector(&transposed, &state.dq));
+
+    let pose = Pose::new(arm, state);
+    let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
+    Some(Moving::new(arm, &pose, motion).torques() == without_friction)
+}
+
+/// ∂τ/∂q and ∂τ/∂q̇ row by row, by dual numbers through Newton and Euler.
+fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> (Vec<Vec<E>>, Vec<Vec<E>>) {
+    let n = arm.dof();
+    let moving_arm = arm.map(&|e| Dual::constant(e));
+    let still = vec![arm.zero.clone(); n];
+    let column = |along: &[E], rates: &[E]| -> Vec<E> {
+        let state = state.moving(along, rates);
+        let pose = Pose::new(&moving_arm, &state);
+        let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: moving_arm.gravity.clone() };
+        let torques = Moving::new(&moving_arm, &pose, motion).torques();
+        let friction = friction(&moving_arm, &state.dq, &state.signs);
+        torques.iter().zip(friction).map(|(t, f)| t.plus(&f).rate).collect()
+    };
+    let unit = |k: usize| -> Vec<E> { (0..n).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
+    let rows = |columns: Vec<Vec<E>>| -> Vec<Vec<E>> {
+        (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect()
+    };
+    let by_q = rows((0..n).map(|k| column(&unit(k), &still)).collect());
+    let by_dq = rows((0..n).map(|k| column(&still, &unit(k))).collect());
+    (by_q, by_dq)
+}
+
+/// The functions that only some modules have.
+fn extras<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &mut Values<E>) -> Option<()> {
+    let n = arm.dof();
+    let b = inertia_matrix(arm, state);
+    let unit: Vec<Vec<E>> =
+        (0..n).map(|i| (0..n).map(|j| if i == j { arm.one.clone() } else { arm.zero.clone() }).collect()).collect();
+    let inverse = solve(&b, &unit)?;
+    let jacobian = &values["geometric_jacobian"];
+    let rows: Vec<Vec<E>> = task.iter().map(|&row| jacobian[row * n..(row + 1) * n].to_vec()).collect();
+    let product = |a: &[Vec<E>], b: &dyn Fn(usize, usize) -> E, columns: usize| -> Vec<Vec<E>> {
+        a.iter()
+            .map(|row| {
+                (0..columns)
+                    .map(|j| row.iter().enumerate().fold(arm.zero.clone(), |sum, (k, x)| sum.plus(&x.times(&b(k, j)))))
+                    .collect()
+            })
+            .collect()
+    };
+    let half_way = product(&rows, &|k, j| inverse[k][j].clone(), n);
+    let mobility = product(&half_way, &|k, j| rows[j][k].clone(), task.len());
+    let task_unit: Vec<Vec<E>> = (0..task.len())
+        .map(|i| (0..task.len()).map(|j| if i == j { arm.one.clone() } else { arm.zero.clone() }).collect())
+        .collect();
+    if let Some(inertia) = solve(&mobility, &task_unit) {
+        values.insert("operational_inertia".into(), inertia.concat());
+    }
+    let (by_q, by_dq) = torque_derivatives(arm, state);
+    values.insert("inverse_dynamics_derivatives".into(), [by_q.concat(), by_dq.concat()].concat());
+    let mut accelerated = state.clone();
+    accelerated.ddq.clone_from(&values["forward_dynamics"]);
+    let (by_q, by_dq) = torque_derivatives(arm, &accelerated);
+    let negative: Vec<Vec<E>> = inverse.iter().map(|row| row.iter().map(Element::negated).collect()).collect();
+    let by_q = product(&negative, &|k, j| by_q[k][j].clone(), n);
+    let by_dq = product(&negative, &|k, j| by_dq[k][j].clone(), n);
+    values.insert("forward_dynamics_derivatives".into(), [by_q.concat(), by_dq.concat(), inverse.concat()].concat());
+    Some(())
+}
+
+fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>) {
+    let pose = Pose::new(arm, state);
+    values.insert("direct_kinematics".into(), pose.homogeneous(&pose.tool, &arm.one));
+    let frames = pose.links.iter().flat_map(|frame| pose.homogeneous(frame, &arm.one)).collect();
+    values.insert("link_frames".into(), frames);
+    values.insert("geometric_jacobian".into(), pose.geometric_jacobian(arm.tip));
+    let moving = arm.map(&|e| Dual::constant(e));
+    let along = state.moving(&state.dq, &vec![arm.zero.clone(); arm.dof()]);
+    let rates = Pose::new(&moving, &along).geometric_jacobian(arm.tip).into_iter().map(|entry| entry.rate);
+    values.insert("geometric_jacobian_dot".into(), rates.collect());
+}
+
+/// Which of the equations a reference is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// The functions that only some modules have.
+    pub extras: bool,
+    /// How the functions at run-time base parameters are had.
+    pub base: BaseParameters,
+}
+
+/// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BaseParameters {
+    /// Solved for.
+    Solved,
+    /// Taken to be independent of the standard ones: right for bounds on degrees.
+    Free,
+    /// Left out.
+    LeftOut,
+}
+
+impl<E: Element> Reference<E> {
+    /// A random state of an arithmetic.
+    pub fn new<K: Arithmetic<Element = E>>(
+        arithmetic: &mut K,
+        manipulator: &Manipulator,
+        vector: &Vector,
+        wanted: Wanted,
+    ) -> Result<Reference<E>, String> {
+        let divided = || "a constant of the description divides by zero here".to_string();
+        let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
+        let arm = Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)?;
+        let n = arm.dof();
+        let mut state = State::draw(arithmetic, n);
+        let mut values = Values::new();
+        kinematics(&arm, &state, &mut values);
+        let singular = || "the inertia matrix is singular at a random state".to_string();
+        let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
+        if wanted.extras {
+            let task: Vec<usize> = manipulator.task.iter().map(|row| row.index()).collect();
+            extras(&arm, &state, &task, &mut values).ok_or_else(singular)?;
+        }
+
+        let (mut elsewhere, mut nominal_base) = (None, None);
+        let (columns, known, run_time) = match vector {
+            Vector::Names(ids) => {
+                state.pi = ids.iter().map(|_| arithmetic.draw()).collect();
+                let at = |pi: &[E]| {
+                    let mut names = names.clone();
+                    ids.iter().zip(pi).for_each(|(&id, value)| names[id] = value.clone());
+                    Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)
+                };
+                let zero = vec![arm.zero.clone(); ids.len()];
+                let known = reference_torques(&at(&zero)?, &state);
+                let mut columns = Vec::new();
+                for k in 0..ids.len() {
+                    let mut unit = zero.clone();
+                    unit[k] = arm.one.clone();
+                    let torques = reference_torques(&at(&unit)?, &state);
+                    columns.push(torques.iter().zip(&known).map(|(a, b)| a.minus(b)).collect::<Vec<E>>());
+                }
+                (columns, known, Some(at(&state.pi)?))
+            }
+            Vector::Standard(all) => {
+                state.pi = all.iter().map(|_| arithmetic.draw()).collect();
+                let columns = standard_columns(&arm, &state, all, LinkFrames::Described);
+                (columns, known_torque(&arm, &state, all)?, Some(with_standard(&arm, all, &state.pi).ok_or_else(divided)?))
+            }
+            Vector::Base(base, all) => {
+                let kept: Vec<Standard> = base.iter().map(|(parameter, _)| *parameter).collect();
+                let columns = standard_columns(&arm, &state, &kept, LinkFrames::Joint);
+                let known = known_torque(&arm, &state, all)?;
+                let mut run_time = None;
+                if wanted.base != BaseParameters::LeftOut {
+                    let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
+                    state.pi = if wanted.base == BaseParameters::Solved {
+                        let map = base_map(arithmetic, &arm, &kept, all)?;
+                        check_names(&map, base, all, &arm)?;
+                        let nominal: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
+                        nominal_base = Some(times_vector(&map, &nominal));
+                        times_vector(&map, &phi)
+                    } else {
+                        base.iter().map(|_| arithmetic.draw()).collect()
+                    };
+                    let other = with_standard(&arm, all, &phi).ok_or_else(divided)?;
+                    let mut there = State::draw(arithmetic, n);
+                    there.pi.clone_from(&state.pi);
+                    let energy = potential_energy(&other, &there);
+                    elsewhere = Some((there, energy));
+                    run_time = Some(other);
+                }
+                (columns, known, run_time)
+            }
+        };
+        let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
+        values.insert("regressor".into(), y);
+        values.insert("known_torque".into(), known);
+        if let Some(arm) = run_time {
+            agree &= quantities(&arm, &state, &mut values, "_with").ok_or_else(singular)?;
+        }
+        Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree })
+    }
+}
+
+/// What remains without the standard parameters: the masses of rotors.
+fn known_torque<E: Element>(arm: &Arm<E>, state: &State<E>, all: &[Standard]) -> Result<Vec<E>, String> {
+    let none = vec![arm.zero.clone(); all.len()];
+    let bare = with_standard(arm, all, &none).ok_or("an arm without bodies")?;
+    Ok(reference_torques(&bare, state))
+}
+
+/// A base parameter without R in its name is that standard parameter and carries no other.
+fn check_names<E: Element>(map: &[Vec<E>], base: &[(Standard, bool)], all: &[Standard], arm: &Arm<E>) -> Result<(), String> {
+    for (row, (parameter, carries)) in map.iter().zip(base) {
+        let alone =
+            row.iter().zip(all).all(|(entry, column)| if column == parameter { *entry == arm.one } else { entry.is_zero() });
+        if alone == *carries {
+            let name = parameter.name();
+            return Err(if alone {
+                format!("base parameter `{name}R` carries no other: its name is `{name}`")
+            } else {
+                format!("base parameter `{name}` carries others: its name is `{name}R`")
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,178 @@
+//! What the checker found.
+
+use std::fmt;
+
+use crate::formula::Formula;
+
+/// What is said of a function or a constant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// It equals the equations.
+    Equal,
+    /// It does not: the first entry that differs, and how.
+    Different {
+        /// Where: `[0][1]`, `.inertia[0][1]`.
+        entry: String,
+        /// What stands there and what should.
+        why: String,
+    },
+    /// It is not what the checker can read, or is missing, or is not known.
+    Refused(String),
+}
+
+/// A literal and the exact value that it stands for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exact {
+    /// Its digits.
+    pub literal: String,
+    /// The exact value.
+    pub value: Formula,
+}
+
+/// What is said of a function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FunctionReport {
+    /// Its name.
+    pub name: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Random points in prime fields at which it was run.
+    pub points: usize,
+    /// Random rational points at which it was run.
+    pub exact_points: usize,
+    /// log2 of the odds that a function which differs from the equations passes at all points of the prime fields.
+    pub log2_odds: f64,
+    /// Its literals in the order of the text.
+    pub literals: Vec<Exact>,
+}
+
+/// What is said of a constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstantReport {
+    /// Its name.
+    pub name: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// Exact values of its numbers, in order.
+    pub literals: Vec<Exact>,
+}
+
+/// An identity among the functions of the module.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdentityReport {
+    /// The identity as a formula.
+    pub name: String,
+    /// Whether it holds at all points, or why that was not tried.
+    pub holds: Result<bool, String>,
+    /// Points in prime fields.
+    pub points: usize,
+}
+
+/// All that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Name of the robot.
+    pub robot: String,
+    /// `f64` or `f32`.
+    pub scalar: String,
+    /// Hash of the description's text (SHA-256, hexadecimal).
+    pub input: String,
+    /// Hash of the module's text.
+    pub output: String,
+    /// What is wrong with the whole: no functions are reported then.
+    pub faults: Vec<String>,
+    /// Constants.
+    pub constants: Vec<ConstantReport>,
+    /// Functions in the order of the text, missing ones last.
+    pub functions: Vec<FunctionReport>,
+    /// Identities.
+    pub identities: Vec<IdentityReport>,
+}
+
+impl Report {
+    /// A report on texts with these hashes, with nothing in it.
+    pub fn of(input: String, output: String) -> Report {
+        Report {
+            robot: String::new(),
+            scalar: String::new(),
+            input,
+            output,
+            faults: Vec::new(),
+            constants: Vec::new(),
+            functions: Vec::new(),
+            identities: Vec::new(),
+        }
+    }
+
+    /// Whether everything equals the equations.
+    pub fn passed(&self) -> bool {
+        self.faults.is_empty()
+            && !self.functions.is_empty()
+            && self.constants.iter().all(|c| c.verdict == Verdict::Equal)
+            && self.functions.iter().all(|f| f.verdict == Verdict::Equal)
+            && self.identities.iter().all(|i| i.holds == Ok(true))
+    }
+
+    /// The first thing that is wrong, as function or constant and entry.
+    pub fn first_fault(&self) -> Option<String> {
+        let named = |name: &str, verdict: &Verdict| match verdict {
+            Verdict::Equal => None,
+            Verdict::Different { entry, why } => Some(format!("{name}{entry}: {why}")),
+            Verdict::Refused(why) => Some(format!("{name}: {why}")),
+        };
+        let identity = |i: &IdentityReport| match &i.holds {
+            Ok(true) => None,
+            Ok(false) => Some(format!("{} does not hold", i.name)),
+            Err(why) => Some(format!("{}: not checked, {why}", i.name)),
+        };
+        let constants = self.constants.iter().filter_map(|c| named(&c.name, &c.verdict));
+        let functions = self.functions.iter().filter_map(|f| named(&f.name, &f.verdict));
+        let identities = self.identities.iter().filter_map(identity);
+        self.faults.iter().cloned().chain(constants).chain(functions).chain(identities).next()
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Verdict::Equal => f.write_str("equal"),
+            Verdict::Different { entry, why } if entry.is_empty() => write!(f, "DIFFERENT: {why}"),
+            Verdict::Different { entry, why } => write!(f, "DIFFERENT in entry {entry}: {why}"),
+            Verdict::Refused(why) => write!(f, "REFUSED: {why}"),
+        }
+    }
+}
+
+/// A table for people.
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "robot {} ({})", self.robot, self.scalar)?;
+        for fault in &self.faults {
+            writeln!(f, "FAULT: {fault}")?;
+        }
+        let width = self.functions.iter().map(|r| r.name.len()).chain([24]).max().unwrap_or(24);
+        for report in &self.functions {
+            write!(f, "{:width$}  {}", report.name, report.verdict)?;
+            if report.verdict == Verdict::Equal {
+                write!(f, " at {} points, odds of a miss below 2^{:.0}", report.points, report.log2_odds.ceil())?;
+                if report.exact_points > 0 {
+                    write!(f, "; and at {} rational", report.exact_points)?;
+                }
+            }
+            writeln!(f)?;
+        }
+        for report in self.constants.iter().filter(|c| c.verdict != Verdict::Equal) {
+            writeln!(f, "{:width$}  {}", report.name, report.verdict)?;
+        }
+        let equal = self.constants.iter().filter(|c| c.verdict == Verdict::Equal).count();
+        writeln!(f, "{equal} constants equal the description")?;
+        for report in &self.identities {
+            match &report.holds {
+                Ok(true) => writeln!(f, "holds at {} points: {}", report.points, report.name)?,
+                Ok(false) => writeln!(f, "DOES NOT HOLD: {}", report.name)?,
+                Err(why) => writeln!(f, "NOT CHECKED: {}: {why}", report.name)?,
+            }
+        }
+        write!(f, "{}", if self.passed() { "verified" } else { "NOT verified" })
+    }
+}

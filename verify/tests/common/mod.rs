@@ -1,0 +1,33 @@
+//! The robots of the project.
+
+use std::path::PathBuf;
+
+use armgen_codegen::program::{Options, Scalar};
+use armgen_codegen::source::Source;
+use armgen_codegen::Generated;
+
+/// All descriptions of the project, sorted.
+pub fn paths() -> Vec<PathBuf> {
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    let mut paths: Vec<PathBuf> = ["robots", "tests/robots"]
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(format!("{root}/{folder}")).expect("a folder of robots"))
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|e| e == "yaml"))
+        .collect();
+    paths.sort();
+    paths
+}
+
+/// A description of the project by its name.
+pub fn source(name: &str) -> Source {
+    let path = paths().into_iter().find(|p| p.file_stem().is_some_and(|stem| stem == name)).expect("a robot of the project");
+    Source::new(format!("{name}.yaml"), std::fs::read_to_string(path).expect("a description"))
+}
+
+/// What the generator makes of it.
+pub fn generate(source: &Source, scalar: Scalar) -> Generated {
+    #[allow(clippy::needless_update)]
+    let (generated, diagnostics) = armgen_codegen::generate(source, &Options { scalar, ..Options::default() });
+    generated.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}
