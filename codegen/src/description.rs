@@ -11,11 +11,11 @@
 mod expression;
 mod reader;
 mod suggest;
-mod yaml;
+pub mod yaml;
 
 pub(crate) use expression::out_of_range;
-pub use expression::{Expression, ExpressionKind, Operator};
-pub(crate) use suggest::did_you_mean;
+pub use expression::{parse as parse_expression, Expression, ExpressionKind, Operator};
+pub use suggest::did_you_mean;
 
 use crate::diagnostic::Diagnostics;
 use crate::manipulator::{JointKind, TaskRow};
@@ -189,7 +189,7 @@ impl RobotDescription {
 }
 
 /// `text` shortened for a message, control characters made visible.
-pub(crate) fn excerpt(text: &str) -> String {
+pub fn excerpt(text: &str) -> String {
     const LONGEST: usize = 40;
     let shown: String = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.chars().nth(LONGEST).is_some() {

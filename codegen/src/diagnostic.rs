@@ -287,28 +287,39 @@ impl Diagnostics {
 }
 
 fn render(diagnostic: &Diagnostic, source: &Source, colour: Colour) -> String {
-    let level = match diagnostic.code.severity() {
+    let Diagnostic { code, message, labels, help } = diagnostic;
+    render_one(source, code.severity(), code.name(), message, labels, help, colour)
+}
+
+/// One fault as text, with a code that need not be a [`Code`]: for other files that are judged like descriptions.
+///
+/// `labels` holds at least one; the first is the place of the fault.
+pub fn render_one(
+    source: &Source,
+    severity: Severity,
+    code: &str,
+    message: &str,
+    labels: &[Label],
+    help: &str,
+    colour: Colour,
+) -> String {
+    let level = match severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
     // The renderer reads all the text it is given, so it gets the lines from the first label to the last.
-    let window =
-        source.lines(diagnostic.labels.iter().map(|label| label.span).reduce(Span::to).expect("a diagnostic has a label"));
+    let window = source.lines(labels.iter().map(|label| label.span).reduce(Span::to).expect("a diagnostic has a label"));
     let within = |span: Span| span.start - window.start..span.end - window.start;
     // A carriage return would show as a symbol at the end of each line.
     let lines = source.slice(window).replace("\r\n", " \n");
     let lines = lines.strip_suffix('\r').unwrap_or(&lines);
     let mut snippet = Snippet::source(lines).path(source.name()).line_start(source.place(window.start).line);
-    for (i, label) in diagnostic.labels.iter().enumerate() {
+    for (i, label) in labels.iter().enumerate() {
         let kind = if i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };
         let annotation = kind.span(within(source.first_line(label.span)));
         snippet = snippet.annotation(if label.text.is_empty() { annotation } else { annotation.label(label.text.as_str()) });
     }
-    let report = [level
-        .primary_title(diagnostic.message.as_str())
-        .id(diagnostic.code.name())
-        .element(snippet)
-        .element(Level::HELP.message(diagnostic.help.as_str()))];
+    let report = [level.primary_title(message).id(code).element(snippet).element(Level::HELP.message(help))];
     let renderer = match colour {
         Colour::Never => Renderer::plain(),
         Colour::Always => Renderer::styled(),

@@ -92,6 +92,27 @@ impl Expression {
         }
     }
 
+    /// The value in floating point, rounded at every operation; `Err` with the place of a name, which has no value here.
+    pub fn to_f64(&self) -> Result<f64, Span> {
+        Ok(match &self.kind {
+            ExpressionKind::Decimal(x) => x.to_f64().value(),
+            ExpressionKind::Pi => std::f64::consts::PI,
+            ExpressionKind::Name(_) => return Err(self.span),
+            ExpressionKind::Negate(a) => -a.to_f64()?,
+            ExpressionKind::Binary(operator, a, b) => {
+                let (a, b) = (a.to_f64()?, b.to_f64()?);
+                match operator {
+                    Operator::Add => a + b,
+                    Operator::Subtract => a - b,
+                    Operator::Multiply => a * b,
+                    Operator::Divide => a / b,
+                }
+            }
+            ExpressionKind::Degrees(a) => a.to_f64()?.to_radians(),
+            ExpressionKind::Root(a) => a.to_f64()?.sqrt(),
+        })
+    }
+
     /// Whether this is a decimal, with or without a sign.
     pub fn is_decimal(&self) -> bool {
         match &self.kind {
@@ -112,7 +133,7 @@ impl Expression {
 }
 
 /// The expression that a scalar at `span` holds. (The error is large, but rare.)
-pub(super) fn parse(scalar: &Scalar, span: Span) -> Result<Expression, Box<Diagnostic>> {
+pub fn parse(scalar: &Scalar, span: Span) -> Result<Expression, Box<Diagnostic>> {
     let mut parser = Parser { text: &scalar.text, at: 0, depth: 0, verbatim: scalar.verbatim, whole: span };
     if scalar.text.len() > MAX_TEXT {
         let (message, help) = if scalar.text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b)) {

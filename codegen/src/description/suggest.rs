@@ -1,7 +1,7 @@
 //! "Did you mean ...?": the nearest of the words that are allowed.
 
 /// The one of `words` that `found` was probably meant to be.
-pub(crate) fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
+pub fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
     let found: Vec<char> = found.chars().take(64).flat_map(char::to_lowercase).collect();
     // One slip in a short word, two from six letters on, three from nine on; of two letters one must be right, and in front.
     let allowed = (found.len() / 3).max(1);

@@ -20,16 +20,16 @@ const MAX_NODES: usize = 200_000;
 
 /// A value in the tree.
 #[derive(Clone, Debug)]
-pub(super) struct Node {
+pub struct Node {
     /// Where it stands; without the key before it.
-    pub(super) span: Span,
+    pub span: Span,
     /// What it is.
-    pub(super) kind: Kind,
+    pub kind: Kind,
 }
 
 /// Kinds of values.
 #[derive(Clone, Debug)]
-pub(super) enum Kind {
+pub enum Kind {
     /// A text, quoted or not.
     Scalar(Scalar),
     /// A list.
@@ -40,18 +40,18 @@ pub(super) enum Kind {
 
 /// A text.
 #[derive(Clone, Debug)]
-pub(super) struct Scalar {
+pub struct Scalar {
     /// The text, quotes and escapes resolved.
-    pub(super) text: String,
+    pub text: String,
     /// Whether it stands without quotes, so that YAML gives `~` and the like a meaning of their own.
-    pub(super) plain: bool,
+    pub plain: bool,
     /// Offset of the text in the source, where it stands there letter by letter.
-    pub(super) verbatim: Option<usize>,
+    pub verbatim: Option<usize>,
 }
 
 impl Node {
     /// What this is, for a message.
-    pub(super) fn describe(&self) -> &'static str {
+    pub fn describe(&self) -> &'static str {
         match &self.kind {
             Kind::Scalar(s) if s.is_nothing() => "nothing",
             Kind::Scalar(_) => "a single value",
@@ -71,13 +71,13 @@ impl Node {
 
 impl Scalar {
     /// Whether nothing stands here, or YAML's word for nothing.
-    pub(super) fn is_nothing(&self) -> bool {
+    pub fn is_nothing(&self) -> bool {
         self.plain && matches!(self.text.as_str(), "" | "~" | "null" | "Null" | "NULL")
     }
 }
 
 /// The tree of `source`; `None` if there is none.
-pub(super) fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
+pub fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
     let text = source.text();
     if text.len() > MAX_TEXT {
         diagnostics.push(Diagnostic::new(
