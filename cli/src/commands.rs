@@ -4,4 +4,5 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod count;
 pub(crate) mod generate;
+pub(crate) mod run;
 pub(crate) mod show;

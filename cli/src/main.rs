@@ -4,12 +4,16 @@
 //! main.rs      arguments, dispatch
 //! commands/    one file per command
 //! input.rs     descriptions from files
+//! motion.rs    the built robot in motion
+//! figure.rs    charts as SVG
 //! terminal.rs  standard output and error: colour, closed pipes
 //! table.rs     aligned tables
 //! ```
 
 mod commands;
+mod figure;
 mod input;
+mod motion;
 mod table;
 mod terminal;
 
@@ -117,6 +121,18 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         #[arg(long, value_enum, default_value_t = CountFormat::Text)]
         format: CountFormat,
     },
+    /// Move the robot that this program was built with, and draw what happened
+    #[command(after_help = "Examples:
+  armgen run                          figures and logs in out/
+  armgen run --out figures
+
+The robot is the one of robot.yaml at the time of building: edit it, and `cargo run --release -- run` builds and moves yours.
+Exit codes: 0 every error is as small as expected, 1 one is not, or nothing could be moved.")]
+    Run {
+        /// Folder for figures (SVG) and logs (CSV)
+        #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+        out: PathBuf,
+    },
     /// Print completions for a shell
     #[command(after_help = "Examples:
   armgen completions bash > ~/.local/share/bash-completion/completions/armgen
@@ -162,6 +178,7 @@ fn main() -> ExitCode {
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, scalar } => commands::generate::run(&file, out.as_deref(), scalar),
         Command::Count { file, format } => commands::count::run(&file, format),
+        Command::Run { out } => commands::run::run(&out),
         Command::Completions { shell } => commands::completions::run(shell),
     };
     ExitCode::from(code)

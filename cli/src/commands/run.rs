@@ -1,0 +1,41 @@
+//! `armgen run`: the robot that this program was built with, in motion.
+
+use std::path::Path;
+
+use armgen_generated::{DOF, NAME};
+
+use crate::motion;
+use crate::{terminal, FAULTY};
+
+pub(crate) fn run(out: &Path) -> u8 {
+    let outcome = match motion::run() {
+        Ok(outcome) => outcome,
+        Err(reason) => {
+            terminal::error(&reason);
+            return FAULTY;
+        }
+    };
+    let title = terminal::bold(&format!("{NAME}: first motion of the arm that this program was built with"), &std::io::stdout());
+    let joints = if DOF == 1 { "1 joint".to_string() } else { format!("{DOF} joints") };
+    let mut text = format!("{title} ({joints})\n\n{}", outcome.report);
+    let mut csv = String::new();
+    outcome.log.write_csv(&mut csv).expect("writing to a string");
+    let mut code = 0;
+    for (extension, content) in [("svg", outcome.figure.svg()), ("csv", csv)] {
+        let file = out.join(format!("{}.{extension}", outcome.name));
+        match std::fs::create_dir_all(out).and_then(|()| std::fs::write(&file, content)) {
+            Ok(()) => text += &format!("\n  {}", file.display()),
+            Err(reason) => {
+                terminal::error(&format!("cannot write {}: {reason}", file.display()));
+                code = FAULTY;
+            }
+        }
+    }
+    text += "\n";
+    code = code.max(terminal::print(&text));
+    if !outcome.as_expected {
+        terminal::error("an error is larger than expected of a model that is right");
+        code = FAULTY;
+    }
+    code
+}
