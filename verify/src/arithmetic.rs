@@ -1,10 +1,11 @@
-//! The numbers in which programs and equations are executed: everything here is exact.
+//! The numbers in which programs and equations are executed.
 //!
 //! | arithmetic | elements | what an equality there says |
 //! |---|---|---|
 //! | [`prime`] | integers modulo a random prime of 62 bits | equal but for odds of about (degree)/p |
 //! | [`tower`] | fractions, with the square roots that the robot needs adjoined | equal at that point, beyond doubt |
 //! | [`dual`] | pairs value + derivative over either | derivatives along a direction |
+//! | [`wide`] | floats of 256 bits | nothing: they measure rounding errors, and prove none |
 //! | [`degree`] | degree and height of the polynomial that a value is | how unlikely a false equality is |
 //!
 //! Angles are random points of the circle: (s, c) = (2t, 1 - t²)/(1 + t²). Pi, and sine and cosine of angles that have no roots, take
@@ -14,6 +15,7 @@ pub mod degree;
 pub mod dual;
 pub mod prime;
 pub mod tower;
+pub mod wide;
 
 use std::fmt::Debug;
 

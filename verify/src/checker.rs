@@ -167,6 +167,11 @@ impl Checker {
         &self.points
     }
 
+    /// The same, to draw from their fields.
+    pub fn points_mut(&mut self) -> &mut [Point<Prime>] {
+        &mut self.points
+    }
+
     /// Number of entries of the parameter vector.
     pub fn parameters(&self) -> usize {
         match &self.vector {

@@ -30,6 +30,14 @@ pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
     Some((fraction(interval.low), fraction(interval.high)))
 }
 
+/// Sine and cosine of a fraction below 256 in size, as integers over 2^bits with the number of bits, off by less than two units of 2^-`fine`.
+pub fn sine_cosine_of(angle: &Rational, fine: usize) -> Option<(IBig, IBig, usize)> {
+    let bits = fine + 8;
+    let scaled = (angle * Rational::from(UBig::ONE << bits)).floor();
+    let angle = Interval { high: &scaled + IBig::ONE, low: scaled };
+    Some((series(&angle, 1, bits)?.low, series(&angle, 0, bits)?.low, bits))
+}
+
 fn floor_shift(n: IBig, bits: usize) -> IBig {
     n >> bits
 }

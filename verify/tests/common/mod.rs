@@ -7,7 +7,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
 
 /// All descriptions of the project, sorted.
-pub fn paths() -> Vec<PathBuf> {
+pub(crate) fn paths() -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
     let mut paths: Vec<PathBuf> = ["robots", "tests/robots"]
         .iter()
@@ -20,13 +20,13 @@ pub fn paths() -> Vec<PathBuf> {
 }
 
 /// A description of the project by its name.
-pub fn source(name: &str) -> Source {
+pub(crate) fn source(name: &str) -> Source {
     let path = paths().into_iter().find(|p| p.file_stem().is_some_and(|stem| stem == name)).expect("a robot of the project");
     Source::new(format!("{name}.yaml"), std::fs::read_to_string(path).expect("a description"))
 }
 
 /// What the generator makes of it.
-pub fn generate(source: &Source, scalar: Scalar) -> Generated {
+pub(crate) fn generate(source: &Source, scalar: Scalar) -> Generated {
     #[allow(clippy::needless_update)]
     let (generated, diagnostics) = armgen_codegen::generate(source, &Options { scalar, ..Options::default() });
     generated.unwrap_or_else(|| panic!("{diagnostics:?}"))

@@ -1,0 +1,101 @@
+//! Execution of programs in floats, as the emitted functions execute: the same operations in the same order, sine and cosine of libm.
+
+use crate::enclosure::Float;
+use crate::program::{Argument, Inputs, Program};
+
+/// Arguments of emitted functions.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Arguments<T> {
+    /// The parameter vector.
+    pub pi: Vec<T>,
+    /// Joint variables.
+    pub q: Vec<T>,
+    /// Joint rates.
+    pub dq: Vec<T>,
+    /// Joint accelerations.
+    pub ddq: Vec<T>,
+    /// Reference rates.
+    pub dqr: Vec<T>,
+    /// Reference accelerations.
+    pub ddqr: Vec<T>,
+    /// Joint torques.
+    pub tau: Vec<T>,
+}
+
+impl<T: Copy> Arguments<T> {
+    /// An argument.
+    pub fn of(&self, argument: Argument) -> &[T] {
+        match argument {
+            Argument::Pi => &self.pi,
+            Argument::Q => &self.q,
+            Argument::Dq => &self.dq,
+            Argument::Ddq => &self.ddq,
+            Argument::Dqr => &self.dqr,
+            Argument::Ddqr => &self.ddqr,
+            Argument::Tau => &self.tau,
+        }
+    }
+
+    /// The same in other numbers.
+    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Arguments<U> {
+        let of = |v: &[T]| v.iter().map(|x| f(*x)).collect();
+        Arguments {
+            pi: of(&self.pi),
+            q: of(&self.q),
+            dq: of(&self.dq),
+            ddq: of(&self.ddq),
+            dqr: of(&self.dqr),
+            ddqr: of(&self.ddqr),
+            tau: of(&self.tau),
+        }
+    }
+}
+
+macro_rules! inputs {
+    ($float:ty, $sincos:path) => {
+        impl Inputs<$float> for Arguments<$float> {
+            fn entry(&self, argument: Argument, index: usize) -> $float {
+                self.of(argument)[index]
+            }
+
+            fn sine_cosine(&self, angle: &[(usize, i64)]) -> ($float, $float) {
+                let sum = match angle {
+                    [(joint, 1)] => self.q[*joint],
+                    terms => terms.iter().map(|&(joint, factor)| factor as $float * self.q[joint]).sum(),
+                };
+                $sincos(sum)
+            }
+
+            fn sign(&self, joint: usize) -> $float {
+                let x = self.dq[joint];
+                if x > 0.0 {
+                    1.0
+                } else if x < 0.0 {
+                    -1.0
+                } else {
+                    x
+                }
+            }
+        }
+    };
+}
+
+inputs!(f64, libm::sincos);
+inputs!(f32, libm::sincosf);
+
+impl Program {
+    /// The entries of the result in the module's scalar; the arguments are rounded to it first.
+    pub fn run_float(&self, arguments: &Arguments<f64>, real: Float) -> Vec<f64> {
+        match real {
+            Float::F64 => {
+                let literals: Vec<f64> = self.literals.iter().map(|l| l.value).collect();
+                self.run(arguments, &literals).into_iter().map(|v| v.unwrap_or(f64::NAN)).collect()
+            }
+            Float::F32 => {
+                let literals: Vec<f32> = self.literals.iter().map(|l| l.value as f32).collect();
+                let values = self.run(&arguments.map(|x| x as f32), &literals);
+                values.into_iter().map(|v| v.map_or(f64::NAN, f64::from)).collect()
+            }
+        }
+    }
+}

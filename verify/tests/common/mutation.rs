@@ -1,0 +1,255 @@
+//! Small changes of a module's text, each at one place.
+
+use syn::{BinOp, Expr, File, Item, Lit, Stmt, UnOp};
+
+/// Kinds of change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Kind {
+    /// + for -, or - for +, or a minus sign put before an operand or taken away.
+    Sign,
+    /// A digit of a literal.
+    Digit,
+    /// The operands of a difference or a quotient in the other order.
+    Swapped,
+    /// One operand for another.
+    Operand,
+    /// A term or a factor left out.
+    Dropped,
+}
+
+/// A change: where it is and what was done.
+#[derive(Clone, Debug)]
+pub(crate) struct Change {
+    /// Function or constant.
+    pub(crate) name: String,
+    /// Its kind.
+    pub(crate) kind: Kind,
+    /// Before and after: read when a change is printed.
+    #[allow(dead_code)]
+    pub(crate) what: String,
+}
+
+/// A walk over all expressions that changes the one whose turn it is.
+struct Walk<'a> {
+    /// How many places are still to be passed; the change is made at 0.
+    left: usize,
+    choice: u64,
+    names: &'a [Expr],
+    done: Option<(Kind, String)>,
+    /// Whether this function is one that changes are made in.
+    counting: bool,
+    places: usize,
+}
+
+fn text(tokens: &impl quote::ToTokens) -> String {
+    tokens.to_token_stream().to_string()
+}
+
+fn parenthesised(expression: &Expr) -> Expr {
+    match expression {
+        Expr::Binary(_) => syn::parse_quote!((#expression)),
+        other => other.clone(),
+    }
+}
+
+impl Walk<'_> {
+    /// Whether the change is to be made at this place.
+    fn turn(&mut self) -> bool {
+        if self.counting {
+            self.places += 1;
+            return false;
+        }
+        if self.done.is_some() {
+            return false;
+        }
+        if self.left == 0 {
+            return true;
+        }
+        self.left -= 1;
+        false
+    }
+
+    fn replace(&mut self, place: &mut Expr, kind: Kind, by: Expr) {
+        self.done = Some((kind, format!("{} -> {}", text(place), text(&by))));
+        *place = by;
+    }
+
+    fn expression(&mut self, e: &mut Expr) {
+        match e {
+            Expr::Paren(inner) => self.expression(&mut inner.expr),
+            Expr::Array(array) => array.elems.iter_mut().for_each(|e| self.expression(e)),
+            Expr::Tuple(tuple) => tuple.elems.iter_mut().for_each(|e| self.expression(e)),
+            Expr::Struct(structure) => structure.fields.iter_mut().for_each(|field| self.expression(&mut field.expr)),
+            Expr::Call(call) => call.args.iter_mut().for_each(|e| self.expression(e)),
+            Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
+                self.expression(&mut unary.expr);
+                if self.turn() {
+                    let inner = (*unary.expr).clone();
+                    self.replace(e, Kind::Sign, inner);
+                }
+            }
+            Expr::Binary(binary) => {
+                self.expression(&mut binary.left);
+                self.expression(&mut binary.right);
+                // One turn each for the sign, the order and a term or factor.
+                if self.turn() {
+                    let mut other = binary.clone();
+                    other.op = match binary.op {
+                        BinOp::Add(_) => syn::parse_quote!(-),
+                        BinOp::Sub(_) => syn::parse_quote!(+),
+                        _ => {
+                            let left = parenthesised(&binary.left);
+                            other.left = syn::parse_quote!((-#left));
+                            binary.op
+                        }
+                    };
+                    self.replace(e, Kind::Sign, Expr::Binary(other));
+                    return;
+                }
+                if matches!(binary.op, BinOp::Sub(_) | BinOp::Div(_)) && self.turn() {
+                    let (a, b, op) = (parenthesised(&binary.left), parenthesised(&binary.right), binary.op);
+                    self.replace(e, Kind::Swapped, syn::parse_quote!(#b #op #a));
+                    return;
+                }
+                if self.turn() {
+                    let kept = if self.choice & 1 == 0 { &binary.left } else { &binary.right };
+                    let kept = parenthesised(kept);
+                    self.replace(e, Kind::Dropped, kept);
+                }
+            }
+            Expr::Lit(literal) => {
+                let Lit::Float(float) = &literal.lit else { return };
+                if self.turn() {
+                    let digits = float.base10_digits().to_string();
+                    let at: Vec<usize> = digits.bytes().enumerate().filter(|(_, b)| b.is_ascii_digit()).map(|(i, _)| i).collect();
+                    let at = at[(self.choice % at.len() as u64) as usize];
+                    let digit = u64::from(digits.as_bytes()[at] - b'0');
+                    let other = (digit + 1 + (self.choice >> 8) % 9) % 10;
+                    let changed = format!("{}{other}{}", &digits[..at], &digits[at + 1..]);
+                    let changed: syn::LitFloat = syn::parse_str(&changed).expect("still a decimal number");
+                    self.replace(e, Kind::Digit, syn::parse_quote!(#changed));
+                }
+            }
+            Expr::Path(_) | Expr::Index(_) => {
+                if self.turn() {
+                    let own = text(e);
+                    let others: Vec<&Expr> = self.names.iter().filter(|n| text(*n) != own).collect();
+                    if others.is_empty() {
+                        return;
+                    }
+                    let other = others[(self.choice % others.len() as u64) as usize].clone();
+                    self.replace(e, Kind::Operand, other);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Operands of a function before each of its lines: names and entries of arguments that occur in it.
+fn operands(block: &syn::Block, up_to: usize) -> Vec<Expr> {
+    let mut names: Vec<Expr> = Vec::new();
+    for statement in &block.stmts[..up_to] {
+        let Stmt::Local(local) = statement else { continue };
+        let mut pattern = |p: &syn::Pat| {
+            if let syn::Pat::Ident(name) = p {
+                let name = &name.ident;
+                names.push(syn::parse_quote!(#name));
+            }
+        };
+        match &local.pat {
+            syn::Pat::Tuple(tuple) => tuple.elems.iter().for_each(&mut pattern),
+            p => pattern(p),
+        }
+    }
+    names
+}
+
+/// Entries `q[3]` that occur in a function.
+fn entries(function: &syn::ItemFn) -> Vec<Expr> {
+    let tokens = text(&function.block);
+    let mut found: Vec<Expr> = Vec::new();
+    for argument in ["pi", "q", "dq", "ddq", "dqr", "ddqr", "tau"] {
+        for index in 0..100 {
+            let entry = format!("{argument} [{index}]");
+            // The word must not be the end of a longer one.
+            let whole = tokens.match_indices(&entry).any(|(at, _)| !tokens[..at].ends_with(|c: char| c.is_alphanumeric()));
+            if whole {
+                found.push(syn::parse_str(&entry).expect("an entry"));
+            }
+        }
+    }
+    found
+}
+
+/// A module that can be changed at its places.
+pub(crate) struct Mutable {
+    file: File,
+}
+
+impl Mutable {
+    pub(crate) fn new(source: &str) -> Mutable {
+        Mutable { file: syn::parse_file(source).expect("the module is Rust") }
+    }
+
+    fn walk(file: &mut File, walk: &mut Walk<'_>, only: Option<usize>) -> Option<String> {
+        for (index, item) in file.items.iter_mut().enumerate().filter(|(i, _)| only.is_none_or(|o| o == *i)) {
+            let _ = index;
+            match item {
+                Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => {
+                    let entries = entries(function);
+                    for line in 0..function.block.stmts.len() {
+                        let mut names = operands(&function.block, line);
+                        names.extend(entries.iter().cloned());
+                        let mut inner = Walk { names: &names, done: walk.done.take(), ..*walk };
+                        match &mut function.block.stmts[line] {
+                            Stmt::Local(local) => {
+                                // `let _ = dq;` says nothing.
+                                if !matches!(local.pat, syn::Pat::Wild(_)) {
+                                    if let Some(init) = &mut local.init {
+                                        inner.expression(&mut init.expr);
+                                    }
+                                }
+                            }
+                            Stmt::Expr(e, _) => inner.expression(e),
+                            _ => {}
+                        }
+                        (walk.left, walk.places, walk.done) = (inner.left, inner.places, inner.done.take());
+                        if walk.done.is_some() {
+                            return Some(function.sig.ident.to_string());
+                        }
+                    }
+                }
+                Item::Const(constant) if !matches!(&*constant.expr, Expr::Lit(_)) => {
+                    walk.expression(&mut constant.expr);
+                    if walk.done.is_some() {
+                        return Some(constant.ident.to_string());
+                    }
+                }
+                _ => {}
+            }
+        }
+        None
+    }
+
+    /// Numbers of the items that have places, with how many.
+    pub(crate) fn places(&self) -> Vec<(usize, usize)> {
+        (0..self.file.items.len())
+            .map(|item| {
+                let mut walk = Walk { left: 0, choice: 0, names: &[], done: None, counting: true, places: 0 };
+                Mutable::walk(&mut self.file.clone(), &mut walk, Some(item));
+                (item, walk.places)
+            })
+            .filter(|(_, places)| *places > 0)
+            .collect()
+    }
+
+    /// The text changed at a place of an item, if something can be changed there.
+    pub(crate) fn change(&self, item: usize, place: usize, choice: u64) -> Option<(String, Change)> {
+        let mut file = self.file.clone();
+        let mut walk = Walk { left: place, choice, names: &[], done: None, counting: false, places: 0 };
+        let name = Mutable::walk(&mut file, &mut walk, Some(item))?;
+        let (kind, what) = walk.done?;
+        Some((prettyplease::unparse(&file), Change { name, kind, what }))
+    }
+}

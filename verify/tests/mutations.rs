@@ -1,0 +1,160 @@
+//! Changes of an emitted module are found, each with the function and the entry that it spoils.
+//!
+//! A change that alters no bit of any entry at many states is none, and neither is one where all that it touches cancels on the way to the
+//! result: the two functions then agree to 40 digits everywhere and the changed one is as right as the other. The short test runs a few dozen changes on small robots; all of them,
+//! 200 on every robot in both scalars, by `cargo test --release -p armgen-verify --test mutations -- --ignored --nocapture`.
+
+mod common;
+#[path = "common/mutation.rs"]
+mod mutation;
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::manipulator;
+use armgen_codegen::program::Scalar;
+use armgen_verify::arithmetic::wide::{Wide, WideArguments};
+use armgen_verify::arithmetic::{Element, Stream};
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
+use armgen_verify::contract::Promise;
+use armgen_verify::float::Arguments;
+use armgen_verify::program::Program;
+use armgen_verify::reader::Module;
+use armgen_verify::report::Verdict;
+use armgen_verify::{constants, prepare};
+
+use mutation::Mutable;
+
+/// Random arguments; q and rates of the size of a robot's, parameters positive.
+fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
+    let mut many = |count: usize, low: f64, high: f64| -> Vec<f64> {
+        (0..count).map(|_| low + (high - low) * (stream.bits() >> 11) as f64 / (1u64 << 53) as f64).collect()
+    };
+    let pi = many(p, 0.1, 3.0);
+    let [q, dq, ddq, dqr, ddqr, tau] = [3.0, 2.0, 5.0, 2.0, 5.0, 20.0].map(|size| many(n, -size, size));
+    Arguments { pi, q, dq, ddq, dqr, ddqr, tau }
+}
+
+/// Entries whose bits differ at some state.
+fn changed_entries(a: &Program, b: &Program, module: &Module, states: &[Arguments<f64>]) -> Vec<String> {
+    let mut changed = vec![false; a.outputs.len()];
+    for state in states {
+        let (a, b) = (a.run_float(state, module.real), b.run_float(state, module.real));
+        for (changed, (a, b)) in changed.iter_mut().zip(a.iter().zip(&b)) {
+            // 0 and -0 are told apart, one NaN is not told from another.
+            *changed |= a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan());
+        }
+    }
+    a.outputs.iter().zip(changed).filter(|(_, changed)| *changed).map(|(output, _)| output.place.clone()).collect()
+}
+
+/// Whether two programs agree to 40 digits at some states: what tells them apart then is rounding alone.
+fn differ_by_rounding_alone(a: &Program, b: &Program, states: &[Arguments<f64>]) -> bool {
+    let values = |p: &Program, state: &WideArguments| -> Vec<Option<Wide>> {
+        p.run(state, &p.literals.iter().map(|l| Wide::from_f64(l.value)).collect::<Vec<_>>())
+    };
+    states.iter().take(6).all(|state| {
+        let state = WideArguments::new(state).expect("angles of moderate size");
+        values(a, &state).iter().zip(values(b, &state)).all(|(a, b)| match (a, b) {
+            (Some(a), Some(b)) => a.minus(&b).to_f64().abs() <= 1e-40 * (1.0 + a.to_f64().abs()),
+            _ => false,
+        })
+    })
+}
+
+/// Makes changes until `wanted` of them count; each must be found.
+fn check(name: &str, scalar: Scalar, wanted: usize) {
+    let start = std::time::Instant::now();
+    let source = common::source(name);
+    let generated = common::generate(&source, scalar);
+    let (read, _) = manipulator::read_for(&source, scalar);
+    let (manipulator, _) = read.expect("a valid description");
+    let claims = Claims::from_numbers(&generated.constants);
+    // A fixed seed: the same changes in every run.
+    let effort = Effort { points: 2, exact_points: 0, seed: 7 };
+    let prepared = prepare(manipulator, &generated.module, claims, effort).expect("a module that can be read");
+    let (module, checker) = (&prepared.module, &prepared.checker);
+    let nominal = constants::nominal_parameters(checker.manipulator(), checker.vector(), checker.claims(), module);
+    let nominal = nominal.expect("nominal parameters");
+    let (n, p) = (checker.manipulator().joints.len(), checker.parameters());
+
+    let mut stream = Stream::new(2024);
+    let states: Vec<Arguments<f64>> = (0..24).map(|_| arguments(&mut stream, n, p)).collect();
+    let mutable = Mutable::new(&generated.module);
+    let places = mutable.places();
+    let mut found: BTreeMap<mutation::Kind, usize> = BTreeMap::new();
+    let (mut counted, mut idle, mut tried) = (0, 0, 0);
+    let (mut survivors, mut rounding) = (Vec::new(), 0);
+    while counted < wanted && tried < 20 * wanted {
+        tried += 1;
+        // Every function as often as any other, every place of it alike.
+        let (item, count) = places[stream.below(places.len() as u64) as usize];
+        let (place, choice) = (stream.below(count as u64) as usize, stream.bits());
+        let Some((text, change)) = mutable.change(item, place, choice) else { continue };
+        let changed = Module::read(&text).expect("a changed module still is one");
+        let is_constant = module.constants.contains_key(&change.name);
+        let verdict = if is_constant {
+            if changed.constants == module.constants {
+                idle += 1;
+                continue;
+            }
+            let reports = constants::check(checker, &changed, &nominal);
+            reports.into_iter().find(|r| r.name == change.name).expect("a report on it").verdict
+        } else {
+            let of = |m: &Module| m.functions.iter().find(|(f, _)| *f == change.name).expect("it stands there").1.clone();
+            let (before, after) = (of(module).expect("it was read"), of(&changed));
+            let entries = match &after {
+                Ok(after) => changed_entries(&before.program, &after.program, module, &states),
+                Err(_) => vec![String::new()],
+            };
+            if entries.is_empty() {
+                idle += 1;
+                continue;
+            }
+            let verdict = checker.function(&change.name, &after, module.real).verdict;
+            if let (Verdict::Equal, Ok(after)) = (&verdict, &after) {
+                // A change where all that is computed cancels: the function is as right as before.
+                if differ_by_rounding_alone(&before.program, &after.program, &states) {
+                    rounding += 1;
+                    continue;
+                }
+            }
+            if let Verdict::Different { entry, .. } = &verdict {
+                assert!(entries.contains(entry), "{name}: {change:?}: {entry} is named, the changed ones are {entries:?}");
+            }
+            verdict
+        };
+        counted += 1;
+        if verdict == Verdict::Equal {
+            survivors.push(change);
+        } else {
+            *found.entry(change.kind).or_default() += 1;
+        }
+    }
+    println!(
+        "{name} {scalar:?}: {counted} changes, {found:?}, {idle} that change no bit, {rounding} that change rounding alone; {:?}",
+        start.elapsed()
+    );
+    assert!(survivors.is_empty(), "{name}: not found: {survivors:#?}");
+    assert_eq!(counted, wanted, "{name}: too few places to change");
+    assert_eq!(found.len(), 5, "{name}: every kind of change occurs");
+    assert!(Promise::required().iter().all(|f| module.program(f).is_some()));
+}
+
+#[test]
+fn some_changes_are_found() {
+    for name in ["scara4", "scara", "modified_prismatic"] {
+        check(name, Scalar::F64, 60);
+    }
+    check("base_set", Scalar::F32, 60);
+}
+
+#[test]
+#[ignore = "some minutes: all robots, 200 changes each, in both scalars"]
+fn all_changes_are_found() {
+    for path in common::paths() {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        check(&name, Scalar::F64, 200);
+        check(&name, Scalar::F32, 200);
+    }
+}
