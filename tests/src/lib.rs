@@ -12,7 +12,8 @@
 //!
 //! - [`emitted`]: the emitted modules, compiled; [`interpreter`]: programs carried out without a compiler; [`functions`]: either of them;
 //! - [`judge`]: every function of a robot against the oracle at one state;
-//! - [`count`]: the operations that stand in an emitted text.
+//! - [`count`]: the operations that stand in an emitted text;
+//! - [`project`]: projects of strangers, built without network.
 
 pub mod count;
 pub mod emitted;
@@ -22,6 +23,7 @@ pub mod interpreter;
 pub mod judge;
 pub mod oracle;
 pub mod precision;
+pub mod project;
 pub mod random;
 pub mod reference;
 pub mod shown;
