@@ -1,0 +1,116 @@
+//! What is known of each robot at a glance, kept as snapshots: a difference shows whether the form, the cost or the meaning has changed.
+//!
+//! - `ROBOT.cost`: operations of every emitted function, and the derivation that was chosen: the *cost*;
+//! - `ROBOT.meaning`: fingerprints of all entries of every quantity, which no rearrangement changes: the *meaning*;
+//! - `ROBOT.forms`, of `robots/`: what `show` prints of the quantities that have a closed form: the *form* for people;
+//! - `ROBOT.module`, of `robots/`: the emitted module: the *form* for machines.
+//!
+//! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-tests --test snapshots` and goes with its cause.
+
+use std::fmt::Write;
+
+use armgen_codegen::derive::parameters::View;
+use armgen_codegen::equations::{Quantity, Shape};
+use armgen_codegen::manipulator;
+use armgen_codegen::program::{Cost, Options};
+use armgen_codegen::ring::field::Element;
+use armgen_codegen::show::{Item, Reading, Sheet};
+use armgen_codegen::source::Source;
+use armgen_codegen::Model;
+use armgen_tests::emitted::{Emitted, ALL};
+
+fn robots() -> impl Iterator<Item = &'static Emitted> {
+    ALL.iter().filter(|robot| !robot.narrow)
+}
+
+/// The robots that users have, not those made for the tests.
+fn users_robots() -> impl Iterator<Item = &'static Emitted> {
+    robots().filter(|robot| robot.path.starts_with("../robots/"))
+}
+
+fn model(robot: &Emitted) -> Model {
+    let (valid, _) = manipulator::read(&Source::new(robot.path, robot.description()));
+    Model::new(valid.expect("every robot here is valid").0)
+}
+
+#[track_caller]
+fn snapshot(robot: &Emitted, what: &str, text: &str) {
+    let name = format!("{}.{what}", robot.module);
+    insta::with_settings!({ omit_expression => true, prepend_module_to_snapshot => false, snapshot_path => "../snapshots" }, {
+        insta::assert_snapshot!(name, text);
+    });
+}
+
+#[test]
+fn costs() {
+    for robot in robots() {
+        let mut table = format!("{:26}{:>6}{:>6}{:>6}{:>6}{:>8}  derived by\n", "", "mul", "add", "div", "neg", "sincos");
+        for function in model(robot).module(&Options::default()).functions {
+            let Cost { mul, add, div, neg, sincos } = Cost::of(&function);
+            let (name, method) = (function.name(), function.method);
+            writeln!(table, "{name:26}{mul:6}{add:6}{div:6}{neg:6}{sincos:8}  {method}").expect("text");
+        }
+        snapshot(robot, "cost", &table);
+    }
+}
+
+#[test]
+fn meanings() {
+    for robot in robots() {
+        let model = model(robot);
+        let field = &model.field;
+        let mut text = format!("in the field of {} elements; the halves of the first value in one, by rows\n", field.prime());
+        // Half the digits tell as much as a reader needs; both halves count, for a small number has an empty one.
+        let hex = |[first, _]: [Element; 2]| match field.to_u64(first) {
+            0 => "0".to_owned(),
+            value => format!("{:08x}", (value >> 32) ^ (value & 0xffff_ffff)),
+        };
+        for quantity in Quantity::ALL {
+            for with in [false, true] {
+                if with && !quantity.has_parameters() {
+                    continue;
+                }
+                let view = if with { View::Vector(&model.parameters) } else { View::Nominal };
+                let derivation = quantity.by_recursion(&model, view);
+                let columns = match quantity.shape() {
+                    Shape::EquationsOfMotion | Shape::Vector => model.manipulator.dof(),
+                    shape => shape.rows_columns(model.manipulator.dof(), model.parameters.len()).1.max(1),
+                };
+                writeln!(text, "\n{}{}", quantity.name(), if with { "_with" } else { "" }).expect("text");
+                for row in derivation.entries.chunks(columns) {
+                    let row: Vec<String> = row.iter().map(|&entry| hex(derivation.pool.fingerprint(entry))).collect();
+                    writeln!(text, "  {}", row.join(" ")).expect("text");
+                }
+            }
+        }
+        snapshot(robot, "meaning", &text);
+    }
+}
+
+#[test]
+fn closed_forms() {
+    for robot in users_robots() {
+        let model = model(robot);
+        let mut text = String::new();
+        let readings: &[Reading] =
+            if model.manipulator.parameters.is_empty() { &[Reading::Nominal] } else { &[Reading::Nominal, Reading::Symbolic] };
+        for &reading in readings {
+            writeln!(text, "---- {reading:?} ----\n").expect("text");
+            let mut sheet = Sheet::new(&model, &Item::all(), reading);
+            let (closed, programs) = std::mem::take(&mut sheet.quantities).into_iter().partition(|shown| shown.is_closed());
+            sheet.quantities = closed;
+            text += &sheet.text();
+            for shown in Vec::from_iter::<Vec<armgen_codegen::show::Shown>>(programs) {
+                writeln!(text, "\n{}: too long for a closed form", shown.name).expect("text");
+            }
+        }
+        snapshot(robot, "forms", &text);
+    }
+}
+
+#[test]
+fn modules() {
+    for robot in users_robots() {
+        snapshot(robot, "module", robot.text);
+    }
+}
