@@ -94,6 +94,7 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
     #[command(after_help = "Examples:
   armgen generate robot.yaml --out src/robot.rs           then: mod robot;
   armgen generate robot.yaml --scalar f32 > robot_f32.rs
+  armgen generate robot.yaml --trig fast > robot.rs       for machines with wide vectors
 
 The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.")]
     Generate {
@@ -106,6 +107,9 @@ The module is one file of free functions over arrays: no allocation, no std, no 
         /// The floating-point type of the module
         #[arg(long, value_enum, default_value_t = ScalarName::F64)]
         scalar: ScalarName,
+        /// Where the sines and cosines come from
+        #[arg(long, value_enum, default_value_t = TrigName::Libm)]
+        trig: TrigName,
     },
     /// Count the operations of every emitted function
     #[command(after_help = "Examples:
@@ -171,12 +175,22 @@ enum ScalarName {
     F32,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TrigName {
+    /// The crate libm, angle by angle: the same bits on every machine
+    Libm,
+    /// The standard library, angle by angle: the module then needs std
+    Std,
+    /// All angles together in vector instructions, within 1 unit in the last place; libm for large angles
+    Fast,
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar } => commands::generate::run(&file, out.as_deref(), scalar),
+        Command::Generate { file, out, scalar, trig } => commands::generate::run(&file, out.as_deref(), scalar, trig),
         Command::Count { file, format } => commands::count::run(&file, format),
         Command::Run { out } => commands::run::run(&out),
         Command::Completions { shell } => commands::completions::run(shell),

@@ -17,7 +17,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::Colour;
-pub use crate::program::Scalar;
+pub use crate::program::{Scalar, Trig};
 
 use crate::program::Options;
 use crate::source::Source;
@@ -39,6 +39,12 @@ impl Robot {
     /// The scalar type behind `Real`; f64 unless chosen.
     pub fn scalar(mut self, scalar: Scalar) -> Robot {
         self.options.scalar = scalar;
+        self
+    }
+
+    /// Where the sines and cosines of the module come from; the crate `libm` unless chosen.
+    pub fn trig(mut self, trig: Trig) -> Robot {
+        self.options.trig = trig;
         self
     }
 

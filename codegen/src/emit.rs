@@ -5,3 +5,4 @@ pub mod rust;
 mod documentation;
 mod literal;
 mod runtime;
+mod sincos;

@@ -15,6 +15,19 @@ use crate::equations::{Argument, Quantity};
 use crate::exact::Number;
 use crate::ring::Symbol;
 
+/// Where the sines and cosines of the emitted module come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trig {
+    /// The crate `libm`, angle by angle: the same bits on every machine.
+    #[default]
+    Libm,
+    /// The standard library, angle by angle: the emitted module then needs `std`, and its last bits are those of the platform.
+    Std,
+    /// All angles of a function together in vector instructions, within 1 unit in the last place, the same bits on every machine; those of large
+    /// angles (beyond 65536 rad in f64, 128 rad in f32) from the crate `libm`.
+    Fast,
+}
+
 /// A value that a step uses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Operand {
@@ -105,6 +118,8 @@ pub struct Module {
     pub functions: Vec<Function>,
     /// The scalar.
     pub scalar: Scalar,
+    /// Where sines and cosines come from.
+    pub trig: Trig,
 }
 
 impl Module {

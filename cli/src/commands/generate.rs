@@ -4,15 +4,20 @@ use std::path::Path;
 
 use armgen_codegen::emit::rust::{print, Origin};
 use armgen_codegen::manipulator::Scalar;
-use armgen_codegen::program::Options;
+use armgen_codegen::program::{Options, Trig};
 use armgen_codegen::Model;
 
-use crate::{input, terminal, ScalarName, DONE, FAULTY};
+use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY};
 
-pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName) -> u8 {
+pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: TrigName) -> u8 {
     let scalar = match scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
+    };
+    let trig = match trig {
+        TrigName::Libm => Trig::Libm,
+        TrigName::Std => Trig::Std,
+        TrigName::Fast => Trig::Fast,
     };
     let source = match input::source(file) {
         Ok(source) => source,
@@ -22,7 +27,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName) -> u8 {
         Ok((manipulator, _)) => manipulator,
         Err(code) => return code,
     };
-    let text = print(&Model::new(manipulator).module(&Options { scalar }), &Origin::of(&source));
+    let text = print(&Model::new(manipulator).module(&Options { scalar, trig }), &Origin::of(&source));
     let Some(out) = out else { return terminal::print(&text) };
     match std::fs::write(out, text) {
         Ok(()) => DONE,

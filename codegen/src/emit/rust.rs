@@ -8,7 +8,7 @@ use quote::{format_ident, quote};
 use sha2::{Digest, Sha256};
 
 use super::literal::literal;
-use super::{documentation, runtime};
+use super::{documentation, runtime, sincos};
 use crate::equations::{Argument, Shape};
 use crate::program::{Function, Module, Operand, Operation, Scalar, Step};
 use crate::ring::Symbol;
@@ -94,7 +94,7 @@ fn format(tokens: TokenStream) -> String {
     spaced
 }
 
-fn usize_literal(value: usize) -> Literal {
+pub(super) fn usize_literal(value: usize) -> Literal {
     Literal::usize_unsuffixed(value)
 }
 
@@ -318,7 +318,7 @@ fn function(module: &Module, function: &Function) -> TokenStream {
         [one] => Some(quote!(let _ = #one;)),
         several => Some(quote!(let _ = (#(#several),*);)),
     };
-    let sines = sines(&symbols);
+    let sines = sincos::lines(module, &symbols);
     let (lines, entries) = body(module, function);
     let (returns, result) = result(function.quantity.shape(), &entries, module.joints.len());
     quote! {
@@ -344,33 +344,6 @@ fn symbols(function: &Function) -> Vec<Symbol> {
     symbols.sort_unstable();
     symbols.dedup();
     symbols
-}
-
-/// `let (s1, c1) = sin_cos(q[0]);` for each angle that occurs.
-fn sines(symbols: &[Symbol]) -> Vec<TokenStream> {
-    let mut angles: BTreeMap<u16, (bool, bool)> = BTreeMap::new();
-    for symbol in symbols {
-        match symbol {
-            Symbol::Sine(i) => angles.entry(*i).or_default().0 = true,
-            Symbol::Cosine(i) => angles.entry(*i).or_default().1 = true,
-            _ => {}
-        }
-    }
-    angles
-        .into_iter()
-        .map(|(i, (sine, cosine))| {
-            let name = |used: bool, letter: &str| {
-                let name = format_ident!("{letter}{}", i + 1);
-                if used {
-                    quote!(#name)
-                } else {
-                    quote!(_)
-                }
-            };
-            let (s, c, index) = (name(sine, "s"), name(cosine, "c"), usize_literal(usize::from(i)));
-            quote!(let (#s, #c) = sin_cos(q[#index]);)
-        })
-        .collect()
 }
 
 fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> (TokenStream, TokenStream) {
@@ -407,21 +380,10 @@ fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> (TokenStream, To
 
 /// Sine and cosine, and the sign of a rate: the only calls in the module.
 fn private_block(module: &Module) -> TokenStream {
-    let sincos = match module.scalar {
-        Scalar::F64 => quote!(libm::sincos(x)),
-        Scalar::F32 => quote!(libm::sincosf(x)),
-    };
-    let all: Vec<Symbol> = module.functions.iter().flat_map(symbols).collect();
-    let sin_cos = all.iter().any(|s| matches!(s, Symbol::Sine(_) | Symbol::Cosine(_))).then(|| {
-        quote! {
-            /// Sine and cosine of an angle in rad.
-            #[inline]
-            fn sin_cos(x: Real) -> (Real, Real) {
-                #sincos
-            }
-        }
-    });
-    let sign = all.iter().any(|s| matches!(s, Symbol::RateSign(_))).then(|| {
+    let all: Vec<Vec<Symbol>> = module.functions.iter().map(symbols).collect();
+    let uses = |wanted: fn(&Symbol) -> bool| all.iter().flatten().any(wanted);
+    let sin_cos = uses(|s| matches!(s, Symbol::Sine(_) | Symbol::Cosine(_))).then(|| sincos::functions(module, &all));
+    let sign = uses(|s| matches!(s, Symbol::RateSign(_))).then(|| {
         quote! {
             /// Sign of a rate: 0 at rest, not a number for what is not a number.
             #[inline]

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Cost, Function, Module, Operand, Operation, Output, Step};
+use super::{Cost, Function, Module, Operand, Operation, Output, Step, Trig};
 use crate::derive::parameters::View;
 use crate::equations::{Argument, Derivation, Quantity};
 use crate::exact::Number;
@@ -15,6 +15,8 @@ use crate::Model;
 pub struct Options {
     /// The scalar type behind `Real`.
     pub scalar: Scalar,
+    /// Where sines and cosines come from.
+    pub trig: Trig,
 }
 
 /// The module of an arm.
@@ -42,6 +44,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         parameters: model.parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
         functions,
         scalar: options.scalar,
+        trig: options.trig,
     }
 }
 

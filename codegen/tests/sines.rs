@@ -1,0 +1,121 @@
+//! The sine and cosine of `--trig fast`, as emitted, against a reference of more than 200 bits, and the reference against another.
+
+#[path = "sines/arguments.rs"]
+mod arguments;
+#[path = "sines/emitted.rs"]
+mod emitted;
+#[path = "sines/reference.rs"]
+mod reference;
+
+use arguments::{ranges, Range};
+use dashu_float::round::mode::HalfEven;
+use dashu_float::FBig;
+use reference::{Format, Reference, F32, F64};
+
+/// The promise of the documentation.
+const PROMISE: f64 = 1.0;
+/// Arguments in each range: `cargo run --release -p armgen-codegen --example sine_errors` takes a million.
+const COUNT: usize = 4000;
+
+#[track_caller]
+fn check(format: Format, smallest: f64, largest: f64, sin_cos: impl Fn(f64) -> (f64, f64)) {
+    let reference = Reference::new();
+    for (name, range) in ranges(smallest, largest) {
+        for x in range.arguments(COUNT, largest, format) {
+            let ((sine, cosine), (exact_sine, exact_cosine)) = (sin_cos(x), reference.sin_cos(x));
+            let errors = (exact_sine.ulps(sine, format), exact_cosine.ulps(cosine, format));
+            assert!(errors.0 <= PROMISE && errors.1 <= PROMISE, "{name}: sine and cosine of {x:e} are {errors:?} ulp off");
+        }
+    }
+}
+
+#[test]
+fn sines_in_f64_are_within_an_ulp() {
+    check(F64, -1074.0, emitted::f64::RANGE, |x| {
+        let ([sine], [cosine]) = emitted::f64::all([x]);
+        (sine, cosine)
+    });
+}
+
+#[test]
+fn sines_in_f32_are_within_an_ulp() {
+    check(F32, -149.0, f64::from(emitted::f32::RANGE), |x| {
+        let ([sine], [cosine]) = emitted::f32::all([x as f32]);
+        (f64::from(sine), f64::from(cosine))
+    });
+}
+
+#[test]
+fn an_angle_has_the_same_sine_beside_any_others() {
+    let angles = [0.3, -2.0, 1e9, 7.0, -0.0, f64::NAN, 65536.0, 12.5];
+    let alone = angles.map(|x| emitted::f64::few([x]));
+    let (sines, cosines) = emitted::f64::all(angles);
+    let singles = angles.map(|x| x as f32);
+    let alone_single = singles.map(|x| emitted::f32::few([x]));
+    let (sines_single, cosines_single) = emitted::f32::all(singles);
+    for i in 0..angles.len() {
+        assert_eq!((sines[i].to_bits(), cosines[i].to_bits()), (alone[i].0[0].to_bits(), alone[i].1[0].to_bits()));
+        assert_eq!(
+            (sines_single[i].to_bits(), cosines_single[i].to_bits()),
+            (alone_single[i].0[0].to_bits(), alone_single[i].1[0].to_bits())
+        );
+    }
+}
+
+#[test]
+fn zeros_keep_their_sign_and_the_smallest_numbers_their_bits() {
+    for x in [0.0, -0.0, f64::from_bits(1), -f64::from_bits(1), f64::MIN_POSITIVE] {
+        let ([sine], [cosine]) = emitted::f64::all([x]);
+        assert_eq!((sine.to_bits(), cosine), (x.to_bits(), 1.0));
+    }
+    for x in [0.0, -0.0, f32::from_bits(1), -f32::from_bits(1), f32::MIN_POSITIVE] {
+        let ([sine], [cosine]) = emitted::f32::all([x]);
+        assert_eq!((sine.to_bits(), cosine), (x.to_bits(), 1.0));
+    }
+}
+
+#[test]
+fn beyond_the_range_the_answer_is_that_of_libm() {
+    let above = f64::from_bits(emitted::f64::RANGE.to_bits() + 1);
+    for x in [above, -above, 1e22, -f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+        let (([sine], [cosine]), expected) = (emitted::f64::all([x]), libm::sincos(x));
+        assert!(same(sine, expected.0) && same(cosine, expected.1), "{x:e}");
+    }
+    let above = f32::from_bits(emitted::f32::RANGE.to_bits() + 1);
+    for x in [above, -above, 1e22, -f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+        let (([sine], [cosine]), expected) = (emitted::f32::all([x]), libm::sincosf(x));
+        assert!(same(sine.into(), expected.0.into()) && same(cosine.into(), expected.1.into()), "{x:e}");
+    }
+}
+
+fn same(a: f64, b: f64) -> bool {
+    a == b || (a.is_nan() && b.is_nan())
+}
+
+/// Odd and even as sine and cosine are: bits and signs, not only to rounding.
+#[test]
+fn a_turn_the_other_way_changes_only_the_sign_of_the_sine() {
+    for x in Range::Uniform(emitted::f64::RANGE).arguments(COUNT, emitted::f64::RANGE, F64) {
+        let ((s, c), (t, d)) = (emitted::f64::all([x]), emitted::f64::all([-x]));
+        assert_eq!((s[0], c[0]), (-t[0], d[0]), "{x:e}");
+    }
+    let largest = f64::from(emitted::f32::RANGE);
+    for x in Range::Uniform(largest).arguments(COUNT, largest, F32) {
+        let ((s, c), (t, d)) = (emitted::f32::all([x as f32]), emitted::f32::all([-x as f32]));
+        assert_eq!((s[0], c[0]), (-t[0], d[0]), "{x:e}");
+    }
+}
+
+#[test]
+fn the_reference_agrees_with_another_to_200_bits() {
+    let reference = Reference::new();
+    let format = Format::of_bits(200);
+    for x in [1.0, -0.5, 3.0, 22.0, 355.0, 65535.5, 1e-3, -1e-11, 1e-12, 2e-300, std::f64::consts::FRAC_PI_2] {
+        let exact = FBig::<HalfEven, 2>::try_from(x).expect("finite").with_precision(240).value();
+        let (sine, cosine) = reference.sin_cos(x);
+        for (ours, other) in [(sine, exact.sin()), (cosine, exact.cos())] {
+            let (mantissa, exponent) = other.repr().clone().into_parts();
+            assert!(ours.ulps_of(&mantissa, exponent, format) < 1.0, "{x:e}");
+        }
+    }
+}
