@@ -74,7 +74,7 @@ pub(crate) fn run(files: &[PathBuf], out: &Path) -> Outcome {
         };
         match file::parse(file, &source, terminal::colour(&std::io::stderr())) {
             Parsed::Experiment(experiment) => {
-                jobs.push(Job { experiment: *experiment, prepared: None, record: Record::default(), trouble: None, figures: 0 });
+                jobs.push(Job::new(*experiment));
             }
             Parsed::OtherRobot(robot) => match others.iter_mut().find(|(known, _)| *known == robot) {
                 Some((_, count)) => *count += 1,
@@ -182,6 +182,10 @@ fn in_parallel(jobs: &mut [Job], work: impl Fn(&mut Job) + Sync) {
 }
 
 impl Job {
+    fn new(experiment: Experiment) -> Job {
+        Job { experiment, prepared: None, record: Record::default(), trouble: None, figures: 0 }
+    }
+
     /// Roughly how long it takes, in steps.
     fn effort(&self) -> u64 {
         match &self.experiment.body {

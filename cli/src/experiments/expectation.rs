@@ -158,10 +158,18 @@ impl Expectation {
     /// What the run gave, in the light of what was expected.
     pub(crate) fn judge(&self, log: &Log, singles: &[(String, f64)]) -> Line {
         let found = self.find(log, singles);
+        // As many digits as the tolerance can tell apart.
+        let count = match self.target {
+            Target::Near { value, tolerance, .. } if value != 0.0 => {
+                (2.0 - (tolerance / value.abs()).log10().floor()).clamp(4.0, 15.0) as i32
+            }
+            Target::AtLeast(_) | Target::AtMost(_) => 4,
+            Target::Near { .. } => 7,
+        };
         let (met, expected) = match self.target {
             Target::Near { value, tolerance, percent } => {
                 let width = percent.map_or_else(|| number(tolerance), |p| format!("{p} %"));
-                ((found - value).abs() <= tolerance, format!("{} ± {width}", number(value)))
+                ((found - value).abs() <= tolerance, format!("{} ± {width}", digits(value, 15)))
             }
             Target::AtMost(bound) => (found <= bound, format!("≤ {}", number(bound))),
             Target::AtLeast(bound) => (found >= bound, format!("≥ {}", number(bound))),
@@ -176,7 +184,7 @@ impl Expectation {
             Take::Lowest(a, b) => span("min ", a, b),
             Take::Decay(a, b) => format!("decay of {name} in [{a}, {b}] s"),
         };
-        Line { what, found: number(found), expected, met }
+        Line { what, found: digits(found, count), expected, met }
     }
 
     fn find(&self, log: &Log, singles: &[(String, f64)]) -> f64 {
@@ -211,21 +219,27 @@ impl Expectation {
 
 /// A number with seven digits, as short as they allow.
 pub(crate) fn number(x: f64) -> String {
+    digits(x, 7)
+}
+
+/// A number with so many digits, as short as they allow.
+fn digits(x: f64, count: i32) -> String {
     if !x.is_finite() {
         return if x.is_nan() { "none".into() } else { x.to_string() };
     }
     let exponent = if x == 0.0 { 0 } else { x.abs().log10().floor() as i32 };
     if (-3..7).contains(&exponent) {
-        let text = format!("{x:.*}", (6 - exponent).max(0) as usize);
+        let text = format!("{x:.*}", (count - 1 - exponent).max(0) as usize);
         if text.contains('.') {
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         } else {
             text
         }
     } else {
-        let text = format!("{x:.6e}");
+        let text = format!("{x:.*e}", count as usize - 1);
         let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-        format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+        let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+        format!("{digits}e{power}")
     }
 }
 

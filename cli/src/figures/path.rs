@@ -77,16 +77,20 @@ pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option
 
 /// The ends of the segments, numbered; points at one place share their numbers.
 fn mark_points(motion: &Motion, plane: &mut Panel) {
-    let mut marks: Vec<(f64, f64, String)> = Vec::new();
+    let mut marks: Vec<(f64, f64, Vec<usize>)> = Vec::new();
     let segments = motion.trajectory.path.segments();
     let first = segments.first().map(|s| s.from());
     for (i, p) in first.into_iter().chain(segments.iter().map(|s| s.to())).enumerate() {
         match marks.iter_mut().find(|(x, y, _)| (x - p.x).hypot(y - p.y) < 1e-9) {
-            Some((_, _, text)) => *text += &format!(",{i}"),
-            None => marks.push((p.x, p.y, i.to_string())),
+            Some((_, _, numbers)) => numbers.push(i),
+            None => marks.push((p.x, p.y, vec![i])),
         }
     }
-    plane.marks = marks;
+    let runs = |numbers: &[usize]| {
+        let run = |run: &[usize]| if run.len() > 1 { format!("{}–{}", run[0], run[run.len() - 1]) } else { run[0].to_string() };
+        numbers.chunk_by(|a, b| a + 1 == *b).map(run).collect::<Vec<_>>().join(", ")
+    };
+    plane.marks = marks.iter().map(|(x, y, numbers)| (*x, *y, runs(numbers))).collect();
 }
 
 /// Angle, speeds and accelerations over time.

@@ -59,7 +59,7 @@ impl Panel {
         self.series.push(Series { name: name.into(), points, stroke });
     }
 
-    /// Largest and smallest value that a logarithmic axis shows: whole decades, at most eight.
+    /// Largest and smallest value that a logarithmic axis shows: whole decades, at most seven.
     pub(super) fn decades(&self) -> Option<(f64, f64)> {
         let values = || self.series.iter().flat_map(|s| &s.points).map(|p| p.1).filter(|y| *y > 0.0 && y.is_finite());
         let top = values().fold(0.0, f64::max);
@@ -67,7 +67,7 @@ impl Panel {
             return None;
         }
         let high = top.log10().ceil();
-        let low = values().fold(top, f64::min).log10().floor().max(high - 8.0);
+        let low = values().fold(top, f64::min).log10().floor().max(high - 7.0);
         Some((10f64.powf(low), 10f64.powf(high.max(low + 1.0))))
     }
 }
@@ -150,7 +150,9 @@ impl Axis {
             let stride = (f64::from(high - low) / 8.0).ceil().max(1.0) as i32;
             return ((low..=high).filter(|k| (high - k) % stride == 0).map(|k| 10f64.powi(k)).collect(), 0);
         }
-        let wanted = ((self.end - self.start).abs() / 55.0).clamp(2.0, 10.0);
+        // Labels side by side need more room than labels above one another.
+        let room = if self.end < self.start { 30.0 } else { 55.0 };
+        let wanted = ((self.end - self.start).abs() / room).clamp(3.0, 10.0);
         let rough = (self.to - self.from) / wanted;
         let power = 10f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= rough * 0.999).unwrap_or(rough);
@@ -268,13 +270,21 @@ fn draw(svg: &mut Svg, panel: &Panel, (left, top): (f64, f64), above: f64, area:
             svg.dot(across.at(*px), up.at(*py), 2.4, INK);
         }
     });
-    for (px, py, text) in &panel.marks {
-        svg.text((across.at(*px) + 5.0, up.at(*py) - 5.0), 10.5, Anchor::Start, false, text);
+    let places: Vec<(f64, f64)> = panel.marks.iter().map(|(px, py, _)| (across.at(*px), up.at(*py))).collect();
+    for (i, (_, _, text)) in panel.marks.iter().enumerate() {
+        let (px, py) = places[i];
+        // To the left where another mark is in the way on the right.
+        let in_the_way = |q: &(f64, f64)| q.0 > px && q.0 - px < width_of(text, 10.5) + 12.0 && (q.1 - py).abs() < 14.0;
+        let (anchor, aside) = if places.iter().any(in_the_way) { (Anchor::End, -5.0) } else { (Anchor::Start, 5.0) };
+        svg.text((px + aside, py - 5.0), 10.5, anchor, false, text);
     }
     svg.frame(area);
     svg.text((x + w / 2.0, y + h + 30.0), 11.5, Anchor::Middle, false, &axis_label(&panel.x, x_out));
     svg.text((left + 14.0, y + h / 2.0), 11.5, Anchor::Middle, true, &axis_label(&panel.y, y_out));
 }
+
+/// How far beyond its panel a curve is drawn (and clipped), px.
+const OUTSIDE: f64 = 40.0;
 
 /// The places of the points, cut where there is none to show.
 fn pieces(points: &[(f64, f64)], across: &Axis, up: &Axis) -> Vec<Vec<(f64, f64)>> {
@@ -282,8 +292,8 @@ fn pieces(points: &[(f64, f64)], across: &Axis, up: &Axis) -> Vec<Vec<(f64, f64)
     for (x, y) in points {
         let shown = x.is_finite() && y.is_finite() && (!up.log || *y > 0.0);
         match (shown, pieces.last_mut()) {
-            // Far outside, a coordinate says nothing but its side.
-            (true, Some(piece)) => piece.push((across.at(*x), up.at(*y).clamp(-5e3, 5e4))),
+            // Outside the panel a coordinate says nothing but its side.
+            (true, Some(piece)) => piece.push((across.at(*x), up.at(*y).clamp(up.end - OUTSIDE, up.start + OUTSIDE))),
             (false, Some(piece)) if !piece.is_empty() => pieces.push(Vec::new()),
             _ => {}
         }
@@ -291,12 +301,12 @@ fn pieces(points: &[(f64, f64)], across: &Axis, up: &Axis) -> Vec<Vec<(f64, f64)
     pieces
 }
 
-/// Fewer points that look the same: per pixel of x the first, lowest, highest and last, then those that a straight line cannot replace.
+/// Fewer points that look the same: per step of x the first, lowest, highest and last, then those that a straight line cannot replace.
 fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let monotonic = points.windows(2).all(|p| p[1].0 >= p[0].0);
     let mut kept: Vec<(f64, f64)> = Vec::new();
     if monotonic && points.len() > 2000 {
-        for bucket in points.chunk_by(|a, b| a.0.floor() == b.0.floor()) {
+        for bucket in points.chunk_by(|a, b| (a.0 / 1.5).floor() == (b.0 / 1.5).floor()) {
             let by = |better: fn(f64, f64) -> bool| {
                 (0..bucket.len()).fold(0, |best, i| if better(bucket[i].1, bucket[best].1) { i } else { best })
             };
@@ -313,7 +323,7 @@ fn thin(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     } else {
         kept.extend_from_slice(points);
     }
-    simplify(&kept, 0.12)
+    simplify(&kept, 0.2)
 }
 
 /// Ramer, Douglas and Peucker: points farther than `tolerance` from the line that would replace them stay.

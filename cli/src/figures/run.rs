@@ -1,6 +1,6 @@
 //! Runs over time: errors, torques, estimates; and the members of a group side by side.
 
-use armgen_generated::{JOINT_NAMES, NOMINAL_PARAMETERS, PARAMETER_NAMES};
+use armgen_generated::{JOINT_IS_REVOLUTE, JOINT_NAMES, NOMINAL_PARAMETERS, PARAMETER_NAMES};
 
 use super::plot::{figure, Panel};
 use crate::experiments::{Body, ControlRun, Experiment, Record};
@@ -59,7 +59,7 @@ pub(super) fn clik(experiment: &Experiment, record: &Record) -> String {
 
 /// Estimates of the parameters that the load changes, beside their true values.
 fn estimates(control: &ControlRun, record: &Record) -> Option<Panel> {
-    let mut panel = Panel::over_time("estimate of the load's parameter", "π̂", "kg");
+    let mut panel = Panel::over_time("estimate of the load's parameter", "estimate", "kg");
     let changed = (0..PARAMETER_NAMES.len()).filter(|i| control.plant[*i] != NOMINAL_PARAMETERS[*i]);
     for i in changed {
         let points = over_time(record, &format!("estimate_{}", PARAMETER_NAMES[i]));
@@ -71,21 +71,36 @@ fn estimates(control: &ControlRun, record: &Record) -> Option<Panel> {
     (!panel.series.is_empty()).then_some(panel)
 }
 
-/// Errors of joints and tip, torques, estimates.
+/// Errors of joints and tip, torques, estimates; what turns on the left, what slides on the right.
 pub(super) fn control(experiment: &Experiment, control: &ControlRun, record: &Record) -> String {
-    let joints = |title: &str, quantity: &str, unit: &str, prefix: &str| {
-        let mut panel = Panel::over_time(title, quantity, unit);
-        for name in JOINT_NAMES {
-            panel.add(name, over_time(record, &format!("{prefix}_{name}")));
+    // A run that ended early shows how fast it was lost: over decades.
+    let lost = record.ended.is_some();
+    let mut panels = Vec::new();
+    let mut add = |title: &str, quantity: &str, unit: &str, columns: Vec<(&str, String)>, log: bool| {
+        let quantity = if log { format!("|{quantity}|") } else { quantity.to_owned() };
+        let mut panel = Panel { log, ..Panel::over_time(title, &quantity, unit) };
+        for (name, column) in columns {
+            let points = over_time(record, &column);
+            panel.add(name, if log { absolute(points) } else { points });
         }
-        panel
+        if !panel.series.is_empty() {
+            panels.push(panel);
+        }
     };
-    let mut tip = Panel::over_time("errors of the tip", "e", "m, rad");
-    for name in names(record, "e_") {
-        tip.add(short(name), over_time(record, name));
-    }
-    let mut panels =
-        vec![joints("joint errors", "q_d − q", "rad, m", "eq"), tip, joints("joint torques and forces", "τ", "N m, N", "tau")];
+    let joints = |prefix: &str, revolute: bool| {
+        let all = JOINT_NAMES.iter().zip(JOINT_IS_REVOLUTE).filter(|(_, is)| *is == revolute);
+        all.map(|(name, _)| (*name, format!("{prefix}_{name}"))).collect::<Vec<_>>()
+    };
+    let rows = |linear: bool| {
+        let all = names(record, "e_").into_iter().filter(|name| (unit(short(name)) == "m") == linear);
+        all.map(|name| (short(name), name.to_owned())).collect::<Vec<_>>()
+    };
+    add("errors of revolute joints", "q_d − q", "rad", joints("eq", true), lost);
+    add("errors of prismatic joints", "q_d − q", "m", joints("eq", false), lost);
+    add("orientation errors of the tip", "e", "rad", rows(false), lost);
+    add("position errors of the tip", "e", "m", rows(true), lost);
+    add("torques of revolute joints", "τ", "N m", joints("tau", true), lost);
+    add("forces of prismatic joints", "τ", "N", joints("tau", false), lost);
     panels.extend(estimates(control, record));
     figure(&experiment.title, &panels, 2, SIZE)
 }
@@ -116,7 +131,7 @@ pub(super) fn compare(group: &str, members: &[(&Experiment, &Record)]) -> Option
     let low = panels.iter().filter(logarithmic).filter_map(Panel::decades).fold(f64::INFINITY, |a, r| a.min(r.0));
     let high = panels.iter().filter(logarithmic).filter_map(Panel::decades).fold(0.0, |a, r| f64::max(a, r.1));
     for panel in panels.iter_mut().filter(|p| p.log) {
-        panel.range = Some((low.max(high * 1e-9), high)).filter(|(low, high)| low < high);
+        panel.range = Some((low.max(high * 1e-7), high)).filter(|(low, high)| low < high);
     }
     let title = format!("Compared: {}", group.replace('_', " "));
     Some(figure(&title, &panels, 2, (470.0, 175.0)))
@@ -172,7 +187,7 @@ fn compare_control(members: &[(&Experiment, &Record)]) -> Vec<Panel> {
             panels.push(panel);
         }
     }
-    let mut panel = Panel::over_time("estimate of the load's parameter", "π̂", "kg");
+    let mut panel = Panel::over_time("estimate of the load's parameter", "estimate", "kg");
     for (experiment, record) in members {
         let Body::Control(control) = &experiment.body else { continue };
         let changed = (0..PARAMETER_NAMES.len()).filter(|i| control.plant[*i] != NOMINAL_PARAMETERS[*i]);
