@@ -104,7 +104,7 @@ fn refused(name: &str, old: &str, new: &str, code: &str, place: &str, help: &str
 #[test]
 fn faulty_experiments_say_where_and_why() {
     let a = "adaptive_a.yaml";
-    refused(a, "load:", "lode:", "unknown-key", "9:1", "did you mean `load`?");
+    refused(a, "load:", "laod:", "unknown-key", "9:1", "did you mean `load`?");
     refused(a, "title: Adaptive control, gains A\n", "", "missing-key", "2:1", "lacks `title`");
     refused(a, "[500, 500, 500, 500]", "[500, 500, 500]", "wrong-length", "13:11", "3 instead of 4");
     refused(a, "[500, 500, 500, 500]", "[500, 500, -500, 500]", "not-positive", "13:22", "write a number above zero");
