@@ -4,14 +4,18 @@
 //! main.rs      arguments, dispatch
 //! commands/    one file per command
 //! input.rs     descriptions from files
-//! motion.rs    the built robot in motion
+//! experiments/ files that say how the built robot moves, and what should come out
+//! figures/     SVG of what came out
+//! motion.rs    the built robot in motion, where there are no experiments for it
 //! figure.rs    charts as SVG
 //! terminal.rs  standard output and error: colour, closed pipes
 //! table.rs     aligned tables
 //! ```
 
 mod commands;
+mod experiments;
 mod figure;
+mod figures;
 mod input;
 mod motion;
 mod table;
@@ -125,14 +129,20 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         #[arg(long, value_enum, default_value_t = CountFormat::Text)]
         format: CountFormat,
     },
-    /// Move the robot that this program was built with, and draw what happened
+    /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected
     #[command(after_help = "Examples:
-  armgen run                          figures and logs in out/
-  armgen run --out figures
+  armgen run                                     everything in experiments/, into out/
+  armgen run experiments/adaptive_a.yaml
+  armgen run my_experiments/*.yaml --out results
 
+The table goes to standard output; DIR receives figures (SVG) and logs (CSV). The format: docs/experiments.md.
 The robot is the one of robot.yaml at the time of building: edit it, and `cargo run --release -- run` builds and moves yours.
-Exit codes: 0 every error is as small as expected, 1 one is not, or nothing could be moved.")]
+An experiment for another robot is skipped; if none is left, the arm is moved along a demonstration.
+Exit codes: 0 all as expected, 1 a result is outside its expectation or a file is faulty, 2 a file cannot be opened.")]
     Run {
+        /// Experiments; all of `experiments/` if none is named
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
         /// Folder for figures (SVG) and logs (CSV)
         #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
         out: PathBuf,
@@ -192,7 +202,7 @@ fn main() -> ExitCode {
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, scalar, trig } => commands::generate::run(&file, out.as_deref(), scalar, trig),
         Command::Count { file, format } => commands::count::run(&file, format),
-        Command::Run { out } => commands::run::run(&out),
+        Command::Run { files, out } => commands::run::run(&files, &out),
         Command::Completions { shell } => commands::completions::run(shell),
     };
     ExitCode::from(code)

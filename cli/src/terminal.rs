@@ -48,6 +48,11 @@ pub(crate) fn error(message: &str) {
     labelled("error", "31", message);
 }
 
+/// `warning: ...` on standard error.
+pub(crate) fn warning(message: &str) {
+    labelled("warning", "33", message);
+}
+
 /// `note: ...` on standard error.
 pub(crate) fn note(message: &str) {
     labelled("note", "32", message);

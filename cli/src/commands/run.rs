@@ -1,13 +1,22 @@
 //! `armgen run`: the robot that this program was built with, in motion.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use armgen_generated::{DOF, NAME};
 
+use crate::experiments::{self, Outcome};
 use crate::motion;
 use crate::{terminal, FAULTY};
 
-pub(crate) fn run(out: &Path) -> u8 {
+/// Runs the experiments for this robot; where there are none, moves it along a demonstration.
+pub(crate) fn run(files: &[PathBuf], out: &Path) -> u8 {
+    match experiments::run(files, out) {
+        Outcome::Ran(code) => code,
+        Outcome::NoneForThisRobot(code) => code.max(demonstrate(out)),
+    }
+}
+
+fn demonstrate(out: &Path) -> u8 {
     let outcome = match motion::run() {
         Ok(outcome) => outcome,
         Err(reason) => {
