@@ -42,8 +42,8 @@ pub(crate) use record::Record;
 pub(crate) enum Outcome {
     /// They were run: the exit code.
     Ran(u8),
-    /// None of them is for the robot that this program was built with; the exit code so far.
-    NoneForThisRobot(u8),
+    /// None of them is for the robot that this program was built with.
+    NoneForThisRobot,
 }
 
 /// One experiment and what is known of it.
@@ -92,7 +92,8 @@ pub(crate) fn run(files: &[PathBuf], out: &Path) -> Outcome {
         terminal::note(&format!("{what} skipped: for the robot `{robot}`, and this program was built with `{NAME}`"));
     }
     if jobs.is_empty() {
-        return Outcome::NoneForThisRobot(code);
+        // A file that is faulty or absent is the answer; without any there is nothing to run.
+        return if code == DONE { Outcome::NoneForThisRobot } else { Outcome::Ran(code) };
     }
     if let Err(error) = std::fs::create_dir_all(out) {
         terminal::error(&format!("cannot create {}: {error}", out.display()));
