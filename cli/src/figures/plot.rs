@@ -36,7 +36,7 @@ pub(super) struct Panel {
     /// Quantity and unit.
     pub(super) x: (String, String),
     pub(super) y: (String, String),
-    /// Logarithmic in y; values at or below zero are not drawn.
+    /// Logarithmic in y; zero lies below everything.
     pub(super) log: bool,
     /// The same scale along both axes.
     pub(super) equal: bool,
@@ -286,14 +286,15 @@ fn draw(svg: &mut Svg, panel: &Panel, (left, top): (f64, f64), above: f64, area:
 /// How far beyond its panel a curve is drawn (and clipped), px.
 const OUTSIDE: f64 = 40.0;
 
-/// The places of the points, cut where there is none to show.
+/// The places of the points, cut where there is none to show; on a logarithmic axis zero lies below the panel.
 fn pieces(points: &[(f64, f64)], across: &Axis, up: &Axis) -> Vec<Vec<(f64, f64)>> {
     let mut pieces = vec![Vec::new()];
     for (x, y) in points {
-        let shown = x.is_finite() && y.is_finite() && (!up.log || *y > 0.0);
+        let shown = x.is_finite() && y.is_finite();
+        let place = if up.log && *y <= 0.0 { f64::INFINITY } else { up.at(*y) };
         match (shown, pieces.last_mut()) {
             // Outside the panel a coordinate says nothing but its side.
-            (true, Some(piece)) => piece.push((across.at(*x), up.at(*y).clamp(up.end - OUTSIDE, up.start + OUTSIDE))),
+            (true, Some(piece)) => piece.push((across.at(*x), place.clamp(up.end - OUTSIDE, up.start + OUTSIDE))),
             (false, Some(piece)) if !piece.is_empty() => pieces.push(Vec::new()),
             _ => {}
         }
