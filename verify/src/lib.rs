@@ -39,6 +39,7 @@ pub mod program;
 pub mod reader;
 pub mod reference;
 pub mod report;
+pub mod test_kit;
 
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
 use armgen_codegen::source::Source;
@@ -140,6 +141,14 @@ pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) 
         Err(fault) => report.faults.push(fault),
     }
     report
+}
+
+/// The text of a test file for a project that has the module: what [`test_kit`](mod@test_kit) describes. `import` brings the module in as
+/// `robot`: `use my_crate::robot;`, or `#[path = "../src/robot.rs"] mod robot;`.
+pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, String> {
+    let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
+    let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
+    test_kit::test_kit(&manipulator, &Module::read(text)?, import)
 }
 
 fn fill(report: &mut Report, prepared: &Prepared) {

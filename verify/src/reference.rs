@@ -162,18 +162,29 @@ pub enum BaseParameters {
 }
 
 impl<E: Element> Reference<E> {
-    /// A random state of an arithmetic.
+    /// At a random state of an arithmetic.
     pub fn new<K: Arithmetic<Element = E>>(
         arithmetic: &mut K,
         manipulator: &Manipulator,
         vector: &Vector,
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
+        let state = State::draw(arithmetic, manipulator.joints.len());
+        Reference::at(arithmetic, manipulator, vector, state, wanted)
+    }
+
+    /// At a state; its parameter vector is drawn where it is empty.
+    pub fn at<K: Arithmetic<Element = E>>(
+        arithmetic: &mut K,
+        manipulator: &Manipulator,
+        vector: &Vector,
+        mut state: State<E>,
+        wanted: Wanted,
+    ) -> Result<Reference<E>, String> {
         let divided = || "a constant of the description divides by zero here".to_string();
         let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
         let arm = Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)?;
         let n = arm.dof();
-        let mut state = State::draw(arithmetic, n);
         let mut values = Values::new();
         kinematics(&arm, &state, &mut values);
         let singular = || "the inertia matrix is singular at a random state".to_string();
@@ -186,7 +197,9 @@ impl<E: Element> Reference<E> {
         let (mut elsewhere, mut nominal_base) = (None, None);
         let (columns, known, run_time) = match vector {
             Vector::Names(ids) => {
-                state.pi = ids.iter().map(|_| arithmetic.draw()).collect();
+                if state.pi.is_empty() {
+                    state.pi = ids.iter().map(|_| arithmetic.draw()).collect();
+                }
                 let at = |pi: &[E]| {
                     let mut names = names.clone();
                     ids.iter().zip(pi).for_each(|(&id, value)| names[id] = value.clone());
@@ -204,7 +217,9 @@ impl<E: Element> Reference<E> {
                 (columns, known, Some(at(&state.pi)?))
             }
             Vector::Standard(all) => {
-                state.pi = all.iter().map(|_| arithmetic.draw()).collect();
+                if state.pi.is_empty() {
+                    state.pi = all.iter().map(|_| arithmetic.draw()).collect();
+                }
                 let columns = standard_columns(&arm, &state, all, LinkFrames::Described);
                 (columns, known_torque(&arm, &state, all)?, Some(with_standard(&arm, all, &state.pi).ok_or_else(divided)?))
             }

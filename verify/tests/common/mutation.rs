@@ -130,16 +130,14 @@ impl Walk<'_> {
                     self.replace(e, Kind::Digit, syn::parse_quote!(#changed));
                 }
             }
-            Expr::Path(_) | Expr::Index(_) => {
-                if self.turn() {
-                    let own = text(e);
-                    let others: Vec<&Expr> = self.names.iter().filter(|n| text(*n) != own).collect();
-                    if others.is_empty() {
-                        return;
-                    }
-                    let other = others[(self.choice % others.len() as u64) as usize].clone();
-                    self.replace(e, Kind::Operand, other);
+            Expr::Path(_) | Expr::Index(_) if self.turn() => {
+                let own = text(e);
+                let others: Vec<&Expr> = self.names.iter().filter(|n| text(*n) != own).collect();
+                if others.is_empty() {
+                    return;
                 }
+                let other = others[(self.choice % others.len() as u64) as usize].clone();
+                self.replace(e, Kind::Operand, other);
             }
             _ => {}
         }
@@ -185,51 +183,50 @@ fn entries(function: &syn::ItemFn) -> Vec<Expr> {
 /// A module that can be changed at its places.
 pub(crate) struct Mutable {
     file: File,
+    /// Entries of arguments that occur in each item.
+    entries: Vec<Vec<Expr>>,
 }
 
 impl Mutable {
     pub(crate) fn new(source: &str) -> Mutable {
-        Mutable { file: syn::parse_file(source).expect("the module is Rust") }
+        let file = syn::parse_file(source).expect("the module is Rust");
+        let entries = file.items.iter().map(|item| match item {
+            Item::Fn(function) => entries(function),
+            _ => Vec::new(),
+        });
+        Mutable { entries: entries.collect(), file }
     }
 
-    fn walk(file: &mut File, walk: &mut Walk<'_>, only: Option<usize>) -> Option<String> {
-        for (index, item) in file.items.iter_mut().enumerate().filter(|(i, _)| only.is_none_or(|o| o == *i)) {
-            let _ = index;
-            match item {
-                Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => {
-                    let entries = entries(function);
-                    for line in 0..function.block.stmts.len() {
-                        let mut names = operands(&function.block, line);
-                        names.extend(entries.iter().cloned());
-                        let mut inner = Walk { names: &names, done: walk.done.take(), ..*walk };
-                        match &mut function.block.stmts[line] {
-                            Stmt::Local(local) => {
-                                // `let _ = dq;` says nothing.
-                                if !matches!(local.pat, syn::Pat::Wild(_)) {
-                                    if let Some(init) = &mut local.init {
-                                        inner.expression(&mut init.expr);
-                                    }
-                                }
+    fn walk(item: &mut Item, entries: &[Expr], walk: &mut Walk<'_>) -> Option<String> {
+        match item {
+            Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => {
+                for line in 0..function.block.stmts.len() {
+                    let names = if walk.counting { Vec::new() } else { operands(&function.block, line) };
+                    let names = [names.as_slice(), entries].concat();
+                    let mut inner = Walk { names: &names, done: walk.done.take(), ..*walk };
+                    match &mut function.block.stmts[line] {
+                        // `let _ = dq;` says nothing.
+                        Stmt::Local(local) if !matches!(local.pat, syn::Pat::Wild(_)) => {
+                            if let Some(init) = &mut local.init {
+                                inner.expression(&mut init.expr);
                             }
-                            Stmt::Expr(e, _) => inner.expression(e),
-                            _ => {}
                         }
-                        (walk.left, walk.places, walk.done) = (inner.left, inner.places, inner.done.take());
-                        if walk.done.is_some() {
-                            return Some(function.sig.ident.to_string());
-                        }
+                        Stmt::Expr(e, _) => inner.expression(e),
+                        _ => {}
                     }
-                }
-                Item::Const(constant) if !matches!(&*constant.expr, Expr::Lit(_)) => {
-                    walk.expression(&mut constant.expr);
+                    (walk.left, walk.places, walk.done) = (inner.left, inner.places, inner.done.take());
                     if walk.done.is_some() {
-                        return Some(constant.ident.to_string());
+                        return Some(function.sig.ident.to_string());
                     }
                 }
-                _ => {}
+                None
             }
+            Item::Const(constant) if !matches!(&*constant.expr, Expr::Lit(_)) => {
+                walk.expression(&mut constant.expr);
+                walk.done.is_some().then(|| constant.ident.to_string())
+            }
+            _ => None,
         }
-        None
     }
 
     /// Numbers of the items that have places, with how many.
@@ -237,7 +234,7 @@ impl Mutable {
         (0..self.file.items.len())
             .map(|item| {
                 let mut walk = Walk { left: 0, choice: 0, names: &[], done: None, counting: true, places: 0 };
-                Mutable::walk(&mut self.file.clone(), &mut walk, Some(item));
+                Mutable::walk(&mut self.file.items[item].clone(), &[], &mut walk);
                 (item, walk.places)
             })
             .filter(|(_, places)| *places > 0)
@@ -248,7 +245,7 @@ impl Mutable {
     pub(crate) fn change(&self, item: usize, place: usize, choice: u64) -> Option<(String, Change)> {
         let mut file = self.file.clone();
         let mut walk = Walk { left: place, choice, names: &[], done: None, counting: false, places: 0 };
-        let name = Mutable::walk(&mut file, &mut walk, Some(item))?;
+        let name = Mutable::walk(&mut file.items[item], &self.entries[item], &mut walk)?;
         let (kind, what) = walk.done?;
         Some((prettyplease::unparse(&file), Change { name, kind, what }))
     }

@@ -1,0 +1,160 @@
+//! A test file for a user's project: that the module does on their machine what it does on ours.
+//!
+//! It holds reference states with the values of every function there, computed from the equations in 256 bits and rounded once, and the
+//! identities of the dynamics at many states in floats. It needs the module and nothing else; the part that is the same for every robot is
+//! `test_kit/template.rs`.
+
+use std::fmt::Write;
+
+use armgen_codegen::manipulator::Manipulator;
+
+use crate::arithmetic::wide::{Wide, WideArguments};
+use crate::arithmetic::{Arithmetic, Element, Stream};
+use crate::contract::{Promise, PROMISES};
+use crate::enclosure::Float;
+use crate::equations::parameters::Vector;
+use crate::equations::state::State;
+use crate::float::Arguments;
+use crate::formula::Formula;
+use crate::program::Inputs;
+use crate::reader::Module;
+use crate::reference::{BaseParameters, Reference, Wanted};
+
+/// Floats of 256 bits as an arithmetic.
+struct Fine(Stream);
+
+impl Arithmetic for Fine {
+    type Element = Wide;
+    fn integer(&self, value: i64) -> Wide {
+        Wide::from_f64(value as f64)
+    }
+    fn constant(&self, formula: &Formula) -> Option<Wide> {
+        Wide::from_formula(formula)
+    }
+    fn draw(&mut self) -> Wide {
+        Wide::from_f64(uniform(&mut self.0, 0.5, 2.0))
+    }
+}
+
+fn uniform(stream: &mut Stream, low: f64, high: f64) -> f64 {
+    // Few digits, so that the file reads well and f32 holds them exactly.
+    let steps = ((high - low) * 64.0) as u64;
+    low + stream.below(steps + 1) as f64 / 64.0
+}
+
+const STATES: usize = 3;
+
+/// Random arguments of the size of a robot's.
+fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
+    let mut many = |count: usize, low: f64, high: f64| (0..count).map(|_| uniform(stream, low, high)).collect();
+    Arguments {
+        q: many(n, -3.0, 3.0),
+        dq: many(n, -2.0, 2.0),
+        ddq: many(n, -4.0, 4.0),
+        dqr: many(n, -2.0, 2.0),
+        ddqr: many(n, -4.0, 4.0),
+        tau: many(n, -20.0, 20.0),
+        pi: many(p, 0.5, 2.0),
+    }
+}
+
+fn wide_state(arguments: &Arguments<f64>) -> Option<State<Wide>> {
+    let inputs = WideArguments::new(arguments)?;
+    let of = |v: &[f64]| v.iter().map(|&x| Wide::from_f64(x)).collect::<Vec<_>>();
+    let n = arguments.q.len();
+    Some(State {
+        angles: (0..n).map(|i| inputs.sine_cosine(&[(i, 1)])).collect(),
+        q: of(&arguments.q),
+        dq: of(&arguments.dq),
+        ddq: of(&arguments.ddq),
+        dqr: of(&arguments.dqr),
+        ddqr: of(&arguments.ddqr),
+        tau: of(&arguments.tau),
+        signs: (0..n).map(|i| Inputs::<Wide>::sign(&inputs, i)).collect(),
+        pi: of(&arguments.pi),
+        zero: Wide::from_f64(0.0),
+        one: Wide::from_f64(1.0),
+    })
+}
+
+fn list(values: &[f64], real: Float) -> String {
+    let digits: Vec<String> = values
+        .iter()
+        .map(|&value| match real {
+            Float::F64 => format!("{value:?}"),
+            Float::F32 => format!("{:?}", value as f32),
+        })
+        .collect();
+    digits.join(", ")
+}
+
+/// The text of the test file. `import` brings the module in as `robot`: `use my_crate::robot;`, or
+/// `#[path = "../src/robot.rs"] mod robot;`.
+pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Result<String, String> {
+    let vector = Vector::of(manipulator, &crate::constants::parameter_names(module))?;
+    let (n, p) = (manipulator.joints.len(), crate::constants::parameter_names(module).len());
+    let mut fine = Fine(Stream::new(1));
+    let mut stream = Stream::new(20_240_229);
+    let mut text = format!(
+        "// Tests of the robot `{}` on your machine: reference values, computed from its equations in 256 bits, and the identities of its\n\
+         // dynamics. Written by armgen {}.\n\n{import}\n\nuse robot::*;\n\n",
+        manipulator.name,
+        env!("CARGO_PKG_VERSION")
+    );
+    let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
+    let extras = PROMISES.iter().any(|p| !p.required && present(p.name));
+    let mut states = String::new();
+    let mut values = String::new();
+    for index in 0..STATES {
+        let arguments = arguments(&mut stream, n, p);
+        let write = |v: &[f64]| list(v, module.real);
+        let _ = writeln!(
+            states,
+            "    Arguments {{ q: [{}], dq: [{}], ddq: [{}], dqr: [{}], ddqr: [{}], tau: [{}], pi: [{}] }},",
+            write(&arguments.q),
+            write(&arguments.dq),
+            write(&arguments.ddq),
+            write(&arguments.dqr),
+            write(&arguments.ddqr),
+            write(&arguments.tau),
+            write(&arguments.pi)
+        );
+        let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
+        let wanted = Wanted { extras, base: BaseParameters::LeftOut };
+        let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
+        for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
+            let Some((promise, with)) = Promise::of(name) else { continue };
+            let mut call: Vec<String> = promise.arguments.iter().map(|a| format!("&STATES[{index}].{a}")).collect();
+            if with {
+                call.insert(0, format!("&STATES[{index}].pi"));
+            }
+            let entries: Vec<f64> = entries.iter().map(nearest).collect();
+            let _ = writeln!(
+                values,
+                "        (\"{name}\", {index}, robot::{name}({}).flat(), vec![{}]),",
+                call.join(", "),
+                list(&entries, module.real)
+            );
+        }
+    }
+    let _ = writeln!(
+        text,
+        "/// States at which values are known.\n#[rustfmt::skip]\nconst STATES: [Arguments; {STATES}] = [\n{states}];\n"
+    );
+    let _ = writeln!(
+        text,
+        "/// Function, number of the state, value on this machine, value from the equations.\n#[rustfmt::skip]\n\
+         fn values() -> Vec<(&'static str, usize, Vec<Real>, Vec<Real>)> {{\n    vec![\n{values}    ]\n}}\n"
+    );
+    text += include_str!("test_kit/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
+    Ok(text)
+}
+
+/// The nearest float but for the last bit, and 0 without a sign.
+fn nearest(value: &Wide) -> f64 {
+    if value.is_zero() {
+        0.0
+    } else {
+        value.to_f64()
+    }
+}
