@@ -1,0 +1,64 @@
+//! Writes a call of every function of an emitted module.
+//!
+//! The list is read off the module's text, so that a function that the generator learns to emit is called, measured and held against
+//! a budget without anybody adding it to a list.
+
+use quote::quote;
+use syn::{FnArg, Item, Pat};
+
+/// Rust text to be included beside the emitted module `module`: the arguments, and `each_function`, which visits a call of every
+/// public function by its name.
+///
+/// A function is called through a pointer and both its arguments and its result are opaque to the optimiser: it is the one that the
+/// module holds, neither cut down to what a caller uses nor computed beforehand.
+pub fn calls(module: &str) -> String {
+    let file = syn::parse_file(module).expect("an emitted module is a Rust file");
+    let visits = file.items.iter().filter_map(|item| match item {
+        Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => Some(visit(function)),
+        _ => None,
+    });
+    let tokens = quote! {
+        /// Arguments for every function of the module.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Arguments {
+            /// Joint variables.
+            pub q: [Real; DOF],
+            /// Joint rates.
+            pub dq: [Real; DOF],
+            /// Joint accelerations.
+            pub ddq: [Real; DOF],
+            /// Reference rates.
+            pub dqr: [Real; DOF],
+            /// Reference accelerations.
+            pub ddqr: [Real; DOF],
+            /// Joint torques.
+            pub tau: [Real; DOF],
+            /// Parameters.
+            pub pi: [Real; PARAMETERS],
+        }
+
+        /// Hands a call of each function to `visit`, with the name of the function.
+        pub fn each_function(arguments: &Arguments, visit: &mut dyn FnMut(&'static str, &mut dyn FnMut())) {
+            #(#visits)*
+        }
+    };
+    prettyplease::unparse(&syn::parse2(tokens).expect("calls are a Rust file"))
+}
+
+fn visit(function: &syn::ItemFn) -> impl quote::ToTokens {
+    let (name, output) = (&function.sig.ident, &function.sig.output);
+    let text = name.to_string();
+    let (mut types, mut values) = (Vec::new(), Vec::new());
+    for input in &function.sig.inputs {
+        let FnArg::Typed(input) = input else { unreachable!("emitted functions are free") };
+        let Pat::Ident(argument) = &*input.pat else { unreachable!("arguments of emitted functions are names") };
+        types.push(&input.ty);
+        values.push(quote!(core::hint::black_box(&arguments.#argument)));
+    }
+    quote! {
+        visit(#text, &mut || {
+            let function: fn(#(#types),*) #output = #name;
+            let _ = core::hint::black_box(core::hint::black_box(function)(#(#values),*));
+        });
+    }
+}

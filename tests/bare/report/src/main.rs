@@ -1,0 +1,74 @@
+//! Holds what the firmware printed against this machine's bits and against the budgets, and writes the page about it.
+//!
+//! ```text
+//! armgen-bare-report FIRMWARE.elf PRINTED.txt BUDGETS.toml [--write PAGE.md]
+//! ```
+//!
+//! Exit code 0 if every bit agrees and every budget holds, 1 if not, 2 if a file cannot be read.
+
+mod budgets;
+mod image;
+mod page;
+mod printed;
+
+use armgen_bare_control::{Cell, Fault, Line, STEPS};
+use budgets::{Budgets, Measured};
+use image::Image;
+use printed::Printed;
+use std::{fs, process::ExitCode};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(faults) if faults.is_empty() => ExitCode::SUCCESS,
+        Ok(faults) => {
+            for fault in faults {
+                eprintln!("bare metal: {fault}");
+            }
+            ExitCode::FAILURE
+        }
+        Err(message) => {
+            eprintln!("bare metal: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<Vec<String>, String> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let (files, page) = match arguments.as_slice() {
+        [elf, printed, budgets] => ([elf, printed, budgets], None),
+        [elf, printed, budgets, "--write", page] => ([elf, printed, budgets], Some(page)),
+        _ => return Err("usage: armgen-bare-report FIRMWARE.elf PRINTED.txt BUDGETS.toml [--write PAGE.md]".into()),
+    };
+    let read = |path: &str| fs::read(path).map_err(|e| format!("cannot read {path}: {e}"));
+    let text = |path: &str| String::from_utf8(read(path)?).map_err(|e| format!("{path}: {e}"));
+    let image = Image::read(&read(files[0])?).map_err(|e| format!("{}: {e}", files[0]))?;
+    let printed = Printed::read(&text(files[1])?)?;
+    let budgets: Budgets = toml::from_str(&text(files[2])?).map_err(|e| format!("{}: {e}", files[2]))?;
+
+    let measured = Measured::of(&image, &printed)?;
+    let mut faults = printed.calibration_faults();
+    let host = host().map_err(|fault| format!("the run ended early on this machine: {fault:?}"))?;
+    faults.extend(printed::differences(&host, &printed.torques));
+    faults.extend(budgets.exceeded(&measured));
+    let page_text = page::page(&measured, &budgets, &printed);
+    print!("{}", page::summary(&measured, &printed));
+    if let Some(page) = page.filter(|_| faults.is_empty()) {
+        fs::write(page, page_text).map_err(|e| format!("cannot write {page}: {e}"))?;
+    }
+    Ok(faults)
+}
+
+/// The torques of each step, computed on this machine.
+fn host() -> Result<Vec<String>, Fault> {
+    let mut cell = Cell::new()?;
+    (0..=STEPS)
+        .map(|step| {
+            let (_, tau) = cell.control(step)?;
+            let line = Line { step, tau: &tau, mass: cell.estimated_mass() }.to_string();
+            cell.advance(&tau);
+            Ok(line)
+        })
+        .collect()
+}
