@@ -1,7 +1,7 @@
 //! Exact constants as plain formulas: `1/2*sqrt(3) - 2*pi`, `0.85*sin(7/10)`.
 //!
 //! The constants of a description and the claimed values of literals both come as such text and take the same way from there: parsed here,
-//! then evaluated in an [`Arithmetic`](crate::arithmetic::Arithmetic) or enclosed to any precision ([`crate::enclosure`]).
+//! then evaluated in an [`Arithmetic`] or enclosed to any precision ([`crate::enclosure`]).
 //!
 //! ```text
 //! sum = [-] product { (+|-) product }    product = power { (*|/) power }    power = primary [ ^ integer | ^( integer ) ]

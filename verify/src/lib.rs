@@ -6,7 +6,7 @@
 //! programs at these points = equations there, exactly; every literal the float nearest to the exact value it is run with
 //! ```
 //!
-//! Shared with the generator is the reading of robot.yaml into a [`Manipulator`](armgen_codegen::manipulator::Manipulator), its numbers taken
+//! Shared with the generator is the reading of robot.yaml into a [`Manipulator`], its numbers taken
 //! over as text ([`formula`]), and nothing after it: no expression, no field, no derivation, no optimiser, no emitter. The exact values of
 //! literals come from the generator or from a certificate, and need no trust ([`claims`]).
 //!
