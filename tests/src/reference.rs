@@ -79,6 +79,19 @@ pub fn description(robot: &str) -> String {
 mod tests {
     use super::*;
 
+    /// Every robot of `robots/` says in its first lines where its numbers are from.
+    #[test]
+    fn sources() {
+        let folder = format!("{}/../robots", env!("CARGO_MANIFEST_DIR"));
+        for entry in std::fs::read_dir(folder).expect("robots/") {
+            let path = entry.expect("an entry").path();
+            let text = std::fs::read_to_string(&path).expect("a description");
+            let head: String = text.lines().take_while(|line| line.starts_with('#')).collect::<Vec<_>>().join(" ");
+            let named = ["data sheet", "set of", "computed from", "technical project"].iter().any(|source| head.contains(source));
+            assert!(named, "{}: no source in {head:?}", path.display());
+        }
+    }
+
     #[test]
     fn shapes() {
         for robot in ROBOTS {

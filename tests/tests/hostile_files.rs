@@ -1,7 +1,6 @@
 //! No text makes the reader panic or hang: every prefix of a valid file, and many files with one byte changed.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::manipulator;
@@ -79,9 +78,9 @@ fn lines_swapped_dropped_and_doubled_are_read() {
     }
 }
 
+/// Work is bounded by counts, so that each of these ends; no clock is asked, for a busy machine says nothing about the reader.
 #[test]
-fn large_and_deep_files_end_soon() {
-    let start = Instant::now();
+fn large_and_deep_files_end() {
     let head = "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\n";
     let row = "type: revolute, a: 0.1, alpha: pi/2, d: 0, theta: 0, link: {mass: 1}";
     let texts = [
@@ -109,9 +108,6 @@ fn large_and_deep_files_end_soon() {
         "{a: ".repeat(50_000),
     ];
     for text in &texts {
-        let one = Instant::now();
         read(text.as_bytes());
-        assert!(one.elapsed() < Duration::from_secs(20), "{:.60}...: {:?}", text, one.elapsed());
     }
-    assert!(start.elapsed() < Duration::from_secs(60));
 }
