@@ -1,6 +1,6 @@
 //! Values that another library computed: `data/reference`, whose README says from where.
 
-use serde::Deserialize;
+use serde_derive::Deserialize;
 
 /// The robots with stored values; each has a description of the same name in `robots/`.
 pub const ROBOTS: [&str; 4] = ["scara4", "puma560", "ur5", "panda7"];

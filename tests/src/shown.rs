@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde_derive::Deserialize;
 use serde_json::Value;
 
 use crate::formula;

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use serde::de::IgnoredAny;
-use serde::Deserialize;
+use serde_derive::Deserialize;
 
 use super::{Joint, Model, Motor, Ten};
 use crate::formula::{evaluate, parse, Formula};
