@@ -28,12 +28,13 @@ pub struct Robot {
     description: PathBuf,
     options: Options,
     stem: Option<String>,
+    c_abi: bool,
 }
 
 impl Robot {
     /// The description in `path`, relative to the folder of the crate that is built.
     pub fn new(path: impl AsRef<Path>) -> Robot {
-        Robot { description: path.as_ref().to_path_buf(), options: Options::default(), stem: None }
+        Robot { description: path.as_ref().to_path_buf(), options: Options::default(), stem: None, c_abi: false }
     }
 
     /// The scalar type behind `Real`; f64 unless chosen.
@@ -51,6 +52,12 @@ impl Robot {
     /// The name of the written files without their ending, where it is not that of the description: for the same robot in two scalars, say.
     pub fn file_stem(mut self, stem: impl Into<String>) -> Robot {
         self.stem = Some(stem.into());
+        self
+    }
+
+    /// Writes the face for C too: `robot.h`, and `robot_c.rs` to be included beside the module in a static or dynamic library.
+    pub fn c_abi(mut self) -> Robot {
+        self.c_abi = true;
         self
     }
 
@@ -78,7 +85,11 @@ impl Robot {
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
         let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
         let stem = self.stem.clone().unwrap_or_else(own);
-        for (name, text) in [(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)] {
+        let mut files = vec![(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)];
+        if self.c_abi {
+            files.extend([(format!("{stem}.h"), generated.c.header), (format!("{stem}_c.rs"), generated.c.wrappers)]);
+        }
+        for (name, text) in files {
             let file = out.join(name);
             std::fs::write(&file, text).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;
         }

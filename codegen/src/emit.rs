@@ -1,5 +1,6 @@
 //! From programs to text. Absent from here on: mathematics.
 
+pub mod c;
 pub mod rust;
 
 mod documentation;

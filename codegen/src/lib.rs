@@ -29,6 +29,7 @@ use std::collections::BTreeMap;
 
 use derive::parameters::ParameterVector;
 use diagnostic::Diagnostics;
+use emit::c::CFace;
 use emit::rust::Origin;
 use exact::Number;
 use manipulator::Manipulator;
@@ -43,6 +44,8 @@ pub struct Generated {
     pub module: String,
     /// The implementation of the runtime's traits for it.
     pub runtime: String,
+    /// The face for C: a header, and wrappers to stand beside the module.
+    pub c: CFace,
     /// The exact constants behind the literals of the module, by function.
     pub constants: BTreeMap<String, Vec<Number>>,
 }
@@ -85,6 +88,7 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
     let generated = Generated {
         module: emit::rust::print(&module, &origin),
         runtime: emit::rust::print_runtime(&module, &origin),
+        c: emit::c::print(&module, &origin),
         constants: module.constants(),
     };
     (Some(generated), diagnostics)

@@ -1,0 +1,241 @@
+//! The C face of a module: a header, and `extern "C"` wrappers in Rust that stand beside the module's functions.
+//!
+//! A C caller sees `ROBOT_function`, arrays by rows as in the module, constant where they are arguments, and the result as the last
+//! argument; a single number is returned. This is the one emitted text with `unsafe` in it: a pointer that C passes can only be
+//! believed. Each wrapper reads all its arguments before it writes its result, so that a result may overwrite an argument.
+
+use std::fmt::Write;
+
+use proc_macro2::TokenStream;
+
+use super::rust::{argument_text, header as origin_of, Origin};
+use super::{documentation, literal::literal};
+use crate::equations::Shape;
+use crate::exact::Number;
+use crate::program::{Function, Module, Scalar};
+
+/// The two texts of the C face.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CFace {
+    /// The header: `robot.h` for a module in `robot.rs`.
+    pub header: String,
+    /// The wrappers: `robot_c.rs`, to be included beside the functions of the module.
+    pub wrappers: String,
+}
+
+/// The C face of a module.
+pub fn print(module: &Module, origin: &Origin) -> CFace {
+    CFace { header: header(module, origin), wrappers: wrappers(module, origin) }
+}
+
+/// An output of a function: its name in C and its shape in Rust's order, outermost first; no shape for a number.
+struct Out {
+    name: &'static str,
+    shape: Vec<&'static str>,
+}
+
+fn outs(shape: Shape) -> Vec<Out> {
+    let out = |name, shape: &[&'static str]| Out { name, shape: shape.to_vec() };
+    match shape {
+        Shape::Scalar => vec![],
+        Shape::Vector => vec![out("result", &["DOF"])],
+        Shape::Frame => vec![out("result", &["4", "4"])],
+        Shape::Frames => vec![out("result", &["DOF", "4", "4"])],
+        Shape::Jacobian => vec![out("result", &["6", "DOF"])],
+        Shape::Square => vec![out("result", &["DOF", "DOF"])],
+        Shape::Regressor => vec![out("result", &["DOF", "PARAMETERS"])],
+        Shape::EquationsOfMotion => {
+            vec![out("inertia", &["DOF", "DOF"]), out("coriolis", &["DOF", "DOF"]), out("gravity", &["DOF"])]
+        }
+    }
+}
+
+/// The functions that C can have: it has no arrays of length zero, as a robot without parameters would need.
+fn functions(module: &Module) -> impl Iterator<Item = &Function> {
+    let without = module.parameters.is_empty();
+    module.functions.iter().filter(move |f| !(without && (f.with_parameters || f.quantity.shape() == Shape::Regressor)))
+}
+
+/// The robot's name as the beginning of C's names: letters that C may not have are spelled out.
+fn prefix(module: &Module) -> String {
+    let spelled = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c.to_string() } else { format!("u{:04x}", u32::from(c)) };
+    module.name.chars().map(spelled).collect()
+}
+
+/// `DOF` of Rust as the macro of the header; a number stays a number.
+fn macro_of(prefix: &str, length: &str) -> String {
+    match length.parse::<u32>() {
+        Ok(_) => length.into(),
+        Err(_) => format!("{prefix}_{length}"),
+    }
+}
+
+fn header(module: &Module, origin: &Origin) -> String {
+    let name = prefix(module);
+    let upper = name.to_uppercase();
+    let real = match module.scalar {
+        Scalar::F64 => "double",
+        Scalar::F32 => "float",
+    };
+    let mut text = String::new();
+    let lines: Vec<String> = origin_of(origin).lines().map(|line| line.trim_start_matches('/').trim().to_string()).collect();
+    text += &comment("", lines);
+    let braces = |entries: Vec<String>| format!("{{{}}}", entries.join(", "));
+    let number = |value: &Option<Number>, infinite: &str| match value {
+        Some(value) => constant(value, module.scalar),
+        None => infinite.into(),
+    };
+    let joint = |name: &(String, bool)| format!("\"{}\"", name.0);
+    let limit = |index: usize| braces(module.limits.iter().map(|limits| number(&limits[index], "INFINITY")).collect());
+    let positions = module.limits.iter().map(|[low, high, ..]| braces(vec![number(low, "-INFINITY"), number(high, "INFINITY")]));
+    let guard = format!("ARMGEN_{upper}_H");
+    let _ = write!(
+        text,
+        "#ifndef {guard}\n#define {guard}\n\n\
+         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
+         /* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
+         /* Number of joints, and of parameters. */\n#define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n\n",
+        module.joints.len(),
+        module.parameters.len(),
+    );
+    text += "/* Initialisers of arrays. Limits are rad or m, per s, N m or N; infinite (math.h) where the description gives none. */\n";
+    let _ = writeln!(text, "#define {upper}_JOINT_NAMES {}", braces(module.joints.iter().map(joint).collect()));
+    let _ = writeln!(text, "#define {upper}_POSITION_LIMITS {}", braces(positions.collect()));
+    let _ = writeln!(text, "#define {upper}_VELOCITY_LIMITS {}", limit(2));
+    let _ = writeln!(text, "#define {upper}_EFFORT_LIMITS {}", limit(3));
+    if !module.parameters.is_empty() {
+        let names = module.parameters.iter().map(|(name, ..)| format!("\"{name}\"")).collect();
+        let nominal = module.parameters.iter().map(|(_, value, _)| constant(value, module.scalar)).collect();
+        let _ = writeln!(text, "#define {upper}_PARAMETER_NAMES {}", braces(names));
+        let _ = writeln!(text, "#define {upper}_NOMINAL_PARAMETERS {}", braces(nominal));
+        text += "\n";
+        let width = module.parameters.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+        let mut meanings = vec!["The parameters, in the order of the columns of the regressor:".to_string(), String::new()];
+        meanings.extend(module.parameters.iter().map(|(name, _, meaning)| format!("{name:width$}  {meaning}")));
+        text += &comment("", meanings);
+    }
+    text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
+    for function in functions(module) {
+        text += "\n";
+        text += &comment("", documentation::function(function).into_iter().filter(|line| !line.contains("```")).collect());
+        let mut arguments: Vec<String> = function
+            .arguments
+            .iter()
+            .map(|&a| {
+                let (argument, length) = argument_text(a);
+                format!("const {name}_real {argument}[{}]", macro_of(&upper, length))
+            })
+            .collect();
+        let outs = outs(function.quantity.shape());
+        arguments.extend(outs.iter().map(|out| {
+            let shape: String = out.shape.iter().map(|length| format!("[{}]", macro_of(&upper, length))).collect();
+            format!("{name}_real {}{shape}", out.name)
+        }));
+        let returns = if outs.is_empty() { format!("{name}_real") } else { "void".into() };
+        let _ = writeln!(text, "{returns} {name}_{}(\n    {});", function.name(), arguments.join(",\n    "));
+    }
+    text += "\n#ifdef __cplusplus\n}\n#endif\n\n";
+    let _ = writeln!(text, "#endif");
+    text
+}
+
+/// A block comment; runs of blank lines become one.
+fn comment(indent: &str, lines: Vec<String>) -> String {
+    let mut text = String::new();
+    let mut blank = true;
+    let mut open = false;
+    for line in lines {
+        let line = line.trim_end().replace("*/", "* /");
+        let line = line.strip_prefix(' ').unwrap_or(&line);
+        if line.is_empty() {
+            blank = true;
+            continue;
+        }
+        if !open {
+            let _ = writeln!(text, "{indent}/* {line}");
+            open = true;
+        } else {
+            if blank {
+                let _ = writeln!(text, "{indent} *");
+            }
+            let _ = writeln!(text, "{indent} * {line}");
+        }
+        blank = false;
+    }
+    if open {
+        let _ = writeln!(text, "{indent} */");
+    }
+    text
+}
+
+/// A number as C reads it back to the same float.
+fn constant(value: &Number, scalar: Scalar) -> String {
+    let tokens: TokenStream = literal(value, scalar);
+    let digits = tokens.to_string().replace(' ', "");
+    match scalar {
+        Scalar::F64 => digits,
+        Scalar::F32 => format!("{digits}f"),
+    }
+}
+
+fn wrappers(module: &Module, origin: &Origin) -> String {
+    let mut text = origin_of(origin);
+    text += "// For C. Each wrapper believes what its declaration in the header says: that its pointers lead to arrays of these lengths.\n";
+    for function in functions(module) {
+        text += "\n";
+        text += &wrapper(&prefix(module), function);
+    }
+    text
+}
+
+fn wrapper(robot: &str, function: &Function) -> String {
+    let name = function.name();
+    let arguments: Vec<(&str, &str)> = function.arguments.iter().map(|&a| argument_text(a)).collect();
+    let outs = outs(function.quantity.shape());
+    let shape = |out: &Out| out.shape.iter().rev().fold("Real".to_string(), |of, length| format!("[{of}; {length}]"));
+    let mut parameters: Vec<String> = arguments.iter().map(|(name, length)| format!("{name}: *const [Real; {length}]")).collect();
+    parameters.extend(outs.iter().map(|out| format!("{}: *mut {}", out.name, shape(out))));
+    let references: Vec<String> = arguments.iter().map(|(name, _)| format!("&*{name}")).collect();
+    let call = format!("{name}({})", references.join(", "));
+    let readable =
+        "SAFETY: the caller promises that each argument points to an array of this length; nothing is written meanwhile.";
+    let mut text = String::new();
+    let _ = writeln!(text, "/// [`{name}`] for C.\n///\n/// # Safety");
+    let _ = writeln!(
+        text,
+        "/// Each pointer leads to an array of the length in its type, aligned for `Real`. They may lead to the same one."
+    );
+    let _ = writeln!(text, "#[unsafe(no_mangle)]");
+    let returns = if outs.is_empty() { " -> Real" } else { "" };
+    let line = format!("pub unsafe extern \"C\" fn {robot}_{name}({}){returns} {{", parameters.join(", "));
+    if line.len() <= 100 {
+        let _ = writeln!(text, "{line}");
+    } else {
+        let _ = writeln!(text, "pub unsafe extern \"C\" fn {robot}_{name}(");
+        for parameter in &parameters {
+            let _ = writeln!(text, "    {parameter},");
+        }
+        let _ = writeln!(text, "){returns} {{");
+    }
+    let _ = writeln!(text, "    // {readable}");
+    match outs.as_slice() {
+        [] => {
+            let _ = writeln!(text, "    unsafe {{ {call} }}");
+        }
+        outs => {
+            let _ = writeln!(text, "    let value = unsafe {{ {call} }};");
+            let _ = writeln!(text, "    // SAFETY: the caller promises that each result points to an array of this shape; no reference to an argument is left.");
+            let write = |out: &Out| match out.name {
+                "result" => "result.write(value);".to_string(),
+                name => format!("{name}.write(value.{name});"),
+            };
+            let _ = writeln!(text, "    unsafe {{");
+            for out in outs {
+                let _ = writeln!(text, "        {}", write(out));
+            }
+            let _ = writeln!(text, "    }}");
+        }
+    }
+    let _ = writeln!(text, "}}");
+    text
+}

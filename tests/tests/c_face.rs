@@ -1,0 +1,120 @@
+//! The C face as a stranger uses it: a static library of its own without `std`, and a C program that links it and checks values.
+
+use armgen_codegen::program::{Options, Scalar};
+use armgen_codegen::{generate, source::Source, Generated};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const CARGO_TOML: &str = r#"
+[package]
+name = "robot"
+edition = "2021"
+
+[lib]
+crate-type = ["staticlib"]
+
+[dependencies]
+libm = "0.2"
+
+[profile.release]
+panic = "abort"
+lto = true
+
+[workspace]
+"#;
+
+const LIB_RS: &str = r#"
+#![no_std]
+
+mod robot {
+    include!("robot.rs");
+    include!("robot_c.rs");
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    loop {}
+}
+"#;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn generated(robot: &str, scalar: Scalar) -> Generated {
+    let path = root().join("robots").join(robot);
+    let source = Source::new(robot.to_string(), fs::read_to_string(path).unwrap());
+    generate(&source, &Options { scalar, ..Options::default() }).0.unwrap()
+}
+
+/// Runs a command; what it printed if it failed, or warned.
+#[track_caller]
+fn run(command: &mut Command) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && !err.contains("warning"), "{command:?}: {}\n{out}{err}", output.status);
+}
+
+/// Names of the functions that a header declares.
+fn declared(header: &str) -> Vec<&str> {
+    let starts = header.lines().filter(|line| line.ends_with('(') && !line.starts_with(' '));
+    starts.map(|line| line.trim_end_matches('(').rsplit(' ').next().unwrap()).collect()
+}
+
+/// Builds the library in a folder of its own, and runs tests/c/check.c against it.
+#[track_caller]
+fn check(robot: &str, scalar: Scalar, folder: &str) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.join("src")).unwrap();
+    let generated = generated(robot, scalar);
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    write("Cargo.toml", CARGO_TOML);
+    write("src/lib.rs", LIB_RS);
+    write("src/robot.rs", &generated.module);
+    write("src/robot_c.rs", &generated.c.wrappers);
+    write("robot.h", &generated.c.header);
+    // Every function that the header declares has to be there to be linked, whether check.c calls it or not.
+    let functions = declared(&generated.c.header);
+    assert_eq!(functions.len(), generated.module.lines().filter(|line| line.starts_with("pub fn ")).count());
+    let table: String = functions.iter().map(|name| format!("    (any){name},\n")).collect();
+    write("all.c", &format!("#include \"robot.h\"\ntypedef void (*any)(void);\nextern any all[];\nany all[] = {{\n{table}}};\n"));
+    run(Command::new(env!("CARGO"))
+        .args(["build", "--release", "--offline", "--quiet"])
+        .current_dir(&folder)
+        .env("CARGO_TARGET_DIR", folder.join("target"))
+        .env_remove("RUSTFLAGS"));
+    run(Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-I.", "-o", "check", "all.c"])
+        .arg(root().join("tests/c/check.c").canonicalize().unwrap())
+        .args(["target/release/librobot.a", "-lm"])
+        .current_dir(&folder));
+    run(&mut Command::new(folder.join("check")));
+    // C++ reads the same header.
+    if Command::new("c++").arg("--version").output().is_ok() {
+        write("header.cpp", "#include \"robot.h\"\n");
+        run(Command::new("c++").args(["-Wall", "-Wextra", "-Werror", "-fsyntax-only", "header.cpp"]).current_dir(&folder));
+    }
+}
+
+#[test]
+fn a_c_program_links_and_finds_the_values_of_the_scara() {
+    check("scara.yaml", Scalar::F64, "c_face_f64");
+    check("scara.yaml", Scalar::F32, "c_face_f32");
+}
+
+/// The wrappers are the only emitted text with `unsafe`, and each block of it gives its reason.
+#[test]
+fn unsafe_is_confined_and_explained() {
+    for robot in ["scara.yaml", "ur5.yaml"] {
+        let generated = generated(robot, Scalar::F64);
+        assert!(!generated.module.contains("unsafe") && !generated.runtime.contains("unsafe"));
+        let lines: Vec<&str> = generated.c.wrappers.lines().collect();
+        let blocks = lines.iter().enumerate().filter(|(_, line)| line.contains("unsafe {"));
+        for (at, line) in blocks {
+            assert!(lines[at - 1].trim_start().starts_with("// SAFETY: "), "line {}: {line}", at + 1);
+        }
+        assert!(lines.iter().filter(|line| line.contains("unsafe extern")).count() > 20);
+    }
+}
