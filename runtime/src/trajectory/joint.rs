@@ -4,7 +4,7 @@
 //! with limits for every joint the slowest one sets the pace.
 
 use super::{
-    chain::{last_started, next_slot, Slot},
+    chain::{last_started, next_slot, span, Slot},
     law::{Law, Profile},
     PlanError, PlanFault,
 };
@@ -107,7 +107,7 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
     }
 
     fn sample(&self, t: Duration) -> JointReference<T, N> {
-        let p = self.profile.at(t.saturating_sub(self.slot.start));
+        let p = self.profile.at(span(self.slot.start, t).unwrap_or_default());
         let d = self.to - self.from;
         let q = if p.s == T::one() { self.to } else { self.from + d * p.s };
         JointReference { q, dq: d * p.ds, ddq: d * p.dds }

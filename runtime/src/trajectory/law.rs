@@ -12,7 +12,7 @@
 //! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6); given T and v, t_c = T - L/v (eq. 4.9). Given limits of v and a, the
 //! shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
 
-use super::PlanFault;
+use super::{chain::span, PlanFault};
 use crate::linalg::{lit, to_f64};
 use core::time::Duration;
 use nalgebra::RealField;
@@ -184,7 +184,7 @@ fn trapezoid<T: RealField + Copy>(duration: Duration, rise_time: Duration) -> Re
     if rise_time.is_zero() {
         return Err(PlanFault::NoAccelerationTime);
     }
-    let Some(slow) = duration.checked_sub(rise_time).filter(|slow| *slow >= rise_time) else {
+    let Some(slow) = span(rise_time, duration).filter(|slow| *slow >= rise_time) else {
         return Err(PlanFault::CruiseTimeNegative);
     };
     let (t_c, cover) = (seconds::<T>(rise_time), seconds::<T>(slow));
@@ -215,7 +215,7 @@ impl<T: RealField + Copy> Profile<T> {
     #[inline]
     pub fn at(&self, t: Duration) -> Progress<T> {
         let (zero, one, half) = (T::zero(), T::one(), lit::<T>(0.5));
-        let Some(rest) = self.duration.checked_sub(t).filter(|rest| !rest.is_zero()) else {
+        let Some(rest) = span(t, self.duration).filter(|rest| !rest.is_zero()) else {
             return Progress { s: one, ds: zero, dds: zero };
         };
         match self.shape {

@@ -4,7 +4,7 @@
 //! (the book, Sect. 4.3.3, with the axis in the base frame).
 
 use super::{
-    chain::{last_started, next_slot, Slot},
+    chain::{last_started, next_slot, span, Slot},
     law::{Law, Profile},
     PlanError, PlanFault,
 };
@@ -165,7 +165,7 @@ impl<T: RealField + Copy, S: AsRef<[Turn<T>]>> OrientationProfile<T, S> {
         let Some(turn) = self.turns().get(last_started(self.turns(), |turn| turn.slot, t)) else {
             return OrientationSample { rotation: self.start, velocity: Vector3::zeros(), acceleration: Vector3::zeros() };
         };
-        let p = turn.profile.at(t.saturating_sub(turn.slot.start));
+        let p = turn.profile.at(span(turn.slot.start, t).unwrap_or_default());
         let axis = turn.axis;
         OrientationSample {
             rotation: rotation(&Unit::new_unchecked(axis), turn.angle * p.s) * turn.from,

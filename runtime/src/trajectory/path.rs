@@ -5,7 +5,7 @@
 //! turn right-handed about r.
 
 use super::{
-    chain::{last_started, next_slot, Slot},
+    chain::{last_started, next_slot, span, Slot},
     law::{Law, Profile},
     PlanError, PlanFault,
 };
@@ -166,7 +166,7 @@ impl<T: RealField + Copy> Segment<T> {
     /// Position, velocity and acceleration at `t`, clock of the path.
     #[inline]
     fn sample(&self, t: Duration) -> PathSample<T> {
-        let p = self.run.profile.at(t.saturating_sub(self.run.slot.start));
+        let p = self.run.profile.at(span(self.run.slot.start, t).unwrap_or_default());
         match &self.run.arc {
             None => {
                 let d = self.run.to - self.run.from;
