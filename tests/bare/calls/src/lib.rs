@@ -3,6 +3,9 @@
 //! The list is read off the module's text, so that a function that the generator learns to emit is called, measured and held against
 //! a budget without anybody adding it to a list.
 
+mod functions;
+
+pub use functions::{named_functions, public_functions};
 use quote::quote;
 use syn::{FnArg, Item, Pat};
 

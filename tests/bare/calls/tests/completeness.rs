@@ -1,0 +1,41 @@
+//! The program that proves the absence of panics calls every public function there is.
+
+use armgen_bare_calls::{calls, named_functions, public_functions};
+use armgen_codegen::{program::Options, source::Source};
+use std::{collections::BTreeSet, fs, path::PathBuf};
+
+fn project(path: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../..").join(path)
+}
+
+fn missing(called: &str) -> BTreeSet<String> {
+    let public = public_functions(&project("runtime/src/lib.rs"));
+    public.difference(&named_functions(called)).cloned().collect()
+}
+
+#[test]
+fn every_public_function_of_the_runtime_is_called() {
+    let called = fs::read_to_string(project("tests/bare/no_panic/src/runtime.rs")).expect("the calls are there");
+    assert_eq!(missing(&called), BTreeSet::new(), "these are not called by tests/bare/no_panic/src/runtime.rs");
+    // The check sees what it is to see: one of each kind, forgotten.
+    for name in ["manipulability", "left_singular", "NullSpace::new", "Dynamics::gravity", "Path::check_reach", "Clik::approach"]
+    {
+        let forgotten = called.replace(&format!("{name}("), "drop(");
+        assert_eq!(missing(&forgotten), BTreeSet::from([name.to_owned()]));
+    }
+}
+
+#[test]
+fn every_public_function_of_an_emitted_module_is_called() {
+    let path = project("robots/scara.yaml");
+    let text = fs::read_to_string(path).expect("the robot is there");
+    let (generated, _) = armgen_codegen::generate(&Source::new("scara.yaml", text), &Options::default());
+    let module = generated.expect("the description is valid").module;
+    let named = named_functions(&calls(&module));
+    // Read off the text by its lines, another way than `calls` goes.
+    let functions: Vec<&str> = module.lines().filter_map(|line| line.strip_prefix("pub fn ")?.split('(').next()).collect();
+    assert!(functions.len() > 20, "{functions:?}");
+    for function in functions {
+        assert!(named.contains(function), "{function} is not called");
+    }
+}

@@ -1,0 +1,44 @@
+//! Generates every robot in both scalars and with each trigonometry that needs no `std`, with a call of each function, and links the C library, which starts the program.
+
+use armgen_codegen::build_script::{Robot, Scalar, Trig};
+use std::{env, fs, path::PathBuf};
+
+fn main() {
+    let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
+    let mut modules = String::new();
+    let mut calls = String::new();
+    for folder in ["../../../robots", "../../robots"] {
+        let mut files: Vec<PathBuf> =
+            fs::read_dir(folder).expect("the folder of robots").flatten().map(|entry| entry.path()).collect();
+        files.sort();
+        for path in files.iter().filter(|path| path.extension().is_some_and(|e| e == "yaml")) {
+            let robot = path.file_stem().expect("a file has a name").to_string_lossy();
+            for (scalar, trig, ending) in [
+                (Scalar::F64, Trig::Libm, "f64"),
+                (Scalar::F32, Trig::Libm, "f32"),
+                (Scalar::F64, Trig::Fast, "f64_fast"),
+                (Scalar::F32, Trig::Fast, "f32_fast"),
+            ] {
+                let name = format!("{robot}_{ending}");
+                Robot::new(path).scalar(scalar).trig(trig).file_stem(&name).generate();
+                let module = fs::read_to_string(out.join(format!("{name}.rs"))).expect("the module was just written");
+                fs::write(out.join(format!("{name}_calls.rs")), armgen_bare_calls::calls(&module))
+                    .expect("OUT_DIR can be written");
+                let include = |file: String| format!("    include!(concat!(env!(\"OUT_DIR\"), \"/{file}.rs\"));\n");
+                let files = [name.clone(), format!("{name}_runtime"), format!("{name}_calls")].map(include).concat();
+                modules +=
+                    &format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{files}}}\n");
+                calls += &format!(
+                    "    let (v, p) = (core::hint::black_box([0.5; {name}::DOF]), core::hint::black_box([0.5; {name}::PARAMETERS]));\n    \
+                     let arguments = {name}::Arguments {{ q: v, dq: v, ddq: v, dqr: v, ddqr: v, tau: v, pi: p }};\n    \
+                     {name}::each_function(&arguments, &mut |_, call| call());\n"
+                );
+            }
+        }
+    }
+    let text = format!("{modules}\nfn every_emitted_function() {{\n{calls}}}\n");
+    fs::write(out.join("robots.rs"), text).expect("OUT_DIR can be written");
+    println!("cargo::rerun-if-changed=../../../robots");
+    println!("cargo::rerun-if-changed=../../robots");
+    println!("cargo::rustc-link-lib=c");
+}

@@ -1,0 +1,39 @@
+//! A program that links only if nothing in it can panic: every function of every robot's module, and every step of the runtime.
+//!
+//! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is dropped and
+//! the program links; one surviving panic keeps it, and the linker says `undefined reference to a_panic_path_survives`. The program has
+//! neither `std` nor an allocator, so that it links proves their absence too. With the feature `deliberate-index` it must not link.
+//! The script `tests/bare/no-panic` builds it both ways.
+//!
+//! This is a property of an optimised build (`--release`: all of it is one unit). The `unsafe` here is two attributes' worth and no more:
+//! `main` under its own name for the C library to start, which nothing else defines, and the declaration of the missing function, which
+//! promises that calling it is sound: it is never called, because a program with a call of it does not exist.
+#![no_std]
+#![no_main]
+
+mod runtime;
+
+include!(concat!(env!("OUT_DIR"), "/robots.rs"));
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    unsafe extern "C" {
+        safe fn a_panic_path_survives() -> !;
+    }
+    a_panic_path_survives()
+}
+
+/// Started by the C library.
+#[unsafe(no_mangle)]
+pub extern "C" fn main() -> i32 {
+    every_emitted_function();
+    use armgen_runtime::task::Row::{Rx, Ry, Rz, X, Y, Z};
+    runtime::every_step::<_, 4, 4, { scara_f64::PARAMETERS }>(&scara_f64::Nominal, [X, Y, Z, Rz]);
+    runtime::every_step::<_, 4, 3, { scara_f32::PARAMETERS }>(&scara_f32::Nominal, [Y, Z, Rz]);
+    runtime::every_step::<_, 7, 6, { panda7_f64::PARAMETERS }>(&panda7_f64::Nominal, [X, Y, Z, Rx, Ry, Rz]);
+    let parameters = scara_f64::WithParameters { parameters: core::hint::black_box(scara_f64::NOMINAL_PARAMETERS) };
+    runtime::every_step::<_, 4, 4, { scara_f64::PARAMETERS }>(&parameters, [X, Y, Z, Rz]);
+    #[cfg(feature = "deliberate-index")]
+    core::hint::black_box([1, 2, 3][core::hint::black_box(2)]);
+    0
+}

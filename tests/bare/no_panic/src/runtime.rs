@@ -1,0 +1,302 @@
+//! Every step of the runtime, with arguments that the optimiser knows nothing of.
+//!
+//! Methods are written `Type::method(..)`: a test of `armgen-bare-calls` reads this file and holds it against the public functions of the
+//! runtime, so that none is forgotten.
+
+use armgen_runtime::{
+    clik::{
+        Algorithm, Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance,
+        Manipulability, NoObjective, Objective, PseudoInverse, SecondOrder,
+    },
+    control::{Adaptive, BoundaryLayer, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits},
+    linalg::{self, Damping, RightInverse},
+    manipulability,
+    nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
+    orientation,
+    reference::{JointReference, OperationalReference, Pose, State},
+    robot::{array, matrix, Dynamics, Kinematics, Regressor},
+    task::{Row, Task},
+    trajectory::{
+        JointSegment, JointTrajectory, Law, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, Turn,
+    },
+};
+use core::{hint::black_box, time::Duration};
+
+/// Numbers, vectors and times out of nowhere.
+fn number<T: RealField + Copy>() -> T {
+    convert(black_box(0.3_f64))
+}
+
+fn numbers<T: RealField + Copy, const N: usize>() -> [T; N] {
+    core::array::from_fn(|_| number())
+}
+
+fn vector<T: RealField + Copy, const N: usize>() -> SVector<T, N> {
+    SVector::from(numbers::<T, N>())
+}
+
+fn time() -> Duration {
+    black_box(Duration::from_millis(7))
+}
+
+fn keep<V>(value: V) {
+    black_box(value);
+}
+
+/// Calls every public function that runs on a microcontroller, for one robot and task.
+#[inline(never)]
+pub(crate) fn every_step<R, const N: usize, const M: usize, const P: usize>(robot: &R, rows: [Row; M])
+where
+    R: Regressor<N, P>,
+{
+    let Ok(task) = Task::new(black_box(rows)) else { return };
+    let state = State { q: vector(), dq: vector() };
+    let joint = JointReference { q: vector(), dq: vector(), ddq: vector() };
+    let pose = Pose { position: vector::<R::Real, 3>(), rotation: matrix(&black_box([numbers::<R::Real, 3>(); 3])) };
+    let operational = OperationalReference { pose, velocity: vector::<R::Real, 6>(), acceleration: vector::<R::Real, 6>() };
+    keep((
+        array(&state.q),
+        JointReference::at_rest(state.q),
+        JointReference::held(&joint, number()),
+        JointReference::is_finite(&joint),
+    ));
+    keep((State::at_rest(state.q), State::is_finite(&state), Pose::from_frame(&Kinematics::direct_kinematics(robot, &state.q))));
+    keep((OperationalReference::at_rest(Pose::of(robot, &state.q)), OperationalReference::is_finite(&operational)));
+    let j = Task::jacobian(&task, &Kinematics::geometric_jacobian(robot, &state.q));
+    keep((Task::select(&task, &operational.velocity), Task::error(&task, &pose, &Pose::of(robot, &state.q)), Task::full()));
+    keep(Task::rows(&task).map(|row| (Row::index(row), Row::is_angular(row))));
+
+    model(robot, &state, &joint);
+    algebra(&j);
+    keep(manipulability::manipulability_gradient(robot, &task, &state.q));
+    turns::<R::Real>();
+    trajectories::<R::Real, N>();
+    inverse_kinematics(robot, task, &j, &state, &operational);
+    controllers::<R, N, M, P>(robot, task, &state, &joint, &operational);
+}
+
+fn model<R, const N: usize, const P: usize>(robot: &R, state: &State<R::Real, N>, joint: &JointReference<R::Real, N>)
+where
+    R: Regressor<N, P>,
+{
+    let (q, dq, dqr, ddqr) = (&state.q, &state.dq, &joint.dq, &joint.ddq);
+    keep((Kinematics::link_frames(robot, q), Kinematics::geometric_jacobian_dot(robot, q, dq)));
+    keep((Dynamics::inertia_matrix(robot, q), Dynamics::coriolis_matrix(robot, q, dq), Dynamics::gravity(robot, q)));
+    keep((Dynamics::friction(robot, dq), Dynamics::equations_of_motion(robot, q, dq)));
+    keep((Dynamics::inverse_dynamics(robot, q, dq, ddqr), Dynamics::forward_dynamics(robot, q, dq, ddqr)));
+    keep((Dynamics::kinetic_energy(robot, q, dq), Dynamics::potential_energy(robot, q)));
+    keep((
+        Regressor::regressor(robot, q, dq, dqr, ddqr),
+        Regressor::known_torque(robot, q, dq, dqr, ddqr),
+        Regressor::parameters(robot),
+    ));
+}
+
+fn algebra<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M, N>) {
+    if let Some(inverse) = RightInverse::new(j) {
+        keep((RightInverse::solve(&inverse, &vector()), RightInverse::matrix(&inverse)));
+        keep((RightInverse::null_space(&inverse, &vector()), RightInverse::volume(&inverse)));
+    }
+    if let Ok(damping) = Damping::new(number(), number()) {
+        keep((Damping::threshold(&damping), Damping::solve(&damping, j, &vector())));
+    }
+    keep(linalg::left_singular(j));
+    keep(linalg::diagonal_lyapunov::<T, N>(&vector(), &vector(), &vector(), &vector()));
+    keep((linalg::is_finite(j), linalg::saturate::<T, N>(&vector(), &vector())));
+    keep((manipulability::manipulability(j), manipulability::velocity_ellipsoid(j), manipulability::force_ellipsoid(j)));
+    keep((manipulability::condition_number(j), manipulability::distance_to_singularity(j)));
+}
+
+fn turns<T: RealField + Copy>() {
+    let e: Matrix3<T> = matrix(&[numbers::<T, 3>(); 3]);
+    keep((
+        orientation::rotation_vector(&e),
+        orientation::turn_about(&e, black_box(1)),
+        orientation::sine_error(&e, &e.transpose()),
+    ));
+    let (a, b) = (orientation::quaternion(&e), orientation::quaternion(&e.transpose()));
+    keep(orientation::quaternion_error(&a, &b));
+    if let Some(axis) = Unit::try_new(vector::<T, 3>(), T::zero()) {
+        keep(orientation::rotation(&axis, number()));
+    }
+}
+
+fn trajectories<T: RealField + Copy, const N: usize>() {
+    let laws = black_box([
+        Law::Trapezoidal { duration: time(), acceleration_time: time() },
+        Law::TrapezoidalByAcceleration { duration: time(), acceleration: number() },
+        Law::TrapezoidalByVelocity { duration: time(), velocity: number() },
+        Law::TrapezoidalByLimits { velocity: number(), acceleration: number() },
+        Law::Cubic { duration: time() },
+        Law::Quintic { duration: time() },
+    ]);
+    keep(Profile::<T>::rest(time()));
+    for law in laws {
+        if let Ok(profile) = Law::resolve(&law, number::<T>()) {
+            keep((Profile::at(&profile, time()), Profile::duration(&profile)));
+        }
+        operational_space::<T>(law);
+        let segments = [
+            JointSegment::<T, N>::to(numbers(), law),
+            JointSegment::within_limits(numbers(), numbers(), numbers()),
+            JointSegment::pause(time()),
+        ];
+        let segments = segments.map(|segment| JointSegment::anticipating(segment, time()));
+        if let Ok(trajectory) = JointTrajectory::plan(numbers(), black_box(segments)) {
+            keep((JointTrajectory::sample(&trajectory, time()), JointTrajectory::duration(&trajectory)));
+            for segment in JointTrajectory::segments(&trajectory) {
+                keep((JointSegment::start(segment), JointSegment::end(segment)));
+            }
+        }
+    }
+}
+
+fn operational_space<T: RealField + Copy>(law: Law<T>) {
+    let segments = [
+        Segment::line(numbers(), law),
+        Segment::arc(numbers(), numbers(), number(), law),
+        Segment::arc_to(numbers(), numbers(), number(), numbers(), law),
+        Segment::arc_through(numbers(), numbers(), law),
+        Segment::pause(time()),
+    ];
+    let segments = segments.map(|segment| Segment::anticipating(segment, time()));
+    let e: Matrix3<T> = matrix(&[numbers::<T, 3>(); 3]);
+    let turns = [Turn::about(numbers(), number(), law), Turn::toward(e, law), Turn::pause(time())];
+    let (Ok(path), Ok(orientation)) = (Path::plan(numbers(), black_box(segments)), OrientationProfile::plan(e, black_box(turns)))
+    else {
+        return;
+    };
+    keep((Path::sample(&path, time()), Path::duration(&path), Path::segment_at(&path, time())));
+    for segment in Path::segments(&path) {
+        keep((
+            Segment::start(segment),
+            Segment::end(segment),
+            Segment::from(segment),
+            Segment::to(segment),
+            Segment::length(segment),
+        ));
+    }
+    keep((OrientationProfile::sample(&orientation, time()), OrientationProfile::duration(&orientation)));
+    for turn in OrientationProfile::turns(&orientation) {
+        keep((Turn::start(turn), Turn::end(turn)));
+    }
+    let trajectory = OperationalTrajectory { path, orientation };
+    keep((OperationalTrajectory::sample(&trajectory, time()), OperationalTrajectory::duration(&trajectory)));
+    let about_point = Reach::about_point(numbers(), number(), number());
+    keep(OperationalTrajectory::check_reach(&trajectory, &about_point, time()));
+    if let Some(reach) = Reach::about_axis(numbers(), numbers(), number(), number()) {
+        keep((Reach::distance(&reach, &vector::<T, 3>()), Reach::contains(&reach, &vector::<T, 3>())));
+        keep((
+            OperationalTrajectory::check_reach(&trajectory, &reach, time()),
+            Path::check_reach(&trajectory.path, &reach, time()),
+        ));
+    }
+}
+
+fn inverse_kinematics<R, const N: usize, const M: usize, const P: usize>(
+    robot: &R,
+    task: Task<M>,
+    j: &SMatrix<R::Real, M, N>,
+    state: &State<R::Real, N>,
+    reference: &OperationalReference<R::Real>,
+) where
+    R: Regressor<N, P>,
+{
+    let Ok(limits) = JointLimits::rates(numbers()) else { return };
+    let Ok(limits) = JointLimits::with_range(limits, numbers(), numbers()) else { return };
+    let Ok(damping) = Damping::new(number(), number()) else { return };
+    follow(robot, task, limits, JacobianInverse::new(numbers()), state, reference);
+    follow(robot, task, limits, JacobianTranspose::new(numbers()), state, reference);
+    follow(robot, task, limits, DampedLeastSquares::new(numbers(), damping), state, reference);
+    follow(robot, task, limits, PseudoInverse::new(numbers(), number(), NoObjective), state, reference);
+    keep((
+        JointLimits::rate(&limits),
+        JointLimits::slow_down(&limits, &state.dq),
+        JointLimits::stop(&limits, &state.q, &vector()),
+    ));
+    let objective = Manipulability { task };
+    keep(Objective::gradient(&objective, robot, &state.q));
+    follow(
+        robot,
+        task,
+        limits,
+        PseudoInverse::new(numbers(), number(), objective).map(|algorithm| PseudoInverse::with_damping(algorithm, damping)),
+        state,
+        reference,
+    );
+    if let Ok(objective) = JointRangeDistance::new(numbers(), numbers()) {
+        follow(robot, task, limits, PseudoInverse::new(numbers(), number(), objective), state, reference);
+    }
+    if let Ok(transpose) = JacobianTranspose::new(numbers()) {
+        keep(JacobianTranspose::loop_gain(&transpose, j, number()));
+    }
+    for integration in black_box([Integration::ExplicitEuler, Integration::HoldConsistent]) {
+        let second = SecondOrder::new(task, numbers(), numbers(), number(), integration, limits, numbers());
+        let Ok(second) = second.and_then(|second| SecondOrder::with_null_space_damping(second, number())) else { return };
+        keep(SecondOrder::step(&second, robot, state, reference));
+        keep(SecondOrder::step(&SecondOrder::with_damping(second, damping), robot, state, reference));
+    }
+}
+
+fn follow<R, A, E, const N: usize, const M: usize, const P: usize>(
+    robot: &R,
+    task: Task<M>,
+    limits: JointLimits<R::Real, N>,
+    algorithm: Result<A, E>,
+    state: &State<R::Real, N>,
+    reference: &OperationalReference<R::Real>,
+) where
+    R: Regressor<N, P>,
+    A: Algorithm<R, N, M>,
+{
+    let Ok(algorithm) = algorithm else { return };
+    let j = Task::jacobian(&task, &Kinematics::geometric_jacobian(robot, &state.q));
+    keep(Algorithm::rates(&algorithm, robot, &state.q, &vector(), &vector(), &j));
+    let Ok(clik) = Clik::new(task, algorithm, number(), limits, numbers()) else { return };
+    keep((Clik::step(&clik, robot, &state.q, reference), Clik::task(&clik)));
+    keep(Clik::approach(&clik, robot, &state.q, &reference.pose, black_box(3)));
+}
+
+fn controllers<R, const N: usize, const M: usize, const P: usize>(
+    robot: &R,
+    task: Task<M>,
+    state: &State<R::Real, N>,
+    joint: &JointReference<R::Real, N>,
+    reference: &OperationalReference<R::Real>,
+) where
+    R: Regressor<N, P>,
+{
+    let Ok(limits) = TorqueLimits::new(numbers()) else { return };
+    keep(TorqueLimits::apply(&limits, &vector()));
+    if let Ok(pd) = PdGravity::new(numbers(), numbers()) {
+        keep(PdGravity::torque(&pd, robot, joint, state));
+        keep(PdGravity::torque(&PdGravity::with_torque_limits(pd, limits), robot, joint, state));
+    }
+    if let Ok(inverse) = InverseDynamics::new(numbers(), numbers()) {
+        keep(InverseDynamics::torque(&inverse, robot, joint, state));
+        keep(InverseDynamics::torque(&InverseDynamics::with_torque_limits(inverse, limits), robot, joint, state));
+    }
+    let layer = BoundaryLayer { rho: number(), epsilon: number() };
+    if let Ok(robust) = Robust::new(numbers(), numbers(), numbers(), numbers(), layer) {
+        keep((Robust::z(&robust, joint, state), Robust::torque(&robust, robot, joint, state)));
+        keep(Robust::torque(&Robust::with_torque_limits(robust, limits), robot, joint, state));
+    }
+    let adaptive = Adaptive::<R::Real, N, P>::new(numbers(), numbers(), numbers(), Regressor::parameters(robot).into(), number());
+    if let (Ok(mut adaptive), Ok(interval)) = (adaptive, Interval::new(numbers(), numbers())) {
+        keep((Adaptive::torque(&mut adaptive, robot, joint, state), *Adaptive::estimate(&adaptive)));
+        keep(Adaptive::law(&adaptive, robot, joint, state, &vector()));
+        let bounded = Adaptive::with_frozen(Adaptive::with_projection(adaptive, interval), black_box([true; P]));
+        keep(Adaptive::torque(&mut Adaptive::with_torque_limits(bounded, limits), robot, joint, state));
+    }
+    let operational = OperationalSpace::new(task, numbers(), numbers(), numbers(), number());
+    let operational = operational.and_then(|operational| OperationalSpace::with_integral_limit(operational, numbers()));
+    if let (Ok(mut operational), Ok(damping)) = (operational, Damping::new(number(), number())) {
+        keep((OperationalSpace::torque(&mut operational, robot, reference, state), *OperationalSpace::integral(&operational)));
+        let mut damped = OperationalSpace::with_torque_limits(OperationalSpace::with_damping(operational, damping), limits);
+        keep(OperationalSpace::torque(&mut damped, robot, reference, state));
+        if let Ok(null_space) = NullSpace::new(numbers(), numbers(), numbers()) {
+            let mut redundant = OperationalSpace::with_null_space(damped, null_space);
+            keep(OperationalSpace::torque(&mut redundant, robot, reference, state));
+        }
+    }
+}
