@@ -11,9 +11,10 @@
 //! include!(concat!(env!("OUT_DIR"), "/robot.rs"));
 //! ```
 //!
-//! The script reruns when the description changes and only then. A wrong description fails the build with every fault and its place;
+//! The script reruns when the description changes (or the script itself) and only then. A wrong description fails the build with every fault and its place;
 //! warnings of the description become warnings of the build.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::Colour;
@@ -21,6 +22,18 @@ pub use crate::program::{Scalar, Trig};
 
 use crate::program::Options;
 use crate::source::Source;
+
+/// Why nothing was generated: every fault of the description with its place, or the file that cannot be read or written.
+#[derive(Clone, Debug)]
+pub struct BuildError(String);
+
+impl fmt::Display for BuildError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for BuildError {}
 
 /// A description to generate from.
 #[derive(Clone, Debug)]
@@ -38,24 +51,28 @@ impl Robot {
     }
 
     /// The scalar type behind `Real`; f64 unless chosen.
+    #[must_use]
     pub fn scalar(mut self, scalar: Scalar) -> Robot {
         self.options.scalar = scalar;
         self
     }
 
     /// Where the sines and cosines of the module come from; the crate `libm` unless chosen.
+    #[must_use]
     pub fn trig(mut self, trig: Trig) -> Robot {
         self.options.trig = trig;
         self
     }
 
     /// The name of the written files without their ending, where it is not that of the description: for the same robot in two scalars, say.
+    #[must_use]
     pub fn file_stem(mut self, stem: impl Into<String>) -> Robot {
         self.stem = Some(stem.into());
         self
     }
 
     /// Writes the face for C too: `robot.h`, and `robot_c.rs` to be included beside the module in a static or dynamic library.
+    #[must_use]
     pub fn c_abi(mut self) -> Robot {
         self.c_abi = true;
         self
@@ -63,16 +80,24 @@ impl Robot {
 
     /// Writes the module and the trait implementation into `OUT_DIR`, named after the description's file, or ends the build with the reason.
     pub fn generate(&self) {
-        if let Err(message) = self.try_generate() {
-            eprintln!("{message}");
+        if let Err(error) = self.try_generate() {
+            eprintln!("{error}");
             std::process::exit(1);
         }
     }
 
-    fn try_generate(&self) -> Result<(), String> {
+    /// The same for a build script that goes on: the files that were written.
+    ///
+    /// # Errors
+    /// Where the description cannot be read or is faulty, or a file cannot be written.
+    pub fn try_generate(&self) -> Result<Vec<PathBuf>, BuildError> {
+        self.write().map_err(BuildError)
+    }
+
+    fn write(&self) -> Result<Vec<PathBuf>, String> {
         let path = self.description.display();
-        println!("cargo::rerun-if-changed={path}");
-        println!("cargo::rerun-if-changed=build.rs");
+        // One colon: cargo refuses two where the user's crate declares a Rust older than 1.77.
+        println!("cargo:rerun-if-changed={path}");
         let bytes = std::fs::read(&self.description).map_err(|e| format!("error: cannot read {path}: {e}"))?;
         let text = String::from_utf8(bytes).map_err(|e| format!("error: {path} is not UTF-8: {e}"))?;
         let source = Source::new(path.to_string(), text);
@@ -80,7 +105,7 @@ impl Robot {
         let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
         for warning in diagnostics.iter() {
             let place = source.place(warning.span().range().start);
-            println!("cargo::warning={path}:{}:{}: {}", place.line, place.column, warning.message);
+            println!("cargo:warning={path}:{}:{}: {}", place.line, place.column, warning.message);
         }
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
         let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
@@ -89,10 +114,12 @@ impl Robot {
         if self.c_abi {
             files.extend([(format!("{stem}.h"), generated.c.header), (format!("{stem}_c.rs"), generated.c.wrappers)]);
         }
+        let mut written = Vec::new();
         for (name, text) in files {
             let file = out.join(name);
             std::fs::write(&file, text).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;
+            written.push(file);
         }
-        Ok(())
+        Ok(written)
     }
 }

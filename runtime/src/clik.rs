@@ -29,6 +29,7 @@ pub use second_order::{Integration, SecondOrder, SecondOrderStep};
 
 /// Why there is no step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ClikError {
     /// Joint variables or rates are infinite or NaN.
     StateNotFinite,
@@ -40,8 +41,16 @@ pub enum ClikError {
     RatesNotFinite,
 }
 
+messages! { ClikError,
+    ClikError::StateNotFinite => "joint variables or rates are infinite or NaN";
+    ClikError::ReferenceNotFinite => "the reference is infinite or NaN";
+    ClikError::Singular => "the Jacobian has lost a row of the task: use damped least squares, or keep away from singular postures";
+    ClikError::RatesNotFinite => "the rates are infinite or NaN: gains or model are beyond the range of the scalar";
+}
+
 /// What a step, or a whole approach, came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// Every error is within its tolerance.
     Converged,

@@ -39,6 +39,7 @@ use nalgebra::{RealField, SVector};
 
 /// Why there is no torque for this sample; the caller brakes or holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ControlError {
     /// A measured joint variable or rate is infinite or NaN: the sensor has failed.
     MeasurementNotFinite,
@@ -48,6 +49,13 @@ pub enum ControlError {
     Singular,
     /// The law gave an infinite or NaN torque: gains or model are beyond the range of the scalar.
     TorqueNotFinite,
+}
+
+messages! { ControlError,
+    ControlError::MeasurementNotFinite => "a measured joint variable or rate is infinite or NaN";
+    ControlError::ReferenceNotFinite => "the reference is infinite or NaN";
+    ControlError::Singular => "the Jacobian has lost a row of the task: allow damping, or keep away from singular postures";
+    ControlError::TorqueNotFinite => "the torque is infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
 /// The torque for one sample.

@@ -6,6 +6,7 @@ use nalgebra::{RealField, SVector};
 
 /// What a refused number was meant for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Gain {
     /// K_P, 1/s^2 (or N m/rad for [`PdGravity`](crate::control::PdGravity)).
     Proportional,
@@ -43,6 +44,30 @@ pub enum Gain {
     Estimate,
 }
 
+impl core::fmt::Display for Gain {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Gain::Proportional => "K_P",
+            Gain::Derivative => "K_D",
+            Gain::Integral => "K_I",
+            Gain::Filter => "Lambda",
+            Gain::Adaptation => "K_pi",
+            Gain::Interval => "the interval of the estimate",
+            Gain::LyapunovWeight => "P",
+            Gain::UncertaintyBound => "rho",
+            Gain::BoundaryLayer => "epsilon",
+            Gain::NullSpace => "the null-space gains",
+            Gain::PositionLimit => "the position limits",
+            Gain::RateLimit => "the rate limits",
+            Gain::Tolerance => "the tolerances",
+            Gain::IntegralLimit => "the integral limits",
+            Gain::TorqueLimit => "the torque limits",
+            Gain::Period => "the sampling period",
+            Gain::Estimate => "the initial estimate",
+        })
+    }
+}
+
 /// Why gains were refused; `index` is the joint, task row or parameter, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainError {
@@ -60,6 +85,11 @@ pub enum GainError {
         /// Which of its elements.
         index: usize,
     },
+}
+
+messages! { GainError,
+    GainError::NotFinite { gain, index } => "element {} (from 0) of {} is infinite or NaN", index, gain;
+    GainError::NotPositive { gain, index } => "element {} (from 0) of {} is negative, or zero where only a positive value makes sense", index, gain;
 }
 
 fn each<T: RealField + Copy, const K: usize>(
@@ -81,6 +111,15 @@ fn each<T: RealField + Copy, const K: usize>(
 /// All elements positive and finite.
 pub(crate) fn positive<T: RealField + Copy, const K: usize>(gain: Gain, values: &SVector<T, K>) -> Result<(), GainError> {
     each(gain, values, |x| x > T::zero())
+}
+
+/// All elements positive; an infinite one is a limit that never acts.
+pub(crate) fn positive_or_infinite<T: RealField + Copy, const K: usize>(
+    gain: Gain,
+    values: &SVector<T, K>,
+) -> Result<(), GainError> {
+    // A NaN is not below the largest number either.
+    positive(gain, &values.map(|x| if x > T::one() { T::one() } else { x }))
 }
 
 /// All elements finite and not negative.

@@ -5,7 +5,7 @@
 //! Villani, Oriolo, *Robotics: Modelling, Planning and Control*. SI units and radians throughout.
 //!
 //! - **Allocation**: none, except in `stability` and `simulation`, which run on a host and stand behind the feature `std`.
-//! - **Panics**: none. A function that can fail returns a small documented `enum`.
+//! - **Panics**: none. A function that can fail returns a small documented `enum`, which is an [`Error`](core::error::Error) with a message.
 //! - **Bits**: sine, cosine and root come from `libm` in every build and nothing is contracted into a fused multiply-add,
 //!   so one program gives the same bits on a host and on a microcontroller.
 //! - **Time**: [`core::time::Duration`], integer nanoseconds, so that the phases of a time law change at exactly the sample meant.
@@ -14,6 +14,9 @@
 #![allow(clippy::neg_cmp_op_on_partial_ord)]
 
 pub use nalgebra;
+
+#[macro_use]
+mod message;
 
 pub mod clik;
 pub mod control;

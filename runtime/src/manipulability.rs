@@ -72,6 +72,7 @@ pub fn force_ellipsoid<T: RealField + Copy, const K: usize, const N: usize>(j: &
 
 /// Condition number sigma_1 / sigma_K, at least 1; `None` at a singular posture.
 pub fn condition_number<T: RealField + Copy, const K: usize, const N: usize>(j: &SMatrix<T, K, N>) -> Option<T> {
+    const { assert!(K > 0, "a Jacobian has rows") };
     let sigma = left_singular(j).sigma;
     let condition = sigma[0] / sigma[K - 1];
     condition.is_finite().then_some(condition)
@@ -79,5 +80,6 @@ pub fn condition_number<T: RealField + Copy, const K: usize, const N: usize>(j: 
 
 /// Distance to singularity: the smallest singular value, the norm of the smallest change of J that makes it lose a row.
 pub fn distance_to_singularity<T: RealField + Copy, const K: usize, const N: usize>(j: &SMatrix<T, K, N>) -> T {
+    const { assert!(K > 0, "a Jacobian has rows") };
     left_singular(j).sigma[K - 1]
 }

@@ -25,6 +25,9 @@ pub enum Row {
 }
 
 impl Row {
+    /// All of them, each at its place in a six-vector.
+    pub const ALL: [Row; 6] = [Row::X, Row::Y, Row::Z, Row::Rx, Row::Ry, Row::Rz];
+
     /// Its place in a six-vector, 0 to 5.
     pub const fn index(self) -> usize {
         self as usize
@@ -49,12 +52,20 @@ pub enum TaskError {
     Empty,
     /// This row was named twice; its Jacobian would be singular everywhere.
     Repeated(Row),
+    /// There is no row of this index.
+    NoSuchRow(usize),
+}
+
+messages! { TaskError,
+    TaskError::Empty => "no row was named";
+    TaskError::Repeated(row) => "row {:?} was named twice: its Jacobian would be singular everywhere", row;
+    TaskError::NoSuchRow(index) => "there is no row {}: 0 to 2 are x, y, z, and 3 to 5 the rotations about them", index;
 }
 
 impl Task<6> {
     /// All six rows, in order.
     pub const fn full() -> Self {
-        Self { rows: [Row::X, Row::Y, Row::Z, Row::Rx, Row::Ry, Row::Rz] }
+        Self { rows: Row::ALL }
     }
 }
 
@@ -73,6 +84,18 @@ impl<const M: usize> Task<M> {
             }
         }
         Ok(Self { rows })
+    }
+
+    /// The task of the rows at these places of a six-vector: `Task::from_indices(robot::TASK)` is the task of an emitted robot.
+    ///
+    /// # Errors
+    /// Where there is none, one is beyond 5, or one is named twice.
+    pub fn from_indices(indices: [usize; M]) -> Result<Self, TaskError> {
+        let mut rows = [Row::X; M];
+        for (row, index) in rows.iter_mut().zip(indices) {
+            *row = *Row::ALL.get(index).ok_or(TaskError::NoSuchRow(index))?;
+        }
+        Self::new(rows)
     }
 
     /// The rows, in the order of the task.

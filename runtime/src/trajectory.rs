@@ -43,6 +43,7 @@ pub struct PlanError {
 
 /// What is wrong with a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PlanFault {
     /// A number is infinite or NaN.
     NotFinite,
@@ -78,6 +79,31 @@ pub enum PlanFault {
     OutOfReach,
     /// The matrix given as an orientation is not a rotation.
     NotARotation,
+}
+
+messages! { PlanError,
+    PlanError { segment: 0, fault } => "at the start: {}", fault;
+    PlanError { segment, fault } => "segment {}: {}", segment, fault;
+}
+
+messages! { PlanFault,
+    PlanFault::NotFinite => "a number is infinite or NaN";
+    PlanFault::NoDuration => "the duration is zero although something has to move";
+    PlanFault::NoAccelerationTime => "the acceleration time is zero: the acceleration would be infinite";
+    PlanFault::CruiseTimeNegative => "the acceleration time is more than half the duration: lengthen the duration or shorten the acceleration time";
+    PlanFault::AccelerationTooSmall => "the acceleration is below 4 L / T^2, with which the length cannot be covered in the duration";
+    PlanFault::VelocityOutOfRange => "the velocity is not above L / T and at most 2 L / T, between which a trapezoid exists";
+    PlanFault::LimitNotPositive => "a limit of velocity or acceleration is not positive";
+    PlanFault::TooLong => "the duration that follows from the limits is longer than the clock can count";
+    PlanFault::ArcRadiusZero => "the arc starts at its own centre";
+    PlanFault::AxisZero => "the axis has no direction";
+    PlanFault::ArcOffPlane => "the start of the arc does not lie in the plane through its centre at right angles to its axis";
+    PlanFault::ArcEndMismatch => "the end of the arc is not the stated one: centre, sweep and points do not fit together";
+    PlanFault::ArcPointsCollinear => "the three points of the arc lie on a line, or coincide";
+    PlanFault::NothingToAnticipate => "the first segment has nothing before it that it could anticipate";
+    PlanFault::AnticipationTooLong => "the anticipation is longer than this segment or the one before it, or reaches into the one before that";
+    PlanFault::OutOfReach => "a point of the segment is out of the reach of the arm";
+    PlanFault::NotARotation => "the matrix given as an orientation is not a rotation";
 }
 
 impl PlanFault {

@@ -155,7 +155,11 @@ fn the_damped_inverse_is_the_inverse_away_from_singularities() {
 fn approaches_end_with_a_name() {
     let robot = ghost::nominal();
     let clik = Clik::new(ghost::task(), damped(), 1e-3, bounded(), [1e-6; 4]).unwrap();
-    let near = |q: [f64; 4], goal: Pose<f64>| clik.approach(&robot, &q.into(), &goal, 20_000).unwrap();
+    let near = |q: [f64; 4], goal: Pose<f64>| {
+        let reached = clik.approach(&robot, &q.into(), &goal, 20_000).unwrap();
+        assert_eq!(reached.error, ghost::task().error(&goal, &Pose::of(&robot, &reached.q)));
+        reached
+    };
     // Off the goal, but within reach.
     let reached = near([0.1, 1.0, 0.1, 0.0], goal([-0.5, 1.4, 0.3, 0.8]));
     assert_eq!(reached.outcome, Outcome::Converged, "{reached:?}");

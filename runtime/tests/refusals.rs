@@ -11,10 +11,13 @@ use armgen_runtime::{
     gains::{Gain, GainError},
     linalg::{Damping, DampingError},
     reference::{JointReference, OperationalReference, Pose, State},
-    simulation::{Integrator, Plant},
+    simulation::{Integrator, Plant, RunError},
+    task::{Row, Task, TaskError},
+    trajectory::{PlanError, PlanFault},
 };
 use common::{below, ghost, scara::NOMINAL};
 use nalgebra::{vector, Vector4};
+use std::time::Duration;
 
 const NAN: f64 = f64::NAN;
 
@@ -46,6 +49,49 @@ fn gains_are_checked() {
     assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Gain::PositionLimit, 1));
     assert_eq!(Damping::new(0.0, 1.0).err(), Some(DampingError::Threshold));
     assert_eq!(Damping::new(1.0, NAN).err(), Some(DampingError::Factor));
+}
+
+#[test]
+fn an_infinite_limit_never_acts() {
+    const FREE: f64 = f64::INFINITY;
+    let torque = TorqueLimits::new([FREE, 1.0]).unwrap();
+    assert_eq!(torque.apply(&vector![1e300, -2.0]), (vector![1e300, -1.0], true));
+    assert!(TorqueLimits::new([NAN]).is_err() && TorqueLimits::new([-FREE]).is_err());
+    let limits = JointLimits::rates([1.0, 1.0]).unwrap().with_range([-FREE, 0.0], [FREE, FREE]).unwrap();
+    assert_eq!(limits.stop(&vector![0.0, 0.0], &vector![1e300, -1.0]), (vector![1e300, 0.0], Some(1)));
+    assert!(JointLimits::rates([1.0]).unwrap().with_range([FREE], [FREE]).is_err());
+    assert!(JointLimits::rates([1.0]).unwrap().with_range([0.0], [NAN]).is_err());
+    assert!(JointLimits::rates([FREE]).is_err(), "a rate always has a limit");
+}
+
+#[test]
+fn a_frozen_estimate_stays_outside_the_interval() {
+    let adaptive = Adaptive::new([1.0], [1.0], [1.0; 2], [5.0, 5.0], 1e-3).unwrap().with_frozen([true, false]);
+    let adaptive = adaptive.with_projection(Interval::new([0.0; 2], [1.0; 2]).unwrap());
+    assert_eq!(*adaptive.estimate(), vector![5.0, 1.0]);
+}
+
+#[test]
+fn errors_say_what_is_wrong() {
+    fn message(error: impl std::error::Error) -> String {
+        error.to_string()
+    }
+    let gain = PdGravity::new([1.0, 0.0], [1.0; 2]).unwrap_err();
+    assert_eq!(message(gain), "element 1 (from 0) of K_P is negative, or zero where only a positive value makes sense");
+    let plan = PlanFault::CruiseTimeNegative;
+    let plan = PlanError { segment: 3, fault: plan };
+    assert!(message(plan).starts_with("segment 3: the acceleration time is more than half the duration"));
+    assert_eq!(message(TaskError::NoSuchRow(7)), "there is no row 7: 0 to 2 are x, y, z, and 3 to 5 the rotations about them");
+    let run = RunError::Controller { time: Duration::from_millis(1500), error: ControlError::MeasurementNotFinite };
+    assert_eq!(message(run), "at 1.5 s: a measured joint variable or rate is infinite or NaN");
+}
+
+#[test]
+fn a_task_is_made_of_the_places_of_its_rows() {
+    assert_eq!(Task::from_indices([0, 1, 2, 5]), Task::new([Row::X, Row::Y, Row::Z, Row::Rz]));
+    assert_eq!(Task::from_indices([6]), Err(TaskError::NoSuchRow(6)));
+    assert_eq!(Task::from_indices([1, 1]), Err(TaskError::Repeated(Row::Y)));
+    assert_eq!(Task::from_indices([]), Err(TaskError::Empty));
 }
 
 /// Every way in which one number of a measurement can be lost.

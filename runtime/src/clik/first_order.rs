@@ -90,6 +90,7 @@ impl<T: RealField + Copy, const M: usize> JacobianTranspose<T, M> {
     /// Sampled, e_{n+1} = (I - T_s J J' K) e_n: stable while this is below 2. It changes with the posture and is largest where the
     /// arm is stretched out.
     pub fn loop_gain<const N: usize>(&self, j: &SMatrix<T, M, N>, period: T) -> T {
+        const { assert!(M > 0, "a task has rows") };
         let weighted = SMatrix::<T, M, N>::from_fn(|i, k| self.k[i].sqrt() * j[(i, k)]);
         let sigma = left_singular(&weighted).sigma[0];
         period * sigma * sigma
@@ -129,6 +130,7 @@ impl<T: RealField + Copy, O, const M: usize> PseudoInverse<T, O, M> {
     }
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
+    #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }
     }

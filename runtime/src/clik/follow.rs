@@ -129,6 +129,8 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         A: Algorithm<R, N, M>,
     {
         let reference = OperationalReference::at_rest(*goal);
+        let ended =
+            |q: SVector<T, N>, steps, outcome| Reached { q, error: self.task.error(goal, &Pose::of(robot, &q)), steps, outcome };
         let mut q = *start;
         let mut rested_at: Option<T> = None;
         for steps in 0..most_steps {
@@ -142,19 +144,18 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
                 continue;
             }
             if let Outcome::JointLimit { .. } = step.outcome {
-                return Ok(Reached { q, error: step.error, steps, outcome: step.outcome });
+                return Ok(ended(q, steps + 1, step.outcome));
             }
             let distance = step.error.norm();
             if rested_at.is_some_and(|before| distance > before * lit(0.999)) {
-                return Ok(Reached { q, error: step.error, steps, outcome: Outcome::OutOfReach });
+                return Ok(ended(q, steps + 1, Outcome::OutOfReach));
             }
             rested_at = Some(distance);
             let aside = SVector::from_fn(|i, _| lit::<T>(if i % 2 == 0 { 0.01 } else { -0.01 }));
             q = self.limits.stop(&q, &(q + aside)).0;
         }
-        let error = self.task.error(goal, &Pose::of(robot, &q));
-        let outcome = if self.converged(&error) { Outcome::Converged } else { Outcome::OutOfSteps };
-        Ok(Reached { q, error, steps: most_steps, outcome })
+        let last = ended(q, most_steps, Outcome::OutOfSteps);
+        Ok(Reached { outcome: if self.converged(&last.error) { Outcome::Converged } else { last.outcome }, ..last })
     }
 }
 

@@ -13,6 +13,9 @@ pub struct JointLimits<T, const N: usize> {
 impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
     /// Rates up to `rate`, rad/s or m/s, to either side; joint variables without limits.
     ///
+    /// Every rate has a limit, since none bounds what an inverse of the Jacobian asks for near a singular posture: where an emitted robot's
+    /// `VELOCITY_LIMITS` holds an infinite one, choose one.
+    ///
     /// # Errors
     /// Where a rate is not positive and finite.
     pub fn rates(rate: [T; N]) -> Result<Self, GainError> {
@@ -21,15 +24,13 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
         Ok(Self { rate, range: None })
     }
 
-    /// The same with joint variables from `lower` to `upper`, rad or m.
+    /// The same with joint variables from `lower` to `upper`, rad or m; an infinite limit never acts.
     ///
     /// # Errors
-    /// Where a limit is not finite, or the lower one is not below the upper one.
+    /// Where the lower limit is not below the upper one, or one is NaN.
     pub fn with_range(self, lower: [T; N], upper: [T; N]) -> Result<Self, GainError> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
-        gains::finite(Gain::PositionLimit, &lower)?;
-        gains::finite(Gain::PositionLimit, &upper)?;
-        gains::positive(Gain::PositionLimit, &(upper - lower))?;
+        gains::positive_or_infinite(Gain::PositionLimit, &(upper - lower))?;
         Ok(Self { range: Some((lower, upper)), ..self })
     }
 

@@ -81,6 +81,7 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
     }
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
+    #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }
     }

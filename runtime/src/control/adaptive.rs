@@ -72,14 +72,16 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
 
     /// The same with the estimate kept in an interval: an adaptation that would leave it stops at its bound.
     ///
-    /// The projection does not increase V where the true parameters lie in the interval.
+    /// The projection does not increase V where the true parameters lie in the interval. Frozen parameters stay where they are, in it or not.
+    #[must_use]
     pub fn with_projection(mut self, interval: Interval<T, P>) -> Self {
-        self.estimate = project(&self.estimate, &interval);
+        self.estimate = project(&self.estimate, &interval, &self.rate);
         self.interval = Some(interval);
         self
     }
 
     /// The same with the parameters marked `true` kept at their present estimate.
+    #[must_use]
     pub fn with_frozen(mut self, frozen: [bool; P]) -> Self {
         for (rate, frozen) in self.rate.iter_mut().zip(frozen) {
             if frozen {
@@ -90,6 +92,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     }
 
     /// The same with torques limited; while a limit is at work the estimate rests.
+    #[must_use]
     pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
         Self { limits: Some(limits), ..self }
     }
@@ -139,7 +142,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
                 return Err(ControlError::TorqueNotFinite);
             }
             self.estimate = match &self.interval {
-                Some(interval) => project(&next, interval),
+                Some(interval) => project(&next, interval, &self.rate),
                 None => next,
             };
         }
@@ -147,6 +150,14 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     }
 }
 
-fn project<T: RealField + Copy, const P: usize>(estimate: &SVector<T, P>, interval: &Interval<T, P>) -> SVector<T, P> {
-    SVector::from_fn(|i, _| estimate[i].max(interval.lower[i]).min(interval.upper[i]))
+/// The estimate in the interval, but for what is frozen: what has the rate 0.
+fn project<T: RealField + Copy, const P: usize>(
+    estimate: &SVector<T, P>,
+    interval: &Interval<T, P>,
+    rate: &SVector<T, P>,
+) -> SVector<T, P> {
+    SVector::from_fn(|i, _| match rate[i] == T::zero() {
+        true => estimate[i],
+        false => estimate[i].max(interval.lower[i]).min(interval.upper[i]),
+    })
 }

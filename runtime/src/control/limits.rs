@@ -1,7 +1,7 @@
 //! Torque limits.
 
 use crate::{
-    gains::{positive, Gain, GainError},
+    gains::{positive_or_infinite, Gain, GainError},
     linalg::saturate,
 };
 use nalgebra::{RealField, SVector};
@@ -13,13 +13,14 @@ pub struct TorqueLimits<T, const N: usize> {
 }
 
 impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
-    /// The limits of the joints, N m or N.
+    /// The limits of the joints, N m or N, on the joint side of the gears; an infinite one never acts, so that `EFFORT_LIMITS` of an emitted
+    /// robot fits whether or not the description gives all of them.
     ///
     /// # Errors
-    /// Where one is not positive and finite.
+    /// Where one is not positive.
     pub fn new(bound: [T; N]) -> Result<Self, GainError> {
         let bound = SVector::from(bound);
-        positive(Gain::TorqueLimit, &bound)?;
+        positive_or_infinite(Gain::TorqueLimit, &bound)?;
         Ok(Self { bound })
     }
 

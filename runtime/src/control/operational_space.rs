@@ -109,16 +109,19 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     }
 
     /// The same with a damped inverse near singularities, instead of [`ControlError::Singular`] at them.
+    #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }
     }
 
     /// The same with the null space under control; without it the null space is left alone, undamped.
+    #[must_use]
     pub fn with_null_space(self, null_space: NullSpace<T, N>) -> Self {
         Self { null_space: Some(null_space), ..self }
     }
 
     /// The same with torques limited.
+    #[must_use]
     pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
         Self { limits: Some(limits), ..self }
     }

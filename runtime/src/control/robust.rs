@@ -62,6 +62,7 @@ impl<T: RealField + Copy, const N: usize> Robust<T, N> {
     }
 
     /// The same with torques limited.
+    #[must_use]
     pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
         Self { limits: Some(limits), ..self }
     }

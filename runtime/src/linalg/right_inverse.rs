@@ -116,6 +116,11 @@ pub enum DampingError {
     Factor,
 }
 
+messages! { DampingError,
+    DampingError::Threshold => "the threshold w_0 is not a positive finite number";
+    DampingError::Factor => "the factor lambda_0 is not a positive finite number";
+}
+
 /// What [`Damping::solve`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution<T, const N: usize> {

@@ -59,6 +59,11 @@ pub enum StepError {
     BadOptions,
 }
 
+messages! { StepError,
+    StepError::TooManySteps => "more steps are needed than allowed: the motion is too stiff, or not smooth";
+    StepError::BadOptions => "no steps are allowed, or the tolerance is not positive";
+}
+
 /// One step of length `h` of the classical Runge-Kutta method; `f(c, x)` is dx/dt at the time `c` after the start of the step.
 #[inline]
 pub fn rk4<T: RealField + Copy, X: Phase<T>>(x: &X, h: T, mut f: impl FnMut(T, &X) -> X) -> X {

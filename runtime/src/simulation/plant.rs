@@ -68,6 +68,7 @@ impl<'a, T: RealField + Copy, R: Dynamics<N, Real = T>, const N: usize> Plant<'a
     }
 
     /// The same with its energies accounted for, from now on.
+    #[must_use]
     pub fn with_audit(mut self) -> Self {
         let start = self.robot.kinetic_energy(&self.state.q, &self.state.dq) + self.robot.potential_energy(&self.state.q);
         self.audit = Some(Audit { start, supplied: T::zero(), dissipated: T::zero() });

@@ -2,7 +2,7 @@
 
 use super::{integrator::StepError, plant::Energy, Integrator, Plant, Sensor};
 use crate::{linalg::lit, reference::State, robot::Dynamics};
-use core::time::Duration;
+use core::{error::Error, fmt, time::Duration};
 use nalgebra::{RealField, SVector};
 
 /// How a run goes.
@@ -69,6 +69,29 @@ pub enum RunError<E> {
     },
     /// The period is zero, or is to be covered in no steps.
     NoPeriod,
+}
+
+impl<E: fmt::Display> fmt::Display for RunError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RunError::Controller { time, error } => write!(f, "at {} s: {error}", time.as_secs_f64()),
+            RunError::Diverged { time } => {
+                write!(f, "at {} s the state is no longer finite: the loop is unstable", time.as_secs_f64())
+            }
+            RunError::Integrator { time, error } => write!(f, "at {} s: {error}", time.as_secs_f64()),
+            RunError::NoPeriod => write!(f, "the period is zero, or is to be covered in no steps"),
+        }
+    }
+}
+
+impl<E: Error + 'static> Error for RunError<E> {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            RunError::Controller { error, .. } => Some(error),
+            RunError::Integrator { error, .. } => Some(error),
+            RunError::Diverged { .. } | RunError::NoPeriod => None,
+        }
+    }
 }
 
 /// Runs `controller` on the arm `robot` from `start`; calls `log` at every sample.

@@ -67,13 +67,13 @@ impl<T: RealField + Copy, const N: usize> Sensor<T, N> {
 
     /// Sees the state of `delay` samples ago (until then the first one), with normal noise of these deviations, rad or m, and per s.
     pub fn new(delay: usize, position_deviation: T, velocity_deviation: T, seed: u64) -> Self {
-        Self { delay, position_deviation, velocity_deviation, noise: Noise::new(seed), seen: VecDeque::with_capacity(delay + 1) }
+        Self { delay, position_deviation, velocity_deviation, noise: Noise::new(seed), seen: VecDeque::new() }
     }
 
     /// What is measured at the sample at which the true state is `state`; to be called once a sample.
     pub fn measure(&mut self, state: &State<T, N>) -> State<T, N> {
         self.seen.push_back(*state);
-        if self.seen.len() > self.delay + 1 {
+        if self.seen.len() - 1 > self.delay {
             self.seen.pop_front();
         }
         let mut measured = self.seen[0];

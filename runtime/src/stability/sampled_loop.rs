@@ -19,6 +19,7 @@ pub enum Delay {
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum StabilityError {
     /// The controller's law is singular at this posture (counted from 0).
     Singular {
@@ -36,6 +37,14 @@ pub enum StabilityError {
     Period,
     /// There is no posture.
     NoPosture,
+}
+
+messages! { StabilityError,
+    StabilityError::Singular { posture } => "the controller's law is singular at posture {} (from 0)", posture;
+    StabilityError::Inertia { posture } => "the inertia matrix of the plant is not positive definite at posture {} (from 0)", posture;
+    StabilityError::Eigenvalues => "the eigenvalues were not found: gains or model are beyond the range of the scalar";
+    StabilityError::Period => "the sampling period is not positive and finite";
+    StabilityError::NoPosture => "there is no posture";
 }
 
 /// Up to which sampling period a loop is stable.

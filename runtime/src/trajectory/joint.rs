@@ -47,7 +47,8 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
         Self::with(to.into(), Pace::Law(law))
     }
 
-    /// To `to` by the shortest trapezoidal speed within these limits of every joint; all joints start and end together.
+    /// To `to` by the shortest trapezoidal speed within these limits of every joint; all joints start and end together. A limit of velocity
+    /// may be infinite.
     pub fn within_limits(to: [T; N], velocity: [T; N], acceleration: [T; N]) -> Self {
         Self::with(to.into(), Pace::Limits { velocity: velocity.into(), acceleration: acceleration.into() })
     }
@@ -58,6 +59,7 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
     }
 
     /// The same segment, starting `anticipation` before the previous one ends: the point between them becomes a via point.
+    #[must_use]
     pub fn anticipating(self, anticipation: Duration) -> Self {
         Self { anticipation, ..self }
     }

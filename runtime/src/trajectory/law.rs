@@ -126,14 +126,17 @@ impl<T: RealField + Copy> Law<T> {
             Law::TrapezoidalByAcceleration { duration: t, acceleration } => {
                 let a = positive(acceleration.abs(), PlanFault::AccelerationTooSmall)?;
                 let half = seconds::<T>(t) * lit(0.5);
-                let under_root = half * half - length / a;
-                if under_root < T::zero() {
+                // A margin of a few roundings: a = 4 L / T^2 itself, the triangle, is allowed.
+                let (square, rest) = (half * half, length / a);
+                if rest > square * (T::one() + T::default_epsilon() * lit(8.0)) {
                     return Err(PlanFault::AccelerationTooSmall);
                 }
+                let under_root = (square - rest).max(T::zero());
                 if still {
                     return Ok(Profile { duration: t, shape: Shape::Rest });
                 }
-                trapezoid(t, duration(half - under_root.sqrt()).ok_or(PlanFault::AccelerationTooSmall)?)
+                let t_c = duration(half - under_root.sqrt()).ok_or(PlanFault::AccelerationTooSmall)?;
+                trapezoid(t, t_c.min(t / 2))
             }
             Law::TrapezoidalByVelocity { duration: t, velocity } => {
                 if still {
@@ -150,7 +153,8 @@ impl<T: RealField + Copy> Law<T> {
                 trapezoid(t, t_c.min(t / 2))
             }
             Law::TrapezoidalByLimits { velocity, acceleration } => {
-                let v = positive(velocity, PlanFault::LimitNotPositive)?;
+                // No limit of velocity is no fault: the law is then a triangle.
+                let v = if velocity > T::one() { velocity } else { positive(velocity, PlanFault::LimitNotPositive)? };
                 let a = positive(acceleration, PlanFault::LimitNotPositive)?;
                 if still {
                     return Ok(Profile { duration: Duration::ZERO, shape: Shape::Rest });
@@ -327,5 +331,25 @@ mod tests {
         // The bounds themselves are allowed.
         assert!(Law::TrapezoidalByVelocity { duration: T, velocity: 2.0 / 3.0 }.resolve(0.5).is_ok());
         assert!(Law::<f64>::Trapezoidal { duration: T, acceleration_time: ms(750) }.resolve(0.5).is_ok());
+    }
+
+    #[test]
+    fn the_least_acceleration_is_that_of_the_triangle() {
+        for k in 1..2000u32 {
+            let (length, seconds) = (0.01 * f64::from(k % 173 + 1), 0.1 * f64::from(k % 97 + 1));
+            let duration = Duration::from_secs_f64(seconds);
+            let least = 4.0 * length / (seconds * seconds);
+            let law = |acceleration| Law::TrapezoidalByAcceleration { duration, acceleration }.resolve(length);
+            assert_eq!(law(least).map(|profile| profile.duration()), Ok(duration), "{length} m in {seconds} s");
+            assert_eq!(law(least * 0.999), Err(PlanFault::AccelerationTooSmall));
+        }
+    }
+
+    #[test]
+    fn without_a_limit_of_velocity_the_law_is_a_triangle() {
+        let law =
+            |velocity| Law::TrapezoidalByLimits { velocity, acceleration: 4.0 }.resolve(1.0).map(|p| p.duration().as_millis());
+        assert_eq!(law(f64::INFINITY), Ok(1000));
+        assert_eq!(law(f64::NAN), Err(PlanFault::NotFinite));
     }
 }

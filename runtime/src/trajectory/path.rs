@@ -104,6 +104,7 @@ impl<T: RealField + Copy> Segment<T> {
     }
 
     /// The same segment, starting `anticipation` before the previous one ends: the point between them becomes a via point.
+    #[must_use]
     pub fn anticipating(self, anticipation: Duration) -> Self {
         Self { anticipation, ..self }
     }
