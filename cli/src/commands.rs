@@ -6,3 +6,4 @@ pub(crate) mod count;
 pub(crate) mod generate;
 pub(crate) mod run;
 pub(crate) mod show;
+pub(crate) mod verify;

@@ -27,11 +27,13 @@ use std::process::ExitCode;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
+use commands::generate::Beside;
+
 /// Exit code: the file is valid, or the task was done.
 const DONE: u8 = 0;
 /// Exit code: something is wrong inside the file, or a result is not as expected.
 const FAULTY: u8 = 1;
-/// Exit code: a file cannot be opened or is not UTF-8.
+/// Exit code: a file cannot be read, is not UTF-8 or cannot be written; options that do not go together.
 const UNREADABLE: u8 = 2;
 
 const STYLES: Styles = Styles::styled()
@@ -44,10 +46,11 @@ const EXAMPLES: &str = "Examples:
   armgen check robot.yaml                      what the file says, and what is wrong with it
   armgen show robot.yaml inertia_matrix        B(q) with the numbers of the file
   armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
+  armgen verify robot.yaml robot.rs            whether that file equals the equations
   armgen run                                   move the robot that this program was built with
 
 Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
-2 a file cannot be opened or is not UTF-8.";
+2 a file cannot be read, is not UTF-8 or cannot be written, or the options are wrong.";
 
 /// From a robot arm's data sheet to its exact equations of motion, and to plain no_std Rust
 #[derive(Debug, Parser)]
@@ -99,8 +102,12 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --out src/robot.rs           then: mod robot;
   armgen generate robot.yaml --scalar f32 > robot_f32.rs
   armgen generate robot.yaml --trig fast > robot.rs       for machines with wide vectors
+  armgen generate robot.yaml --out robot.rs --verify      with a certificate, robot.cert.json
+  armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
+  armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
 
-The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.")]
+The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.
+Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Generate {
         /// Description of the robot arm
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -114,6 +121,27 @@ The module is one file of free functions over arrays: no allocation, no std, no 
         /// Where the sines and cosines come from
         #[arg(long, value_enum, default_value_t = TrigName::Libm)]
         trig: TrigName,
+        #[command(flatten)]
+        beside: Beside,
+    },
+    /// Verify that a module equals the equations of its description, exactly
+    #[command(after_help = "Examples:
+  armgen verify robot.yaml src/robot.rs
+  armgen generate robot.yaml --out robot.rs --verify && armgen verify robot.yaml robot.rs
+
+The text of the module is read back by a checker of its own, which derives the equations from the
+description the textbook's way and compares both, exactly, at random points of prime fields and at
+a rational one. If a certificate, robot.cert.json, stands beside robot.rs, it must be of these two
+texts. Documentation comments, the compiler and the sines of the library are not judged.
+Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is named),
+2 a file cannot be opened or is not UTF-8.")]
+    Verify {
+        /// Description of the robot arm
+        #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
+        description: PathBuf,
+        /// The module that was generated from it
+        #[arg(value_name = "ROBOT.rs", value_hint = ValueHint::FilePath)]
+        module: PathBuf,
     },
     /// Count the operations of every emitted function
     #[command(after_help = "Examples:
@@ -200,7 +228,10 @@ fn main() -> ExitCode {
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar, trig } => commands::generate::run(&file, out.as_deref(), scalar, trig),
+        Command::Generate { file, out, scalar, trig, beside } => {
+            commands::generate::run(&file, out.as_deref(), scalar, trig, &beside)
+        }
+        Command::Verify { description, module } => commands::verify::run(&description, &module),
         Command::Count { file, format } => commands::count::run(&file, format),
         Command::Run { files, out } => commands::run::run(&files, &out),
         Command::Completions { shell } => commands::completions::run(shell),

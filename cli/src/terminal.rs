@@ -4,7 +4,7 @@ use std::io::{ErrorKind, IsTerminal, Write};
 
 use armgen_codegen::diagnostic::Colour;
 
-use crate::{DONE, FAULTY};
+use crate::{DONE, UNREADABLE};
 
 /// Whether a stream takes colours: a terminal that is not dumb, unless NO_COLOR is set.
 pub(crate) fn colour(stream: &impl IsTerminal) -> Colour {
@@ -33,7 +33,7 @@ pub(crate) fn print(text: &str) -> u8 {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => DONE,
         Err(reason) => {
             error(&format!("cannot write to standard output: {reason}"));
-            FAULTY
+            UNREADABLE
         }
     }
 }

@@ -203,7 +203,136 @@ fn generate_writes_the_same_bytes_everywhere() {
     assert!(fast.contains("= sin_cos_all(q);") && fast.contains("fn sin_cos_beyond("), "{fast}");
     let standard = out(&check(&["generate", &file("robots/scara.yaml"), "--trig", "std"], 0));
     assert!(standard.contains("x.sin_cos()") && !standard.contains("libm::"), "{standard}");
-    check(&["generate", &file("robots/scara.yaml"), "--out", folder("generate").to_str().expect("UTF-8")], 1);
+    check(&["generate", &file("robots/scara.yaml"), "--out", folder("generate").to_str().expect("UTF-8")], 2);
+}
+
+#[test]
+fn generate_does_not_overwrite_its_description() {
+    let folder = folder("overwrite");
+    let description = folder.join("robot.yaml");
+    fs::copy(file("robots/scara4.yaml"), &description).expect("a copy");
+    let before = fs::read(&description).expect("the copy");
+    let other_name = folder.join("..").join("overwrite").join("robot.yaml");
+    for out in [&description, &other_name] {
+        let arguments = ["generate", description.to_str().expect("UTF-8"), "--out", out.to_str().expect("UTF-8")];
+        let output = check(&arguments, 2);
+        assert!(err(&output).contains("is the description"), "{}", err(&output));
+        assert_eq!(fs::read(&description).expect("still there"), before);
+    }
+    let names: Vec<_> = fs::read_dir(&folder).expect("a folder").map(|e| e.expect("an entry").file_name()).collect();
+    assert_eq!(names, ["robot.yaml"], "nothing half written is left");
+}
+
+/// Valid numbers whose product no float holds.
+#[test]
+fn products_out_of_range_are_told_before_anything_is_printed() {
+    let text = fs::read_to_string(file("tests/robots/single_joint.yaml")).expect("a description");
+    for (size, scalar) in [("1e200", "f64"), ("1e30", "f32")] {
+        let path = folder("out_of_range").join(format!("{scalar}.yaml"));
+        let changed = text.replace("a: 0.6", &format!("a: {size}")).replace("mass: 1.2", &format!("mass: {size}"));
+        assert!(changed.contains(&format!("mass: {size}")) && changed.contains(&format!("a: {size}")), "{changed}");
+        fs::write(&path, changed).expect("a file");
+        let path = path.to_str().expect("UTF-8");
+        let output = check(&["generate", path, "--scalar", scalar], 1);
+        assert!(out(&output).is_empty() && err(&output).contains("error["), "{}", err(&output));
+        if scalar == "f64" {
+            check(&["check", path], 1);
+        }
+    }
+}
+
+#[test]
+fn a_certificate_is_written_and_verified_again() {
+    for scalar in ["f64", "f32"] {
+        let (folder, yaml) = (folder(&format!("verify_{scalar}")), file("robots/scara.yaml"));
+        let (module, certificate) = (folder.join("robot.rs"), folder.join("robot.cert.json"));
+        let path = module.to_str().expect("UTF-8");
+        let output = check(&["generate", &yaml, "--scalar", scalar, "--out", path, "--verify"], 0);
+        assert!(err(&output).contains("24 functions and 12 constants equal the equations"), "{}", err(&output));
+        let written: Value = serde_json::from_slice(&fs::read(&certificate).expect("it is written")).expect("JSON");
+        assert_eq!((&written["verified"], &written["options"]["scalar"]), (&true.into(), &scalar.into()));
+        assert_eq!(written["options"]["trig"], "libm");
+
+        let text = out(&check(&["verify", &yaml, path], 0));
+        assert!(text.contains("inertia_matrix") && text.contains("2^-") && text.contains("certificate: "), "{text}");
+        assert!(text.contains("\nverified\n"), "{text}");
+
+        // With another module the certificate does not fit; without one the module is judged all the same.
+        let right = fs::read_to_string(&module).expect("the module");
+        let at = right.find("pub fn gravity(").expect("a function");
+        fs::write(&module, format!("{}{}", &right[..at], right[at..].replacen("98.1", "98.2", 1))).expect("a file");
+        let output = check(&["verify", &yaml, path], 1);
+        assert!(out(&output).contains("FAULT: the certificate is of another module"), "{}", out(&output));
+        assert!(err(&output).contains("robot.rs: gravity[2]: "), "{}", err(&output));
+        // Generating without --verify leaves no doubt about the certificate that is still there.
+        let output = check(&["generate", &yaml, "--scalar", scalar, "--out", path], 0);
+        assert!(err(&output).contains("robot.cert.json was not written again"), "{}", err(&output));
+        fs::write(&certificate, "{").expect("a file");
+        let output = check(&["verify", &yaml, path], 1);
+        assert!(err(&output).contains("robot.cert.json: the certificate cannot be read: "), "{}", err(&output));
+        fs::remove_file(&certificate).expect("it is there");
+        check(&["verify", &yaml, path], 0);
+    }
+}
+
+#[test]
+fn verify_tells_what_it_cannot_read() {
+    let (yaml, module) = (file("robots/scara.yaml"), folder("verify_unreadable").join("robot.rs"));
+    let path = module.to_str().expect("UTF-8");
+    let output = check(&["verify", &yaml, &file("robots/none.rs")], 2);
+    assert!(err(&output).contains("none.rs"), "{}", err(&output));
+    check(&["verify", &file("robots/none.yaml"), &yaml], 2);
+    fs::write(&module, "fn main() { loop {} }").expect("a file");
+    let output = check(&["verify", &yaml, path], 1);
+    assert!(err(&output).contains("robot.rs: the module has no type `Real`"), "{}", err(&output));
+    let output = check(&["verify", &file("tests/bad/many-faults.yaml"), path], 1);
+    assert!(err(&output).contains("many-faults.yaml:"), "{}", err(&output));
+}
+
+#[test]
+fn what_stands_beside_a_module_needs_one() {
+    for flag in ["--verify", "--tests", "--runtime", "--c-abi"] {
+        let output = check(&["generate", &file("robots/scara.yaml"), flag], 2);
+        assert!(err(&output).contains(&format!("{flag} writes beside the module")), "{}", err(&output));
+        assert_eq!(out(&output), "");
+    }
+}
+
+#[test]
+fn the_test_file_runs_beside_its_module() {
+    let folder = folder("test_file");
+    fs::create_dir_all(folder.join("src")).expect("a folder");
+    let module = folder.join("src/arm.rs");
+    let path = module.to_str().expect("UTF-8");
+    check(&["generate", &file("robots/scara4.yaml"), "--out", path, "--tests"], 0);
+    let manifest = "[package]\nname = \"test-file\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n";
+    fs::write(folder.join("Cargo.toml"), manifest).expect("a file");
+    fs::write(folder.join("src/lib.rs"), "pub mod arm;\n#[cfg(test)]\nmod arm_test;\n").expect("a file");
+    let run = || {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["test", "--offline", "--quiet"]).current_dir(&folder).env("CARGO_TARGET_DIR", folder.join("target"));
+        cargo.output().expect("cargo runs")
+    };
+    let output = run();
+    assert!(output.status.success(), "{}{}", out(&output), err(&output));
+    let right = fs::read_to_string(&module).expect("the module");
+    let at = right.find("pub fn gravity(").expect("a function");
+    fs::write(&module, format!("{}{}", &right[..at], right[at..].replacen("98.1", "98.2", 1))).expect("a file");
+    let output = run();
+    assert!(!output.status.success() && out(&output).contains("gravity at state 0"), "{}{}", out(&output), err(&output));
+}
+
+#[test]
+fn the_face_for_c_stands_beside_the_module() {
+    let folder = folder("c_abi");
+    let module = folder.join("robot.rs");
+    check(&["generate", &file("robots/scara.yaml"), "--out", module.to_str().expect("UTF-8"), "--c-abi", "--runtime"], 0);
+    let runtime = fs::read_to_string(folder.join("robot_runtime.rs")).expect("the implementation");
+    assert!(runtime.contains("impl armgen_runtime::"), "{runtime}");
+    let header = fs::read_to_string(folder.join("robot.h")).expect("the header");
+    assert!(header.contains("void scara_inertia_matrix("), "{header}");
+    let wrappers = fs::read_to_string(folder.join("robot_c.rs")).expect("the wrappers");
+    assert!(wrappers.contains("pub unsafe extern \"C\" fn scara_inertia_matrix("), "{wrappers}");
 }
 
 #[test]
@@ -234,7 +363,7 @@ fn the_built_robot_moves_and_leaves_figures_and_logs() {
 fn a_folder_that_cannot_be_written_is_an_error() {
     let file = folder("unwritable").join("file");
     fs::write(&file, "").expect("a file");
-    let output = check(&["run", "--out", file.to_str().expect("UTF-8")], 1);
+    let output = check(&["run", "--out", file.to_str().expect("UTF-8")], 2);
     assert!(err(&output).contains("cannot write"), "{}", err(&output));
 }
 
@@ -271,7 +400,7 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in ["", "check", "show", "generate", "count", "run", "completions"] {
+    for command in ["", "check", "show", "generate", "verify", "count", "run", "completions"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");

@@ -117,7 +117,11 @@ impl Certificate {
             certificate: FORMAT,
             made_by: format!("armgen {}", env!("CARGO_PKG_VERSION")),
             robot: report.robot.clone(),
-            options: BTreeMap::from([("scalar".to_string(), report.scalar.clone())]),
+            options: [("scalar", &report.scalar), ("trig", &report.trig)]
+                .into_iter()
+                .filter(|(_, value)| !value.is_empty())
+                .map(|(name, value)| (name.to_string(), value.clone()))
+                .collect(),
             input: Text { sha256: report.input.clone() },
             output: Text { sha256: report.output.clone() },
             verified: report.passed(),

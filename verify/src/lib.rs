@@ -157,6 +157,7 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         Float::F64 => "f64".into(),
         Float::F32 => "f32".into(),
     };
+    report.trig = module.trig.unwrap_or_default().into();
     let nominal = constants::nominal_parameters(checker.manipulator(), checker.vector(), checker.claims(), module);
     let nominal: Vec<Formula> = nominal.unwrap_or_default();
     report.constants = constants::check(checker, module, &nominal);

@@ -1,8 +1,8 @@
 //! Reads an emitted module back: constants as values, functions as straight-line programs.
 //!
 //! The reader knows a small part of Rust and names everything else as an error: `let` with a name, `_` or a tuple; names, `x[3]`, decimal
-//! literals, `+ - * /`, a minus sign, tuples, arrays, one struct; calls of `sin_cos`, `sign` and of the module's own private functions, which
-//! are taken in where they are called. No `cfg`, no macro, no loop, no `use`, no block that could hide a step.
+//! literals, `+ - * /`, a minus sign, tuples, arrays, one struct; calls of `sin_cos`, of `sin_cos_all` for several angles, of `sign` and of
+//! the module's own private functions, which are taken in where they are called. No `cfg`, no macro, no loop, no `use`, no block that could hide a step.
 
 mod constant;
 mod expression;
@@ -21,6 +21,8 @@ pub use constant::Constant;
 pub struct Module {
     /// The scalar behind `Real`.
     pub real: Float,
+    /// Where sines and cosines come from, if any are asked for: `libm`, `std` or `fast`.
+    pub trig: Option<&'static str>,
     /// Constants by name, with their types as text without blanks.
     pub constants: BTreeMap<String, (String, Constant)>,
     /// Public functions in the order of the text, each with the types of its arguments and of its result, or what is wrong with it.
@@ -55,7 +57,7 @@ fn text(tokens: &impl ToTokens) -> String {
 fn harmless(attributes: &[Attribute]) -> Result<(), String> {
     for attribute in attributes {
         let path = text(attribute.path());
-        let known = ["doc", "allow", "derive", "inline", "must_use", "rustfmt::skip"].contains(&path.as_str());
+        let known = ["doc", "allow", "derive", "inline", "cold", "must_use", "rustfmt::skip"].contains(&path.as_str());
         if !known {
             return Err(format!("attribute `{}` is not one that an emitted module has", text(attribute)));
         }
@@ -74,6 +76,32 @@ const PRIVATE: [(&str, Option<Float>, &str); 5] = [
     ("sin_cos", None, "fn sin_cos(x:Real)->(Real,Real){Real::sin_cos(x)}"),
     ("sign", None, "fn sign(x:Real)->Real{if x>0.0{1.0}else if x<0.0{-1.0}else{x}}"),
 ];
+
+/// Accepted items of the private block that answers for all angles together, by the SHA-256 of their texts without blanks: name, scalar, hash.
+const TOGETHER: [(&str, Float, &str); 10] = [
+    ("SIN_COS_RANGE", Float::F64, "1b1d904a5bf4f2b907d0f5f3c8e747d577099c0d45c88129a46191582bb857bd"),
+    ("sin_cos", Float::F64, "c3a464d0942e1e27be5b08a992ed5cdf2bd84effd79bc74aa74e0195df00c63c"),
+    ("sin_cos_all", Float::F64, "fb26be38e2497a379a62a91dcc50b5ada821a807bc42bf2d013713a7a6b9eb27"),
+    ("sin_cos_few", Float::F64, "47efd60c6c274be70fc0791726b6ec04770a1c3d074bca9877855476019a6239"),
+    ("sin_cos_beyond", Float::F64, "fafd2792aad41e7524a7180750020b7db7bc5be4e448af98d948fc40fb227425"),
+    ("SIN_COS_RANGE", Float::F32, "20698ad98ba01987199d4794215fcb537e1ca0794a3ac967f936e96473726608"),
+    ("sin_cos", Float::F32, "dfafcf1df1ddaaa3b3290c9defc89af2d5d43e2ab0f7d4787227254c2750b61f"),
+    ("sin_cos_all", Float::F32, "42a4eedef962b6e7d07ff5a0c982e8a938523b12ca8eb60d7c73ed8fa411bb16"),
+    ("sin_cos_few", Float::F32, "b1cdcf1fd0b81537b8a207a07e23e44e988e47d3a5d07f0ded0921709f1fe060"),
+    ("sin_cos_beyond", Float::F32, "b481d6bc3791e07f5d87dbee07791201b4ed8c1178418a228344f382e3a107ff"),
+];
+
+/// The largest angle of that block.
+const RANGE: &str = "SIN_COS_RANGE";
+
+/// Whether an item of the block for all angles together is the one that is known to be right.
+fn known_together(name: &str, real: Float, text: &str) -> Result<(), String> {
+    let hash = crate::hash(text);
+    match TOGETHER.iter().any(|(n, scalar, known)| *n == name && *scalar == real && *known == hash) {
+        true => Ok(()),
+        false => Err(format!("private item `{name}` is not one that is known to be right (SHA-256 {hash})")),
+    }
+}
 
 impl Module {
     /// Reads the text of a module.
@@ -128,14 +156,24 @@ impl Module {
         let mut values = BTreeMap::new();
         for constant in constants {
             let name = constant.ident.to_string();
+            if name == RANGE && matches!(constant.vis, Visibility::Inherited) {
+                let mut bare = constant.clone();
+                bare.attrs.clear();
+                known_together(&name, real, &text(&bare))?;
+                continue;
+            }
             let value = Constant::read(&constant.expr, real).map_err(|e| format!("constant `{name}`: {e}"))?;
             if values.insert(name.clone(), (text(&constant.ty), value)).is_some() {
                 return Err(format!("constant `{name}` stands twice"));
             }
         }
-        check_leaves(&private, real)?;
-        let functions = public.iter().map(|f| (f.sig.ident.to_string(), read_function(f, &private, real))).collect();
-        Ok(Module { real, constants: values, functions })
+        let trig = check_leaves(&private, real)?;
+        let joints = match values.get("DOF") {
+            Some((_, Constant::Integer(dof))) => *dof as usize,
+            _ => return Err("the module has no number of joints `DOF`".into()),
+        };
+        let functions = public.iter().map(|f| (f.sig.ident.to_string(), read_function(f, &private, real, joints))).collect();
+        Ok(Module { real, trig, constants: values, functions })
     }
 
     /// A function's program, if it could be read.
@@ -159,18 +197,29 @@ fn check_struct(structure: &syn::ItemStruct) -> Result<(), String> {
 }
 
 /// Sine, cosine and sign are what the equations take as inputs: their functions are accepted by their text alone.
-fn check_leaves(private: &BTreeMap<String, &ItemFn>, real: Float) -> Result<(), String> {
-    for name in ["sin_cos", "sign"] {
+/// Gives the name of the one that answers.
+fn check_leaves(private: &BTreeMap<String, &ItemFn>, real: Float) -> Result<Option<&'static str>, String> {
+    let mut trig = None;
+    let together = private.contains_key("sin_cos_all");
+    for name in ["sin_cos", "sin_cos_all", "sin_cos_few", "sin_cos_beyond", "sign"] {
         let Some(function) = private.get(name) else { continue };
         let mut bare = (*function).clone();
         bare.attrs.clear();
         let body = text(&bare);
+        if together && name != "sign" {
+            known_together(name, real, &body)?;
+            trig = Some("fast");
+            continue;
+        }
         let known = PRIVATE.iter().any(|(n, scalar, text)| *n == name && scalar.is_none_or(|s| s == real) && *text == body);
         if !known {
             return Err(format!("private function `{name}` is not one that is known to be right: `{body}`"));
         }
+        if name == "sin_cos" {
+            trig = Some(if body.contains("libm") { "libm" } else { "std" });
+        }
     }
-    Ok(())
+    Ok(trig)
 }
 
 fn signature(function: &ItemFn) -> Result<(Vec<(String, String)>, String), String> {
@@ -192,9 +241,9 @@ fn signature(function: &ItemFn) -> Result<(Vec<(String, String)>, String), Strin
     Ok((arguments, result))
 }
 
-fn read_function(function: &ItemFn, private: &BTreeMap<String, &ItemFn>, real: Float) -> Result<Function, String> {
+fn read_function(function: &ItemFn, private: &BTreeMap<String, &ItemFn>, real: Float, joints: usize) -> Result<Function, String> {
     let (arguments, result) = signature(function)?;
     let listed: Vec<String> = arguments.iter().map(|(name, ty)| format!("{name}:{ty}")).collect();
-    let program = expression::compile(function, &arguments, private, real)?;
+    let program = expression::compile(function, &arguments, private, real, joints)?;
     Ok(Function { signature: format!("({})->{result}", listed.join(",")), program })
 }

@@ -75,11 +75,13 @@ pub struct Report {
     pub robot: String,
     /// `f64` or `f32`.
     pub scalar: String,
+    /// `libm`, `std` or `fast`; empty where no sines are asked for.
+    pub trig: String,
     /// Hash of the description's text (SHA-256, hexadecimal).
     pub input: String,
     /// Hash of the module's text.
     pub output: String,
-    /// What is wrong with the whole: no functions are reported then.
+    /// What is wrong with the whole. No functions are reported where a text cannot be read; they are where a certificate does not fit.
     pub faults: Vec<String>,
     /// Constants.
     pub constants: Vec<ConstantReport>,
@@ -95,6 +97,7 @@ impl Report {
         Report {
             robot: String::new(),
             scalar: String::new(),
+            trig: String::new(),
             input,
             output,
             faults: Vec::new(),
@@ -113,7 +116,7 @@ impl Report {
             && self.identities.iter().all(|i| i.holds == Ok(true))
     }
 
-    /// The first thing that is wrong, as function or constant and entry.
+    /// The first thing that is wrong: a function or a constant with the entry, the whole, or an identity.
     pub fn first_fault(&self) -> Option<String> {
         let named = |name: &str, verdict: &Verdict| match verdict {
             Verdict::Equal => None,
@@ -128,7 +131,7 @@ impl Report {
         let constants = self.constants.iter().filter_map(|c| named(&c.name, &c.verdict));
         let functions = self.functions.iter().filter_map(|f| named(&f.name, &f.verdict));
         let identities = self.identities.iter().filter_map(identity);
-        self.faults.iter().cloned().chain(constants).chain(functions).chain(identities).next()
+        functions.chain(constants).chain(self.faults.iter().cloned()).chain(identities).next()
     }
 }
 
@@ -146,18 +149,18 @@ impl fmt::Display for Verdict {
 /// A table for people.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "robot {} ({})", self.robot, self.scalar)?;
+        writeln!(f, "robot {}, {}", self.robot, self.scalar)?;
         for fault in &self.faults {
             writeln!(f, "FAULT: {fault}")?;
         }
         let width = self.functions.iter().map(|r| r.name.len()).chain([24]).max().unwrap_or(24);
+        if !self.functions.is_empty() {
+            writeln!(f, "{:width$}  verdict  points: modular  rational  odds of a miss below", "function")?;
+        }
         for report in &self.functions {
             write!(f, "{:width$}  {}", report.name, report.verdict)?;
             if report.verdict == Verdict::Equal {
-                write!(f, " at {} points, odds of a miss below 2^{:.0}", report.points, report.log2_odds.ceil())?;
-                if report.exact_points > 0 {
-                    write!(f, "; and at {} rational", report.exact_points)?;
-                }
+                write!(f, "    {:15}  {:8}  2^{:.0}", report.points, report.exact_points, report.log2_odds.ceil())?;
             }
             writeln!(f)?;
         }

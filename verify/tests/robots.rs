@@ -2,7 +2,7 @@
 
 mod common;
 
-use armgen_codegen::program::Scalar;
+use armgen_codegen::program::{Options, Scalar, Trig};
 use armgen_verify::certificate::Certificate;
 use armgen_verify::{certify, verify};
 
@@ -58,4 +58,42 @@ fn without_a_certificate_the_generator_is_asked_for_exact_values() {
         let generated = common::generate(&source, scalar);
         assert!(verify(&source, &generated.module, None).passed());
     }
+}
+
+#[test]
+fn sines_of_all_angles_together_are_read() {
+    for (name, scalar) in
+        [("panda7", Scalar::F64), ("scara", Scalar::F32), ("everything", Scalar::F64), ("modified_prismatic", Scalar::F32)]
+    {
+        let source = common::source(name);
+        #[allow(clippy::needless_update)]
+        let options = Options { scalar, trig: Trig::Fast, ..Options::default() };
+        let generated = armgen_codegen::generate(&source, &options).0.expect("a valid description");
+        assert!(generated.module.contains("fn sin_cos_all"));
+        let report = certify(&source, &generated);
+        assert!(report.passed(), "{name}: {}", report.first_fault().unwrap_or_default());
+    }
+}
+
+#[test]
+fn what_answers_for_the_sines_is_known_by_its_text_and_its_use_by_the_equations() {
+    let source = common::source("panda7");
+    #[allow(clippy::needless_update)]
+    let options = Options { trig: Trig::Fast, ..Options::default() };
+    let module = armgen_codegen::generate(&source, &options).0.expect("a valid description").module;
+    let fault = |from: &str, to: &str| {
+        let edited = module.replacen(from, to, 1);
+        assert_ne!(edited, module);
+        verify(&source, &edited, None).first_fault().unwrap_or_default()
+    };
+    for (from, to) in [
+        ("0.166666", "0.166667"),
+        ("sines[i], cosines[i]", "cosines[i], sines[i]"),
+        ("SIN_COS_RANGE: f64 = 6", "SIN_COS_RANGE: f64 = 7"),
+    ] {
+        let fault = fault(from, to);
+        assert!(fault.contains("is not one that is known to be right"), "{fault}");
+    }
+    let fault = fault("let ([s1, s2,", "let ([s2, s1,");
+    assert!(fault.starts_with("direct_kinematics[0][0]: "), "{fault}");
 }

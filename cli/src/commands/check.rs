@@ -8,11 +8,14 @@ use armgen_codegen::description::{Convention, Expression, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::manipulator::{JointKind, Manipulator, RegressorChoice, Scalar};
+use armgen_codegen::program::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::{derive, Model};
 
 use crate::table::{Align, Table};
-use crate::{input, terminal, DONE};
+use crate::{input, terminal, DONE, FAULTY};
+
+use super::verify::watched;
 
 /// Checks every file; the exit code is the worst of them.
 pub(crate) fn run(files: &[PathBuf]) -> u8 {
@@ -31,6 +34,12 @@ fn checked(file: &Path) -> Result<String, u8> {
     let source = input::source(file)?;
     let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64, input::Warnings::Shown)?;
     let (description, _) = RobotDescription::parse(&source);
+    // Whether products of valid numbers still fit, only the module itself shows.
+    let (module, all) = watched("deriving", || armgen_codegen::generate(&source, &Options::default()));
+    if module.is_none() {
+        terminal::diagnose(&all.render(&source, terminal::colour(&std::io::stderr())));
+        return Err(FAULTY);
+    }
     let model = Model::new(manipulator);
     Ok(summary(&source, &description.unwrap_or_default(), &model, &diagnostics))
 }

@@ -1,15 +1,42 @@
-//! `armgen generate`: the module as a file or on standard output.
+//! `armgen generate`: the module as a file or on standard output, and what stands beside the file on request.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use armgen_codegen::emit::rust::{print, Origin};
 use armgen_codegen::manipulator::Scalar;
 use armgen_codegen::program::{Options, Trig};
-use armgen_codegen::Model;
+use armgen_codegen::source::Source;
+use armgen_codegen::Generated;
+use armgen_verify::certificate::Certificate;
 
-use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY};
+use super::verify::{certificate_beside, watched};
+use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
-pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: TrigName) -> u8 {
+/// Files beside the module.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Beside {
+    /// Verify the module and write the certificate beside it: robot.cert.json for robot.rs
+    #[arg(long)]
+    verify: bool,
+    /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine
+    #[arg(long)]
+    tests: bool,
+    /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is
+    #[arg(long)]
+    runtime: bool,
+    /// Write the face for C beside it: robot.h, and robot_c.rs to be included where robot.rs is
+    #[arg(long)]
+    c_abi: bool,
+}
+
+impl Beside {
+    /// The options that need a file to stand beside.
+    fn flags(&self) -> Vec<&'static str> {
+        let all = [(self.verify, "--verify"), (self.tests, "--tests"), (self.runtime, "--runtime"), (self.c_abi, "--c-abi")];
+        all.iter().filter(|(wanted, _)| *wanted).map(|(_, flag)| *flag).collect()
+    }
+}
+
+pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: TrigName, beside: &Beside) -> u8 {
     let scalar = match scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
@@ -19,21 +46,100 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: Tri
         TrigName::Std => Trig::Std,
         TrigName::Fast => Trig::Fast,
     };
+    if let (None, [first, ..]) = (out, beside.flags().as_slice()) {
+        terminal::error(&format!("{first} writes beside the module: say where that goes, with `--out robot.rs`"));
+        return UNREADABLE;
+    }
     let source = match input::source(file) {
         Ok(source) => source,
         Err(code) => return code,
     };
-    let manipulator = match input::manipulator(&source, scalar, input::Warnings::Counted) {
-        Ok((manipulator, _)) => manipulator,
-        Err(code) => return code,
+    if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
+        return code;
+    }
+    let (generated, diagnostics) = armgen_codegen::generate(&source, &Options { scalar, trig });
+    let Some(generated) = generated else {
+        terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
+        return FAULTY;
     };
-    let text = print(&Model::new(manipulator).module(&Options { scalar, trig }), &Origin::of(&source));
-    let Some(out) = out else { return terminal::print(&text) };
-    match std::fs::write(out, text) {
-        Ok(()) => DONE,
+    let Some(out) = out else { return terminal::print(&generated.module) };
+    if same_file(file, out) {
+        terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
+        return UNREADABLE;
+    }
+    let files = match files(&source, generated, out, beside) {
+        Ok(files) => files,
         Err(error) => {
-            terminal::error(&format!("cannot write {}: {error}", out.display()));
-            FAULTY
+            terminal::error(&error);
+            return FAULTY;
+        }
+    };
+    for (path, text) in files {
+        if let Err(error) = write(&path, &text) {
+            terminal::error(&format!("cannot write {}: {error}", path.display()));
+            return UNREADABLE;
         }
     }
+    let certificate = certificate_beside(out);
+    if !beside.verify && certificate.exists() {
+        terminal::warning(&format!(
+            "{} was not written again and may be of another module: --verify renews it",
+            certificate.display()
+        ));
+    }
+    DONE
+}
+
+/// Whether two paths lead to one file, whatever they are called.
+fn same_file(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// Writes beside the file first and then renames: nobody ever finds half of it.
+fn write(path: &Path, text: &str) -> std::io::Result<()> {
+    // A rename would turn a device or a link into a plain file.
+    if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
+        return std::fs::write(path, text);
+    }
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".new");
+    let beside = path.with_file_name(name);
+    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
+    if written.is_err() {
+        let _ = std::fs::remove_file(&beside);
+    }
+    written
+}
+
+/// All files to write, or why a module is not to be trusted with being written.
+fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> Result<Vec<(PathBuf, String)>, String> {
+    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
+    let mut files = Vec::new();
+    if beside.verify {
+        let report = watched("verifying", || armgen_verify::certify(source, &generated));
+        if let Some(fault) = report.first_fault() {
+            return Err(format!(
+                "nothing is written: the module does not equal the equations, {fault}; this is a fault of armgen"
+            ));
+        }
+        let certificate = certificate_beside(out);
+        terminal::note(&format!("{}; {}", super::verify::summary(&report), certificate.display()));
+        files.push((certificate, Certificate::of(&report).to_json()));
+    }
+    if beside.tests {
+        let name = out.file_name().unwrap_or_default().to_string_lossy();
+        let import = format!("#[path = {name:?}]\nmod robot;");
+        let tests = watched("computing reference values", || armgen_verify::test_kit(source, &generated.module, &import))?;
+        files.push((out.with_file_name(format!("{stem}_test.rs")), tests));
+    }
+    if beside.runtime {
+        files.push((out.with_file_name(format!("{stem}_runtime.rs")), generated.runtime));
+    }
+    if beside.c_abi {
+        files.push((out.with_extension("h"), generated.c.header));
+        files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers));
+    }
+    // The module first.
+    files.insert(0, (out.to_path_buf(), generated.module));
+    Ok(files)
 }

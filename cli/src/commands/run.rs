@@ -6,7 +6,7 @@ use armgen_generated::{DOF, NAME};
 
 use crate::experiments::{self, Outcome};
 use crate::motion;
-use crate::{terminal, FAULTY};
+use crate::{terminal, FAULTY, UNREADABLE};
 
 /// Runs the experiments for this robot; where there are none, moves it along a demonstration.
 pub(crate) fn run(files: &[PathBuf], out: &Path) -> u8 {
@@ -36,7 +36,7 @@ fn demonstrate(out: &Path) -> u8 {
             Ok(()) => text += &format!("\n  {}", file.display()),
             Err(reason) => {
                 terminal::error(&format!("cannot write {}: {reason}", file.display()));
-                code = FAULTY;
+                code = UNREADABLE;
             }
         }
     }
@@ -44,7 +44,7 @@ fn demonstrate(out: &Path) -> u8 {
     code = code.max(terminal::print(&text));
     if !outcome.as_expected {
         terminal::error("an error is larger than expected of a model that is right");
-        code = FAULTY;
+        code = code.max(FAULTY);
     }
     code
 }

@@ -26,6 +26,7 @@ type Scope = BTreeMap<String, Value>;
 struct Compiler<'a> {
     private: &'a BTreeMap<String, &'a ItemFn>,
     real: Float,
+    joints: usize,
     steps: Vec<Step>,
     literals: Vec<Literal>,
     calls: Vec<String>,
@@ -39,8 +40,9 @@ pub(super) fn compile(
     arguments: &[(String, String)],
     private: &BTreeMap<String, &ItemFn>,
     real: Float,
+    joints: usize,
 ) -> Result<Program, String> {
-    let mut compiler = Compiler { private, real, steps: Vec::new(), literals: Vec::new(), calls: Vec::new() };
+    let mut compiler = Compiler { private, real, joints, steps: Vec::new(), literals: Vec::new(), calls: Vec::new() };
     let mut scope = Scope::new();
     let mut known = Vec::new();
     for (name, _) in arguments {
@@ -96,7 +98,10 @@ impl Compiler<'_> {
             if init.diverge.is_some() {
                 return Err(format!("`{}` has an else", shortened(line)));
             }
-            let value = self.expression(&init.expr, &scope)?;
+            let mut value = self.expression(&init.expr, &scope)?;
+            if matches!(local.pat, Pat::Slice(_)) {
+                value = self.entries(value)?;
+            }
             bind(&local.pat, value, &mut scope)?;
         }
         match last {
@@ -191,6 +196,30 @@ impl Compiler<'_> {
         }
     }
 
+    /// Joint variables one by one, where the whole argument stands.
+    fn entries(&mut self, value: Value) -> Result<Value, String> {
+        match value {
+            Value::Argument(Argument::Q) => {
+                let entries: Result<_, _> = (0..self.joints).map(|joint| self.push(Step::Input(Argument::Q, joint))).collect();
+                Ok(Value::List('[', entries?))
+            }
+            value => Ok(value),
+        }
+    }
+
+    /// Sines, then cosines, of an array of angles.
+    fn sines_and_cosines(&mut self, angles: Value) -> Result<Value, String> {
+        let Value::List('[', angles) = self.entries(angles)? else { return Err("sines of what is no array".into()) };
+        let (mut sines, mut cosines) = (Vec::new(), Vec::new());
+        for angle in angles {
+            let Value::Step(step) = angle else { return Err("sine of what is no number".into()) };
+            let angle = self.angle(step)?;
+            sines.push(self.push(Step::Sine(angle.clone()))?);
+            cosines.push(self.push(Step::Cosine(angle))?);
+        }
+        Ok(Value::List('(', vec![Value::List('[', sines), Value::List('[', cosines)]))
+    }
+
     fn call(&mut self, name: &str, arguments: Vec<Value>) -> Result<Value, String> {
         let Some(function) = self.private.get(name) else { return Err(format!("call of `{name}`")) };
         match (name, arguments.as_slice()) {
@@ -205,7 +234,13 @@ impl Compiler<'_> {
                     _ => Err("sign of something that is not a joint rate".into()),
                 }
             }
-            ("sin_cos" | "sign", _) => return Err(format!("`{name}` takes one number")),
+            ("sin_cos_all" | "sin_cos_few", [_]) => {
+                let angles = arguments.into_iter().next().ok_or("no angles")?;
+                return self.sines_and_cosines(angles);
+            }
+            ("sin_cos" | "sin_cos_all" | "sin_cos_few" | "sin_cos_beyond" | "sign", _) => {
+                return Err(format!("`{name}` does not take these arguments"))
+            }
             _ => {}
         }
         if self.calls.iter().any(|caller| caller == name) {
@@ -251,11 +286,32 @@ fn bind(pattern: &Pat, value: Value, scope: &mut Scope) -> Result<(), String> {
         (Pat::Tuple(patterns), Value::List('(', values)) if patterns.elems.len() == values.len() => {
             patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| bind(pattern, value, scope))
         }
+        (Pat::Slice(patterns), Value::List('[', values)) if patterns.elems.iter().any(is_rest) => {
+            let before = patterns.elems.iter().take_while(|p| !is_rest(p)).count();
+            let after = patterns.elems.len() - before - 1;
+            if before + after > values.len() {
+                return Err(format!("`let {}` takes more than there is", text(pattern)));
+            }
+            let rest = Value::List('[', values[before..values.len() - after].to_vec());
+            let values = values[..before].iter().cloned().chain([rest]).chain(values[values.len() - after..].iter().cloned());
+            patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| match pattern {
+                Pat::Ident(name) if is_rest(pattern) && name.by_ref.is_none() && name.mutability.is_none() => {
+                    scope.insert(name.ident.to_string(), value);
+                    Ok(())
+                }
+                pattern => bind(pattern, value, scope),
+            })
+        }
         (Pat::Slice(patterns), Value::List('[', values)) if patterns.elems.len() == values.len() => {
             patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| bind(pattern, value, scope))
         }
         (pattern, _) => Err(format!("`let {}` does not fit its value", text(pattern))),
     }
+}
+
+/// `name @ ..`: as many entries as are left.
+fn is_rest(pattern: &Pat) -> bool {
+    matches!(pattern, Pat::Ident(name) if matches!(&name.subpat, Some((_, rest)) if matches!(**rest, Pat::Rest(_))))
 }
 
 fn integer(expression: &Expr) -> Result<usize, String> {

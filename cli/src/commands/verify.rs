@@ -1,0 +1,88 @@
+//! `armgen verify`: whether a module equals the equations of its description.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{channel, RecvTimeoutError};
+use std::time::Duration;
+
+use armgen_verify::certificate::Certificate;
+use armgen_verify::report::Report;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::{input, terminal, FAULTY};
+
+/// Where the certificate of a module stands.
+pub(crate) fn certificate_beside(module: &Path) -> PathBuf {
+    module.with_extension("cert.json")
+}
+
+pub(crate) fn run(description: &Path, module: &Path) -> u8 {
+    match verified(description, module) {
+        Ok(code) | Err(code) => code,
+    }
+}
+
+fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
+    let source = input::source(description)?;
+    let text = input::source(module)?;
+    let beside = certificate_beside(module);
+    let certificate = match beside.exists() {
+        true => Some(Certificate::from_json(input::source(&beside)?.text()).map_err(|error| {
+            terminal::error(&format!("{}: {error}", beside.display()));
+            FAULTY
+        })?),
+        false => None,
+    };
+    // What is wrong with the description is told as everywhere.
+    input::manipulator(&source, armgen_codegen::manipulator::Scalar::F64, input::Warnings::Counted)?;
+    let report = watched("verifying", || armgen_verify::verify(&source, text.text(), certificate.as_ref()));
+    let mut printed = format!("{report}\n");
+    if certificate.is_some() {
+        printed += &format!("certificate: {}\n", beside.display());
+    }
+    let code = terminal::print(&printed);
+    match report.first_fault() {
+        None => Ok(code),
+        Some(fault) => {
+            terminal::error(&format!("{}: {fault}", text.name()));
+            Err(FAULTY)
+        }
+    }
+}
+
+/// What a report that passed comes to, in a line.
+pub(crate) fn summary(report: &Report) -> String {
+    let worst = report.functions.iter().map(|f| f.log2_odds).fold(f64::NEG_INFINITY, f64::max);
+    let functions = input::counted(report.functions.len(), "function");
+    format!(
+        "{functions} and {} equal the equations, odds of a miss below 2^{:.0}",
+        input::counted(report.constants.len(), "constant"),
+        worst.ceil()
+    )
+}
+
+/// As long a wait needs no words.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Does `work`; a terminal shows that and how long, if it takes long.
+pub(crate) fn watched<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+    let (done, waiting) = channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            if waiting.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+                return;
+            }
+            // Drawn on a terminal only.
+            let bar = ProgressBar::new_spinner();
+            if let Ok(style) = ProgressStyle::with_template("  {spinner} {msg} {elapsed}") {
+                bar.set_style(style);
+            }
+            bar.set_message(what);
+            bar.enable_steady_tick(Duration::from_millis(120));
+            let _ = waiting.recv();
+            bar.finish_and_clear();
+        });
+        let value = work();
+        drop(done);
+        value
+    })
+}
