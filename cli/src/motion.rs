@@ -37,8 +37,8 @@ pub(crate) struct Outcome {
     pub(crate) figure: Figure,
     /// All samples.
     pub(crate) log: Log,
-    /// Whether every error stayed as small as expected.
-    pub(crate) as_expected: bool,
+    /// Why the motion is not as expected, if it is not.
+    pub(crate) fault: Option<String>,
 }
 
 /// Moves the arm: along two lines of the technical project's path if it is that arm, else from posture to posture.

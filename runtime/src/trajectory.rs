@@ -43,7 +43,6 @@ pub struct PlanError {
 
 /// What is wrong with a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum PlanFault {
     /// A number is infinite or NaN.
     NotFinite,

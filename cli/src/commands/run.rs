@@ -42,8 +42,8 @@ fn demonstrate(out: &Path) -> u8 {
     }
     text += "\n";
     code = code.max(terminal::print(&text));
-    if !outcome.as_expected {
-        terminal::error("an error is larger than expected of a model that is right");
+    if let Some(fault) = outcome.fault {
+        terminal::error(&fault);
         code = code.max(FAULTY);
     }
     code

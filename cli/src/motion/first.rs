@@ -144,13 +144,17 @@ fn postures(task: Task<TASK_ROWS>, start: Vector, lines: &Lines, end: Duration) 
 fn outcome(log: Log, stable: &str) -> Outcome {
     use Align::{Left, Right};
     let mut table = Table::new([("tip", Left), ("largest error", Right), ("error at end", Right), ("expected below", Right)]);
-    let mut as_expected = true;
+    let mut fault = None;
     for (i, name) in ROW_NAMES.iter().enumerate() {
         let column = format!("e_{name}");
         let largest = log.peak(&column, |_| true).unwrap_or(f64::NAN);
         let last = log.column(&column).and_then(Iterator::last).unwrap_or(f64::NAN);
-        as_expected &= largest < EXPECTED && last.abs() < EXPECTED;
         let unit = if i < 3 { "m" } else { "rad" };
+        if !(largest < EXPECTED && last.abs() < EXPECTED) {
+            fault = Some(format!(
+                "the error of {name} exceeds {EXPECTED:.0e} {unit}: more than sampling makes of a model that is right"
+            ));
+        }
         let number = |x: f64| format!("{:.2e} {unit}", x.abs());
         table.row([(*name).to_string(), number(largest), number(last), format!("{EXPECTED:.0e} {unit}")]);
     }
@@ -161,7 +165,7 @@ fn outcome(log: Log, stable: &str) -> Outcome {
         table.text(),
         joint_table(&log, None)
     );
-    Outcome { report, name: "first-motion", figure: figure(&log), log, as_expected }
+    Outcome { report, name: "first-motion", figure: figure(&log), log, fault }
 }
 
 fn figure(log: &Log) -> Figure {
