@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use armgen_codegen::description::did_you_mean;
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::Model;
 
@@ -41,9 +42,13 @@ fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
     for name in quantities {
         let named = Item::named(name, dof);
         if named.is_empty() {
+            let names = Item::names();
+            let meant = did_you_mean(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
+                .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+            let known: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
             return Err(format!(
-                "there is no quantity `{name}`\n  known are {}, link_frame_1 to link_frame_{dof}",
-                Item::names().join(", ")
+                "there is no quantity `{name}`\n  {meant}known are\n  {},\n  link_frame_1 to link_frame_{dof}",
+                known.join(",\n  ")
             ));
         }
         items.extend(named);

@@ -165,6 +165,16 @@ pub(crate) fn parse(file: &FilePath, source: &Source, colour: Colour) -> Parsed 
         }
         return Parsed::Faulty(reader.faults.render(source, colour), reader.faults.len());
     };
+    if let Some(place) = key_of_a_robot(&root) {
+        reader.faults.add(
+            "wrong-file",
+            place,
+            "this describes a robot, not an experiment",
+            "a key of robot descriptions",
+            "`armgen run` moves the robot that it was built with: put this text into robot.yaml, rebuild, and run it without a file",
+        );
+        return Parsed::Faulty(reader.faults.render(source, colour), 1);
+    }
     if let Some(other) = other_robot(&root) {
         return Parsed::OtherRobot(other);
     }
@@ -175,6 +185,12 @@ pub(crate) fn parse(file: &FilePath, source: &Source, colour: Colour) -> Parsed 
         Some(experiment) if reader.faults.is_empty() && of_path.1 == 0 => Parsed::Experiment(Box::new(experiment)),
         _ => Parsed::Faulty(of_path.0 + &reader.faults.render(source, colour), reader.faults.len() + of_path.1),
     }
+}
+
+/// The place of a key that only descriptions of robots have.
+fn key_of_a_robot(root: &Node) -> Option<Span> {
+    let Kind::Mapping(entries) = &root.kind else { return None };
+    entries.iter().find(|(key, _)| ["joints", "convention"].contains(&key.value.as_str())).map(|(key, _)| key.span)
 }
 
 fn other_robot(root: &Node) -> Option<String> {

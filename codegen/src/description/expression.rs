@@ -399,7 +399,9 @@ impl<'a> Parser<'a> {
                     "write the number in decimal digits",
                 ));
             }
-            let help = if is_unit(word) {
+            let help = if word.eq_ignore_ascii_case("deg") {
+                format!("write `deg({number})` for degrees")
+            } else if is_unit(word) {
                 WITHOUT_UNIT.to_owned()
             } else {
                 format!("write `{number}*{}` if a product is meant", excerpt(word))

@@ -348,8 +348,9 @@ impl Reader<'_> {
 
     /// A list of exactly as many numbers as there are `parts`.
     fn vector<const N: usize>(&mut self, node: &Node, key: Span, name: &str, parts: [&str; N]) -> Option<Spanned<[Value; N]>> {
-        let zeros = ["0"; N].join(", ");
-        let help = format!("write {N} values in brackets, {}: `{name}: [{zeros}]`", parts.join(", "));
+        // Whoever copies the help of `gravity` shall not lose it.
+        let example = if name == "gravity" { "0, 0, -9.81".to_owned() } else { ["0"; N].join(", ") };
+        let help = format!("write {N} values in brackets, {}: `{name}: [{example}]`", parts.join(", "));
         let Kind::List(items) = &node.kind else {
             self.wrong_kind(node, key, name, &format!("a list of {N} values"), &help);
             return None;

@@ -12,7 +12,14 @@ pub fn did_you_mean<'w>(found: &str, words: &[&'w str]) -> Option<&'w str> {
         (d == 0 || near).then_some(d)
     };
     let ranked = words.iter().filter_map(|word| Some((likely(&word.to_lowercase().chars().collect())?, *word)));
-    ranked.min_by_key(|(d, _)| *d).map(|(_, word)| word)
+    // Of two words as near, the one with the same letters.
+    let letters = |word: &str| {
+        let mut letters: Vec<char> = word.to_lowercase().chars().collect();
+        letters.sort_unstable();
+        letters
+    };
+    let own = letters(&found.iter().collect::<String>());
+    ranked.min_by_key(|(d, word)| (*d, letters(word) != own)).map(|(_, word)| word)
 }
 
 /// Least number of letters to insert, remove, replace or swap with their neighbour.
@@ -48,6 +55,7 @@ mod tests {
         check("masss", Some("mass"));
         check("Mass", Some("mass"));
         check("yx", Some("xy"));
+        assert_eq!(did_you_mean("yx", &["yz", "xy"]), Some("xy"), "the same letters are nearer");
         check("xx", Some("xy"));
         check("ay", None);
         check("intertia", Some("inertia"));
