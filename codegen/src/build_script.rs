@@ -18,7 +18,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::Colour;
-pub use crate::program::{Scalar, Trig};
+pub use crate::program::{Pass, Scalar, Trig};
 
 use crate::program::Options;
 use crate::source::Source;
@@ -61,6 +61,12 @@ impl Robot {
     #[must_use]
     pub fn trig(mut self, trig: Trig) -> Robot {
         self.options.trig = trig;
+        self
+    }
+
+    /// Leaves a pass out, of those that make the functions cheaper; may be called for several.
+    pub fn without(mut self, pass: Pass) -> Robot {
+        self.options.without.insert(pass);
         self
     }
 

@@ -2,6 +2,7 @@
 
 pub mod arm;
 pub mod base;
+mod columns;
 pub mod coriolis;
 pub mod determinant;
 pub mod energy;
@@ -11,6 +12,8 @@ pub mod inertia;
 pub mod kinematics;
 pub mod newton_euler;
 pub mod parameters;
+pub mod passes;
+pub mod plan;
 pub mod regressor;
 
 use crate::manipulator::{Manipulator, RegressorChoice};

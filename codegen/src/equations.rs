@@ -3,9 +3,11 @@
 //! A quantity may have several derivations, each in a pool of its own: a recursion over the links and, where it stays short, the closed
 //! form. All give the same expressions, which their fingerprints prove; which one is emitted is a matter of cost alone.
 
-use crate::derive::arm::{Arm, Rest};
+use crate::derive::arm::Arm;
 use crate::derive::newton_euler::Motion;
 use crate::derive::parameters::{ParameterVector, View};
+use crate::derive::passes::Use;
+use crate::derive::plan::{Pass, Passes, Plan};
 use crate::derive::{self};
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
@@ -111,7 +113,12 @@ pub struct Derivation {
     pub entries: Vec<ExprId>,
     /// How it was derived, in a few words.
     pub method: &'static str,
+    /// For each joint the one before it whose axis is parallel to its own, and whether it points the other way.
+    pub parallel: Vec<Option<(u16, bool)>>,
 }
+
+/// A division counts like so many additions.
+pub const DIVISION: usize = 4;
 
 /// A closed form is tried up to so many terms an entry, on the way and at the end.
 pub const CLOSED_FORM_TERMS: usize = 300;
@@ -235,58 +242,89 @@ impl Quantity {
 
     /// The entries by recursion over the links, in a pool of their own.
     pub fn by_recursion(self, model: &Model, view: View<'_>) -> Derivation {
+        self.by_plan(model, view, Plan::default(), 0)
+    }
+
+    /// The entries by recursion over the links, in the ways that cost least, as far as `effort` (counted in nodes) goes.
+    pub fn by_search(self, model: &Model, view: View<'_>, without: Passes, effort: usize) -> Derivation {
+        self.by_plan(model, view, Plan::new(without), effort)
+    }
+
+    pub(crate) fn by_plan(self, model: &Model, view: View<'_>, plan: Plan, effort: usize) -> Derivation {
         let parameters = &model.parameters;
-        let mut pool = Pool::new(model.field.clone());
         // The regressor of named parameters is the derivative by them, and its known rest what is left without them.
         let view = match self {
             Quantity::Regressor => View::Vector(parameters),
             Quantity::KnownTorque => View::Known(parameters),
             _ => view,
         };
-        let mut arm = Arm::new(&mut pool, &model.manipulator, view);
-        let grouped = matches!(view, View::Nominal)
-            && matches!(
-                self,
-                Quantity::InertiaMatrix
-                    | Quantity::CoriolisMatrix
-                    | Quantity::Gravity
-                    | Quantity::EquationsOfMotion
-                    | Quantity::InverseDynamics
-                    | Quantity::ForwardDynamics
-                    | Quantity::KineticEnergy
-            );
-        if grouped {
-            arm.group_towards_base(&mut pool, Rest::NoSecondMomentAlongAxis);
+        let used = self.used(view);
+        let mut pool = Pool::new(model.field.clone());
+        let arm = Arm::new(&mut pool, &model.manipulator, view);
+        let derive = |pool: &mut Pool, plan: &mut Plan| {
+            let mut arm = arm.clone();
+            derive::passes::rewrite(pool, &mut arm, plan, used);
+            self.entries(pool, &arm, parameters, plan)
+        };
+        let mut plan = plan;
+        derive::passes::suit(&pool, &arm, &mut plan);
+        if effort > 0 {
+            let sketch = pool.sketch();
+            plan = plan.search(effort, &mut |plan| {
+                let mut pool = sketch.clone();
+                let entries = derive(&mut pool, plan);
+                (pool.operations(&entries, DIVISION), pool.len())
+            });
         }
-        let entries = self.entries(&mut pool, &arm, parameters);
-        Derivation { pool, entries, method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" } }
+        let entries = derive(&mut pool, &mut plan);
+        let grouped = used == Use::Dynamics && plan.has(Pass::Grouping);
+        let parallel = arm.parallel_axes();
+        Derivation {
+            pool,
+            entries,
+            parallel,
+            method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" },
+        }
+    }
+
+    /// What the derivation may do to the arm.
+    fn used(self, view: View<'_>) -> Use {
+        use Quantity::*;
+        match self {
+            DirectKinematics | LinkFrames | GeometricJacobian | GeometricJacobianDot => Use::Frames,
+            InertiaMatrix | CoriolisMatrix | Gravity | EquationsOfMotion | InverseDynamics | ForwardDynamics | KineticEnergy
+                if matches!(view, View::Nominal) =>
+            {
+                Use::Dynamics
+            }
+            _ => Use::Plain,
+        }
     }
 
     /// The entries for an arm in a pool, row by row.
-    pub fn entries(self, pool: &mut Pool, arm: &Arm, parameters: &ParameterVector) -> Vec<ExprId> {
+    pub fn entries(self, pool: &mut Pool, arm: &Arm, parameters: &ParameterVector, plan: &mut Plan) -> Vec<ExprId> {
         match self {
             Quantity::DirectKinematics => derive::kinematics::direct_kinematics(pool, arm).concat(),
             Quantity::LinkFrames => derive::kinematics::link_frames(pool, arm).concat().concat(),
             Quantity::GeometricJacobian => derive::kinematics::geometric_jacobian(pool, arm).concat(),
             Quantity::GeometricJacobianDot => derive::kinematics::geometric_jacobian_dot(pool, arm).concat(),
-            Quantity::InertiaMatrix => derive::inertia::inertia_matrix(pool, arm).concat(),
-            Quantity::CoriolisMatrix => derive::coriolis::coriolis_matrix(pool, arm).concat(),
-            Quantity::Gravity => derive::gravity::gravity(pool, arm),
+            Quantity::InertiaMatrix => derive::inertia::inertia_matrix(pool, arm, plan).concat(),
+            Quantity::CoriolisMatrix => derive::coriolis::coriolis_matrix(pool, arm, plan).concat(),
+            Quantity::Gravity => derive::gravity::gravity(pool, arm, plan),
             Quantity::Friction => {
                 let rates = arm.symbols(pool, Symbol::Rate);
                 derive::newton_euler::friction(pool, arm, &rates)
             }
             Quantity::EquationsOfMotion => {
-                let b = derive::inertia::inertia_matrix(pool, arm);
-                let c = derive::coriolis::coriolis_matrix(pool, arm);
-                let g = derive::gravity::gravity(pool, arm);
+                let (b, c) = derive::coriolis::inertia_and_coriolis(pool, arm, plan);
+                let g = derive::gravity::gravity(pool, arm, plan);
                 [b.concat(), c.concat(), g].concat()
             }
             Quantity::InverseDynamics => {
                 let motion = Motion::plain(pool, arm);
                 derive::newton_euler::inverse_dynamics(pool, arm, &motion)
             }
-            Quantity::ForwardDynamics => derive::forward_dynamics::forward_dynamics(pool, arm),
+            Quantity::ForwardDynamics => derive::forward_dynamics::forward_dynamics(pool, arm, plan),
             Quantity::Regressor => derive::regressor::regressor(pool, arm, parameters).concat(),
             Quantity::KnownTorque => {
                 let motion = Motion::with_reference(pool, arm);
@@ -301,20 +339,72 @@ impl Quantity {
 impl Derivation {
     /// The closed form of every entry, if none is too long.
     pub fn closed_forms(&self) -> Option<Vec<NormalForm>> {
-        self.pool.normal_forms(&self.entries, CLOSED_FORM_TERMS).into_iter().collect()
+        self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)
     }
 
-    /// The derivations from the closed form, if there is one: one for each order in which its products can be formed.
+    /// The derivations from the closed form, if there is one: one for each order in which its products can be formed, and the same in
+    /// the rates of links with parallel axes about these.
     pub fn by_closed_form(&self) -> Vec<Derivation> {
         let Some(forms) = self.closed_forms() else { return Vec::new() };
-        Arrangement::ALL
+        let derivation = |forms: &[NormalForm], arrangement, meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId| {
+            let mut pool = Pool::new(self.pool.field().clone());
+            let entries = forms.iter().map(|form| pool.from_normal_form_in(form, arrangement, meaning)).collect();
+            Derivation { pool, entries, method: "closed form", parallel: self.parallel.clone() }
+        };
+        let mut all: Vec<Derivation> = Arrangement::ALL
             .iter()
-            .map(|&arrangement| {
-                let mut pool = Pool::new(self.pool.field().clone());
-                let entries = forms.iter().map(|form| pool.from_normal_form(form, arrangement)).collect();
-                Derivation { pool, entries, method: "closed form" }
-            })
-            .collect()
+            .map(|&arrangement| derivation(&forms, arrangement, &mut |pool, symbol| pool.symbol(symbol)))
+            .collect();
+        if let Some(forms) = self.forms_in_absolute_rates() {
+            all.extend(
+                Arrangement::ALL
+                    .iter()
+                    .map(|&arrangement| derivation(&forms, arrangement, &mut |pool, symbol| self.absolute(pool, symbol))),
+            );
+        }
+        all
+    }
+
+    /// The closed forms in which the rate and the acceleration of a joint stand for those of its link about the axis that it shares with
+    /// links before it: dq_i -> ±(w_i - w_p). Squares of sums of rates then stay squares.
+    fn forms_in_absolute_rates(&self) -> Option<Vec<NormalForm>> {
+        if self.parallel.iter().all(Option::is_none) {
+            return None;
+        }
+        let mut pool = Pool::new(self.pool.field().clone());
+        let entries = self.pool.rewritten(&self.entries, &mut pool, &mut |pool, symbol| {
+            let own = pool.symbol(symbol);
+            let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else {
+                return own;
+            };
+            let before = pool.symbol(rate(before));
+            pool.sub(own, before).signed(opposite)
+        });
+        (entries != self.entries || pool.len() != self.pool.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
+    }
+
+    /// The joint before that of a symbol whose axis is parallel.
+    fn before(&self, symbol: Symbol) -> Option<(u16, bool)> {
+        self.parallel.get(usize::from(symbol.index())).copied().flatten()
+    }
+
+    /// What such a rate is: w_i = w_p ± dq_i.
+    fn absolute(&self, pool: &mut Pool, symbol: Symbol) -> ExprId {
+        let own = pool.symbol(symbol);
+        let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else { return own };
+        let before = self.absolute(pool, rate(before));
+        pool.add(before, own.signed(opposite))
+    }
+}
+
+/// The kind of a rate or an acceleration.
+fn moving(symbol: Symbol) -> Option<fn(u16) -> Symbol> {
+    match symbol {
+        Symbol::Rate(_) => Some(Symbol::Rate),
+        Symbol::Acceleration(_) => Some(Symbol::Acceleration),
+        Symbol::ReferenceRate(_) => Some(Symbol::ReferenceRate),
+        Symbol::ReferenceAcceleration(_) => Some(Symbol::ReferenceAcceleration),
+        _ => None,
     }
 }
 

@@ -97,6 +97,12 @@ impl Number {
         self.as_rational().is_some_and(|r| r.is_one())
     }
 
+    /// Whether this is made of fractions and square roots of integers alone: sums, products and quotients of such numbers are reduced to
+    /// one form, so that equal ones look equal.
+    pub fn is_reduced(&self) -> bool {
+        self.terms.keys().flatten().all(|(atom, _)| matches!(atom, Atom::Root(_)))
+    }
+
     /// The fraction, if this is one.
     pub fn as_rational(&self) -> Option<&Rational> {
         match self.terms.len() {

@@ -5,8 +5,10 @@
 
 mod constants;
 mod cost;
+mod optimise;
 mod schedule;
 
+pub use crate::derive::plan::{Pass, Passes};
 pub use crate::manipulator::Scalar;
 pub use cost::Cost;
 pub use schedule::{module, Options};

@@ -24,6 +24,7 @@ pub mod normal_form;
 pub mod print;
 
 mod calculus;
+mod count;
 mod evaluate;
 
 use std::collections::{BTreeMap, HashMap};
@@ -104,7 +105,7 @@ pub type Fingerprint = [Element; 2];
 
 /// A hash for fingerprints: they are random already.
 #[derive(Clone, Copy, Default)]
-struct Identity(u64);
+pub(crate) struct Identity(u64);
 
 impl std::hash::Hasher for Identity {
     fn finish(&self) -> u64 {
@@ -132,6 +133,8 @@ pub struct Pool {
     /// Look-up only: its order reaches nothing.
     known: HashMap<Fingerprint, ExprId, BuildHasherDefault<Identity>>,
     at_origin: Vec<Option<Rc<Number>>>,
+    /// Whether constants are known by their fingerprints alone.
+    sketch: bool,
 }
 
 impl ExprId {
@@ -193,9 +196,18 @@ impl Pool {
             constant_nodes: BTreeMap::new(),
             known: HashMap::default(),
             at_origin: Vec::new(),
+            sketch: false,
         };
         assert_eq!((pool.constant(&Number::zero()), pool.constant(&Number::one())), (ExprId::ZERO, ExprId::ONE));
         pool
+    }
+
+    /// A copy to try things in: constants are known by their fingerprints alone, so that arithmetic with them costs nothing. What is
+    /// derived there has the operations that it has in an exact pool, but no values to print.
+    pub fn sketch(&self) -> Pool {
+        let mut copy = self.clone();
+        copy.sketch = true;
+        copy
     }
 
     /// The node behind an expression; its sign is the caller's to add.
@@ -258,8 +270,27 @@ impl Pool {
         matches!(self.node(expr), Node::Constant(_))
     }
 
+    /// A constant of a sketch.
+    fn sketched(&mut self, value: Element) -> ExprId {
+        let fingerprint = [value; 2];
+        if value == self.field.zero() {
+            return ExprId::ZERO;
+        }
+        if let Some(&expr) = self.known.get(&fingerprint) {
+            return expr;
+        }
+        if let Some(&expr) = self.known.get(&self.negated(fingerprint)) {
+            return -expr;
+        }
+        self.push(Node::Constant(ConstantId(u32::MAX)), fingerprint)
+    }
+
     /// An exact constant.
     pub fn constant(&mut self, value: &Number) -> ExprId {
+        if self.sketch {
+            let value = self.field.number(value);
+            return self.sketched(value);
+        }
         let negative = value.leads_negative();
         let size = Rc::new(if negative { -value } else { value.clone() });
         if let Some(&expr) = self.constant_nodes.get(&size) {
@@ -334,6 +365,10 @@ impl Pool {
             return a;
         }
         if self.is_constant(a) && self.is_constant(b) {
+            if self.sketch {
+                let sum = self.field.add(self.fingerprint(a)[0], self.fingerprint(b)[0]);
+                return self.sketched(sum);
+            }
             let (x, y) = (self.value(a), self.value(b));
             return self.constant(&(&x + &y));
         }
@@ -365,6 +400,10 @@ impl Pool {
             return a.signed(negate);
         }
         match (self.is_constant(a), self.is_constant(b)) {
+            (true, true) if self.sketch => {
+                let product = self.field.mul(self.fingerprint(a)[0], self.fingerprint(b)[0]);
+                return self.sketched(product).signed(negate);
+            }
             (true, true) => {
                 let product = &self.value(a) * &self.value(b);
                 return self.constant(&product).signed(negate);
@@ -390,6 +429,10 @@ impl Pool {
     pub fn reciprocal(&mut self, a: ExprId) -> ExprId {
         let negate = a.is_negated();
         let a = a.unsigned();
+        if self.sketch && self.is_constant(a) {
+            let inverse = self.field.inverse(self.fingerprint(a)[0]);
+            return self.sketched(inverse).signed(negate);
+        }
         if let Some(value) = self.as_constant(a) {
             let inverse = Number::one().checked_div(&value).expect("the divisor is not zero");
             return self.constant(&inverse).signed(negate);
@@ -415,6 +458,9 @@ impl Pool {
         }
         // The two points differ in every symbol: where both give the same, no symbol is left in the polynomial.
         if fingerprint[0] == fingerprint[1] {
+            if self.sketch {
+                return self.sketched(fingerprint[0]);
+            }
             let value = self.value_at_origin(node);
             if self.field.number(&value) == fingerprint[0] {
                 return self.constant(&value);

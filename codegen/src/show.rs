@@ -252,7 +252,12 @@ fn determinant(model: &Model, view: View<'_>) -> Result<Shown, String> {
         factors: (!found.factors.is_empty()).then_some(found.factors),
         content: match found.form {
             Some(form) if form.len() <= CLOSED_FORM_TERMS => Content::Closed(vec![form]),
-            _ => Content::Program(Box::new(Derivation { pool: found.pool, entries: vec![found.value], method: "minors" })),
+            _ => Content::Program(Box::new(Derivation {
+                pool: found.pool,
+                entries: vec![found.value],
+                method: "minors",
+                parallel: Vec::new(),
+            })),
         },
         parameters: names(model),
     })
@@ -325,7 +330,7 @@ fn symbolic_regressor(model: &Model, quantity: Quantity) -> Option<Derivation> {
             })
             .collect()
     };
-    Some(Derivation { pool, entries, method: "derivatives by the names" })
+    Some(Derivation { pool, entries, method: "derivatives by the names", parallel: Vec::new() })
 }
 
 fn letter(quantity: Quantity) -> [&'static str; 2] {

@@ -20,10 +20,15 @@ impl Interpreted {
     ///
     /// Errors: the text is not valid; all that is wrong with it.
     pub fn new(text: &str) -> Result<Self, String> {
+        Interpreted::with_options(text, &Options::default())
+    }
+
+    /// The same, generated as `options` say.
+    pub fn with_options(text: &str, options: &Options) -> Result<Self, String> {
         let source = Source::new("robot.yaml", text);
         let (valid, diagnostics) = manipulator::read(&source);
         match valid {
-            Some((manipulator, _)) => Ok(Interpreted { module: Model::new(manipulator).module(&Options::default()) }),
+            Some((manipulator, _)) => Ok(Interpreted { module: Model::new(manipulator).module(options) }),
             None => Err(diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use armgen_codegen::program::{Options, Pass, Passes};
 use armgen_tests::functions::FUNCTIONS;
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::judge::{judge, Tolerance};
@@ -31,10 +32,26 @@ fn random_arms_agree_with_the_oracle() {
     });
 }
 
+/// Each pass alone, and all, left out: the same functions at other costs.
+#[test]
+fn arms_without_a_pass_agree_with_the_oracle() {
+    let each = Pass::ALL.map(|pass| (pass.name(), [pass].into_iter().collect::<Passes>()));
+    for (k, (name, without)) in each.into_iter().chain([("any", Passes::all())]).enumerate() {
+        for seed in 0..2 {
+            check_without(ARMS + 2 * k as u64 + seed, without, &format!(" without {name}"));
+        }
+    }
+}
+
 fn check(seed: u64) {
+    check_without(seed, Passes::NONE, "");
+}
+
+fn check_without(seed: u64, without: Passes, how: &str) {
     let text = random::arm(seed);
-    let robot = Interpreted::new(&text).unwrap_or_else(|faults| panic!("seed {seed}:\n{faults}\n{text}"));
+    let robot = Interpreted::with_options(&text, &Options { without, ..Options::default() })
+        .unwrap_or_else(|faults| panic!("seed {seed}{how}:\n{faults}\n{text}"));
     let names: Vec<String> = robot.module.functions.iter().map(|f| f.name()).collect();
     assert_eq!(names, FUNCTIONS);
-    judge(&format!("arm {seed}"), &robot, &text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
+    judge(&format!("arm {seed}{how}"), &robot, &text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
 }

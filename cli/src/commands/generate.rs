@@ -57,7 +57,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: Tri
     if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
         return code;
     }
-    let (generated, diagnostics) = armgen_codegen::generate(&source, &Options { scalar, trig });
+    let (generated, diagnostics) = armgen_codegen::generate(&source, &Options { scalar, trig, ..Options::default() });
     let Some(generated) = generated else {
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
         return FAULTY;

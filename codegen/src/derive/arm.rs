@@ -54,6 +54,10 @@ pub struct Joint {
     pub cosine: ExprId,
     /// Rate at which the joint frame turns about its z axis, seen from the parent's: dq, and 0 for a prismatic joint.
     pub spin: ExprId,
+    /// Rate at which the link turns about the z axis of the frame that it is described in, seen from that frame: 0 unless parallel axes share one orientation.
+    pub drift: ExprId,
+    /// The joint frame in the axes that the link is described in: turned only where parallel axes share one orientation.
+    pub own_axes: Matrix,
     /// Origin of the joint frame in the parent's joint frame.
     pub origin: Vector,
     /// Rotation of the user's link frame in the joint frame.
@@ -152,9 +156,14 @@ impl Joint {
 
     /// A vector of the parent's joint frame in this one: R' v.
     pub fn inward(&self, pool: &mut Pool, v: &Vector) -> Vector {
-        let (s, c) = (self.sine, self.cosine);
         let turned = pool.transform_back(&self.fixed, v);
-        [pool.dot(&[c, s], &[turned[0], turned[1]]), pool.dot(&[c, -s], &[turned[1], turned[0]]), turned[2]]
+        self.about_axis_back(pool, &turned)
+    }
+
+    /// Rz' v.
+    pub fn about_axis_back(&self, pool: &mut Pool, v: &Vector) -> Vector {
+        let (s, c) = (self.sine, self.cosine);
+        [pool.dot(&[c, s], &[v[0], v[1]]), pool.dot(&[c, -s], &[v[1], v[0]]), v[2]]
     }
 
     /// A vector of this joint frame in the parent's axes turned by `fixed`: Rz v.
@@ -182,18 +191,27 @@ impl Joint {
         turned
     }
 
+    /// A body of this joint frame in the parent's axes turned by `fixed`.
+    pub fn body_about_axis(&self, pool: &mut Pool, body: &Body) -> Body {
+        let second = self.tensor_about_axis(pool, &symmetric(&body.second));
+        Body { mass: body.mass, first: self.about_axis(pool, &body.first), second: PAIRS.map(|(i, j)| second[i][j]) }
+    }
+
     /// A body of this joint frame in the parent's.
     pub fn body_outward(&self, pool: &mut Pool, body: &Body) -> Body {
-        let about_z = self.tensor_about_axis(pool, &symmetric(&body.second));
-        let second = turn_second(pool, &self.fixed, &PAIRS.map(|(i, j)| about_z[i][j]));
-        let first = self.outward(pool, &body.first);
-        Body { mass: body.mass, first, second }.moved(pool, &self.origin)
+        let turned = self.body_about_axis(pool, body).turned(pool, &self.fixed);
+        turned.moved(pool, &self.origin)
+    }
+
+    /// Rz.
+    pub fn about_axis_matrix(&self) -> Matrix {
+        let (s, c) = (self.sine, self.cosine);
+        [[c, -s, ExprId::ZERO], [s, c, ExprId::ZERO], [ExprId::ZERO, ExprId::ZERO, ExprId::ONE]]
     }
 
     /// The joint's rotation matrix R.
     pub fn rotation(&self, pool: &mut Pool) -> Matrix {
-        let (s, c) = (self.sine, self.cosine);
-        let about_z = [[c, -s, ExprId::ZERO], [s, c, ExprId::ZERO], [ExprId::ZERO, ExprId::ZERO, ExprId::ONE]];
+        let about_z = self.about_axis_matrix();
         pool.product(&self.fixed, &about_z)
     }
 
@@ -238,6 +256,59 @@ impl Arm {
         (0..self.dof() as u16).map(|i| pool.symbol(symbol(i))).collect()
     }
 
+    /// For each revolute joint the revolute joint before it, if their axes are parallel, and whether they point opposite ways.
+    pub fn parallel_axes(&self) -> Vec<Option<(u16, bool)>> {
+        self.joints
+            .iter()
+            .map(|joint| {
+                let mut axis = joint.fixed.map(|row| row[2]);
+                let mut before = joint.parent.filter(|_| joint.is_revolute())?;
+                // Behind a prismatic joint the axes of the link before only turn by constants.
+                while !self.joints[before].is_revolute() {
+                    let outer = &self.joints[before];
+                    if axis[..2] != [ExprId::ZERO; 2] {
+                        return None;
+                    }
+                    axis = outer.fixed.map(|row| row[2].signed(axis[2].is_negated()));
+                    before = outer.parent?;
+                }
+                (axis[..2] == [ExprId::ZERO; 2]).then_some((before as u16, axis[2].is_negated()))
+            })
+            .collect()
+    }
+
+    /// What turns about z alone, of joint frame i in its parent's, whatever the joint angle.
+    pub fn fixed_outward(&self, pool: &mut Pool, i: usize, body: &Body) -> Body {
+        let joint = &self.joints[i];
+        let turned = body.turned(pool, &joint.fixed);
+        turned.moved(pool, &joint.origin)
+    }
+
+    /// Hands the second moments of a link behind a prismatic joint on to the parent: they never change their direction.
+    pub fn hand_second_moments_on(&mut self, pool: &mut Pool, i: usize) {
+        let second = std::mem::replace(&mut self.joints[i].body.second, [ExprId::ZERO; 6]);
+        if let Some(p) = self.joints[i].parent {
+            let rotation = self.joints[i].rotation(pool);
+            let turned = Body { second, ..Body::EMPTY }.turned(pool, &rotation);
+            self.joints[p].body = self.joints[p].body.plus(pool, &turned);
+        }
+    }
+
+    /// Moves the origin of joint frame i along its axis.
+    pub fn slide(&mut self, pool: &mut Pool, i: usize, shift: ExprId) {
+        let joint = &mut self.joints[i];
+        let along = pool.scale(shift, &joint.fixed.map(|row| row[2]));
+        joint.origin = pool.add_vectors(&joint.origin, &along);
+        joint.body = joint.body.moved(pool, &[ExprId::ZERO, ExprId::ZERO, -shift]);
+        joint.link_origin[2] = pool.sub(joint.link_origin[2], shift);
+        if self.tip == i {
+            self.tool_origin[2] = pool.sub(self.tool_origin[2], shift);
+        }
+        for joint in self.joints.iter_mut().filter(|joint| joint.parent == Some(i)) {
+            joint.origin[2] = pool.sub(joint.origin[2], shift);
+        }
+    }
+
     /// Hands on to the parent what a joint does not feel, exactly (Gautier and Khalil 1990, "Direct calculation of minimum set of
     /// inertial parameters of serial robots", in second-moment form).
     ///
@@ -249,30 +320,22 @@ impl Arm {
     /// work, or Iyy = Sxx + Szz, which leaves the base parameters of the literature ([`Rest::NoInertiaAboutY`]).
     pub fn group_towards_base(&mut self, pool: &mut Pool, rest: Rest) {
         for i in (0..self.dof()).rev() {
-            let joint = self.joints[i];
+            if !self.joints[i].is_revolute() {
+                self.hand_second_moments_on(pool, i);
+                continue;
+            }
             let mut handed = Body::EMPTY;
             let body = &mut self.joints[i].body;
-            if joint.is_revolute() {
-                handed.mass = std::mem::replace(&mut body.mass, ExprId::ZERO);
-                handed.first[2] = std::mem::replace(&mut body.first[2], ExprId::ZERO);
-                let along = match rest {
-                    Rest::NoSecondMomentAlongAxis => body.second[5],
-                    Rest::NoInertiaAboutY => pool.add(body.second[0], body.second[5]),
-                };
-                body.second[5] = pool.sub(body.second[5], along);
-                handed.second[5] = along;
-            } else {
-                handed.second = std::mem::replace(&mut body.second, [ExprId::ZERO; 6]);
-            }
-            if let Some(parent) = joint.parent {
-                let moved = if joint.is_revolute() {
-                    // About z nothing of it turns.
-                    let turned = handed.turned(pool, &joint.fixed);
-                    turned.moved(pool, &joint.origin)
-                } else {
-                    let rotation = joint.rotation(pool);
-                    handed.turned(pool, &rotation)
-                };
+            handed.mass = std::mem::replace(&mut body.mass, ExprId::ZERO);
+            handed.first[2] = std::mem::replace(&mut body.first[2], ExprId::ZERO);
+            let along = match rest {
+                Rest::NoSecondMomentAlongAxis => body.second[5],
+                Rest::NoInertiaAboutY => pool.add(body.second[0], body.second[5]),
+            };
+            body.second[5] = pool.sub(body.second[5], along);
+            handed.second[5] = along;
+            if let Some(parent) = self.joints[i].parent {
+                let moved = self.fixed_outward(pool, i, &handed);
                 self.joints[parent].body = self.joints[parent].body.plus(pool, &moved);
             }
         }
@@ -342,6 +405,8 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         sine,
         cosine,
         spin,
+        drift: ExprId::ZERO,
+        own_axes: crate::ring::matrix::IDENTITY,
         origin,
         link_rotation,
         link_origin,

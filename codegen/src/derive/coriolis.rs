@@ -19,7 +19,8 @@
 //! ```
 //!
 //! E is a moment without a force, because the force of d/dt ∂_j x is the rate of f: moved from o_j to o_i it gains
-//! d(o_j - o_i)/dt × f, where n gains (o_j - o_i) × f. No linear velocity occurs elsewhere.
+//! d(o_j - o_i)/dt × f, where n gains (o_j - o_i) × f. No linear velocity occurs elsewhere. Relative to the parent link it is
+//! E + n × Ω = z × (S Ω) + (tr K) z - K' z, with the same S Ω as N.
 //! The composite method for C is that of Echeandia and Wensing (2021, "Numerical methods to compute the Coriolis matrix and Christoffel
 //! symbols for rigid-body systems"); moments instead of 6 x 6 matrices and the relative velocities are ours.
 //!
@@ -27,7 +28,9 @@
 //! carries spinning rotors feels the spin s = Σ I_m k dq a: ½ z × s in N, its opposite in E.
 
 use super::arm::{symmetric, Arm, Body, Joint};
+use super::columns::{origin_rate, Column, Rate, Ways};
 use super::inertia::composite_bodies;
+use super::plan::Plan;
 use crate::ring::matrix::{Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -42,50 +45,56 @@ struct Flow {
     spin: Vector,
 }
 
-/// The wrenches of a column, about the origin of the frame that they are in.
-#[derive(Clone, Copy)]
-struct Column {
-    /// f, n: of ∂x/∂q_j.
-    inertial: (Vector, Vector),
-    /// F, N: of its rate.
-    coriolis: (Vector, Vector),
-    /// E.
-    transposed: Vector,
+/// C(q, dq), all entries.
+pub fn coriolis_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<ExprId>> {
+    inertia_and_coriolis(pool, arm, plan).1
 }
 
-/// C(q, dq), all entries.
-pub fn coriolis_matrix(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
+/// B(q) and C(q, dq), all entries.
+pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec<Vec<ExprId>>, Vec<Vec<ExprId>>) {
     let n = arm.dof();
     let composite = composite_bodies(pool, arm);
     let omega = angular_velocities(pool, arm);
     let flows = flows(pool, arm, &composite);
+    let mut ways = Ways::new(arm, Some(&omega));
+    let mut b = vec![vec![ExprId::ZERO; n]; n];
     let mut c = vec![vec![ExprId::ZERO; n]; n];
-    for j in 0..n {
+    for j in (0..n).rev() {
         let joint = &arm.joints[j];
         let outer = joint.parent.map_or(ZERO, |p| omega[p]);
         let turning = pool.transform_back(&joint.fixed, &outer);
         let (body, flow) = about_axis(pool, joint, &composite[j], &flows[j]);
-        let mut column = column(pool, joint, &turning, &body, &flow);
-        c[j][j] = if joint.is_revolute() { column.coriolis.1[2] } else { column.coriolis.0[2] };
-        let mut link = j;
-        while let Some(parent) = arm.joints[link].parent {
-            column = outward(pool, arm, link, &column, &omega[parent], link == j);
-            if link == j {
-                add_rotor(pool, joint, &omega[parent], &mut column);
+        let column = column(pool, joint, &turning, &body, &flow);
+        (b[j][j], c[j][j]) = own_entries(pool, joint, &column);
+        let mut traveller = ways.start(pool, plan, column, j);
+        while let Some(parent) = ways.go(pool, plan, &mut traveller) {
+            if let (Some(rotor), true) = (joint.rotor, joint.parent == Some(parent)) {
+                let coupling = pool.mul(rotor.inertia, rotor.ratio);
+                let momentum = pool.scale(coupling, &rotor.axis);
+                let mut w = omega[parent];
+                w[2] = pool.add(w[2], arm.joints[parent].drift);
+                traveller.add_moment(pool, &momentum, &w, &omega[parent]);
             }
-            let w = omega[parent];
-            if arm.joints[parent].is_revolute() {
-                c[parent][j] = column.coriolis.1[2];
-                let turned = pool.dot(&[w[1], -w[0]], &[column.inertial.1[0], column.inertial.1[1]]);
-                c[j][parent] = pool.add(column.transposed[2], turned);
-            } else {
-                c[parent][j] = column.coriolis.0[2];
-                c[j][parent] = pool.dot(&[w[1], -w[0]], &[column.inertial.0[0], column.inertial.0[1]]);
-            }
-            link = parent;
+            let entries = ways.entries(pool, &traveller);
+            b[parent][j] = entries.inertia;
+            b[j][parent] = entries.inertia;
+            c[parent][j] = entries.coriolis;
+            c[j][parent] = entries.transposed;
         }
     }
-    c
+    (b, c)
+}
+
+/// B_jj and C_jj.
+fn own_entries(pool: &mut Pool, joint: &Joint, column: &Column) -> (ExprId, ExprId) {
+    let axis = |(force, moment): (Vector, Vector)| if joint.is_revolute() { moment[2] } else { force[2] };
+    let mut own = axis(column.inertial);
+    if let Some(rotor) = joint.rotor {
+        let coupling = pool.mul(rotor.inertia, rotor.ratio);
+        let seen = pool.mul(coupling, rotor.ratio);
+        own = pool.add(own, seen);
+    }
+    (own, column.rate.map_or(ExprId::ZERO, |rate| axis(rate.coriolis)))
 }
 
 /// Angular velocity of each joint frame, in its own axes.
@@ -102,7 +111,8 @@ fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
 
 /// Velocity moments of each composite body relative to the link that carries all of it, in its joint frame.
 fn flows(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<Flow> {
-    let mut flows = vec![Flow { first: ZERO, second: [ZERO; 3], spin: ZERO }; arm.dof()];
+    let still = Flow { first: ZERO, second: [ZERO; 3], spin: ZERO };
+    let mut flows: Vec<Flow> = arm.joints.iter().map(|joint| swept(pool, joint.drift, &joint.body, &still)).collect();
     for i in (0..arm.dof()).rev() {
         let joint = &arm.joints[i];
         let Some(p) = joint.parent else { continue };
@@ -137,47 +147,48 @@ fn flows(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<Flow> {
     flows
 }
 
-/// Velocity of the origin of joint frame i relative to its parent's joint frame.
-fn origin_rate(pool: &mut Pool, arm: &Arm, i: usize) -> Vector {
-    let joint = &arm.joints[i];
-    if joint.is_revolute() {
-        return ZERO;
+/// What turning about z at a rate adds to the velocity moments of a body: h' + z × h, K + [z] S.
+fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &Flow) -> Flow {
+    let s = symmetric(&body.second);
+    let mut flow = *flow;
+    for (to, from, rate) in [(0, 1, -rate), (1, 0, rate)] {
+        let moved = pool.mul(rate, body.first[from]);
+        flow.first[to] = pool.add(flow.first[to], moved);
+        for b in 0..3 {
+            let moved = pool.mul(rate, s[from][b]);
+            flow.second[to][b] = pool.add(flow.second[to][b], moved);
+        }
     }
-    let rate = pool.symbol(Symbol::Rate(i as u16));
-    pool.scale(rate, &[joint.fixed[0][2], joint.fixed[1][2], joint.fixed[2][2]])
+    flow
 }
 
 /// A composite body in the axes of its parent turned by `fixed`, and its motion relative to that parent.
 fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flow) -> (Body, Flow) {
-    let s = joint.tensor_about_axis(pool, &symmetric(&body.second));
-    let h = joint.about_axis(pool, &body.first);
-    let mut k = joint.tensor_about_axis(pool, &flow.second);
-    let mut rate = joint.about_axis(pool, &flow.first);
-    let turn = [-joint.spin, joint.spin];
-    for (to, from) in [(0, 1), (1, 0)] {
-        let swept = pool.mul(turn[to], h[from]);
-        rate[to] = pool.add(rate[to], swept);
-        for b in 0..3 {
-            let swept = pool.mul(turn[to], s[from][b]);
-            k[to][b] = pool.add(k[to][b], swept);
-        }
-    }
-    let second = super::arm::PAIRS.map(|(a, b)| s[a][b]);
-    (Body { mass: body.mass, first: h, second }, Flow { first: rate, second: k, spin: joint.about_axis(pool, &flow.spin) })
+    // Traces do not turn: taken here, they are found again.
+    pool.add(body.second[0], body.second[2]);
+    pool.add(flow.second[0][0], flow.second[1][1]);
+    let turned = joint.body_about_axis(pool, body);
+    let flow = Flow {
+        first: joint.about_axis(pool, &flow.first),
+        second: joint.tensor_about_axis(pool, &flow.second),
+        spin: joint.about_axis(pool, &flow.spin),
+    };
+    (turned, swept(pool, joint.spin, &turned, &flow))
 }
 
 /// The wrenches of column j about the origin of its frame, in the axes of `about_axis`.
 fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &Flow) -> Column {
     let (h, rate, k) = (body.first, flow.first, flow.second);
     if !joint.is_revolute() {
-        // ∂x = z, its rate Ω × z; E = ∫ dr/dt × z dm.
+        // ∂x = z, its rate Ω × z; E + n × Ω = h' × z + (Ω × z) × h.
         let turning = [w[1], -w[0], ExprId::ZERO];
-        let swept = pool.cross(w, &h);
-        let velocity = pool.add_vectors(&swept, &rate);
+        let swept = pool.cross(&turning, &h);
         return Column {
             inertial: ([ExprId::ZERO, ExprId::ZERO, body.mass], [h[1], -h[0], ExprId::ZERO]),
-            coriolis: (pool.scale(body.mass, &turning), pool.cross(&h, &turning)),
-            transposed: [velocity[1], -velocity[0], ExprId::ZERO],
+            rate: Some(Rate {
+                coriolis: (pool.scale(body.mass, &turning), swept.map(|x| -x)),
+                transposed: pool.add_vectors(&[rate[1], -rate[0], ExprId::ZERO], &swept),
+            }),
         };
     }
     let [xx, xy, yy, xz, yz, _] = body.second;
@@ -188,45 +199,11 @@ fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &Flow) 
     let half = pool.fraction(1, 2);
     let spin = [pool.mul(half, flow.spin[0]), pool.mul(half, flow.spin[1])];
     let (ax, ay) = (pool.dot(&[xx, xy, xz], w), pool.dot(&[xy, yy, yz], w));
-    let (bx, by) = (pool.dot(&[xx, -xy], &[w[1], w[0]]), pool.dot(&[xy, -yy], &[w[1], w[0]]));
-    let bz = pool.dot(&[xz, -yz], &[w[1], w[0]]);
     Column {
         inertial: (f, [-xz, -yz, pool.add(xx, yy)]),
-        coriolis: (force, [pool.sum([ay, -k[0][2], -spin[1]]), pool.sum([-ax, -k[1][2], spin[0]]), trace]),
-        transposed: [pool.sum([bx, -k[2][0], spin[1]]), pool.sum([by, -k[2][1], -spin[0]]), pool.add(trace, bz)],
+        rate: Some(Rate {
+            coriolis: (force, [pool.sum([ay, -k[0][2], -spin[1]]), pool.sum([-ax, -k[1][2], spin[0]]), trace]),
+            transposed: [pool.sum([-ay, -k[2][0], spin[1]]), pool.sum([ax, -k[2][1], -spin[0]]), trace],
+        }),
     }
-}
-
-/// The column in the parent's frame, about its origin; `first` if it is still in the axes of `about_axis`.
-fn outward(pool: &mut Pool, arm: &Arm, i: usize, column: &Column, outer: &Vector, first: bool) -> Column {
-    let joint = &arm.joints[i];
-    let mut turn = |v: &Vector| if first { pool.transform(&joint.fixed, v) } else { joint.outward(pool, v) };
-    let (f, n) = (turn(&column.inertial.0), turn(&column.inertial.1));
-    let (force, moment) = (turn(&column.coriolis.0), turn(&column.coriolis.1));
-    let transposed = turn(&column.transposed);
-    let swept = pool.cross(outer, &joint.origin);
-    let sliding = origin_rate(pool, arm, i);
-    let velocity = pool.add_vectors(&swept, &sliding);
-    let mut moved = |at: &Vector, force: &Vector, moment: &Vector| {
-        let lever = pool.cross(at, force);
-        pool.add_vectors(moment, &lever)
-    };
-    Column {
-        inertial: (f, moved(&joint.origin, &f, &n)),
-        coriolis: (force, moved(&joint.origin, &force, &moment)),
-        transposed: moved(&velocity, &f, &transposed),
-    }
-}
-
-/// What the rotor of a joint adds to its column, in the frame of the link that it rides on.
-fn add_rotor(pool: &mut Pool, joint: &Joint, omega: &Vector, column: &mut Column) {
-    let Some(rotor) = joint.rotor else { return };
-    let coupling = pool.mul(rotor.inertia, rotor.ratio);
-    let momentum = pool.scale(coupling, &rotor.axis);
-    let half = pool.fraction(1, 2);
-    let turning = pool.cross(omega, &momentum);
-    let turning = pool.scale(half, &turning);
-    column.inertial.1 = pool.add_vectors(&column.inertial.1, &momentum);
-    column.coriolis.1 = pool.add_vectors(&column.coriolis.1, &turning);
-    column.transposed = pool.add_vectors(&column.transposed, &turning);
 }

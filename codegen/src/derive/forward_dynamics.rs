@@ -10,11 +10,12 @@
 use super::arm::Arm;
 use super::inertia::inertia_matrix;
 use super::newton_euler::{inverse_dynamics, Motion};
+use super::plan::Plan;
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// ddq(q, dq, tau).
-pub fn forward_dynamics(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
-    let b = inertia_matrix(pool, arm);
+pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
+    let b = inertia_matrix(pool, arm, plan);
     let motion = Motion::unaccelerated(pool, arm);
     let bias = inverse_dynamics(pool, arm, &motion);
     let tau = arm.symbols(pool, Symbol::Torque);

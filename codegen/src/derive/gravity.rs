@@ -8,8 +8,12 @@
 
 use super::arm::Arm;
 use super::kinematics::frames;
+use super::plan::{Pass, Plan};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
+
+/// Forks of g, apart from those of the columns of B.
+const GRAVITY: usize = 1 << 16;
 
 /// Mass and first moment of all that each joint carries, in its joint frame.
 fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
@@ -27,23 +31,26 @@ fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
 }
 
 /// g(q), with the direction of gravity handed from the base outwards.
-pub fn gravity(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
+///
+/// A joint meets it in its own axes (way 0) or, all that it carries turned already for its parent, in the parent's (way 1).
+pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
     let composite = composite_moments(pool, arm);
     let mut direction: Vec<Vector> = Vec::with_capacity(arm.dof());
-    for i in 0..arm.dof() {
-        let outer = arm.joints[i].parent.map_or(arm.gravity, |p| direction[p]);
-        direction.push(arm.joints[i].inward(pool, &outer));
+    let mut g = Vec::with_capacity(arm.dof());
+    for (i, joint) in arm.joints.iter().enumerate() {
+        let outer = joint.parent.map_or(arm.gravity, |p| direction[p]);
+        let hat = pool.transform_back(&joint.fixed, &outer);
+        let own = joint.about_axis_back(pool, &hat);
+        direction.push(own);
+        let (mass, mut h) = composite[i];
+        let mut meets = own;
+        if plan.way(Pass::Meeting, GRAVITY + i, 2) == 1 {
+            h = joint.about_axis(pool, &h);
+            meets = hat;
+        }
+        g.push(if joint.is_revolute() { pool.dot(&[h[1], -h[0]], &[meets[0], meets[1]]) } else { -pool.mul(mass, meets[2]) });
     }
-    (0..arm.dof())
-        .map(|i| {
-            let ((mass, h), g) = (composite[i], direction[i]);
-            if arm.joints[i].is_revolute() {
-                pool.dot(&[h[1], -h[0]], &[g[0], g[1]])
-            } else {
-                -pool.mul(mass, g[2])
-            }
-        })
-        .collect()
+    g
 }
 
 /// U(q), J: zero where all masses, rotors included, lie at the origin of the base frame.

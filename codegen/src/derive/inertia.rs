@@ -10,6 +10,8 @@
 //! The rotor of joint i adds I_m k² on the diagonal and, as it rides on the parent link, the moment I_m k z_m there: this couples the joints.
 
 use super::arm::{Arm, Body};
+use super::columns::{Column, Ways};
+use super::plan::Plan;
 use crate::manipulator::JointKind;
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool};
@@ -27,36 +29,35 @@ pub fn composite_bodies(pool: &mut Pool, arm: &Arm) -> Vec<Body> {
 }
 
 /// B(q), all entries.
-pub fn inertia_matrix(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
+pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let n = arm.dof();
     let composite = composite_bodies(pool, arm);
+    let mut ways = Ways::new(arm, None);
     let mut b = vec![vec![ExprId::ZERO; n]; n];
-    for i in (0..n).rev() {
-        let Body { mass, first: h, second: [xx, _, yy, xz, yz, _] } = composite[i];
-        let (mut force, mut moment): (Vector, Vector) = match arm.joints[i].kind {
+    for j in (0..n).rev() {
+        let joint = &arm.joints[j];
+        // The trace does not turn; the other entries are those that the parent's composite body takes, turned already.
+        pool.add(composite[j].second[0], composite[j].second[2]);
+        let Body { mass, first: h, second: [xx, _, yy, xz, yz, _] } = joint.body_about_axis(pool, &composite[j]);
+        let (force, moment): (Vector, Vector) = match joint.kind {
             JointKind::Revolute => ([-h[1], h[0], ExprId::ZERO], [-xz, -yz, pool.add(xx, yy)]),
             JointKind::Prismatic => ([ExprId::ZERO, ExprId::ZERO, mass], [h[1], -h[0], ExprId::ZERO]),
         };
-        let mut own = along(arm, i, &force, &moment);
-        if let Some(rotor) = arm.joints[i].rotor {
-            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+        let mut own = along(arm, j, &force, &moment);
+        let coupling = joint.rotor.map(|rotor| (pool.mul(rotor.inertia, rotor.ratio), rotor));
+        if let Some((coupling, rotor)) = coupling {
             let seen = pool.mul(coupling, rotor.ratio);
             own = pool.add(own, seen);
         }
-        b[i][i] = own;
-        let mut link = i;
-        while let Some(parent) = arm.joints[link].parent {
-            (force, moment) = wrench_outward(pool, arm, link, &force, &moment);
-            if link == i {
-                if let Some(rotor) = arm.joints[i].rotor {
-                    let coupling = pool.mul(rotor.inertia, rotor.ratio);
-                    let spin = pool.scale(coupling, &rotor.axis);
-                    moment = pool.add_vectors(&moment, &spin);
-                }
+        b[j][j] = own;
+        let mut traveller = ways.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
+        while let Some(parent) = ways.go(pool, plan, &mut traveller) {
+            if let (Some((coupling, rotor)), true) = (coupling, joint.parent == Some(parent)) {
+                let spin = pool.scale(coupling, &rotor.axis);
+                traveller.add_moment(pool, &spin, &ZERO, &ZERO);
             }
-            b[parent][i] = along(arm, parent, &force, &moment);
-            b[i][parent] = b[parent][i];
-            link = parent;
+            b[parent][j] = ways.entries(pool, &traveller).inertia;
+            b[j][parent] = b[parent][j];
         }
     }
     b

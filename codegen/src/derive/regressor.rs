@@ -13,7 +13,7 @@
 use super::arm::Arm;
 use super::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{ParameterKind, ParameterVector, StandardParameter};
-use crate::ring::matrix::{transpose, Matrix, Vector, IDENTITY, ZERO};
+use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// Y, for an arm whose parameter vector are symbols (named parameters) or for the standard parameters of any arm.
@@ -43,7 +43,8 @@ pub fn standard_columns(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[
 
 /// The same with the parameters of a link in its joint frame.
 pub fn columns_in_joint_frames(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
-    columns_in(pool, arm, motion, columns, &vec![(IDENTITY, ZERO); arm.dof()])
+    let frames: Vec<(Matrix, Vector)> = arm.joints.iter().map(|joint| (joint.own_axes, ZERO)).collect();
+    columns_in(pool, arm, motion, columns, &frames)
 }
 
 fn columns_in(

@@ -3,6 +3,7 @@
 use super::arm::Arm;
 use super::newton_euler::{friction, inverse_dynamics, newton_euler, Motion};
 use super::parameters::{ParameterVector, View};
+use super::plan::Plan;
 use super::*;
 use crate::equations::{field_of, Quantity};
 use crate::manipulator::Manipulator;
@@ -130,7 +131,7 @@ fn textbook_inertia(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
 #[test]
 fn inertia_is_the_textbook_sum() {
     check(|pool, arm, _| {
-        let (b, textbook) = (inertia::inertia_matrix(pool, arm), textbook_inertia(pool, arm));
+        let (b, textbook) = (inertia::inertia_matrix(pool, arm, &mut Plan::default()), textbook_inertia(pool, arm));
         assert_equal(pool, &b.concat(), &textbook.concat());
     });
 }
@@ -144,9 +145,13 @@ fn grouping_changes_nothing() {
             let motion = Motion::plain(pool, arm);
             let (a, b) = (newton_euler(pool, arm, &motion, true), newton_euler(pool, &grouped, &motion, true));
             assert_equal(pool, &a, &b);
-            let (a, b) = (inertia::inertia_matrix(pool, arm), inertia::inertia_matrix(pool, &grouped));
+            let (a, b) = (
+                inertia::inertia_matrix(pool, arm, &mut Plan::default()),
+                inertia::inertia_matrix(pool, &grouped, &mut Plan::default()),
+            );
             assert_equal(pool, &a.concat(), &b.concat());
-            let (a, b) = (gravity::gravity(pool, arm), gravity::gravity(pool, &grouped));
+            let (a, b) =
+                (gravity::gravity(pool, arm, &mut Plan::default()), gravity::gravity(pool, &grouped, &mut Plan::default()));
             assert_equal(pool, &a, &b);
             let (a, b) = (energy::kinetic_energy(pool, arm), energy::kinetic_energy(pool, &grouped));
             assert_equal(pool, &[a], &[b]);
@@ -181,19 +186,97 @@ fn christoffel(pool: &mut Pool, arm: &Arm, b: &[Vec<ExprId>]) -> Vec<Vec<ExprId>
 #[test]
 fn coriolis_is_christoffels() {
     check(|pool, arm, _| {
-        let b = inertia::inertia_matrix(pool, arm);
+        let b = inertia::inertia_matrix(pool, arm, &mut Plan::default());
         let textbook = christoffel(pool, arm, &b);
-        let c = coriolis::coriolis_matrix(pool, arm);
+        let c = coriolis::coriolis_matrix(pool, arm, &mut Plan::default());
         assert_equal(pool, &c.concat(), &textbook.concat());
     });
+}
+
+/// Arms whose constants are all reduced, so that every pass has its forks: revolute joints alone with three parallel axes in a row, and
+/// two with a sliding joint inside and at the end of such a row.
+fn reduced_arms() -> Vec<Manipulator> {
+    let reduced = STANDARD.replace("theta: 0.7", "theta: pi/6").replace("rpy: [0.1,", "rpy: [pi/2,");
+    let revolute = reduced.replace("prismatic", "revolute").replace("convention: standard", "convention: modified");
+    let parallel = revolute.replace("alpha: pi/3", "alpha: 0").replace("alpha: 0.3", "alpha: 0");
+    let sliding = reduced
+        .replace("convention: standard", "convention: modified")
+        .replace("alpha: pi/3", "alpha: 0")
+        .replace("alpha: 0.3", "alpha: 0");
+    let tilted = reduced.replace("alpha: 0.3", "alpha: pi/3");
+    [parallel, sliding, tilted]
+        .into_iter()
+        .map(|text| crate::manipulator::read(&Source::new("reduced.yaml", text)).0.expect("valid").0)
+        .collect()
+}
+
+#[test]
+fn every_way_of_a_plan_leads_to_the_same_expressions() {
+    for manipulator in arms().into_iter().take(1).chain(reduced_arms()) {
+        let model = crate::Model::new(manipulator);
+        for quantity in Quantity::ALL.into_iter().filter(|q| !matches!(q, Quantity::Regressor | Quantity::KnownTorque)) {
+            let mut pool = Pool::new(model.field.clone());
+            let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
+            let plain = quantity.entries(&mut pool, &arm, &model.parameters, &mut Plan::default());
+            for seed in 0..8 {
+                let found = quantity.by_plan(&model, View::Nominal, Plan::scattered(seed), 0);
+                for (k, (&a, &b)) in plain.iter().zip(&found.entries).enumerate() {
+                    assert_eq!(
+                        pool.fingerprint(a),
+                        found.pool.fingerprint(b),
+                        "{} {k} of {} by plan {seed}",
+                        quantity.name(),
+                        model.manipulator.name
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_way_leads_to_the_same_regressor() {
+    for manipulator in reduced_arms() {
+        for choice in [RegressorChoice::Standard, RegressorChoice::Base] {
+            let model = crate::Model::new(Manipulator { regressor: choice, ..manipulator.clone() });
+            for quantity in [Quantity::Regressor, Quantity::KnownTorque] {
+                let fingerprints = |plan| {
+                    let found = quantity.by_plan(&model, View::Nominal, plan, 0);
+                    found.entries.iter().map(|&e| found.pool.fingerprint(e)).collect::<Vec<_>>()
+                };
+                let plain = fingerprints(Plan::default());
+                for seed in 0..8 {
+                    assert_eq!(fingerprints(Plan::scattered(seed)), plain, "{} by plan {seed}", quantity.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_searched_and_optimised_program_computes_the_same_without_any_pass() {
+    for manipulator in arms().into_iter().take(1).chain(reduced_arms()) {
+        let model = crate::Model::new(manipulator);
+        let fingerprints = |without| {
+            let quantities = [Quantity::InertiaMatrix, Quantity::CoriolisMatrix, Quantity::Gravity, Quantity::InverseDynamics];
+            quantities.map(|quantity| {
+                let found = quantity.by_search(&model, View::Nominal, without, 20_000);
+                found.entries.iter().map(|&e| found.pool.fingerprint(e)).collect::<Vec<_>>()
+            })
+        };
+        let none = fingerprints(plan::Passes::all());
+        for pass in plan::Pass::ALL {
+            assert_eq!(fingerprints([pass].into_iter().collect()), none, "without {}", pass.name());
+        }
+    }
 }
 
 #[test]
 fn inertia_rate_less_twice_coriolis_is_skew() {
     check(|pool, arm, _| {
-        let b = inertia::inertia_matrix(pool, arm);
+        let b = inertia::inertia_matrix(pool, arm, &mut Plan::default());
         let rate = pool.time_derivative(&b.concat());
-        let c = coriolis::coriolis_matrix(pool, arm);
+        let c = coriolis::coriolis_matrix(pool, arm, &mut Plan::default());
         let n = arm.dof();
         for i in 0..n {
             for j in 0..n {
@@ -209,9 +292,9 @@ fn newton_euler_is_lagrange() {
     check(|pool, arm, _| {
         let motion = Motion::with_reference(pool, arm);
         let tau = newton_euler(pool, arm, &motion, true);
-        let b = inertia::inertia_matrix(pool, arm);
-        let c = coriolis::coriolis_matrix(pool, arm);
-        let g = gravity::gravity(pool, arm);
+        let b = inertia::inertia_matrix(pool, arm, &mut Plan::default());
+        let c = coriolis::coriolis_matrix(pool, arm, &mut Plan::default());
+        let g = gravity::gravity(pool, arm, &mut Plan::default());
         let inertial = times(pool, &b, &motion.accelerations);
         let centrifugal = times(pool, &c, &motion.reference);
         let sum: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sum([inertial[i], centrifugal[i], g[i]])).collect();
@@ -224,7 +307,7 @@ fn gravity_is_the_gradient_of_the_potential() {
     check(|pool, arm, _| {
         let potential = gravity::potential_energy(pool, arm);
         let gradient: Vec<ExprId> = (0..arm.dof() as u16).map(|i| pool.partial_derivative(&[potential], i)[0]).collect();
-        let g = gravity::gravity(pool, arm);
+        let g = gravity::gravity(pool, arm, &mut Plan::default());
         assert_equal(pool, &g, &gradient);
     });
 }
@@ -233,7 +316,7 @@ fn gravity_is_the_gradient_of_the_potential() {
 fn kinetic_energy_is_half_the_quadratic_form() {
     check(|pool, arm, _| {
         let energy = energy::kinetic_energy(pool, arm);
-        let b = inertia::inertia_matrix(pool, arm);
+        let b = inertia::inertia_matrix(pool, arm, &mut Plan::default());
         let rates = arm.symbols(pool, Symbol::Rate);
         let momentum = times(pool, &b, &rates);
         let (twice, two) = (pool.dot(&rates, &momentum), pool.integer(2));
@@ -271,7 +354,7 @@ fn jacobian_is_the_derivative_of_the_frame() {
 #[test]
 fn forward_dynamics_inverts_inverse_dynamics() {
     check(|pool, arm, _| {
-        let acceleration = forward_dynamics::forward_dynamics(pool, arm);
+        let acceleration = forward_dynamics::forward_dynamics(pool, arm, &mut Plan::default());
         let motion = Motion { accelerations: acceleration, ..Motion::plain(pool, arm) };
         let tau = inverse_dynamics(pool, arm, &motion);
         let expected = arm.symbols(pool, Symbol::Torque);

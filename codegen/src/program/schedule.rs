@@ -2,9 +2,11 @@
 
 use std::collections::HashMap;
 
+use super::optimise::optimise;
 use super::{Cost, Function, Module, Operand, Operation, Output, Step, Trig};
 use crate::derive::parameters::View;
-use crate::equations::{Argument, Derivation, Quantity};
+use crate::derive::plan::{Pass, Passes};
+use crate::equations::{Argument, Derivation, Quantity, DIVISION};
 use crate::exact::Number;
 use crate::manipulator::{JointKind, Scalar};
 use crate::ring::{ExprId, Node, Pool};
@@ -17,15 +19,23 @@ pub struct Options {
     pub scalar: Scalar,
     /// Where sines and cosines come from.
     pub trig: Trig,
+    /// Passes that are not used.
+    pub without: Passes,
 }
+
+/// A closed form with so many times the operations of the recursion is not looked at further.
+const HOPELESS: usize = 2;
+
+/// How many nodes the search for the cheapest derivation of a quantity may form.
+const EFFORT: usize = 1_000_000;
 
 /// The module of an arm.
 pub fn module(model: &Model, options: &Options) -> Module {
     let mut functions = Vec::new();
     for quantity in Quantity::ALL {
-        functions.push(function(model, quantity, false));
+        functions.push(function(model, quantity, false, options));
         if quantity.has_parameters() {
-            functions.push(function(model, quantity, true));
+            functions.push(function(model, quantity, true, options));
         }
     }
     let manipulator = &model.manipulator;
@@ -49,14 +59,21 @@ pub fn module(model: &Model, options: &Options) -> Module {
 }
 
 /// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.
-fn function(model: &Model, quantity: Quantity, with_parameters: bool) -> Function {
+fn function(model: &Model, quantity: Quantity, with_parameters: bool, options: &Options) -> Function {
     let view = if with_parameters { View::Vector(&model.parameters) } else { View::Nominal };
-    let recursion = quantity.by_recursion(model, view);
-    let closed = recursion.by_closed_form();
+    let without = options.without;
+    let recursion = quantity.by_search(model, view, without, EFFORT);
+    let closed = if without.contains(Pass::ClosedForm) { Vec::new() } else { recursion.by_closed_form() };
+    // A closed form that is far longer than the recursion does not become shorter than it.
+    let most = HOPELESS * recursion.pool.operations(&recursion.entries, DIVISION);
     closed
-        .iter()
-        .chain([&recursion])
-        .map(|derivation| lower(quantity, with_parameters, derivation))
+        .into_iter()
+        .filter(|closed| closed.pool.operations(&closed.entries, DIVISION) <= most)
+        .chain([recursion])
+        .map(|derivation| {
+            let (pool, entries) = optimise(&derivation.pool, &derivation.entries, without);
+            lower(quantity, with_parameters, &Derivation { pool, entries, ..derivation })
+        })
         .min_by_key(|function| Cost::of(function).weight())
         .expect("there is at least the recursion")
 }

@@ -184,10 +184,67 @@ fn merge(a: &Factors, b: &Factors) -> Factors {
 
 impl Pool {
     /// The normal forms of expressions; `None` for one that needs, on the way or at the end, more than `limit` terms or a reciprocal.
-    ///
-    /// Terms of coefficients count one by one: products of general angles make sums as long as the waves do.
     pub fn normal_forms(&self, exprs: &[ExprId], limit: usize) -> Vec<Option<NormalForm>> {
-        let needed = self.reachable(exprs);
+        self.normal_forms_while(exprs, limit, |_| true)
+    }
+
+    /// The same, if there are all; the first that is not there ends the work.
+    pub fn all_normal_forms(&self, exprs: &[ExprId], limit: usize) -> Option<Vec<NormalForm>> {
+        self.normal_forms_while(exprs, limit, |form| form).into_iter().collect()
+    }
+
+    /// The expressions in another pool, with other meanings of the symbols.
+    pub fn rewritten(
+        &self,
+        exprs: &[ExprId],
+        to: &mut Pool,
+        meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId,
+    ) -> Vec<ExprId> {
+        let needed = self.needed(exprs);
+        let mut done = vec![ExprId::ZERO; self.len()];
+        for index in (0..self.len()).filter(|&i| needed[i]) {
+            let of = |e: ExprId| done[e.index()].signed(e.is_negated());
+            done[index] = match self.nodes[index] {
+                Node::Constant(_) => to.constant(&self.as_constant(self.expr(index)).expect("a constant")),
+                Node::Symbol(symbol) => meaning(to, symbol),
+                Node::Add(a, b) => to.add(of(a), of(b)),
+                Node::Mul(a, b) => to.mul(of(a), of(b)),
+                Node::Reciprocal(a) => to.reciprocal(of(a)),
+            };
+        }
+        exprs.iter().map(|e| done[e.index()].signed(e.is_negated())).collect()
+    }
+
+    /// Which nodes the expressions need.
+    fn needed(&self, exprs: &[ExprId]) -> Vec<bool> {
+        let mut needed = vec![false; self.len()];
+        exprs.iter().for_each(|e| needed[e.index()] = true);
+        for index in (0..self.len()).rev() {
+            if needed[index] {
+                match self.nodes[index] {
+                    Node::Add(a, b) | Node::Mul(a, b) => {
+                        needed[a.index()] = true;
+                        needed[b.index()] = true;
+                    }
+                    Node::Reciprocal(a) => needed[a.index()] = true,
+                    Node::Constant(_) | Node::Symbol(_) => {}
+                }
+            }
+        }
+        needed
+    }
+
+    fn normal_forms_while(&self, exprs: &[ExprId], limit: usize, go_on: impl Fn(bool) -> bool) -> Vec<Option<NormalForm>> {
+        let mut needed = vec![false; self.len()];
+        exprs.iter().for_each(|e| needed[e.index()] = true);
+        for index in (0..self.len()).rev() {
+            if needed[index] {
+                if let Node::Add(a, b) | Node::Mul(a, b) = self.nodes[index] {
+                    needed[a.index()] = true;
+                    needed[b.index()] = true;
+                }
+            }
+        }
         let mut forms: Vec<Option<Rc<NormalForm>>> = vec![None; self.len()];
         for index in (0..self.len()).filter(|&i| needed[i]) {
             let of = |e: ExprId| forms[e.index()].clone();
@@ -199,10 +256,13 @@ impl Pool {
                         .or(Some(NormalForm::default()))
                 }
                 Node::Symbol(symbol) => Some(symbol_form(symbol)),
-                Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.size() <= limit),
+                Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.len() <= limit),
                 Node::Mul(a, b) => of(a).zip(of(b)).and_then(|(a, b)| a.times(&b, limit)),
                 Node::Reciprocal(_) => None,
             };
+            if !go_on(form.is_some()) {
+                return vec![None; exprs.len()];
+            }
             forms[index] = form.map(Rc::new);
         }
         exprs
@@ -240,6 +300,16 @@ impl Arrangement {
 impl Pool {
     /// The expression of a normal form.
     pub fn from_normal_form(&mut self, form: &NormalForm, arrangement: Arrangement) -> ExprId {
+        self.from_normal_form_in(form, arrangement, &mut |pool, symbol| pool.symbol(symbol))
+    }
+
+    /// The same, `meaning` telling what each symbol beside the sines and cosines stands for.
+    pub fn from_normal_form_in(
+        &mut self,
+        form: &NormalForm,
+        arrangement: Arrangement,
+        meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId,
+    ) -> ExprId {
         let mut sum = ExprId::ZERO;
         for (wave, group) in form.by_wave() {
             let wave = self.wave(wave);
@@ -253,7 +323,7 @@ impl Pool {
                 };
                 let mut term = start;
                 for &(symbol, power) in factors {
-                    let symbol = self.symbol(symbol);
+                    let symbol = meaning(self, symbol);
                     for _ in 0..power {
                         term = self.mul(term, symbol);
                     }

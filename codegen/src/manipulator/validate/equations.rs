@@ -11,6 +11,7 @@ use super::{Places, Role, Scalar};
 use crate::derive::arm::Arm;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterVector, View};
+use crate::derive::plan::Plan;
 use crate::derive::regressor::derivative_by_parameter;
 use crate::derive::{inertia, kinematics};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -36,7 +37,7 @@ pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mu
             found.push(immovable_task(manipulator, places));
         }
     }
-    let b = inertia::inertia_matrix(&mut pool, &arm);
+    let b = inertia::inertia_matrix(&mut pool, &arm, &mut Plan::default());
     let values = b.iter().map(|row| row.iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
     found.extend(zero_pivots(&field, values).into_iter().map(|joint| singular_inertia(manipulator, places, joint)));
     found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));

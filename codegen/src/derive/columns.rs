@@ -1,0 +1,297 @@
+//! How the wrench of a column reaches the joints between it and the base.
+//!
+//! Column j of B is what each ancestor i of joint j feels of ∂x/∂q_j over all that joint j carries: a force f and a moment n about a
+//! point, handed from link to link. C hands on the wrench (F, N) of the rate of ∂x/∂q_j and the moment E as well (`coriolis.rs`). With
+//! d from o_i to the point that the moments are about,
+//!
+//! ```text
+//! B_ij = z_i · (n + d × f),   C_ij = z_i · (N + d × F),   C_ji = dz_i/dt · n + z_i · E + d(z_i × d)/dt · f      (joint i revolute)
+//! B_ij = z_i · f,             C_ij = z_i · F,             C_ji = dz_i/dt · f                                     (prismatic)
+//! ```
+//!
+//! E is kept relative to a rotating frame, E + n × Ω with Ω the angular velocity of the frame of link k: relative to link i itself the term
+//! dz_i/dt · n is gone. Moved by d it gains d' × f - d × (Ω × f), d' the rate of d in that frame.
+//!
+//! From one link to the next there are three ways: shift the moments to the new origin in the new axes (way 0) or before turning, in
+//! the old axes (way 1), which saves turning a force that nothing needs any more; or keep them about the old point (way 2), which pays where
+//! only one component is asked for on the way.
+
+use std::collections::BTreeMap;
+
+use super::arm::{Arm, Joint};
+use super::plan::{Pass, Plan};
+use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// The wrenches of a column.
+#[derive(Clone, Copy)]
+pub(super) struct Column {
+    /// f, n.
+    pub(super) inertial: (Vector, Vector),
+    /// For C.
+    pub(super) rate: Option<Rate>,
+}
+
+/// What C needs beside f and n.
+#[derive(Clone, Copy)]
+pub(super) struct Rate {
+    /// F, N.
+    pub(super) coriolis: (Vector, Vector),
+    /// E + n × Ω.
+    pub(super) transposed: Vector,
+}
+
+/// Entries B_ij, C_ij and C_ji of an ancestor i.
+pub(super) struct Entries {
+    pub(super) inertia: ExprId,
+    pub(super) coriolis: ExprId,
+    pub(super) transposed: ExprId,
+}
+
+/// A column on its way.
+pub(super) struct Traveller {
+    column: Column,
+    /// The link in whose frame it is.
+    link: usize,
+    /// Whether it is still in the axes of the parent turned by `fixed`.
+    fresh: bool,
+    /// The joint whose origin the moments are about.
+    about: usize,
+    /// The link that E is relative to; none for the base.
+    relative: Option<usize>,
+}
+
+/// Vectors between origins, found when first asked for.
+pub(super) struct Ways<'a> {
+    arm: &'a Arm,
+    /// Angular velocities of the joint frames, for C.
+    omega: Option<&'a [Vector]>,
+    /// o_r - o_i in frame i, its rate, and its rate relative to frame i.
+    offsets: BTreeMap<(usize, usize), Offset>,
+}
+
+/// A vector between origins, its rate, and its rate relative to the frame that it is in.
+#[derive(Clone, Copy)]
+struct Offset {
+    d: Vector,
+    rate: Vector,
+    relative: Vector,
+}
+
+impl<'a> Ways<'a> {
+    pub(super) fn new(arm: &'a Arm, omega: Option<&'a [Vector]>) -> Ways<'a> {
+        Ways { arm, omega, offsets: BTreeMap::new() }
+    }
+
+    /// A column at its own joint, in the axes of the parent turned by `fixed`, E relative to the parent.
+    pub(super) fn start(&self, pool: &mut Pool, plan: &mut Plan, mut column: Column, joint: usize) -> Traveller {
+        let mut relative = self.arm.joints[joint].parent;
+        if let (Some(moving), Some(p), Some(omega)) = (&mut column.rate, relative, self.omega) {
+            if plan.way(Pass::RelativeMoment, joint, 2) == 1 {
+                let turning = pool.transform_back(&self.arm.joints[joint].fixed, &omega[p]);
+                let swept = pool.cross(&turning, &column.inertial.1);
+                moving.transposed = pool.add_vectors(&moving.transposed, &swept);
+                relative = None;
+            }
+        }
+        Traveller { column, link: joint, fresh: true, about: joint, relative }
+    }
+
+    /// o_i - o_parent, in the parent's frame.
+    fn step(&self, pool: &mut Pool, i: usize) -> Offset {
+        let joint = &self.arm.joints[i];
+        let (Some(p), Some(omega)) = (joint.parent, self.omega) else {
+            return Offset { d: joint.origin, rate: ZERO, relative: ZERO };
+        };
+        let swept = pool.cross(&omega[p], &joint.origin);
+        let relative = origin_rate(pool, self.arm, i);
+        Offset { d: joint.origin, rate: pool.add_vectors(&swept, &relative), relative }
+    }
+
+    /// o_r - o_i, in frame i.
+    fn offset(&mut self, pool: &mut Pool, r: usize, i: usize) -> Offset {
+        if r == i {
+            return Offset { d: ZERO, rate: ZERO, relative: ZERO };
+        }
+        if let Some(&known) = self.offsets.get(&(r, i)) {
+            return known;
+        }
+        let mut next = r;
+        while self.arm.joints[next].parent != Some(i) {
+            next = self.arm.joints[next].parent.expect("i is an ancestor of r");
+        }
+        let mut beyond = self.offset(pool, r, next);
+        let step = self.step(pool, next);
+        let joint = &self.arm.joints[next];
+        let swept = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.spin], &beyond.d);
+        beyond.relative = pool.add_vectors(&beyond.relative, &swept);
+        let mut sum = |beyond: &Vector, step: &Vector| {
+            let turned = outward(pool, joint, beyond);
+            pool.add_vectors(&turned, step)
+        };
+        let found = Offset {
+            d: sum(&beyond.d, &step.d),
+            rate: sum(&beyond.rate, &step.rate),
+            relative: sum(&beyond.relative, &step.relative),
+        };
+        self.offsets.insert((r, i), found);
+        found
+    }
+
+    /// Hands a column on to the parent of the link that it is at, if there is one.
+    pub(super) fn go(&mut self, pool: &mut Pool, plan: &mut Plan, t: &mut Traveller) -> Option<usize> {
+        let from = t.link;
+        let joint = &self.arm.joints[from];
+        let parent = joint.parent?;
+        let place = 2 * from + usize::from(t.fresh);
+        // The parent's angular velocity in the axes that the column is in.
+        let mut outer = ZERO;
+        if let Some(omega) = self.omega {
+            let hat = pool.transform_back(&joint.fixed, &omega[parent]);
+            outer = if t.fresh { hat } else { joint.about_axis_back(pool, &hat) };
+        }
+        if let (Some(moving), Some(omega)) = (&mut t.column.rate, self.omega) {
+            if t.relative == Some(from) {
+                let n = t.column.inertial.1;
+                let change = if plan.way(Pass::RelativeMoment, self.arm.dof() + from, 2) == 0 {
+                    t.relative = Some(parent);
+                    pool.cross(&n, &[ExprId::ZERO, ExprId::ZERO, -joint.spin])
+                } else {
+                    t.relative = None;
+                    pool.cross(&omega[from], &n)
+                };
+                moving.transposed = pool.add_vectors(&moving.transposed, &change);
+            }
+        }
+        let way = plan.way(Pass::Meeting, place, 3);
+        if way == 1 {
+            let mut total = self.offset(pool, t.about, from);
+            let step = self.step(pool, from);
+            let swept = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.spin], &total.d);
+            total.relative = pool.add_vectors(&total.relative, &swept);
+            let fresh = t.fresh;
+            let mut sum = |beyond: &Vector, step: &Vector| {
+                let hat = pool.transform_back(&joint.fixed, step);
+                let own = if fresh { hat } else { joint.about_axis_back(pool, &hat) };
+                pool.add_vectors(beyond, &own)
+            };
+            let total = Offset {
+                d: sum(&total.d, &step.d),
+                rate: sum(&total.rate, &step.rate),
+                relative: sum(&total.relative, &step.relative),
+            };
+            t.shift(pool, &total, &outer);
+            t.about = parent;
+        }
+        let fresh = t.fresh;
+        let mut turn = |v: &Vector| if fresh { pool.transform(&joint.fixed, v) } else { outward(pool, joint, v) };
+        t.column = Column {
+            inertial: (turn(&t.column.inertial.0), turn(&t.column.inertial.1)),
+            rate: t.column.rate.map(|rate| Rate {
+                coriolis: (turn(&rate.coriolis.0), turn(&rate.coriolis.1)),
+                transposed: turn(&rate.transposed),
+            }),
+        };
+        if way == 0 {
+            let offset = self.offset(pool, t.about, parent);
+            let outer = self.omega.map_or(ZERO, |omega| omega[parent]);
+            t.shift(pool, &offset, &outer);
+            t.about = parent;
+        }
+        (t.link, t.fresh) = (parent, false);
+        Some(parent)
+    }
+
+    /// What the joint of the link that the column is at feels.
+    pub(super) fn entries(&mut self, pool: &mut Pool, t: &Traveller) -> Entries {
+        let i = t.link;
+        let revolute = self.arm.joints[i].is_revolute();
+        let Offset { d, rate, .. } = self.offset(pool, t.about, i);
+        let (f, n) = t.column.inertial;
+        let felt = |pool: &mut Pool, f: &Vector, n: &Vector| {
+            if !revolute {
+                return f[2];
+            }
+            let lever = pool.dot(&[d[0], -d[1]], &[f[1], f[0]]);
+            pool.add(n[2], lever)
+        };
+        let inertia = felt(pool, &f, &n);
+        let (Some(moving), Some(omega)) = (t.column.rate, self.omega) else {
+            return Entries { inertia, coriolis: ExprId::ZERO, transposed: ExprId::ZERO };
+        };
+        let coriolis = felt(pool, &moving.coriolis.0, &moving.coriolis.1);
+        // dz/dt = ω × z
+        let z_rate = [omega[i][1], -omega[i][0], ExprId::ZERO];
+        let transposed = if revolute {
+            let turned = if t.relative == Some(i) { ExprId::ZERO } else { pool.dot3(&z_rate, &n) };
+            let lever = pool.cross(&z_rate, &d);
+            let lever = pool.add_vectors(&lever, &[-rate[1], rate[0], ExprId::ZERO]);
+            let pushed = pool.dot3(&lever, &f);
+            let sum = pool.add(moving.transposed[2], turned);
+            pool.add(sum, pushed)
+        } else {
+            pool.dot3(&z_rate, &f)
+        };
+        Entries { inertia, coriolis, transposed }
+    }
+}
+
+impl Traveller {
+    /// Adds the moment of a rotor, which is about no point, and its rate ½ ω × `moment`.
+    pub(super) fn add_moment(&mut self, pool: &mut Pool, moment: &Vector, omega: &Vector, frame: &Vector) {
+        self.column.inertial.1 = pool.add_vectors(&self.column.inertial.1, moment);
+        if let Some(moving) = &mut self.column.rate {
+            let half = pool.fraction(1, 2);
+            let turning = pool.cross(omega, moment);
+            let turning = pool.scale(half, &turning);
+            moving.coriolis.1 = pool.add_vectors(&moving.coriolis.1, &turning);
+            moving.transposed = pool.add_vectors(&moving.transposed, &turning);
+            if self.relative.is_some() {
+                let seen = pool.cross(moment, frame);
+                moving.transposed = pool.add_vectors(&moving.transposed, &seen);
+            }
+        }
+    }
+
+    /// Takes the moments about a point from which the old one is at d; `outer` is Ω if E is relative to a link.
+    fn shift(&mut self, pool: &mut Pool, offset: &Offset, outer: &Vector) {
+        let mut moved = |at: &Vector, force: &Vector, moment: &Vector| {
+            let lever = pool.cross(at, force);
+            pool.add_vectors(moment, &lever)
+        };
+        let (f, n) = self.column.inertial;
+        self.column.inertial.1 = moved(&offset.d, &f, &n);
+        if let Some(moving) = &mut self.column.rate {
+            moving.coriolis.1 = moved(&offset.d, &moving.coriolis.0, &moving.coriolis.1);
+            if self.relative.is_none() {
+                moving.transposed = moved(&offset.rate, &f, &moving.transposed);
+            } else {
+                moving.transposed = moved(&offset.relative, &f, &moving.transposed);
+                let lagging = pool.cross(&f, outer);
+                let lever = pool.cross(&offset.d, &lagging);
+                moving.transposed = pool.add_vectors(&moving.transposed, &lever);
+            }
+        }
+    }
+}
+
+fn outward(pool: &mut Pool, joint: &Joint, v: &Vector) -> Vector {
+    if *v == ZERO {
+        ZERO
+    } else {
+        joint.outward(pool, v)
+    }
+}
+
+/// Velocity of the origin of joint frame i relative to its parent's joint frame.
+pub(super) fn origin_rate(pool: &mut Pool, arm: &Arm, i: usize) -> Vector {
+    let joint = &arm.joints[i];
+    let drift = joint.parent.map_or(ExprId::ZERO, |p| arm.joints[p].drift);
+    let drifting = pool.cross(&[ExprId::ZERO, ExprId::ZERO, drift], &joint.origin);
+    if joint.is_revolute() {
+        return drifting;
+    }
+    let rate = pool.symbol(Symbol::Rate(i as u16));
+    let sliding = pool.scale(rate, &joint.fixed.map(|row| row[2]));
+    pool.add_vectors(&drifting, &sliding)
+}

@@ -1,0 +1,58 @@
+//! Passes that rewrite an arm into one that moves alike and costs less: `Arm` -> `Arm`, each an exact identity.
+
+mod grouping;
+mod orientation;
+mod unit;
+
+use std::collections::BTreeSet;
+
+use super::arm::Arm;
+use super::plan::{Pass, Plan};
+use crate::ring::Pool;
+
+/// What a derivation asks of an arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Motion and forces; the parameters of the links are numbers and may be mixed.
+    Dynamics,
+    /// Motion and forces; the parameters of the links are symbols, or the potential counts, which grouping drops.
+    Plain,
+    /// Frames alone.
+    Frames,
+}
+
+/// With more different roots than this among its constants an arm keeps the plain ways: each root may double a sum that is divided by.
+const ROOTS: usize = 3;
+
+/// Keeps off the passes that compare and divide the constants of an arm, where these have no short normal form: where sines and cosines
+/// of general angles are among them (two expressions of those may be equal and not look it), or many roots.
+pub fn suit(pool: &Pool, arm: &Arm, plan: &mut Plan) {
+    let joints = arm.joints.iter().flat_map(|joint| {
+        let vectors = joint.fixed.into_iter().chain([joint.origin, joint.body.first]).flatten();
+        vectors.chain(joint.body.second).chain([joint.body.mass])
+    });
+    let mut roots = BTreeSet::new();
+    let short = joints.chain(arm.gravity).all(|entry| {
+        pool.as_constant(entry).is_none_or(|number| {
+            let reduced = number.is_reduced();
+            roots.extend(number.terms().flat_map(|(monomial, _)| monomial.iter().map(|(atom, _)| atom.clone())));
+            reduced && roots.len() <= ROOTS
+        })
+    });
+    if !short {
+        [Pass::Slides, Pass::Freedoms, Pass::UnitOfLength].into_iter().for_each(|pass| plan.keep_off(pass));
+    }
+}
+
+/// The arm after all passes, in the ways that the plan takes.
+pub fn rewrite(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, used: Use) {
+    match used {
+        Use::Dynamics => {
+            grouping::group(pool, arm, plan);
+            unit::unit_of_length(pool, arm, plan);
+        }
+        Use::Frames => grouping::slide_all(pool, arm, plan),
+        Use::Plain => {}
+    }
+    orientation::parallel_axes(pool, arm, plan);
+}

@@ -1,0 +1,127 @@
+//! Grouping towards the base, with the freedoms that it has: which entry each handed parameter makes vanish, and where on its axis a
+//! joint frame has its origin.
+//!
+//! A mass on the axis of a revolute joint, its moment and second moment along the axis, look the same to the parent whatever the
+//! joint angle, and the joint does not feel them (Gautier and Khalil 1990, "Direct calculation of minimum set of inertial
+//! parameters of serial robots", in second-moment form). Any amount may move: the plain way moves all, so that m, hz and Szz of the link
+//! vanish; another way moves as much as makes an entry of the parent vanish. The second moments of a link behind a prismatic joint never
+//! change their direction: all six move.
+//!
+//! The origin of a joint frame is free along the joint axis: at the foot of either common normal, or where Sxz or Syz vanishes.
+
+use super::super::arm::{Arm, Body};
+use super::super::plan::{Pass, Plan};
+use crate::ring::{ExprId, Pool};
+
+/// Groups all links towards the base.
+pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+    for i in (0..arm.dof()).rev() {
+        slide(pool, arm, plan, i);
+        if !plan.has(Pass::Grouping) {
+            continue;
+        }
+        if arm.joints[i].is_revolute() {
+            for (k, unit) in [unit_mass(), unit_moment(), unit_second_moment()].iter().enumerate() {
+                hand_on(pool, arm, plan, i, k, unit);
+            }
+        } else {
+            arm.hand_second_moments_on(pool, i);
+        }
+    }
+}
+
+/// Slides alone.
+pub(super) fn slide_all(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+    for i in (0..arm.dof()).rev() {
+        slide(pool, arm, plan, i);
+    }
+}
+
+fn unit_mass() -> Body {
+    Body { mass: ExprId::ONE, ..Body::EMPTY }
+}
+
+fn unit_moment() -> Body {
+    let mut body = Body::EMPTY;
+    body.first[2] = ExprId::ONE;
+    body
+}
+
+fn unit_second_moment() -> Body {
+    let mut body = Body::EMPTY;
+    body.second[5] = ExprId::ONE;
+    body
+}
+
+fn entries(body: &Body) -> Vec<ExprId> {
+    std::iter::once(body.mass).chain(body.first).chain(body.second).collect()
+}
+
+/// Moves an amount of a body that joint i does not feel to the parent.
+fn hand_on(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usize, unit: &Body) {
+    let joint = arm.joints[i];
+    let own = [joint.body.mass, joint.body.first[2], joint.body.second[5]][kind];
+    let mut amount = own;
+    let moved = arm.fixed_outward(pool, i, unit);
+    if let Some(p) = joint.parent {
+        // An entry of the parent vanishes if as much moves as it lacks.
+        let there: Vec<(ExprId, ExprId)> = entries(&arm.joints[p].body)
+            .into_iter()
+            .zip(entries(&moved))
+            .skip(1)
+            .filter(|&(_, gain)| gain != ExprId::ZERO)
+            .collect();
+        let way = plan.way(Pass::Freedoms, 3 * i + kind, there.len() + 1);
+        if way > 0 {
+            let (entry, gain) = there[way - 1];
+            let inverse = pool.reciprocal(gain);
+            amount = -pool.mul(entry, inverse);
+        }
+    }
+    let scaled = |pool: &mut Pool, body: &Body, by: ExprId| Body {
+        mass: pool.mul(by, body.mass),
+        first: pool.scale(by, &body.first),
+        second: body.second.map(|x| pool.mul(by, x)),
+    };
+    let taken = scaled(pool, unit, -amount);
+    arm.joints[i].body = arm.joints[i].body.plus(pool, &taken);
+    if let Some(p) = joint.parent {
+        let given = scaled(pool, &moved, amount);
+        arm.joints[p].body = arm.joints[p].body.plus(pool, &given);
+    }
+}
+
+/// Moves the origin of joint frame i along its axis.
+fn slide(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
+    if !plan.has(Pass::Slides) {
+        return;
+    }
+    let joint = arm.joints[i];
+    let child = (0..arm.dof()).find(|&c| arm.joints[c].parent == Some(i));
+    let axis = joint.fixed.map(|row| row[2]);
+    let mut shifts = Vec::new();
+    let along = pool.dot3(&joint.origin, &axis);
+    if joint.is_revolute() {
+        shifts.push(-along);
+    }
+    if let Some(c) = child {
+        shifts.push(arm.joints[c].origin[2]);
+    }
+    let [h, s] = [joint.body.first, [joint.body.second[3], joint.body.second[4], ExprId::ZERO]];
+    for k in 0..2 {
+        if pool.is_constant(h[k]) && h[k] != ExprId::ZERO {
+            let inverse = pool.reciprocal(h[k]);
+            shifts.push(pool.mul(s[k], inverse));
+        }
+    }
+    let mut ways: Vec<ExprId> = Vec::new();
+    for shift in shifts {
+        if shift != ExprId::ZERO && pool.is_constant(shift) && !ways.contains(&shift) {
+            ways.push(shift);
+        }
+    }
+    let way = plan.way(Pass::Slides, i, ways.len() + 1);
+    if way > 0 {
+        arm.slide(pool, i, ways[way - 1]);
+    }
+}

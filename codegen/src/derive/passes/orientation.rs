@@ -1,0 +1,115 @@
+//! Parallel axes in one orientation.
+//!
+//! Joints with parallel axes turn what they carry by the sum of their angles. Instead of turning everything joint by joint, the links
+//! between them are described in axes that all share: those of the link before the first of them (angle 0), or those of one of their links. Then only the bodies of
+//! these links and the offsets between the axes turn, which are constants, and what comes from beyond turns once, by the sum,
+//! whose sine and cosine are formed by the addition theorem.
+
+use super::super::arm::{Arm, Joint};
+use super::super::plan::{Pass, Plan};
+use crate::ring::matrix::IDENTITY;
+use crate::ring::{ExprId, Pool};
+
+/// An angle: sine, cosine, rate.
+#[derive(Clone, Copy)]
+struct Angle {
+    sine: ExprId,
+    cosine: ExprId,
+    rate: ExprId,
+}
+
+impl Angle {
+    const ZERO: Angle = Angle { sine: ExprId::ZERO, cosine: ExprId::ONE, rate: ExprId::ZERO };
+
+    fn plus(self, pool: &mut Pool, other: Angle) -> Angle {
+        Angle {
+            sine: pool.dot(&[self.sine, self.cosine], &[other.cosine, other.sine]),
+            cosine: pool.dot(&[self.cosine, -self.sine], &[other.cosine, other.sine]),
+            rate: pool.add(self.rate, other.rate),
+        }
+    }
+
+    fn negated(self) -> Angle {
+        Angle { sine: -self.sine, rate: -self.rate, ..self }
+    }
+}
+
+/// Chooses axes for each run of joints with parallel axes.
+pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+    let children = |arm: &Arm, i: usize| -> Vec<usize> { (0..arm.dof()).filter(|&c| arm.joints[c].parent == Some(i)).collect() };
+    let mut first = 0;
+    while first < arm.dof() {
+        let mut run = vec![first];
+        while let [only] = children(arm, *run.last().expect("not empty"))[..] {
+            if arm.joints[only].fixed != IDENTITY {
+                break;
+            }
+            run.push(only);
+        }
+        let (length, last) = (run.len(), *run.last().expect("not empty"));
+        if length > 1 {
+            // Own axes each; those of the link before; those of link k of the run, the last one included.
+            let way = plan.way(Pass::ParallelAxes, first, length + 2);
+            if way > 0 {
+                orient(pool, arm, &run, way - 1);
+            }
+        }
+        // Runs of a tree need not be consecutive; those of joints after the first have been seen if they are.
+        first = if run.iter().enumerate().all(|(k, &i)| i == first + k) { last + 1 } else { first + 1 };
+    }
+}
+
+/// Describes all links of the run but the last in axes at angle `reference` (0: of the link before, k: of the k-th link).
+fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize) {
+    let steps: Vec<Angle> = run
+        .iter()
+        .map(|&i| {
+            let joint = &arm.joints[i];
+            Angle { sine: joint.sine, cosine: joint.cosine, rate: joint.spin }
+        })
+        .collect();
+    // The angle from link a of the run to link b, 0 being the link before it.
+    let between = |pool: &mut Pool, a: usize, b: usize| -> Angle {
+        let (low, high) = (a.min(b), a.max(b));
+        let sum = steps[low..high].iter().fold(None, |sum: Option<Angle>, &step| {
+            Some(match sum {
+                None => step,
+                Some(sum) => sum.plus(pool, step),
+            })
+        });
+        let sum = sum.unwrap_or(Angle::ZERO);
+        if a <= b {
+            sum
+        } else {
+            sum.negated()
+        }
+    };
+    let last = run.len();
+    for (k, &i) in run.iter().enumerate() {
+        // Axes of link k + 1 of the run and of the one before it.
+        let axes = |k: usize| if k == 0 || k == last { k } else { reference };
+        let turn = between(pool, axes(k), axes(k + 1));
+        let own = between(pool, axes(k + 1), k + 1);
+        let joint = &mut arm.joints[i];
+        (joint.sine, joint.cosine, joint.spin) = (turn.sine, turn.cosine, turn.rate);
+        if k + 1 == last {
+            continue;
+        }
+        let link = Joint { sine: own.sine, cosine: own.cosine, ..*joint };
+        joint.drift = own.rate;
+        joint.body = link.body_about_axis(pool, &link.body);
+        joint.link_origin = link.about_axis(pool, &link.link_origin);
+        let about_z = link.about_axis_matrix();
+        joint.link_rotation = pool.product(&about_z, &link.link_rotation);
+        joint.own_axes = pool.product(&about_z, &link.own_axes);
+        if arm.tip == i {
+            arm.tool_origin = link.about_axis(pool, &arm.tool_origin);
+            arm.tool_rotation = pool.product(&about_z, &arm.tool_rotation);
+        }
+        let next = run[k + 1];
+        arm.joints[next].origin = link.about_axis(pool, &arm.joints[next].origin);
+        if let Some(rotor) = &mut arm.joints[next].rotor {
+            rotor.axis = link.about_axis(pool, &rotor.axis);
+        }
+    }
+}

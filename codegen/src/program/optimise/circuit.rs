@@ -1,0 +1,317 @@
+//! Sums and products of any number of operands.
+
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
+
+use crate::ring::field::{Element, Field};
+use crate::ring::{ExprId, Fingerprint, Identity, Node, Pool};
+
+/// Index of a gate.
+pub(super) type GateId = u32;
+
+/// A gate and a sign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Edge {
+    pub(super) gate: GateId,
+    pub(super) negated: bool,
+}
+
+/// What a gate computes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Gate {
+    /// A constant or a symbol of the pool.
+    Leaf(ExprId),
+    /// The sum of the terms.
+    Sum(Vec<Edge>),
+    /// The product of the factors.
+    Product(Vec<GateId>),
+    /// One over the operand.
+    Reciprocal(GateId),
+}
+
+/// Gates and outputs. Gates that no output needs any more stay, and count for nothing.
+pub(super) struct Circuit {
+    pub(super) field: Field,
+    /// The pool that the leaves are of, with the constants that merging brings.
+    pub(super) constants: Pool,
+    pub(super) gates: Vec<Gate>,
+    pub(super) values: Vec<Fingerprint>,
+    pub(super) outputs: Vec<Edge>,
+    /// The gate of a value or of its negative, by the lesser of the two, and whether that is the negative.
+    known: HashMap<Fingerprint, Edge, BuildHasherDefault<Identity>>,
+}
+
+impl Edge {
+    pub(super) fn new(gate: GateId, negated: bool) -> Edge {
+        Edge { gate, negated }
+    }
+
+    pub(super) fn flipped(self, flip: bool) -> Edge {
+        Edge { negated: self.negated != flip, ..self }
+    }
+}
+
+impl Circuit {
+    /// The circuit of expressions.
+    pub(super) fn of(pool: &Pool, entries: &[ExprId]) -> Circuit {
+        let mut circuit = Circuit {
+            field: pool.field().clone(),
+            constants: pool.clone(),
+            gates: Vec::new(),
+            values: Vec::new(),
+            outputs: Vec::new(),
+            known: HashMap::default(),
+        };
+        let mut needed = vec![false; pool.len()];
+        entries.iter().for_each(|e| needed[e.index()] = true);
+        for index in (0..pool.len()).rev().filter(|&i| i < pool.len()) {
+            if needed[index] {
+                match pool.node(pool.expr(index)) {
+                    Node::Add(a, b) | Node::Mul(a, b) => {
+                        needed[a.index()] = true;
+                        needed[b.index()] = true;
+                    }
+                    Node::Reciprocal(a) => needed[a.index()] = true,
+                    Node::Constant(_) | Node::Symbol(_) => {}
+                }
+            }
+        }
+        let mut ids: HashMap<usize, GateId> = HashMap::new();
+        for index in (0..pool.len()).filter(|&i| needed[i]) {
+            let expr = pool.expr(index);
+            let edge = |e: ExprId| Edge::new(ids[&e.index()], e.is_negated());
+            let gate = match pool.node(expr) {
+                Node::Constant(_) | Node::Symbol(_) => Gate::Leaf(expr),
+                Node::Add(a, b) => Gate::Sum(vec![edge(a), edge(b)]),
+                Node::Mul(a, b) => Gate::Product(vec![edge(a).gate, edge(b).gate]),
+                Node::Reciprocal(a) => Gate::Reciprocal(edge(a).gate),
+            };
+            let id = circuit.push(gate, pool.fingerprint(expr));
+            ids.insert(index, id);
+        }
+        circuit.outputs = entries.iter().map(|e| Edge::new(ids[&e.index()], e.is_negated())).collect();
+        circuit
+    }
+
+    /// A new gate.
+    pub(super) fn push(&mut self, gate: Gate, value: Fingerprint) -> GateId {
+        let id = self.gates.len() as GateId;
+        self.gates.push(gate);
+        self.values.push(value);
+        id
+    }
+
+    fn key(&self, value: &Fingerprint) -> (Fingerprint, bool) {
+        let negated = value.map(|x| self.field.neg(x));
+        if negated < *value {
+            (negated, true)
+        } else {
+            (*value, false)
+        }
+    }
+
+    /// The gates of a list are found by value from now on.
+    pub(super) fn index(&mut self, gates: &[GateId]) {
+        self.known.clear();
+        for &gate in gates {
+            let (key, negated) = self.key(&self.values[gate as usize]);
+            self.known.entry(key).or_insert(Edge { gate, negated });
+        }
+    }
+
+    /// The gate of a value, with the sign that it is found by.
+    pub(super) fn find(&self, value: &Fingerprint) -> Option<Edge> {
+        let (key, negated) = self.key(value);
+        self.known.get(&key).map(|edge| edge.flipped(negated))
+    }
+
+    pub(super) fn value(&self, edge: Edge) -> Fingerprint {
+        let value = self.values[edge.gate as usize];
+        if edge.negated {
+            value.map(|x| self.field.neg(x))
+        } else {
+            value
+        }
+    }
+
+    fn combine(&self, a: &Fingerprint, b: &Fingerprint, with: impl Fn(&Field, Element, Element) -> Element) -> Fingerprint {
+        [with(&self.field, a[0], b[0]), with(&self.field, a[1], b[1])]
+    }
+
+    pub(super) fn plus(&self, a: &Fingerprint, b: &Fingerprint) -> Fingerprint {
+        self.combine(a, b, Field::add)
+    }
+
+    pub(super) fn times(&self, a: &Fingerprint, b: &Fingerprint) -> Fingerprint {
+        self.combine(a, b, Field::mul)
+    }
+
+    pub(super) fn sum_value(&self, terms: &[Edge]) -> Fingerprint {
+        let zero = [self.field.zero(); 2];
+        terms.iter().fold(zero, |sum, &term| self.plus(&sum, &self.value(term)))
+    }
+
+    pub(super) fn product_value(&self, factors: &[GateId]) -> Fingerprint {
+        let one = [self.field.one(); 2];
+        factors.iter().fold(one, |product, &factor| self.times(&product, &self.values[factor as usize]))
+    }
+
+    /// Does something with each operand of a gate.
+    pub(super) fn each_operand(&self, gate: GateId, mut visit: impl FnMut(GateId)) {
+        match &self.gates[gate as usize] {
+            Gate::Leaf(_) => {}
+            Gate::Sum(terms) => terms.iter().for_each(|t| visit(t.gate)),
+            Gate::Product(factors) => factors.iter().for_each(|&f| visit(f)),
+            Gate::Reciprocal(a) => visit(*a),
+        }
+    }
+
+    /// How often each gate is an operand or an output, counting only gates that the outputs need.
+    pub(super) fn uses(&self) -> Vec<u32> {
+        let mut uses = vec![0u32; self.gates.len()];
+        let mut stack: Vec<GateId> = Vec::new();
+        for output in &self.outputs {
+            uses[output.gate as usize] += 1;
+            if uses[output.gate as usize] == 1 {
+                stack.push(output.gate);
+            }
+        }
+        while let Some(gate) = stack.pop() {
+            self.each_operand(gate, |operand| {
+                uses[operand as usize] += 1;
+                if uses[operand as usize] == 1 {
+                    stack.push(operand);
+                }
+            });
+        }
+        uses
+    }
+
+    /// Operations: k - 1 of a sum or product of k, one of a reciprocal.
+    pub(super) fn operations(&self) -> usize {
+        let uses = self.uses();
+        (0..self.gates.len()).filter(|&i| uses[i] > 0).map(|i| self.cost(i as GateId)).sum()
+    }
+
+    pub(super) fn cost(&self, gate: GateId) -> usize {
+        match &self.gates[gate as usize] {
+            Gate::Leaf(_) => 0,
+            Gate::Sum(terms) => terms.len().saturating_sub(1),
+            Gate::Product(factors) => factors.len() - 1,
+            Gate::Reciprocal(_) => 1,
+        }
+    }
+
+    /// Takes sums of one use into the sums that use them, and products into products.
+    pub(super) fn flatten(&mut self) {
+        loop {
+            let uses = self.uses();
+            let mut changed = false;
+            for id in 0..self.gates.len() {
+                if uses[id] == 0 {
+                    continue;
+                }
+                match &self.gates[id] {
+                    Gate::Sum(terms) => {
+                        let flat: Vec<Edge> = terms
+                            .iter()
+                            .flat_map(|&term| match &self.gates[term.gate as usize] {
+                                Gate::Sum(inner) if uses[term.gate as usize] == 1 || inner.len() == 1 => {
+                                    inner.iter().map(|t| t.flipped(term.negated)).collect()
+                                }
+                                _ => vec![term],
+                            })
+                            .collect();
+                        if flat != *terms {
+                            self.gates[id] = Gate::Sum(flat);
+                            changed = true;
+                        }
+                    }
+                    Gate::Product(factors) => {
+                        let flat: Vec<GateId> = factors
+                            .iter()
+                            .flat_map(|&factor| match &self.gates[factor as usize] {
+                                Gate::Product(inner) if uses[factor as usize] == 1 => inner.clone(),
+                                Gate::Sum(inner) if inner.len() == 1 && !inner[0].negated => vec![inner[0].gate],
+                                _ => vec![factor],
+                            })
+                            .collect();
+                        if flat != *factors {
+                            self.gates[id] = Gate::Product(flat);
+                            changed = true;
+                        }
+                    }
+                    Gate::Leaf(_) | Gate::Reciprocal(_) => {}
+                }
+            }
+            if !changed {
+                return;
+            }
+        }
+    }
+
+    /// The gates that the outputs need, each after its operands.
+    pub(super) fn order(&self) -> Vec<GateId> {
+        let mut order = Vec::new();
+        let mut done = vec![false; self.gates.len()];
+        for output in &self.outputs {
+            let mut stack = vec![(output.gate, false)];
+            while let Some((gate, ready)) = stack.pop() {
+                if done[gate as usize] {
+                    continue;
+                }
+                if ready {
+                    done[gate as usize] = true;
+                    order.push(gate);
+                } else {
+                    stack.push((gate, true));
+                    let from = stack.len();
+                    self.each_operand(gate, |operand| stack.push((operand, false)));
+                    stack[from..].reverse();
+                }
+            }
+        }
+        order
+    }
+
+    /// The expressions of the outputs, in a new pool.
+    pub(super) fn to_pool(&self) -> (Pool, Vec<ExprId>) {
+        let from = &self.constants;
+        let mut pool = Pool::new(self.field.clone());
+        let mut built: HashMap<GateId, ExprId> = HashMap::new();
+        for gate in self.order() {
+            let expr = match &self.gates[gate as usize] {
+                Gate::Leaf(expr) => match from.node(*expr) {
+                    Node::Symbol(symbol) => pool.symbol(symbol),
+                    _ => pool.constant(&from.as_constant(*expr).expect("a leaf is a symbol or a constant")),
+                },
+                Gate::Sum(terms) => {
+                    let terms: Vec<ExprId> = terms.iter().map(|t| built[&t.gate].signed(t.negated)).collect();
+                    pool.sum(terms)
+                }
+                Gate::Product(factors) => {
+                    let mut factors: Vec<ExprId> = factors.iter().map(|f| built[f]).collect();
+                    // A constant comes last, so that what it multiplies is formed alone.
+                    factors.sort_by_key(|&f| pool.is_constant(f));
+                    factors.into_iter().reduce(|a, b| pool.mul(a, b)).expect("a product has factors")
+                }
+                Gate::Reciprocal(a) => pool.reciprocal(built[a]),
+            };
+            built.insert(gate, expr);
+        }
+        let outputs = self.outputs.iter().map(|o| built[&o.gate].signed(o.negated)).collect();
+        (pool, outputs)
+    }
+
+    /// Which gates depend on one, itself included; `order` has each gate after its operands.
+    pub(super) fn above(&self, order: &[GateId], gate: GateId) -> Vec<bool> {
+        let mut above = vec![false; self.gates.len()];
+        above[gate as usize] = true;
+        for &other in order {
+            let mut depends = above[other as usize];
+            self.each_operand(other, |operand| depends |= above[operand as usize]);
+            above[other as usize] = depends;
+        }
+        above
+    }
+}

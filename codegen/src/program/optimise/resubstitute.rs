@@ -1,0 +1,98 @@
+//! Nodes from others that are there anyway.
+//!
+//! A gate whose removal frees several operations, its own and those of what only it needs, is tried as a + b, a - b and a b of any two gates
+//! that do not depend on it: for each a, the fingerprint that b would need to have is looked up. What a and b need stays, and is not gained.
+
+use super::circuit::{Circuit, Edge, Gate, GateId};
+use crate::ring::Fingerprint;
+
+/// Circuits with more gates than this are left alone: the work grows with the square.
+const GATES: usize = 2000;
+
+/// Replaces what it can; the number of operations saved.
+pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
+    let before = circuit.operations();
+    let all = circuit.order();
+    if all.len() > GATES {
+        return 0;
+    }
+    circuit.index(&all);
+    let zero = [circuit.field.zero(); 2];
+    let inverses: Vec<Fingerprint> = circuit.values.iter().map(|v| v.map(|x| circuit.field.inverse(x))).collect();
+    let (mut order, mut uses) = (all.clone(), circuit.uses());
+    for &gate in all.iter().rev() {
+        if uses[gate as usize] == 0 || circuit.cost(gate) == 0 {
+            continue;
+        }
+        let freed = freed_with(circuit, &uses, gate);
+        let total: usize = freed.iter().map(|&g| circuit.cost(g)).sum();
+        if total < 2 {
+            continue;
+        }
+        let above = circuit.above(&order, gate);
+        let mut best: Option<(usize, Gate)> = None;
+        let value = circuit.values[gate as usize];
+        for &a in order.iter().filter(|&&a| circuit.values[a as usize] != zero && !above[a as usize]) {
+            let mut offer = |b: Option<Edge>, make: &dyn Fn(Edge) -> Gate| {
+                let Some(b) = b.filter(|b| !above[b.gate as usize] && uses[b.gate as usize] > 0) else { return };
+                let gain = total.saturating_sub(kept_for(circuit, &freed, &[a, b.gate]) + 1);
+                if gain > best.as_ref().map_or(0, |(most, _)| *most) {
+                    best = Some((gain, make(b)));
+                }
+            };
+            let of_a = circuit.values[a as usize];
+            let minus_a = of_a.map(|x| circuit.field.neg(x));
+            offer(circuit.find(&circuit.plus(&value, &minus_a)), &|b| Gate::Sum(vec![Edge::new(a, false), b]));
+            offer(circuit.find(&circuit.plus(&value, &of_a)), &|b| Gate::Sum(vec![Edge::new(a, true), b]));
+            let quotient = circuit.times(&value, &inverses[a as usize]);
+            offer(circuit.find(&quotient).filter(|b| !b.negated), &|b| Gate::Product(vec![a, b.gate]));
+        }
+        if let Some((_, replacement)) = best {
+            circuit.gates[gate as usize] = replacement;
+            (order, uses) = (circuit.order(), circuit.uses());
+        }
+    }
+    before - circuit.operations()
+}
+
+/// The gate and those that only it needs.
+fn freed_with(circuit: &Circuit, uses: &[u32], gate: GateId) -> Vec<GateId> {
+    let mut left: std::collections::BTreeMap<GateId, u32> = std::collections::BTreeMap::new();
+    let mut freed = vec![gate];
+    let mut next = 0;
+    while next < freed.len() {
+        let mut found = Vec::new();
+        circuit.each_operand(freed[next], |operand| {
+            let count = left.entry(operand).or_insert(uses[operand as usize]);
+            *count -= 1;
+            if *count == 0 && circuit.cost(operand) > 0 {
+                found.push(operand);
+            }
+        });
+        freed.append(&mut found);
+        next += 1;
+    }
+    freed
+}
+
+/// Operations among those that would be freed which these gates need.
+fn kept_for(circuit: &Circuit, freed: &[GateId], gates: &[GateId]) -> usize {
+    let mut kept: Vec<GateId> = Vec::new();
+    for &gate in gates {
+        if freed.contains(&gate) && !kept.contains(&gate) {
+            kept.push(gate);
+        }
+    }
+    let mut next = 0;
+    while next < kept.len() {
+        let mut found = Vec::new();
+        circuit.each_operand(kept[next], |operand| {
+            if freed.contains(&operand) && !kept.contains(&operand) && !found.contains(&operand) {
+                found.push(operand);
+            }
+        });
+        kept.append(&mut found);
+        next += 1;
+    }
+    kept.iter().map(|&g| circuit.cost(g)).sum()
+}

@@ -1,0 +1,211 @@
+//! Common factors of a sum, pairs of terms of several sums, pairs of factors of several products.
+
+use std::collections::BTreeMap;
+
+use super::circuit::{Circuit, Edge, Gate, GateId};
+
+/// A step that saves operations.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Step {
+    /// Two terms, with the sign of the second relative to the first.
+    Terms(GateId, GateId, bool),
+    /// Two factors.
+    Factors(GateId, GateId),
+    /// A factor of several terms of a sum.
+    Factor(GateId, GateId),
+}
+
+/// A step, what it saves, and the sums or products that it changes.
+struct Candidate {
+    step: Step,
+    gain: usize,
+    users: Vec<GateId>,
+}
+
+/// Does what saves most, as long as anything saves: in each round all steps of the greatest saving that do not touch each other.
+pub(super) fn share(circuit: &mut Circuit) {
+    loop {
+        let uses = circuit.uses();
+        let candidates = candidates(circuit, &uses);
+        let Some(most) = candidates.iter().map(|candidate| candidate.gain).max() else { return };
+        let mut touched = vec![false; circuit.gates.len()];
+        for Candidate { step, users, .. } in candidates.into_iter().filter(|candidate| candidate.gain == most) {
+            if users.iter().any(|&user| touched[user as usize]) {
+                continue;
+            }
+            users.iter().for_each(|&user| touched[user as usize] = true);
+            match step {
+                Step::Terms(a, b, negated) => share_terms(circuit, &users, a, b, negated),
+                Step::Factors(a, b) => share_factors(circuit, &users, a, b),
+                Step::Factor(sum, factor) => take_factor(circuit, &uses, sum, factor),
+            }
+        }
+        circuit.flatten();
+    }
+}
+
+/// All steps that save something, in a fixed order.
+fn candidates(circuit: &Circuit, uses: &[u32]) -> Vec<Candidate> {
+    let mut terms: BTreeMap<(GateId, GateId, bool), (usize, Vec<GateId>)> = BTreeMap::new();
+    let mut factors: BTreeMap<(GateId, GateId), (usize, Vec<GateId>)> = BTreeMap::new();
+    let mut all: Vec<Candidate> = Vec::new();
+    for (id, gate) in circuit.gates.iter().enumerate().filter(|&(id, _)| uses[id] > 0) {
+        let id = id as GateId;
+        match gate {
+            Gate::Sum(list) => {
+                let pairs = list.iter().enumerate().flat_map(|(k, a)| list[k + 1..].iter().map(|b| pair(*a, *b)));
+                for (pair, count) in disjoint(pairs.collect(), |&(a, b, _)| (a, b)) {
+                    let (sum, users) = terms.entry(pair).or_default();
+                    *sum += count;
+                    users.push(id);
+                }
+                let mut common: BTreeMap<GateId, Vec<GateId>> = BTreeMap::new();
+                for term in list.iter().filter(|t| uses[t.gate as usize] == 1) {
+                    if let Gate::Product(list) = &circuit.gates[term.gate as usize] {
+                        let mut seen: Vec<GateId> = list.clone();
+                        seen.sort_unstable();
+                        seen.dedup();
+                        seen.into_iter().for_each(|f| common.entry(f).or_default().push(term.gate));
+                    }
+                }
+                for (factor, mut users) in common.into_iter().filter(|(_, users)| users.len() > 1) {
+                    let gain = users.len() - 1;
+                    users.push(id);
+                    all.push(Candidate { step: Step::Factor(id, factor), gain, users });
+                }
+            }
+            Gate::Product(list) => {
+                let pairs = list.iter().enumerate().flat_map(|(k, &a)| list[k + 1..].iter().map(move |&b| (a.min(b), a.max(b))));
+                for (pair, count) in disjoint(pairs.collect(), |&p| p) {
+                    let (sum, users) = factors.entry(pair).or_default();
+                    *sum += count;
+                    users.push(id);
+                }
+            }
+            Gate::Leaf(_) | Gate::Reciprocal(_) => {}
+        }
+    }
+    let pairs = terms
+        .into_iter()
+        .map(|((a, b, negated), (count, users))| (Step::Terms(a, b, negated), count, users))
+        .chain(factors.into_iter().map(|((a, b), (count, users))| (Step::Factors(a, b), count, users)));
+    all.extend(pairs.filter(|(_, count, _)| *count > 1).map(|(step, count, users)| Candidate { step, gain: count - 1, users }));
+    all
+}
+
+/// How often each pair of a list occurs without sharing an operand: all pairs of operands that occur once are apart.
+fn disjoint<P: Ord + Copy>(mut pairs: Vec<P>, gates: impl Fn(&P) -> (GateId, GateId)) -> Vec<(P, usize)> {
+    pairs.sort_unstable();
+    let mut counts: Vec<(P, usize)> = Vec::new();
+    for p in pairs {
+        match counts.last_mut() {
+            Some((last, count)) if *last == p => *count += 1,
+            _ => counts.push((p, 1)),
+        }
+    }
+    for (p, count) in &mut counts {
+        let (a, b) = gates(p);
+        // Among k equal operands there are k (k - 1)/2 pairs, k/2 of them apart; among k of one and m of another k m, the lesser of both apart.
+        *count = if a == b { (1 + (8 * *count + 1).isqrt()) / 4 } else { count.isqrt() };
+    }
+    counts
+}
+
+fn pair(a: Edge, b: Edge) -> (GateId, GateId, bool) {
+    (a.gate.min(b.gate), a.gate.max(b.gate), a.negated != b.negated)
+}
+
+fn share_terms(circuit: &mut Circuit, users: &[GateId], a: GateId, b: GateId, negated: bool) {
+    let parts = vec![Edge::new(a, false), Edge::new(b, negated)];
+    let value = circuit.sum_value(&parts);
+    // The sum may be a gate that is needed anyway, or one under another guise.
+    let is_pair = |list: &[Edge]| list.len() == 2 && pair(list[0], list[1]) == (a, b, negated);
+    let whole = users.iter().copied().find(|&id| matches!(&circuit.gates[id as usize], Gate::Sum(list) if is_pair(list)));
+    let shared = match whole {
+        Some(id) => {
+            let Gate::Sum(list) = &circuit.gates[id as usize] else { unreachable!("found as a sum") };
+            let first = list.iter().find(|t| t.gate == a).expect("holds the pair");
+            Edge::new(id, first.negated)
+        }
+        None => Edge::new(circuit.push(Gate::Sum(parts), value), false),
+    };
+    for &id in users.iter().filter(|&&id| id != shared.gate) {
+        let Gate::Sum(list) = &circuit.gates[id as usize] else { continue };
+        let mut list = list.clone();
+        while let Some((i, j)) = positions(&list, a, b, negated) {
+            let first = if list[i].gate == a { list[i] } else { list[j] };
+            list.remove(j);
+            list[i] = shared.flipped(first.negated);
+        }
+        circuit.gates[id as usize] = Gate::Sum(list);
+    }
+}
+
+fn positions(list: &[Edge], a: GateId, b: GateId, negated: bool) -> Option<(usize, usize)> {
+    (0..list.len()).find_map(|i| (i + 1..list.len()).find(|&j| pair(list[i], list[j]) == (a, b, negated)).map(|j| (i, j)))
+}
+
+fn share_factors(circuit: &mut Circuit, users: &[GateId], a: GateId, b: GateId) {
+    let is_pair = |list: &[GateId]| list.len() == 2 && (list[0].min(list[1]), list[0].max(list[1])) == (a, b);
+    let whole = users.iter().copied().find(|&id| matches!(&circuit.gates[id as usize], Gate::Product(list) if is_pair(list)));
+    let shared = match whole {
+        Some(id) => id,
+        None => {
+            let value = circuit.product_value(&[a, b]);
+            circuit.push(Gate::Product(vec![a, b]), value)
+        }
+    };
+    for &id in users.iter().filter(|&&id| id != shared) {
+        let Gate::Product(list) = &circuit.gates[id as usize] else { continue };
+        let mut list = list.clone();
+        loop {
+            let Some(i) = list.iter().position(|&f| f == a) else { break };
+            let Some(j) = (0..list.len()).find(|&j| j != i && list[j] == b) else { break };
+            list[i] = shared;
+            list.remove(j);
+        }
+        circuit.gates[id as usize] = Gate::Product(list);
+    }
+}
+
+fn take_factor(circuit: &mut Circuit, uses: &[u32], sum: GateId, factor: GateId) {
+    let Gate::Sum(list) = circuit.gates[sum as usize].clone() else { unreachable!("offered as a sum") };
+    let mut rest = Vec::new();
+    let mut inner = Vec::new();
+    for term in list {
+        let cofactor = match &circuit.gates[term.gate as usize] {
+            Gate::Product(factors) if uses[term.gate as usize] == 1 => factors.iter().position(|&f| f == factor).map(|i| {
+                let mut left = factors.clone();
+                left.remove(i);
+                left
+            }),
+            _ => None,
+        };
+        match cofactor {
+            None => rest.push(term),
+            Some(left) => {
+                let gate = if let [only] = left[..] {
+                    only
+                } else {
+                    let value = circuit.product_value(&left);
+                    circuit.push(Gate::Product(left), value)
+                };
+                inner.push(Edge::new(gate, term.negated));
+            }
+        }
+    }
+    // The first term positive, so that equal sums look alike.
+    let flip = inner[0].negated;
+    let inner: Vec<Edge> = inner.into_iter().map(|t| t.flipped(flip)).collect();
+    let value = circuit.sum_value(&inner);
+    let inner = circuit.push(Gate::Sum(inner), value);
+    let product = vec![factor, inner];
+    if rest.is_empty() && !flip {
+        circuit.gates[sum as usize] = Gate::Product(product);
+        return;
+    }
+    let value = circuit.product_value(&product);
+    let product = circuit.push(Gate::Product(product), value);
+    rest.push(Edge::new(product, flip));
+    circuit.gates[sum as usize] = Gate::Sum(rest);
+}
