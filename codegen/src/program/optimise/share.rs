@@ -158,8 +158,7 @@ fn share_factors(circuit: &mut Circuit, users: &[GateId], a: GateId, b: GateId) 
     for &id in users.iter().filter(|&&id| id != shared) {
         let Gate::Product(list) = &circuit.gates[id as usize] else { continue };
         let mut list = list.clone();
-        loop {
-            let Some(i) = list.iter().position(|&f| f == a) else { break };
+        while let Some(i) = list.iter().position(|&f| f == a) {
             let Some(j) = (0..list.len()).find(|&j| j != i && list[j] == b) else { break };
             list[i] = shared;
             list.remove(j);
