@@ -114,6 +114,9 @@ The module is one file of free functions over arrays: no allocation, no std, no 
         /// Where the sines and cosines come from
         #[arg(long, value_enum, default_value_t = TrigName::Libm)]
         trig: TrigName,
+        /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32
+        #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        batch: Option<u16>,
     },
     /// Count the operations of every emitted function
     #[command(after_help = "Examples:
@@ -200,7 +203,9 @@ fn main() -> ExitCode {
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar, trig } => commands::generate::run(&file, out.as_deref(), scalar, trig),
+        Command::Generate { file, out, scalar, trig, batch } => {
+            commands::generate::run(&file, out.as_deref(), scalar, trig, batch)
+        }
         Command::Count { file, format } => commands::count::run(&file, format),
         Command::Run { files, out } => commands::run::run(&files, &out),
         Command::Completions { shell } => commands::completions::run(shell),

@@ -9,7 +9,7 @@ use armgen_codegen::Model;
 
 use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY};
 
-pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: TrigName) -> u8 {
+pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: TrigName, batch: Option<u16>) -> u8 {
     let scalar = match scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
@@ -27,7 +27,8 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: Tri
         Ok((manipulator, _)) => manipulator,
         Err(code) => return code,
     };
-    let text = print(&Model::new(manipulator).module(&Options { scalar, trig }), &Origin::of(&source));
+    let text =
+        print(&Model::new(manipulator).module(&Options { scalar, trig, batch: batch.map(usize::from) }), &Origin::of(&source));
     let Some(out) = out else { return terminal::print(&text) };
     match std::fs::write(out, text) {
         Ok(()) => DONE,

@@ -17,6 +17,8 @@ pub struct Options {
     pub scalar: Scalar,
     /// Where sines and cosines come from.
     pub trig: Trig,
+    /// How many states the functions for many states take at a time; none: there are no such functions.
+    pub batch: Option<usize>,
 }
 
 /// The module of an arm.
@@ -45,6 +47,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         functions,
         scalar: options.scalar,
         trig: options.trig,
+        batch: options.batch.filter(|&lanes| lanes > 0),
     }
 }
 
