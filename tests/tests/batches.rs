@@ -3,6 +3,7 @@
 /// Compares functions of one emitted module, each with the numbers of the states that it takes, for more states than fill whole blocks.
 macro_rules! check {
     ($module:ident: $($function:ident($($state:literal),*)),* $(,)?) => {
+        #[allow(unreachable_pub)]
         mod $module {
             include!(concat!(env!("OUT_DIR"), "/", stringify!($module), ".rs"));
 
