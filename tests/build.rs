@@ -6,10 +6,18 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::build_script::{Robot, Scalar};
+use armgen_codegen::build_script::{Robot, Scalar, Trig};
 
 /// The robots that are emitted in single precision too.
 const NARROW: [&str; 4] = ["everything", "puma560", "scara", "scara4"];
+
+/// The robots that are emitted with functions for many states.
+const BATCHES: [(&str, &str, Trig, Scalar, usize); 4] = [
+    ("../robots/scara4.yaml", "scara4_batch", Trig::Fast, Scalar::F64, 8),
+    ("../robots/scara4.yaml", "scara4_batch_f32", Trig::Fast, Scalar::F32, 16),
+    ("../robots/scara4.yaml", "scara4_batch_std", Trig::Std, Scalar::F64, 3),
+    ("../robots/ur5.yaml", "ur5_batch", Trig::Libm, Scalar::F64, 4),
+];
 
 fn main() {
     let mut modules = String::new();
@@ -35,6 +43,10 @@ fn main() {
                 add(&module);
             }
         }
+    }
+    // With functions for many states, for `tests/batches.rs`.
+    for (robot, module, trig, scalar, lanes) in BATCHES {
+        Robot::new(robot).trig(trig).scalar(scalar).batch(lanes).file_stem(module).generate();
     }
     let text =
         format!("{modules}\n/// Every emitted module, in the order of the files.\npub static ALL: &[Emitted] = &[\n{list}];\n");

@@ -121,6 +121,10 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         /// Where the sines and cosines come from
         #[arg(long, value_enum, default_value_t = TrigName::Libm)]
         trig: TrigName,
+        /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32; the checker reads
+        /// functions for one state only, of which each of these gives the bits
+        #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        batch: Option<u16>,
         #[command(flatten)]
         beside: Beside,
     },
@@ -228,8 +232,8 @@ fn main() -> ExitCode {
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar, trig, beside } => {
-            commands::generate::run(&file, out.as_deref(), scalar, trig, &beside)
+        Command::Generate { file, out, scalar, trig, batch, beside } => {
+            commands::generate::run(&file, out.as_deref(), scalar, trig, batch, &beside)
         }
         Command::Verify { description, module } => commands::verify::run(&description, &module),
         Command::Count { file, format } => commands::count::run(&file, format),

@@ -3,6 +3,7 @@
 pub mod c;
 pub mod rust;
 
+mod batch;
 mod documentation;
 mod literal;
 mod runtime;

@@ -122,6 +122,8 @@ pub struct Module {
     pub scalar: Scalar,
     /// Where sines and cosines come from.
     pub trig: Trig,
+    /// How many states the functions for many states take at a time; none: there are no such functions.
+    pub batch: Option<usize>,
 }
 
 impl Module {

@@ -15,10 +15,10 @@ use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Beside {
     /// Verify the module and write the certificate beside it: robot.cert.json for robot.rs
-    #[arg(long)]
+    #[arg(long, conflicts_with = "batch")]
     verify: bool,
     /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine
-    #[arg(long)]
+    #[arg(long, conflicts_with = "batch")]
     tests: bool,
     /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is
     #[arg(long)]
@@ -36,7 +36,14 @@ impl Beside {
     }
 }
 
-pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: TrigName, beside: &Beside) -> u8 {
+pub(crate) fn run(
+    file: &Path,
+    out: Option<&Path>,
+    scalar: ScalarName,
+    trig: TrigName,
+    batch: Option<u16>,
+    beside: &Beside,
+) -> u8 {
     let scalar = match scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
@@ -57,7 +64,8 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, scalar: ScalarName, trig: Tri
     if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
         return code;
     }
-    let (generated, diagnostics) = armgen_codegen::generate(&source, &Options { scalar, trig, ..Options::default() });
+    let (generated, diagnostics) =
+        armgen_codegen::generate(&source, &Options { scalar, trig, batch: batch.map(usize::from), ..Options::default() });
     let Some(generated) = generated else {
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
         return FAULTY;

@@ -8,7 +8,7 @@ use quote::{format_ident, quote};
 use sha2::{Digest, Sha256};
 
 use super::literal::literal;
-use super::{documentation, runtime, sincos};
+use super::{batch, documentation, runtime, sincos};
 use crate::equations::{Argument, Shape};
 use crate::program::{Function, Module, Operand, Operation, Scalar, Step};
 use crate::ring::Symbol;
@@ -44,6 +44,7 @@ pub fn print(module: &Module, origin: &Origin) -> String {
     let constants = constants(module);
     let functions = module.functions.iter().map(|f| function(module, f));
     let private = private_block(module);
+    let batches = module.batch.map(|lanes| batch::modules(module, lanes));
     let tokens = quote! {
         /// The scalar of all functions.
         #[allow(dead_code)]
@@ -51,6 +52,7 @@ pub fn print(module: &Module, origin: &Origin) -> String {
         #constants
         #(#functions)*
         #private
+        #batches
     };
     header(origin) + &format(tokens)
 }
@@ -257,7 +259,7 @@ impl Text {
 }
 
 /// The body of a function: lines, then the entries of the result.
-fn body(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
+pub(super) fn body(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let mut uses = vec![0usize; function.steps.len()];
     let operands = function.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(function.outputs.iter().map(|o| &o.operand));
     for operand in operands {
@@ -316,16 +318,11 @@ fn function(module: &Module, function: &Function) -> TokenStream {
         quote!(#name: &[Real; #length])
     });
     let symbols = symbols(function);
-    let unused: Vec<Ident> =
-        function.arguments.iter().filter(|&&a| !symbols.iter().any(|&s| argument_of(s) == a)).map(|&a| argument(a).0).collect();
-    let ignored = match unused.as_slice() {
-        [] => None,
-        [one] => Some(quote!(let _ = #one;)),
-        several => Some(quote!(let _ = (#(#several),*);)),
-    };
+    let (_, ignored) = used_and_ignored(function);
     let sines = sincos::lines(module, &symbols);
     let (lines, entries) = body(module, function);
-    let (returns, result) = result(function.quantity.shape(), &entries, module.joints.len());
+    let (returns, result) =
+        (type_of(function.quantity.shape()), result(function.quantity.shape(), &entries, module.joints.len()));
     quote! {
         #(#[doc = #documentation])*
         #[allow(dead_code, clippy::all)]
@@ -338,7 +335,22 @@ fn function(module: &Module, function: &Function) -> TokenStream {
     }
 }
 
-fn symbols(function: &Function) -> Vec<Symbol> {
+/// The arguments that the steps use, and the line that says of the others that they are not needed.
+pub(super) fn used_and_ignored(function: &Function) -> (Vec<Argument>, Option<TokenStream>) {
+    let symbols = symbols(function);
+    let used = |a: Argument| symbols.iter().any(|&s| argument_of(s) == a && !matches!(s, Symbol::Sine(_) | Symbol::Cosine(_)));
+    let unused: Vec<Ident> =
+        function.arguments.iter().filter(|&&a| !symbols.iter().any(|&s| argument_of(s) == a)).map(|&a| argument(a).0).collect();
+    let ignored = match unused.as_slice() {
+        [] => None,
+        [one] => Some(quote!(let _ = #one;)),
+        several => Some(quote!(let _ = (#(#several),*);)),
+    };
+    (function.arguments.iter().copied().filter(|&a| used(a)).collect(), ignored)
+}
+
+/// The symbols that a function uses, in order.
+pub(super) fn symbols(function: &Function) -> Vec<Symbol> {
     let operands = function.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(function.outputs.iter().map(|o| &o.operand));
     let mut symbols: Vec<Symbol> = operands
         .filter_map(|operand| match operand {
@@ -351,7 +363,21 @@ fn symbols(function: &Function) -> Vec<Symbol> {
     symbols
 }
 
-fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> (TokenStream, TokenStream) {
+/// The type of a result.
+pub(super) fn type_of(shape: Shape) -> TokenStream {
+    match shape {
+        Shape::Scalar => quote!(Real),
+        Shape::Vector => quote!([Real; DOF]),
+        Shape::Frame => quote!([[Real; 4]; 4]),
+        Shape::Frames => quote!([[[Real; 4]; 4]; DOF]),
+        Shape::Jacobian => quote!([[Real; DOF]; 6]),
+        Shape::Square => quote!([[Real; DOF]; DOF]),
+        Shape::Regressor => quote!([[Real; PARAMETERS]; DOF]),
+        Shape::EquationsOfMotion => quote!(EquationsOfMotion),
+    }
+}
+
+fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> TokenStream {
     let matrix = |entries: &[TokenStream], rows: usize| {
         let columns = entries.len() / rows;
         let rows = (0..rows).map(|row| {
@@ -361,33 +387,34 @@ fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> (TokenStream, To
         quote!([#(#rows),*])
     };
     match shape {
-        Shape::Scalar => (quote!(Real), entries[0].clone()),
-        Shape::Vector => (quote!([Real; DOF]), quote!([#(#entries),*])),
-        Shape::Frame => (quote!([[Real; 4]; 4]), matrix(entries, 4)),
+        Shape::Scalar => entries[0].clone(),
+        Shape::Vector => quote!([#(#entries),*]),
+        Shape::Frame => matrix(entries, 4),
         Shape::Frames => {
             let frames = entries.chunks(16).map(|frame| matrix(frame, 4));
-            (quote!([[[Real; 4]; 4]; DOF]), quote!([#(#frames),*]))
+            quote!([#(#frames),*])
         }
-        Shape::Jacobian => (quote!([[Real; DOF]; 6]), matrix(entries, 6)),
-        Shape::Square => (quote!([[Real; DOF]; DOF]), matrix(entries, dof)),
-        Shape::Regressor => (quote!([[Real; PARAMETERS]; DOF]), matrix(entries, dof)),
+        Shape::Jacobian => matrix(entries, 6),
+        Shape::Square | Shape::Regressor => matrix(entries, dof),
         Shape::EquationsOfMotion => {
             let (inertia, rest) = entries.split_at(dof * dof);
             let (coriolis, gravity) = rest.split_at(dof * dof);
             let (inertia, coriolis) = (matrix(inertia, dof), matrix(coriolis, dof));
-            (
-                quote!(EquationsOfMotion),
-                quote!(EquationsOfMotion { inertia: #inertia, coriolis: #coriolis, gravity: [#(#gravity),*] }),
-            )
+            quote!(EquationsOfMotion { inertia: #inertia, coriolis: #coriolis, gravity: [#(#gravity),*] })
         }
     }
+}
+
+/// Whether any function needs a sine or a cosine.
+pub(super) fn asks_for_sines(module: &Module) -> bool {
+    module.functions.iter().flat_map(symbols).any(|s| matches!(s, Symbol::Sine(_) | Symbol::Cosine(_)))
 }
 
 /// Sine and cosine, and the sign of a rate: the only calls in the module.
 fn private_block(module: &Module) -> TokenStream {
     let all: Vec<Vec<Symbol>> = module.functions.iter().map(symbols).collect();
     let uses = |wanted: fn(&Symbol) -> bool| all.iter().flatten().any(wanted);
-    let sin_cos = uses(|s| matches!(s, Symbol::Sine(_) | Symbol::Cosine(_))).then(|| sincos::functions(module, &all));
+    let sin_cos = asks_for_sines(module).then(|| sincos::functions(module, &all));
     let sign = uses(|s| matches!(s, Symbol::RateSign(_))).then(|| {
         quote! {
             /// Sign of a rate: 0 at rest, not a number for what is not a number.

@@ -90,6 +90,39 @@ fn asks_for_few(symbols: &[Symbol], dof: usize) -> bool {
     piece(&angles(symbols), dof).is_some_and(|(first, last)| last - first + 1 < FEW)
 }
 
+/// The lines that give `s1`, `c1` and so on as arrays of lanes, and those in the loop over lanes `k` that give the numbers.
+pub(super) fn lines_of_lanes(symbols: &[Symbol]) -> (Vec<TokenStream>, Vec<TokenStream>) {
+    let (mut before, mut inside) = (Vec::new(), Vec::new());
+    for (i, (sine, cosine)) in angles(symbols) {
+        let (s, c, index) = (name("s", i, sine), name("c", i, cosine), usize_literal(i));
+        before.push(quote!(let (#s, #c) = sin_cos_lanes(&q[#index]);));
+        inside.extend([(s, sine), (c, cosine)].iter().filter(|(_, used)| *used).map(|(name, _)| quote!(let #name = #name[k];)));
+    }
+    (before, inside)
+}
+
+/// The private function behind those lines.
+pub(super) fn of_lanes(module: &Module) -> TokenStream {
+    let body = match module.trig {
+        Trig::Fast => quote!(sin_cos_all(x)),
+        Trig::Libm | Trig::Std => quote! {
+            let (mut sines, mut cosines) = ([0.0; LANES], [0.0; LANES]);
+            for k in 0..LANES {
+                (sines[k], cosines[k]) = sin_cos(x[k]);
+            }
+            (sines, cosines)
+        },
+    };
+    quote! {
+        /// Sines and cosines of the angles of one joint, rad.
+        #[allow(clippy::all)]
+        #[inline(never)]
+        fn sin_cos_lanes(x: &Lanes) -> (Lanes, Lanes) {
+            #body
+        }
+    }
+}
+
 /// The private functions behind the lines, for the symbols of each function.
 pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStream {
     let call = match (module.trig, module.scalar) {

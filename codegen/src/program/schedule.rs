@@ -21,6 +21,8 @@ pub struct Options {
     pub trig: Trig,
     /// Passes that are not used.
     pub without: Passes,
+    /// How many states the functions for many states take at a time; none: there are no such functions.
+    pub batch: Option<usize>,
 }
 
 /// A closed form with so many times the operations of the recursion is not looked at further.
@@ -55,6 +57,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         functions,
         scalar: options.scalar,
         trig: options.trig,
+        batch: options.batch.filter(|&lanes| lanes > 0),
     }
 }
 
