@@ -163,7 +163,10 @@ impl Expectation {
             Target::Near { value, tolerance, .. } if value != 0.0 => {
                 (2.0 - (tolerance / value.abs()).log10().floor()).clamp(4.0, 15.0) as i32
             }
-            Target::AtLeast(_) | Target::AtMost(_) => 4,
+            // As many as tell it from its bound.
+            Target::AtLeast(bound) | Target::AtMost(bound) => {
+                (4..15).find(|count| digits(found, *count) != digits(bound, *count)).unwrap_or(15)
+            }
             Target::Near { .. } => 7,
         };
         let (met, expected) = match self.target {
