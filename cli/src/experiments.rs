@@ -33,7 +33,7 @@ use crate::{figures, input, terminal, DONE, FAULTY};
 use expectation::Line;
 use file::Parsed;
 
-pub(crate) use file::{Body, ControlRun, Experiment, Joints, Postures};
+pub(crate) use file::{task_rows, Body, ControlRun, Experiment, Joints, Postures};
 pub(crate) use manipulability::{ellipses, plane_name};
 pub(crate) use motion::Motion;
 pub(crate) use record::Record;
