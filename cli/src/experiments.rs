@@ -33,7 +33,7 @@ use crate::{figures, input, terminal, DONE, FAULTY};
 use expectation::Line;
 use file::Parsed;
 
-pub(crate) use file::{Body, ControlRun, Experiment, Joints, Postures};
+pub(crate) use file::{task_rows, Body, ControlRun, Experiment, Joints, Postures};
 pub(crate) use manipulability::{ellipses, plane_name};
 pub(crate) use motion::Motion;
 pub(crate) use record::Record;
@@ -234,10 +234,10 @@ impl Job {
         let mut lines: Vec<Line> = expect.iter().map(|e| e.judge(&self.record.log, &self.record.singles)).collect();
         let accounted = expect.iter().any(|e| e.quantity.value == "lost_at");
         if let Some(ended) = self.record.ended.as_ref().filter(|_| !accounted) {
-            lines.push(Line { what: "runs to the end".into(), found: ended.clone(), expected: "yes".into(), met: false });
+            lines.push(Line { what: "runs to the end".into(), found: ended.clone(), unit: "", expected: "yes".into(), met: false });
         }
         if let Some(trouble) = &self.trouble {
-            lines.push(Line { what: "files".into(), found: trouble.clone(), expected: "written".into(), met: false });
+            lines.push(Line { what: "files".into(), found: trouble.clone(), unit: "", expected: "written".into(), met: false });
         }
         lines
     }
@@ -249,6 +249,7 @@ fn report(jobs: &[Job]) -> (String, bool) {
         ("experiment", Align::Left),
         ("quantity", Align::Left),
         ("found", Align::Right),
+        ("unit", Align::Left),
         ("expected", Align::Left),
         ("", Align::Left),
     ];
@@ -260,7 +261,7 @@ fn report(jobs: &[Job]) -> (String, bool) {
             met += usize::from(line.met);
             let name = if i == 0 { job.experiment.name.clone() } else { String::new() };
             let verdict = if line.met { "ok" } else { "OUTSIDE" };
-            table.row([name, line.what, line.found, line.expected, verdict.into()]);
+            table.row([name, line.what, line.found, line.unit.into(), line.expected, verdict.into()]);
         }
     }
     (format!("{}\n{met} of {total} results as expected\n", table.text()), met == total)

@@ -5,7 +5,7 @@
 //! | algorithm | law | error | the book |
 //! |---|---|---|---|
 //! | [`JacobianInverse`] | dq = J^-1 (v_d + K e) | de + K e = 0 | Sect. 3.7.1, eq. 3.70 |
-//! | [`JacobianTranspose`] | dq = J' K e | bounded while x_d moves, 0 at rest | Sect. 3.7.2, eq. 3.76 |
+//! | [`JacobianTranspose`] | dq = J' K e | bounded while x_d moves, 0 at rest unless it stalls at a singular posture where J' K e = 0 | Sect. 3.7.2, eq. 3.76 |
 //! | [`PseudoInverse`] | dq = J^+ (v_d + K e) + (I - J^+ J) dq_0 | de + K e = 0 | Sect. 3.7.1, eq. 3.72 |
 //! | [`DampedLeastSquares`] | dq = J' (J J' + lambda^2 I)^-1 (v_d + K e) | as the inverse, away from singularities | Sect. 3.5, eq. 3.59 |
 //! | [`SecondOrder`] | ddq = J^+ (a_d + K_D de + K_P e - dJ dq) | dde + K_D de + K_P e = 0 | Sect. 3.7.4, eq. 3.100 |

@@ -8,15 +8,16 @@ use nalgebra::{RealField, SVector};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Gain {
-    /// K_P, 1/s^2 (or N m/rad for [`PdGravity`](crate::control::PdGravity)).
+    /// K_P, 1/s^2 (or N m/rad, N/m for [`PdGravity`](crate::control::PdGravity)); K of first-order inverse kinematics, 1/s (or 1/(m^2 s),
+    /// 1/s for [`JacobianTranspose`](crate::clik::JacobianTranspose)).
     Proportional,
-    /// K_D, 1/s (or N m s/rad).
+    /// K_D, 1/s (or N m s/rad, N s/m).
     Derivative,
     /// K_I, 1/s^3.
     Integral,
     /// Lambda, 1/s.
     Filter,
-    /// K_pi, the weight of the estimate.
+    /// K_pi, the weight of the estimate: J per squared unit of its parameter.
     Adaptation,
     /// The interval that an estimate is projected on.
     Interval,

@@ -1,15 +1,17 @@
 //! Orientation errors, from rotation matrices and from quaternions.
 //!
 //! Let E = R_d R_e' be the rotation, in the base frame, that takes the actual orientation R_e to the desired one R_d: a turn by
-//! theta about the unit vector r. Its skew part holds r sin(theta), its trace 1 + 2 cos(theta). Four error vectors follow, equal to
-//! first order, all in the base frame, all desired minus actual:
+//! theta about the unit vector r. Its skew part holds r sin(theta), its trace 1 + 2 cos(theta). Three error vectors and one angle
+//! follow, all in the base frame, all desired minus actual:
 //!
 //! ```text
 //! theta r                                          rotation vector: grows with the angle up to pi
-//! sin(theta) r = 1/2 (n x n_d + s x s_d + a x a_d)  (the book, eq. 3.84): vanishes again at pi
-//! sin(theta/2) r                                   vector part of the quaternion (the book, eq. 3.91)
-//! atan2 about one axis                             for tasks with a single angular row
+//! sin(theta) r = 1/2 (n x n_d + s x s_d + a x a_d)  (the book, Sect. 3.7.3): vanishes again at pi
+//! sin(theta/2) r                                   vector part of the quaternion (the book, Sect. 3.7.3)
+//! atan2 about one axis                             the angle for tasks with a single angular row
 //! ```
+//!
+//! For small turns theta r and sin(theta) r agree, and sin(theta/2) r is half of them: it wants twice the gain.
 
 use crate::linalg::lit;
 use nalgebra::{Matrix3, RealField, Rotation3, Unit, UnitQuaternion, Vector3};
@@ -69,13 +71,15 @@ pub fn turn_about<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> T {
     sine.atan2(cosine)
 }
 
-/// Orientation error e_O = 1/2 (n x n_d + s x s_d + a x a_d) = sin(theta) r of rotation matrices (the book, eq. 3.84).
+/// Orientation error e_O = 1/2 (n x n_d + s x s_d + a x a_d) = sin(theta) r of rotation matrices (the book, Sect. 3.7.3).
 pub fn sine_error<T: RealField + Copy>(desired: &Matrix3<T>, actual: &Matrix3<T>) -> Vector3<T> {
     axial(&(desired * actual.transpose()))
 }
 
-/// Orientation error e_O = eta_e eps_d - eta_d eps_e - S(eps_d) eps_e = sin(theta/2) r of quaternions (the book, eq. 3.91),
+/// Orientation error e_O = eta_e eps_d - eta_d eps_e - S(eps_d) eps_e = sin(theta/2) r of quaternions (the book, Sect. 3.7.3),
 /// of the two turns the shorter one.
+///
+/// It is the vector part of the Hamilton product Q_d Q_e^-1, the turn from the actual to the desired orientation in the base frame.
 pub fn quaternion_error<T: RealField + Copy>(desired: &UnitQuaternion<T>, actual: &UnitQuaternion<T>) -> Vector3<T> {
     let e = desired * actual.inverse();
     let vector = e.imag();

@@ -1,7 +1,7 @@
 //! Stability of the sampled loop, before anything moves.
 //!
 //! A proof in continuous time says nothing about a controller that runs once a millisecond. At rest at a posture, plant and controller
-//! are linear for small deviations x = (dq, ddq/dt):
+//! are linear for small deviations x = (δq, δv) of joint variables and rates:
 //!
 //! ```text
 //! plant        dx/dt = A x + B u,   A = [[0, I], [-B^-1 dg/dq, -B^-1 F_v]],   B = [0; B^-1]
@@ -10,7 +10,7 @@
 //! ```
 //!
 //! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral radius.
-//! With one sample of delay u_k acts a period later, and the held torque is one more state. Of an estimate only those combinations are
+//! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only those combinations are
 //! states that are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
 //! [`SampledLoop`] is one posture; [`analyse`] is a path, and what a run says first.

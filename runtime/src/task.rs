@@ -122,7 +122,9 @@ impl<const M: usize> Task<M> {
     ///   [`orientation::turn_about`]. For an arm that can turn about this axis only it is the difference of the angles, in (-pi, pi];
     /// - two or three: the rows of the rotation vector of R_d R', [`orientation::rotation_vector`].
     ///
-    /// In both cases the derivative is the difference of angular velocities, to first order in the error.
+    /// The derivative of an angular row is the difference w_d - w of the angular velocities up to a term of the size |w| |e|: for the
+    /// rotation vector it is w_d - w + (w_d + w)/2 x e + O(|e|^2), in which the added term is of second order where both velocities are
+    /// small with the error. It is exact for a single angular row of an arm that turns about that axis alone.
     pub fn error<T: RealField + Copy>(&self, desired: &Pose<T>, actual: &Pose<T>) -> SVector<T, M> {
         let linear = desired.position - actual.position;
         let relative = || desired.rotation * actual.rotation.transpose();

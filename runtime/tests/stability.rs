@@ -276,6 +276,54 @@ fn a_sampled_mass_has_the_eigenvalues_of_the_closed_form() {
 }
 
 #[test]
+fn every_sample_of_delay_counts() {
+    // Nearly without stiffness v_{n+1} = v_n - k_D h v_{n-d}, stable while k_D h < 2 cos(d pi / (2 d + 1)) (Levin, May, 1976).
+    let sampled = SampledLoop::new(&Mass, &Mass, &InverseDynamics::new([1e-4], [50.0]).unwrap(), &vector![0.0]).unwrap();
+    for d in 0..=10usize {
+        let expected = 2.0 * (d as f64 * std::f64::consts::PI / (2 * d + 1) as f64).cos() / 50.0;
+        let StablePeriod::UpTo(limit) = sampled.largest_stable_period(1e-3, Delay::Samples(d)).unwrap() else { panic!("{d}") };
+        close_percent(&format!("limit with {d} samples of delay"), limit, expected, 0.01);
+    }
+    let radius = |delay| sampled.spectral_radius(0.03, delay).unwrap();
+    assert_eq!(radius(Delay::None), radius(Delay::Samples(0)));
+    assert_eq!(radius(Delay::OneSample), radius(Delay::Samples(1)));
+}
+
+/// A controller with an integral, measured late: the simulated error shrinks, or grows, by the radius.
+#[test]
+fn a_delayed_loop_moves_by_its_radius() {
+    use armgen_runtime::simulation::{run, Integrator, RunOptions, Sensor};
+    use core::time::Duration;
+    let (plant, model) = (ghost::loaded(), ghost::loaded());
+    let q = ghost::start();
+    for (delay, gain) in [(1, 1.0), (2, 0.5), (2, 0.68), (3, 0.3), (5, 0.15)] {
+        let [k_p, k_d] = [[400.0 * gain; 4], [40.0 * gain; 4]];
+        let mut controller = OperationalSpace::new(ghost::task(), k_p, k_d, [400.0 * gain; 4], 20e-3).unwrap();
+        let sampled = SampledLoop::new(&plant, &model, &controller, &q).unwrap();
+        let radius = sampled.spectral_radius(20e-3, Delay::Samples(delay)).unwrap();
+        let reference = OperationalReference::at_rest(Pose::of(&model, &q));
+        let mut options = RunOptions::new(Duration::from_millis(20), Duration::from_secs(6));
+        options.sensor = Sensor::new(delay, 0.0, 0.0, 0);
+        options.integrator = Integrator::RungeKutta4 { substeps: 4 };
+        let mut sizes = Vec::new();
+        let start = State::at_rest(q + Vector4::repeat(1e-7));
+        run(
+            &plant,
+            start,
+            options,
+            |_, measured| controller.torque(&model, &reference, measured).map(|torque| torque.tau),
+            |sample| sizes.push((sample.state.q - q).norm().hypot(sample.state.dq.norm() * 0.05)),
+        )
+        .unwrap();
+        // The mean over many samples, past the modes that fade faster.
+        let (from, to) = (sizes.len() / 2, sizes.len() - 1);
+        let found = (sizes[to] / sizes[from]).powf(1.0 / (to - from) as f64);
+        println!("{delay} {gain}: {found} {radius}");
+        close(&format!("delay {delay}, gain {gain}"), found, radius, 3e-3);
+    }
+}
+
+#[test]
 fn what_has_no_answer_says_so() {
     let (plant, model) = (ghost::loaded(), ghost::nominal());
     let controller = operational_space_as_reported();

@@ -34,8 +34,7 @@ pub struct Quantity {
     /// `closed`, or `program`: then `entries` stand on `steps`.
     pub form: String,
     /// Numbered steps, name and formula, each using earlier ones only.
-    #[serde(default)]
-    pub steps: Vec<(String, String)>,
+    pub steps: Option<Vec<(String, String)>>,
     /// Of the determinant: its factors.
     pub factors: Option<Vec<String>>,
     /// Of the determinant: where each factor vanishes, null where it depends on more than one angle.
@@ -54,9 +53,10 @@ impl Shown {
             if quantity.entries.len() != quantity.rows || quantity.entries.iter().any(|row| row.len() != quantity.columns) {
                 return Err(format!("{name} is not {} x {}", quantity.rows, quantity.columns));
             }
-            match (quantity.form.as_str(), quantity.steps.is_empty()) {
-                ("closed", true) | ("program", false) => (),
-                (form, _) => return Err(format!("{name}: form `{form}` with {} steps", quantity.steps.len())),
+            // A program may have no steps: a reciprocal fits into one entry.
+            match (quantity.form.as_str(), &quantity.steps) {
+                ("closed", None) | ("program", Some(_)) => (),
+                (form, steps) => return Err(format!("{name}: form `{form}` with steps {steps:?}")),
             }
         }
         Ok(shown)
@@ -72,7 +72,7 @@ impl Quantity {
     /// The matrix in exact expressions; steps are put in. `names` replaces some names.
     pub fn exact(&self, names: &Names) -> Result<ExactMatrix, String> {
         let mut names = names.clone();
-        for (name, text) in &self.steps {
+        for (name, text) in self.steps.iter().flatten() {
             let value = self.named(Exact::read_with(text, &names))?;
             names.insert(name.clone(), value);
         }
@@ -83,7 +83,7 @@ impl Quantity {
     pub fn value(&self, names: &BTreeMap<String, f64>) -> Result<Vec<Vec<f64>>, String> {
         let mut names = names.clone();
         let evaluate = |text: &str, names: &BTreeMap<String, f64>| formula::evaluate(&formula::parse(text)?, names);
-        for (name, text) in &self.steps {
+        for (name, text) in self.steps.iter().flatten() {
             let value = self.named(evaluate(text, &names))?;
             names.insert(name.clone(), value);
         }

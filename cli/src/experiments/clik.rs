@@ -3,7 +3,7 @@
 use armgen_generated::{Nominal, DOF, JOINT_NAMES, POSITION_LIMITS, TASK_ROWS, VELOCITY_LIMITS};
 use armgen_runtime::clik::{
     Algorithm as Law, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
-    Objective, PseudoInverse, SecondOrder,
+    Objective, Outcome, PseudoInverse, SecondOrder,
 };
 use armgen_runtime::gains::GainError;
 use armgen_runtime::linalg::Damping;
@@ -30,9 +30,21 @@ pub(crate) fn columns(run: &ClikRun) -> Vec<String> {
     names
 }
 
-/// The limits of the description; rates of 100 rad/s or m/s where it gives none.
+/// The numbers of the whole run.
+pub(crate) fn singles(run: &ClikRun) -> Vec<String> {
+    if matches!(run.algorithm, Algorithm::SecondOrder(..)) {
+        Vec::new()
+    } else {
+        vec!["rate_limited_at".to_owned()]
+    }
+}
+
+/// Rate, rad/s or m/s, at which a motion is cut where the description gives no limit, or a higher one.
+const FASTEST: f64 = 100.0;
+
+/// The limits of the description; rates of [`FASTEST`] where it gives none.
 pub(crate) fn limits() -> Result<JointLimits<f64, DOF>, GainError> {
-    let limits = JointLimits::rates(VELOCITY_LIMITS.map(|rate| rate.min(100.0)))?;
+    let limits = JointLimits::rates(VELOCITY_LIMITS.map(|rate| rate.min(FASTEST)))?;
     let finite = POSITION_LIMITS.iter().flatten().all(|limit| limit.is_finite());
     if finite {
         limits.with_range(POSITION_LIMITS.map(|[low, _]| low), POSITION_LIMITS.map(|[_, high]| high))
@@ -78,7 +90,7 @@ pub(crate) fn run(run: &ClikRun) -> Record {
     let mut record = Record { log: Log::new(columns(run)), ..Record::default() };
     let outcome = match &run.algorithm {
         Algorithm::SecondOrder(k_d, integration) => second_order(run, k_d, *integration, &mut record.log),
-        _ => with_rows!(run.rows.len(), first_order(run, &mut record.log), Err("the task has too many rows".to_owned())),
+        _ => with_rows!(run.rows.len(), first_order(run, &mut record), Err("the task has too many rows".to_owned())),
     };
     record.ended = outcome.err();
     record
@@ -92,23 +104,23 @@ fn stopped(t: f64, error: ClikError) -> String {
     format!("ended at {t} s: {error:?}")
 }
 
-fn first_order<const M: usize>(run: &ClikRun, log: &mut Log) -> Result<(), String> {
+fn first_order<const M: usize>(run: &ClikRun, record: &mut Record) -> Result<(), String> {
     let gains = <[f64; M]>::try_from(run.gains.as_slice()).map_err(|_| "one gain per row".to_owned())?;
     match &run.algorithm {
-        Algorithm::Inverse => follow(run, JacobianInverse::new(gains).map_err(refused)?, |_| None, log),
+        Algorithm::Inverse => follow(run, JacobianInverse::new(gains).map_err(refused)?, |_| None, record),
         Algorithm::Transpose => {
             let transpose = JacobianTranspose::new(gains).map_err(refused)?;
             let task = task_of::<M>(&run.rows).ok_or("no task")?;
             let period = run.sampling.period.as_secs_f64();
             let gain = |q: &Joints| Some(transpose.loop_gain(&task.jacobian(&Nominal.geometric_jacobian(q)), period));
-            follow(run, transpose, gain, log)
+            follow(run, transpose, gain, record)
         }
         Algorithm::PseudoInverse(k_0, rows) => {
-            follow(run, PseudoInverse::new(gains, *k_0, Climb(rows.clone())).map_err(refused)?, |_| None, log)
+            follow(run, PseudoInverse::new(gains, *k_0, Climb(rows.clone())).map_err(refused)?, |_| None, record)
         }
         Algorithm::Damped(damping, threshold) => {
-            let damping = Damping::new(*damping, *threshold).map_err(|error| format!("{error:?}"))?;
-            follow(run, DampedLeastSquares::new(gains, damping).map_err(refused)?, |_| None, log)
+            let damping = Damping::new(*threshold, *damping).map_err(|error| format!("{error:?}"))?;
+            follow(run, DampedLeastSquares::new(gains, damping).map_err(refused)?, |_| None, record)
         }
         Algorithm::SecondOrder(..) => Ok(()),
     }
@@ -118,21 +130,26 @@ fn follow<A: Law<Nominal, DOF, M>, const M: usize>(
     run: &ClikRun,
     algorithm: A,
     gain: impl Fn(&Joints) -> Option<f64>,
-    log: &mut Log,
+    record: &mut Record,
 ) -> Result<(), String> {
     let task = task_of::<M>(&run.rows).ok_or("no task")?;
     let period = run.sampling.period;
     let clik = Clik::new(task, algorithm, period.as_secs_f64(), limits().map_err(refused)?, [1e-3; M]).map_err(refused)?;
     let mut q = run.start;
     let mut t = std::time::Duration::ZERO;
+    let mut rate_limited_at = f64::INFINITY;
     while t <= run.sampling.duration {
         let seconds = t.as_secs_f64();
         let step = clik.step(&Nominal, &q, &run.sampling.motion.trajectory.sample(t)).map_err(|e| stopped(seconds, e))?;
         let followed = manipulability(&task.jacobian(&Nominal.geometric_jacobian(&q)));
-        log.push(row(seconds, &q, step.error.as_slice(), followed).chain(gain(&q)));
+        record.log.push(row(seconds, &q, step.error.as_slice(), followed).chain(gain(&q)));
+        if step.outcome == Outcome::RateLimited {
+            rate_limited_at = rate_limited_at.min(seconds);
+        }
         q = step.q;
         t += period;
     }
+    record.singles = singles(run).into_iter().zip([rate_limited_at]).collect();
     Ok(())
 }
 

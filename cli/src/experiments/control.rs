@@ -65,7 +65,11 @@ impl Prepared {
             StablePeriod::AtLeast(limit) => format!("it holds at {} ms", number(limit * 1e3)),
             StablePeriod::NotEvenAt(limit) => format!("not even {} ms would hold", number(limit * 1e3)),
         };
-        let delay = if run.delay > 0 { " with a delay of one sample" } else { "" };
+        let delay = match run.delay {
+            0 => String::new(),
+            1 => " with a delay of one sample".to_owned(),
+            samples => format!(" with a delay of {samples} samples"),
+        };
         // Two decimals, more where these would say 1.00.
         let radius = self.report.radius;
         let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
@@ -99,7 +103,7 @@ pub(crate) fn prepare(run: &ControlRun, delayed_too: bool) -> Result<Prepared, S
         state = step.next;
         t += period;
     }
-    let delay = if run.delay > 0 { Delay::OneSample } else { Delay::None };
+    let delay = Delay::Samples(run.delay);
     let of = |delay: Delay| match &run.law {
         Law::PdGravity(c) => stability(run, c, &postures, delay),
         Law::InverseDynamics(c) => stability(run, c, &postures, delay),

@@ -3,6 +3,7 @@
 use armgen_codegen::description::did_you_mean;
 use armgen_codegen::description::yaml::Node;
 use armgen_codegen::source::{Span, Spanned};
+use armgen_generated::{JOINT_IS_REVOLUTE, JOINT_NAMES};
 use armgen_runtime::simulation::Log;
 
 use super::reader::{Allowed, Fields, Reader};
@@ -44,6 +45,7 @@ enum Target {
 pub(crate) struct Line {
     pub(crate) what: String,
     pub(crate) found: String,
+    pub(crate) unit: &'static str,
     pub(crate) expected: String,
     pub(crate) met: bool,
 }
@@ -163,7 +165,10 @@ impl Expectation {
             Target::Near { value, tolerance, .. } if value != 0.0 => {
                 (2.0 - (tolerance / value.abs()).log10().floor()).clamp(4.0, 15.0) as i32
             }
-            Target::AtLeast(_) | Target::AtMost(_) => 4,
+            // As many as tell it from its bound.
+            Target::AtLeast(bound) | Target::AtMost(bound) => {
+                (4..15).find(|count| digits(found, *count) != digits(bound, *count)).unwrap_or(15)
+            }
             Target::Near { .. } => 7,
         };
         let (met, expected) = match self.target {
@@ -184,7 +189,8 @@ impl Expectation {
             Take::Lowest(a, b) => span("min ", a, b),
             Take::Decay(a, b) => format!("decay of {name} in [{a}, {b}] s"),
         };
-        Line { what, found: digits(found, count), expected, met }
+        let unit = if matches!(self.take, Take::Decay(..)) { "1/s" } else { unit(name) };
+        Line { what, found: digits(found, count), unit, expected, met }
     }
 
     fn find(&self, log: &Log, singles: &[(String, f64)]) -> f64 {
@@ -217,6 +223,30 @@ impl Expectation {
     }
 }
 
+/// Unit of a quantity by its name; none where it is a pure number, or depends on the rows of the task or on the parameter.
+fn unit(name: &str) -> &'static str {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let joint = |of: &str, units: [&'static str; 2]| {
+        let found = JOINT_NAMES.iter().position(|joint| *joint == of).map(|i| JOINT_IS_REVOLUTE[i]);
+        found.map_or("", |revolute| units[usize::from(!revolute)])
+    };
+    match (last.split_once('_'), last) {
+        (_, "stable_period" | "lost_at" | "rate_limited_at" | "ends_at") => "s",
+        (_, "x" | "y" | "z" | "distance" | "stops") => "m",
+        (_, "angle" | "heading") => "rad",
+        (_, "direction_1" | "direction_2") => "deg",
+        (_, "speed" | "velocity_step") => "m/s",
+        (_, "acceleration") => "m/s²",
+        (_, "turn_rate") => "rad/s",
+        (_, "turn_acceleration") => "rad/s²",
+        (Some(("via", _)), _) => "m",
+        (Some(("q" | "eq", of)), _) => joint(of, ["rad", "m"]),
+        (Some(("tau", of)), _) => joint(of, ["N m", "N"]),
+        (Some(("e", row)), _) => if row.starts_with('r') { "rad" } else { "m" },
+        _ => "",
+    }
+}
+
 /// A number with seven digits, as short as they allow.
 pub(crate) fn number(x: f64) -> String {
     digits(x, 7)
@@ -245,7 +275,24 @@ fn digits(x: f64, count: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{number, unit};
+
+    #[test]
+    fn units_follow_names() {
+        for (name, expected) in [
+            ("e_rz", "rad"),
+            ("e_z", "m"),
+            ("stable_period", "s"),
+            ("q1.direction_2", "deg"),
+            ("q1.z", "m"),
+            ("z_norm", ""),
+            ("radius", ""),
+            ("via_12", "m"),
+            ("estimate_m", ""),
+        ] {
+            assert_eq!(unit(name), expected, "{name}");
+        }
+    }
 
     #[test]
     fn numbers_keep_seven_digits() {

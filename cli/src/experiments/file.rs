@@ -91,7 +91,7 @@ pub(crate) enum Algorithm {
     Transpose,
     /// k_0, and the rows whose manipulability is climbed.
     PseudoInverse(f64, Option<Vec<Row>>),
-    /// Greatest damping and the singular value below which it begins.
+    /// lambda_0, the greatest damping, and w_0, the manipulability below which it begins.
     Damped(f64, f64),
     /// K_D and the integration.
     SecondOrder(Vec<f64>, Integration),
@@ -244,7 +244,7 @@ impl Reader {
         let (columns, singles, end) = match &body {
             Body::Postures(postures) => (Vec::new(), manipulability::singles(postures), 0.0),
             Body::Path(sampling) => (motion_check::columns(), motion_check::singles(sampling), sampling.duration.as_secs_f64()),
-            Body::Clik(run) => (clik::columns(run), Vec::new(), run.sampling.duration.as_secs_f64()),
+            Body::Clik(run) => (clik::columns(run), clik::singles(run), run.sampling.duration.as_secs_f64()),
             Body::Control(run) => (control::columns(run), control::singles(run), run.sampling.duration.as_secs_f64()),
         };
         self.check_quantities(&expect, &columns, &singles, end);
@@ -504,7 +504,7 @@ impl Reader {
             if let Some(keys) =
                 self.mapping(node, "`sensor`", at, &[], &["delay", "position_deviation", "rate_deviation", "seed"])
             {
-                delay = self.count(&keys, "delay", 0, 100).unwrap_or(0) as usize;
+                delay = self.count(&keys, "delay", 0, 10).unwrap_or(0) as usize;
                 noise.0 = self.number(&keys, "position_deviation", Allowed::NotNegative).unwrap_or(0.0);
                 noise.1 = self.number(&keys, "rate_deviation", Allowed::NotNegative).unwrap_or(0.0);
                 noise.2 = self.count(&keys, "seed", 0, u32::MAX).unwrap_or(0);

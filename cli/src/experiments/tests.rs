@@ -143,6 +143,7 @@ fn faulty_experiments_say_where_and_why() {
             "12:1",
             "two experiments",
         ),
+        refused("robust_tuned_delayed.yaml", "delay: 1}", "delay: 11}", "out-of-range", "10:17", "a whole number from 0 to 10"),
         refused("dexterity_none.yaml", "[y, z, rz]", "[y, z, y]", "duplicate-row", "9:14", "named twice"),
         refused(
             "clik_inverse.yaml",
@@ -199,6 +200,26 @@ fn an_experiment_for_another_robot_is_left_alone() {
     );
     assert!(matches!(parse("a.yaml", ""), Parsed::Faulty(text, 1) if text.contains("empty-file")));
     assert!(matches!(parse("a.yaml", "robot: [\n"), Parsed::Faulty(..)));
+}
+
+/// `damping` and `threshold` mean what the page says: above the threshold the law is the inverse, below it errors stay.
+#[test]
+fn damping_begins_below_the_threshold() {
+    let text = text_of("clik_inverse.yaml").replace("duration: 20", "duration: 2").replace("[0, 20]", "[0, 2]");
+    let run = |law: &str| {
+        let text = text.replace("algorithm: inverse", &format!("algorithm: {law}"));
+        let Parsed::Experiment(experiment) = parse("clik_inverse.yaml", &text) else { return None };
+        let mut job = Job::new(*experiment);
+        job.run(&out("armgen_damped"));
+        let errors = job.record.log.rows().flat_map(|row| row[5..9].to_vec());
+        Some(errors.map(f64::abs).fold(0.0, f64::max))
+    };
+    let damped =
+        |damping: f64, threshold: f64| run(&format!("damped_least_squares\n  damping: {damping}\n  threshold: {threshold}"));
+    // w is 0.22 at the start.
+    let (Some(inverse), Some(above), Some(below)) = (run("inverse"), damped(0.5, 1e-3), damped(0.5, 0.5)) else { return };
+    assert_eq!(inverse, above);
+    assert!(below > 10.0 * inverse, "{below} {inverse}");
 }
 
 #[test]

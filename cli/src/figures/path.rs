@@ -1,5 +1,7 @@
 //! The path in the plane of the sheet: as planned, and as the tip traced it; its height over time; its profiles.
 
+use std::time::Duration;
+
 use super::plot::{figure, style, Panel, Series};
 use super::svg::Stroke;
 use crate::experiments::{Motion, Record};
@@ -17,14 +19,18 @@ fn where_cut(points: &[(f64, f64)], z: &[f64], shown: impl Fn(f64) -> bool) -> V
     points.iter().zip(z).map(|(p, z)| if shown(*z) { *p } else { (f64::NAN, f64::NAN) }).collect()
 }
 
-/// The plan alone, or the plan under what the tip `traced`.
+/// Period at which a plan is drawn.
+const STEP: Duration = Duration::from_millis(2);
+
+/// The plan alone, or the plan, all of it, under what the tip `traced`.
 pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option<&str>) -> String {
-    let samples: Vec<_> = column(record, "t")
-        .iter()
-        .map(|t| motion.trajectory.sample(std::time::Duration::from_secs_f64(*t)).pose.position)
-        .collect();
-    let planned: Vec<(f64, f64)> = samples.iter().map(|p| (p.x, p.y)).collect();
-    let planned_z: Vec<f64> = samples.iter().map(|p| p.z).collect();
+    let end = motion.trajectory.duration();
+    let steps = (0..end.as_nanos().div_ceil(STEP.as_nanos()) as u32).map(|k| STEP * k).chain([end]);
+    let (planned, planned_z): (Vec<(f64, f64)>, Vec<f64>) =
+        steps.map(|t| motion.trajectory.sample(t).pose.position).map(|p| ((p.x, p.y), p.z)).unzip();
+    // Over time the plan goes as far as the record does.
+    let time = column(record, "t");
+    let along: Vec<f64> = time.iter().map(|t| motion.trajectory.sample(Duration::from_secs_f64(*t)).pose.position.z).collect();
     let top = motion.sheet.map_or(f64::INFINITY, |sheet| sheet.top);
     let metres = |name: &str| (name.to_owned(), "m".to_owned());
     let mut plane = Panel { title: "seen from above".into(), x: metres("x"), y: metres("y"), equal: true, ..Panel::default() };
@@ -40,20 +46,31 @@ pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option
         });
     }
     let mut height = Panel::over_time("height of the tip", "z", "m");
-    let time = column(record, "t");
     height.series.push(Series {
         name: "planned".into(),
-        points: time.iter().copied().zip(planned_z.iter().copied()).collect(),
+        points: time.iter().copied().zip(along.iter().copied()).collect(),
         stroke: wide,
     });
+    let mut panels = 2;
+    let mut depth = Panel::over_time("error of the height", "z − z_d", "m");
     if let Some(traced) = traced {
         let (x, y, z) = (column(record, "x"), column(record, "y"), column(record, "z"));
         let points: Vec<(f64, f64)> = x.into_iter().zip(y).collect();
         plane.series.push(Series {
-            name: format!("{traced}, in the sheet"),
+            name: if motion.sheet.is_some() { format!("{traced}, in the sheet") } else { traced.into() },
             points: where_cut(&points, &z, |z| z < top),
             stroke: style(0),
         });
+        if motion.sheet.is_some() {
+            plane.series.push(Series {
+                name: format!("{traced}, above it"),
+                points: where_cut(&points, &z, |z| z >= top),
+                stroke: Stroke { width: 1.0, dash: "2 3", ..style(0) },
+            });
+        }
+        let missed = z.iter().zip(&along).map(|(z, z_d)| z - z_d);
+        depth.add("", time.iter().copied().zip(missed).collect());
+        panels = 3;
         height.series.push(Series { name: traced.into(), points: time.iter().copied().zip(z).collect(), stroke: style(0) });
     }
     if let (Some(sheet), Some(first), Some(last)) = (motion.sheet, time.first(), time.last()) {
@@ -72,7 +89,7 @@ pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option
     if traced.is_none() {
         mark_points(motion, &mut plane);
     }
-    figure(title, &[plane, height], 2, (450.0, 340.0))
+    figure(title, &[plane, height, depth][..panels], panels, (if panels == 2 { 450.0 } else { 390.0 }, 340.0))
 }
 
 /// The ends of the segments, numbered; points at one place share their numbers.

@@ -59,6 +59,17 @@ impl Panel {
         self.series.push(Series { name: name.into(), points, stroke });
     }
 
+    /// The name of a curve in the legend; of one that a logarithmic axis cannot show, with the reason.
+    fn legend_name(&self, series: &Series) -> String {
+        let low = self.range.or_else(|| self.decades()).map_or(0.0, |(low, _)| low);
+        let largest = series.points.iter().map(|p| p.1).filter(|y| y.is_finite()).reduce(f64::max);
+        if self.log && largest.is_some_and(|y| y < low) {
+            format!("{} (below 10{})", series.name, superscript(low.log10().round() as i32))
+        } else {
+            series.name.clone()
+        }
+    }
+
     /// Largest and smallest value that a logarithmic axis shows: whole decades, at most seven.
     pub(super) fn decades(&self) -> Option<(f64, f64)> {
         let values = || self.series.iter().flat_map(|s| &s.points).map(|p| p.1).filter(|y| *y > 0.0 && y.is_finite());
@@ -107,7 +118,7 @@ fn legend(panel: &Panel, width: f64) -> Vec<Vec<&Series>> {
     let mut lines: Vec<Vec<&Series>> = Vec::new();
     let mut used = f64::INFINITY;
     for series in panel.series.iter().filter(|s| !s.name.is_empty()) {
-        let needed = 34.0 + width_of(&series.name, 11.0);
+        let needed = 34.0 + width_of(&panel.legend_name(series), 11.0);
         if used + needed > width {
             lines.push(Vec::new());
             used = 0.0;
@@ -159,7 +170,9 @@ impl Axis {
         let (first, last) = ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
         let largest = self.from.abs().max(self.to.abs());
         let exponent = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
-        let out = if (-2..4).contains(&exponent) { 0 } else { exponent.div_euclid(3) * 3 };
+        // A power is taken out of labels that would be too wide: large numbers, and small ones with three decimals.
+        let plain = (0..4).contains(&exponent) || ((-2..0).contains(&exponent) && step > 0.0099);
+        let out = if plain { 0 } else { exponent.div_euclid(3) * 3 };
         ((first..=last).map(|k| k as f64 * step).collect(), out)
     }
 }
@@ -242,8 +255,9 @@ fn draw(svg: &mut Svg, panel: &Panel, (left, top): (f64, f64), above: f64, area:
                 &[(at, base - 4.0), (at + 22.0, base - 4.0)],
                 Stroke { width: series.stroke.width.max(1.4), ..series.stroke },
             );
-            svg.text((at + 26.0, base), 11.0, Anchor::Start, false, &series.name);
-            at += 34.0 + width_of(&series.name, 11.0);
+            let name = panel.legend_name(series);
+            svg.text((at + 26.0, base), 11.0, Anchor::Start, false, &name);
+            at += 34.0 + width_of(&name, 11.0);
         }
     }
     let grid = Stroke { colour: PALE, width: 0.6, dash: "" };
@@ -380,5 +394,16 @@ mod tests {
         let labels: Vec<String> = ticks.iter().map(|t| tick_label(*t, &axis, out, 1e-6)).collect();
         assert_eq!(labels, ["−1", "0", "1", "2", "3"]);
         assert_eq!(axis_label(&("error".into(), "m".into()), out), "error (10⁻⁶ m)");
+        let out_of = |from: f64, to: f64| Axis { from, to, log: false, start: 165.0, end: 0.0 }.ticks().1;
+        assert_eq!([out_of(-0.05, 0.02), out_of(-0.012, 0.004), out_of(0.0, 0.5), out_of(0.0, 1200.0)], [0, -3, 0, 0]);
+    }
+
+    #[test]
+    fn a_curve_below_the_axis_is_named_so() {
+        let mut panel = Panel { log: true, ..Panel::default() };
+        panel.add("seen", vec![(0.0, 1e-3), (1.0, 2e-9)]);
+        panel.add("unseen", vec![(0.0, 0.0), (1.0, 1e-15)]);
+        let names: Vec<String> = panel.series.iter().map(|series| panel.legend_name(series)).collect();
+        assert_eq!(names, ["seen", "unseen (below 10⁻¹⁰)"]);
     }
 }

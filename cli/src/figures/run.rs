@@ -2,8 +2,10 @@
 
 use armgen_generated::{JOINT_IS_REVOLUTE, JOINT_NAMES, NOMINAL_PARAMETERS, PARAMETER_NAMES};
 
+use armgen_runtime::task::Row;
+
 use super::plot::{figure, Panel};
-use crate::experiments::{Body, ControlRun, Experiment, Record};
+use crate::experiments::{task_rows, Body, ControlRun, Experiment, Record};
 
 type Points = Vec<(f64, f64)>;
 
@@ -35,6 +37,29 @@ fn unit(row: &str) -> &'static str {
 
 const SIZE: (f64, f64) = (430.0, 165.0);
 
+/// The rows that an experiment follows.
+fn followed_rows(experiment: &Experiment) -> Vec<Row> {
+    match &experiment.body {
+        Body::Clik(run) => run.rows.clone(),
+        _ => task_rows().to_vec(),
+    }
+}
+
+/// Unit of w = sqrt(det(J J')): m for each linear row, but rad for m with each prismatic joint, which is a factor only of a square J.
+fn unit_of_w(rows: &[Row]) -> String {
+    let linear = rows.iter().filter(|row| !row.is_angular()).count();
+    let prismatic = JOINT_IS_REVOLUTE.iter().filter(|is| !**is).count();
+    if prismatic > 0 && rows.len() != JOINT_IS_REVOLUTE.len() {
+        return "SI".into();
+    }
+    match linear.saturating_sub(prismatic) {
+        0 => String::new(),
+        1 => "m".into(),
+        2 => "m²".into(),
+        _ => "m³".into(),
+    }
+}
+
 /// Errors of the followed rows, joint variables, w.
 pub(super) fn clik(experiment: &Experiment, record: &Record) -> String {
     let mut errors = Panel { log: true, ..Panel::over_time("errors of the task", "|e|", "m, rad") };
@@ -45,9 +70,13 @@ pub(super) fn clik(experiment: &Experiment, record: &Record) -> String {
     for name in JOINT_NAMES {
         joints.add(name, over_time(record, &format!("q_{name}")));
     }
-    let mut w = Panel::over_time("manipulability", "w", "");
+    let (whole, followed) = (task_rows().to_vec(), followed_rows(experiment));
+    let units = [unit_of_w(&whole), unit_of_w(&followed)];
+    let mut w = Panel::over_time("manipulability", "w", if units[0] == units[1] { &units[0] } else { "SI" });
     w.add("whole task", over_time(record, "w"));
-    w.add("followed rows", over_time(record, "w_followed"));
+    if whole != followed {
+        w.add("followed rows", over_time(record, "w_followed"));
+    }
     let mut panels = vec![errors, joints, w];
     if record.log.names().iter().any(|name| name == "loop_gain") {
         let mut gain = Panel::over_time("loop gain, stable below 2", "Ts λmax", "");
@@ -59,7 +88,7 @@ pub(super) fn clik(experiment: &Experiment, record: &Record) -> String {
 
 /// Estimates of the parameters that the load changes, beside their true values.
 fn estimates(control: &ControlRun, record: &Record) -> Option<Panel> {
-    let mut panel = Panel::over_time("estimate of the load's parameter", "estimate", "kg");
+    let mut panel = Panel::over_time("estimate of the load's parameter (SI)", "estimate", "");
     let changed = (0..PARAMETER_NAMES.len()).filter(|i| control.plant[*i] != NOMINAL_PARAMETERS[*i]);
     for i in changed {
         let points = over_time(record, &format!("estimate_{}", PARAMETER_NAMES[i]));
@@ -139,7 +168,7 @@ pub(super) fn compare(group: &str, members: &[(&Experiment, &Record)]) -> Option
 
 fn compare_clik(members: &[(&Experiment, &Record)]) -> Vec<Panel> {
     let mut panels = Vec::new();
-    let Some((_, first)) = members.first() else { return panels };
+    let Some((first_member, first)) = members.first() else { return panels };
     for name in names(first, "e_") {
         let row = short(name);
         let mut panel = Panel { log: true, ..Panel::over_time(&format!("error of {row}"), "|e|", unit(row)) };
@@ -152,7 +181,8 @@ fn compare_clik(members: &[(&Experiment, &Record)]) -> Vec<Panel> {
     if relaxed {
         let whole = [("w of the whole task", "w"), ("w of the followed rows", "w_followed")];
         for (title, column) in whole {
-            let mut panel = Panel::over_time(title, "w", "");
+            let rows = if column == "w" { task_rows().to_vec() } else { followed_rows(first_member) };
+            let mut panel = Panel::over_time(title, "w", &unit_of_w(&rows));
             for (experiment, record) in members {
                 panel.add(&experiment.name, over_time(record, column));
             }
@@ -164,9 +194,11 @@ fn compare_clik(members: &[(&Experiment, &Record)]) -> Vec<Panel> {
             let (low, high) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
             high - low
         };
-        let joints: Vec<String> = JOINT_NAMES.iter().map(|name| format!("q_{name}")).collect();
-        if let Some(joint) = joints.iter().max_by(|a, b| spread(a).total_cmp(&spread(b))) {
-            let mut panel = Panel::over_time(&format!("joint {}", short(joint)), "q", "rad, m");
+        let joints =
+            JOINT_NAMES.iter().zip(JOINT_IS_REVOLUTE).map(|(name, is)| (format!("q_{name}"), if is { "rad" } else { "m" }));
+        if let Some((joint, unit)) = joints.max_by(|a, b| spread(&a.0).total_cmp(&spread(&b.0))) {
+            let joint = joint.as_str();
+            let mut panel = Panel::over_time(&format!("joint {}", short(joint)), "q", unit);
             for (experiment, record) in members {
                 panel.add(&experiment.name, over_time(record, joint));
             }
@@ -187,7 +219,7 @@ fn compare_control(members: &[(&Experiment, &Record)]) -> Vec<Panel> {
             panels.push(panel);
         }
     }
-    let mut panel = Panel::over_time("estimate of the load's parameter", "estimate", "kg");
+    let mut panel = Panel::over_time("estimate of the load's parameter (SI)", "estimate", "");
     for (experiment, record) in members {
         let Body::Control(control) = &experiment.body else { continue };
         let changed = (0..PARAMETER_NAMES.len()).filter(|i| control.plant[*i] != NOMINAL_PARAMETERS[*i]);

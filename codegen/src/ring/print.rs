@@ -105,13 +105,16 @@ impl Printer<'_> {
     }
 
     fn product(&self, sum: &mut Sum, coefficient: &Number, parts: impl IntoIterator<Item = String>) {
+        let mut parts: Vec<String> = parts.into_iter().collect();
+        if parts.is_empty() {
+            // A constant of several terms joins the sum term by term, each with its own sign.
+            return self.constant(sum, coefficient);
+        }
         let negative = coefficient.leads_negative();
         let size = if negative { -coefficient } else { coefficient.clone() };
-        let mut parts: Vec<String> = parts.into_iter().collect();
-        if !size.is_one() || parts.is_empty() {
-            let several = size.terms().count() > 1;
+        if !size.is_one() {
             let text = self.number(&size);
-            parts.insert(0, if several && !parts.is_empty() { format!("({text})") } else { text });
+            parts.insert(0, if size.terms().count() > 1 { format!("({text})") } else { text });
         }
         sum.push(negative, &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
     }
@@ -119,6 +122,15 @@ impl Printer<'_> {
     /// An exact constant.
     pub fn number(&self, number: &Number) -> String {
         let mut sum = Sum::default();
+        self.constant(&mut sum, number);
+        if sum.text.is_empty() {
+            "0".into()
+        } else {
+            sum.text
+        }
+    }
+
+    fn constant(&self, sum: &mut Sum, number: &Number) {
         for (monomial, coefficient) in number.terms() {
             let size = coefficient.clone().abs();
             let mut parts: Vec<String> = Vec::new();
@@ -134,11 +146,6 @@ impl Printer<'_> {
                 parts.push(if *power == 1 { name } else { self.power(&name, *power) });
             }
             sum.push(coefficient.is_negative(), &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
-        }
-        if sum.text.is_empty() {
-            "0".into()
-        } else {
-            sum.text
         }
     }
 

@@ -87,8 +87,8 @@ impl<T: RealField + Copy, const M: usize> JacobianTranspose<T, M> {
 
     /// T_s lambda_max(J' K J) of the Jacobian `j` of the task rows at the sampling period `period`, s.
     ///
-    /// Sampled, e_{n+1} = (I - T_s J J' K) e_n: stable while this is below 2. It changes with the posture and is largest where the
-    /// arm is stretched out.
+    /// Sampled, e_{n+1} = (I - T_s J J' K) e_n: stable while this is below 2. It changes with the posture: look along the whole path.
+    /// For a planar arm it grows as the arm is stretched out.
     pub fn loop_gain<const N: usize>(&self, j: &SMatrix<T, M, N>, period: T) -> T {
         const { assert!(M > 0, "a task has rows") };
         let weighted = SMatrix::<T, M, N>::from_fn(|i, k| self.k[i].sqrt() * j[(i, k)]);

@@ -55,7 +55,8 @@ pub struct Adaptive<T, const N: usize, const P: usize> {
 }
 
 impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
-    /// Diagonals of Lambda, 1/s, of K_D, N m s/rad or N s/m, and of K_pi; the estimate to start from; the sampling period, s.
+    /// Diagonals of Lambda, 1/s, of K_D, N m s/rad or N s/m, and of K_pi, J per squared unit of its parameter (J/kg^2 for a mass);
+    /// the estimate to start from; the sampling period, s.
     ///
     /// # Errors
     /// Where a gain or the period is not positive and finite, or the estimate is not finite.

@@ -1,4 +1,5 @@
-//! The controllers, linearised at rest: u = K_q dq + K_v dv + L m, dm/dt = E_q dq + E_v dv for small deviations (dq, dv).
+//! The controllers, linearised at rest: u = K_q δq + K_v δv + L m, dm/dt = E_q δq + E_v δv for small deviations δq of the joint
+//! variables and δv of the rates dq.
 //!
 //! At rest C dq is of second order and drops out, so the derivatives are B, F and dg/dq of the model. B and F come from the model
 //! exactly; dg/dq by central differences of g, the only approximation (to the square of their step, cube root of epsilon).
@@ -15,7 +16,7 @@ use nalgebra::{DMatrix, RealField, SMatrix, SVector};
 pub struct Feedback<T, const N: usize> {
     /// K_q = du/dq.
     pub position: SMatrix<T, N, N>,
-    /// K_v = du/d(dq).
+    /// K_v = du/dv, v the rates.
     pub velocity: SMatrix<T, N, N>,
     /// L = du/dm, `N` rows, one column a memory.
     pub memory: DMatrix<T>,
@@ -113,7 +114,7 @@ impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for Robust<R::Real, N> {
     }
 }
 
-/// At rest sigma = -(Lambda dq + dv) and the estimate moves along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0): its states are the at most N
+/// At rest sigma = -(Lambda δq + δv) and the estimate moves along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0): its states are the at most N
 /// combinations that Y_0 K_pi^-1 Y_0' = L L' excites, u = L m, dm/dt = L' sigma.
 impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Adaptive<R::Real, N, P> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
@@ -131,7 +132,7 @@ impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Ada
         }
         let dg = derivative(q, |q| torque(q, &still, &still));
         let k_d = SMatrix::from_diagonal(&self.k_d);
-        // dq_r = -Lambda dq and ddq_r = -Lambda dv.
+        // dq_r = -Lambda δq and ddq_r = -Lambda δv.
         let position = dg - columns_scaled(&(f + k_d), &self.lambda);
         let velocity = -columns_scaled(&b, &self.lambda) - k_d;
         let y = model.regressor(q, &still, &still, &still);
@@ -159,8 +160,8 @@ fn excited<T: RealField + Copy, const N: usize>(g: &SMatrix<T, N, N>) -> DMatrix
     DMatrix::from_fn(N, columns.len(), |i, j| columns[j][i])
 }
 
-/// y = J^+ (-K_P J dq - K_D J dv + K_I int) + (I - J^+ J)(-K_N dq - D_N dv), u = B y + F dv + dg/dq dq; the rows with an integral are
-/// memories, dm/dt = -J dq. The posture of the null space counts as that of the linearisation.
+/// y = J^+ (-K_P J δq - K_D J δv + K_I int) + (I - J^+ J)(-K_N δq - D_N δv), u = B y + F δv + dg/dq δq; the rows with an integral are
+/// memories, dm/dt = -J δq. The posture of the null space counts as that of the linearisation.
 impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for OperationalSpace<R::Real, N, M> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         let j = self.task.jacobian(&model.geometric_jacobian(q));

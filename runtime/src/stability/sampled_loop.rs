@@ -15,6 +15,19 @@ pub enum Delay {
     None,
     /// One sample later.
     OneSample,
+    /// So many samples later; 0 is [`Delay::None`], 1 is [`Delay::OneSample`]. Each adds `N` states.
+    Samples(usize),
+}
+
+impl Delay {
+    /// In samples.
+    pub fn samples(self) -> usize {
+        match self {
+            Delay::None => 0,
+            Delay::OneSample => 1,
+            Delay::Samples(samples) => samples,
+        }
+    }
 }
 
 /// Why there is no answer.
@@ -107,7 +120,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         Ok(Self { stiffness: -(mobility * dg), friction: -(mobility * viscous(plant)), mobility, feedback })
     }
 
-    /// The matrix of the whole loop, states (dq, T_s dv, m, held torque with a delay).
+    /// The matrix of the whole loop, states (δq, T_s δv, m, the torques on their way, the next one first).
     ///
     /// Velocities count in units of T_s so that positions and velocities are of one size.
     fn matrix(&self, period: T, delay: Delay) -> DMatrix<T> {
@@ -134,12 +147,9 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
                 self.feedback.memory[(i, k - 2 * N)]
             }
         });
-        let delayed = match delay {
-            Delay::None => 0,
-            Delay::OneSample => N,
-        };
-        let size = 2 * N + memories;
-        let mut whole = DMatrix::zeros(size + delayed, size + delayed);
+        let (size, samples) = (2 * N + memories, delay.samples());
+        let all = size + samples * N;
+        let mut whole = DMatrix::zeros(all, all);
         whole.view_mut((0, 0), (2 * N, 2 * N)).copy_from(&a);
         for k in 0..memories {
             whole[(2 * N + k, 2 * N + k)] = T::one();
@@ -148,16 +158,17 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
                 whole[(2 * N + k, N + i)] = self.feedback.memory_velocity[(k, i)];
             }
         }
-        match delay {
-            Delay::None => {
-                let mut top = whole.view_mut((0, 0), (2 * N, size));
-                top += b * law;
-            }
-            Delay::OneSample => {
-                whole.view_mut((0, size), (2 * N, N)).copy_from(&b);
-                whole.view_mut((size, 0), (N, size)).copy_from(&law);
-            }
+        if samples == 0 {
+            let mut top = whole.view_mut((0, 0), (2 * N, size));
+            top += b * law;
+            return whole;
         }
+        // The first of the chain acts, the others move up, the law's torque joins at the end.
+        whole.view_mut((0, size), (2 * N, N)).copy_from(&b);
+        for i in size..all - N {
+            whole[(i, i + N)] = T::one();
+        }
+        whole.view_mut((all - N, 0), (N, size)).copy_from(&law);
         whole
     }
 

@@ -9,7 +9,7 @@
 //!   = 1 - 1/2 (T - t)^2 / (t_c (T - t_c))    T - t_c <= t < T           (the book, Sect. 4.2.1, eq. 4.8)
 //! ```
 //!
-//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6); given T and v, t_c = T - L/v (eq. 4.9). Given limits of v and a, the
+//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6); given T and v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the
 //! shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
 
 use super::{chain::span, PlanFault};
