@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::{Cost, Function, Module, Operand, Operation, Output, Step, Trig};
-use crate::derive::parameters::View;
+use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::equations::{Argument, Derivation, Quantity};
 use crate::exact::Number;
 use crate::manipulator::{JointKind, Scalar};
@@ -32,6 +32,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
     Module {
         name: manipulator.name.clone(),
         joints: manipulator.joints.iter().map(|j| (j.name.clone(), j.kind == JointKind::Revolute)).collect(),
+        gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
         limits: manipulator
             .joints
             .iter()
@@ -42,6 +43,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
             .collect(),
         task: manipulator.task.iter().map(|row| row.index()).collect(),
         parameters: model.parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
+        base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
         functions,
         scalar: options.scalar,
         trig: options.trig,
