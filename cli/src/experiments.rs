@@ -234,7 +234,13 @@ impl Job {
         let mut lines: Vec<Line> = expect.iter().map(|e| e.judge(&self.record.log, &self.record.singles)).collect();
         let accounted = expect.iter().any(|e| e.quantity.value == "lost_at");
         if let Some(ended) = self.record.ended.as_ref().filter(|_| !accounted) {
-            lines.push(Line { what: "runs to the end".into(), found: ended.clone(), unit: "", expected: "yes".into(), met: false });
+            lines.push(Line {
+                what: "runs to the end".into(),
+                found: ended.clone(),
+                unit: "",
+                expected: "yes".into(),
+                met: false,
+            });
         }
         if let Some(trouble) = &self.trouble {
             lines.push(Line { what: "files".into(), found: trouble.clone(), unit: "", expected: "written".into(), met: false });

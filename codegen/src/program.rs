@@ -110,12 +110,16 @@ pub struct Module {
     pub name: String,
     /// Joints: name and whether it is revolute.
     pub joints: Vec<(String, bool)>,
+    /// Acceleration of free fall in the base frame, m/s².
+    pub gravity: [Number; 3],
     /// Limits by joint, infinite where not given: lowest q, highest q, highest |dq|, highest |tau|.
     pub limits: Vec<[Option<Number>; 4]>,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
     /// Parameters: name, nominal value, meaning.
     pub parameters: Vec<(String, Number, String)>,
+    /// Whether the parameters are a base set: combinations in joint frames.
+    pub base_parameters: bool,
     /// Functions in order.
     pub functions: Vec<Function>,
     /// The scalar.

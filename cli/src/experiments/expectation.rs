@@ -242,7 +242,13 @@ fn unit(name: &str) -> &'static str {
         (Some(("via", _)), _) => "m",
         (Some(("q" | "eq", of)), _) => joint(of, ["rad", "m"]),
         (Some(("tau", of)), _) => joint(of, ["N m", "N"]),
-        (Some(("e", row)), _) => if row.starts_with('r') { "rad" } else { "m" },
+        (Some(("e", row)), _) => {
+            if row.starts_with('r') {
+                "rad"
+            } else {
+                "m"
+            }
+        }
         _ => "",
     }
 }

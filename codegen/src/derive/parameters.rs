@@ -199,7 +199,7 @@ impl ParameterVector {
                 Entry {
                     name: parameter.name.clone(),
                     nominal: parameter.nominal.clone(),
-                    meaning: "named in the description".into(),
+                    meaning: format!("parameter of the description, {}", parameter.nominal.to_f64()),
                 }
             })
             .collect();

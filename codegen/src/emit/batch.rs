@@ -21,7 +21,7 @@ const BLOCKS: &str = include_str!("batch/blocks.rs");
 pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let width = usize_literal(lanes);
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));
-    let of_slices = module.functions.iter().map(of_slices);
+    let of_slices = module.functions.iter().map(|f| of_slices(module, f));
     let sines = rust::asks_for_sines(module).then(|| sincos::of_lanes(module));
     let blocks = syn::parse_file(BLOCKS).expect("the text to take in is a Rust file").items;
     quote! {
@@ -60,7 +60,7 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
 /// `let ignored = ...; for k in 0..LANES { the body for one state }`
 fn of_block(module: &Module, function: &Function) -> TokenStream {
     let name = format_ident!("{}", function.name());
-    let documentation = documentation(function);
+    let documentation = documentation(module, function);
     let dof = module.joints.len();
     let arguments = function.arguments.iter().map(|&a| {
         let (name, length) = argument(a);
@@ -93,8 +93,8 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
     }
 }
 
-fn documentation(function: &Function) -> Vec<String> {
-    let mut lines: Vec<String> = documentation::function(function).into_iter().take(1).collect();
+fn documentation(module: &Module, function: &Function) -> Vec<String> {
+    let mut lines: Vec<String> = documentation::function(function, &module.gravity).into_iter().take(1).collect();
     lines.extend([String::new(), format!(" As `{}` of one state.", function.name())]);
     lines
 }
@@ -134,9 +134,9 @@ fn places(shape: Shape, dof: usize, count: usize) -> Vec<TokenStream> {
     }
 }
 
-fn of_slices(function: &Function) -> TokenStream {
+fn of_slices(module: &Module, function: &Function) -> TokenStream {
     let name = format_ident!("{}", function.name());
-    let documentation = documentation(function);
+    let documentation = documentation(module, function);
     let names: Vec<Ident> = function.arguments.iter().map(|&a| argument(a).0).collect();
     let arguments = function.arguments.iter().map(|&a| {
         let (name, length) = argument(a);

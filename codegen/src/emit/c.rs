@@ -117,7 +117,10 @@ fn header(module: &Module, origin: &Origin) -> String {
     text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
     for function in functions(module) {
         text += "\n";
-        text += &comment("", documentation::function(function).into_iter().filter(|line| !line.contains("```")).collect());
+        text += &comment(
+            "",
+            documentation::function(function, &module.gravity).into_iter().filter(|line| !line.contains("```")).collect(),
+        );
         let mut arguments: Vec<String> = function
             .arguments
             .iter()

@@ -2,6 +2,7 @@
 //! generator.
 
 use crate::equations::{Argument, Quantity};
+use crate::exact::Number;
 use crate::program::{Cost, Function};
 
 /// What a function is, the formula, and the result with its frame, unit and sign.
@@ -37,9 +38,9 @@ fn text(quantity: Quantity) -> Text {
         ),
         Quantity::InertiaMatrix => (
             "Inertia matrix B(q) of links and rotors.",
-            "B(q) = sum_i m_i J_Pi' J_Pi + J_Oi' R_i I_i R_i' J_Oi + rotors    (Siciliano et al., eq. 7.32)",
+            "B(q) = sum_i (m_i J_Pi' J_Pi + J_Oi' R_i I_i R_i' J_Oi) + rotors  (Siciliano et al., eq. 7.32)",
             "`b[row][column]`, symmetric and positive definite, all entries filled; kg m² between revolute joints, kg m between a revolute and a \
-             prismatic one, kg between prismatic ones.",
+             prismatic one, kg between prismatic ones. J_Pi and J_Oi are the Jacobians of the centre of mass of link i, I_i is about it.",
         ),
         Quantity::CoriolisMatrix => (
             "Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric.",
@@ -73,7 +74,7 @@ fn text(quantity: Quantity) -> Text {
         ),
         Quantity::Regressor => (
             "Regressor Y(q, dq, dqr, ddqr): the dynamics as a linear function of the parameters.",
-            "B(q) ddqr + C(q, dq) dqr + F + g(q) = Y pi + tau_known             (Siciliano et al., eqs. 7.53 and 8.97)",
+            "B(q) ddqr + C(q, dq) dqr + F + g(q) = Y pi + tau_known             (Siciliano et al., Sects. 7.2.2 and 8.5.4)",
             "`y[joint][parameter]`, parameters in the order of `PARAMETER_NAMES`. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
              With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
         ),
@@ -98,33 +99,46 @@ fn text(quantity: Quantity) -> Text {
 
 fn argument(argument: Argument) -> &'static str {
     match argument {
-        Argument::Pi => "`pi`: the parameters, in the order and units of `PARAMETER_NAMES`.",
+        Argument::Pi => "`pi`: the parameters in the order of `PARAMETER_NAMES`, SI units.",
         Argument::Q => "`q`: joint variables, rad (revolute) or m (prismatic).",
         Argument::Dq => "`dq`: joint rates, rad/s or m/s.",
         Argument::Ddq => "`ddq`: joint accelerations, rad/s² or m/s².",
         Argument::Dqr => "`dqr`: reference rates, rad/s or m/s.",
         Argument::Ddqr => "`ddqr`: reference accelerations, rad/s² or m/s².",
-        Argument::Tau => "`tau`: joint torques (forces), N m or N.",
+        Argument::Tau => "`tau`: joint torques (forces) on the joint side of the gears, N m or N.",
     }
 }
 
-/// The documentation of a function, line by line.
-pub(super) fn function(function: &Function) -> Vec<String> {
+/// The documentation of a function, line by line; `gravity` is the acceleration of free fall.
+pub(super) fn function(function: &Function, gravity: &[Number; 3]) -> Vec<String> {
     let Text { title, formula, result } = text(function.quantity);
     let mut lines = vec![format!(" {title}")];
+    if matches!(function.quantity, Quantity::Gravity | Quantity::PotentialEnergy) {
+        let [x, y, z] = gravity.each_ref().map(Number::to_f64);
+        lines.extend([String::new(), format!(" The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")]);
+    }
     if function.with_parameters {
         lines.extend([
             String::new(),
             " The parameters are given at run time; what is not among them is as in the description.".into(),
         ]);
     }
+    // At any parameters the equations hold; what a body cannot have may cost B its inverse.
+    let (result, failure) = match (function.with_parameters, function.quantity) {
+        (true, Quantity::InertiaMatrix) => (
+            result.replace("symmetric and positive definite", "symmetric, positive definite where `pi` is physically possible"),
+            "cannot fail",
+        ),
+        (true, Quantity::ForwardDynamics) => (result.to_owned(), "not finite where B is singular"),
+        _ => (result.to_owned(), "cannot fail"),
+    };
     let blank = || String::new();
     lines.extend([blank(), " ```text".into(), format!(" {formula}"), " ```".into(), blank()]);
     lines.extend(function.arguments.iter().map(|&a| format!(" - {}", argument(a))));
     lines.push(format!(" - Returns {result}"));
     lines.extend([
         blank(),
-        format!(" Cost: {}. Derived by {}. Allocates nothing, cannot fail.", cost(&Cost::of(function)), function.method),
+        format!(" Cost: {}. Derived by {}. Allocates nothing, {failure}.", cost(&Cost::of(function)), function.method),
     ]);
     lines
 }

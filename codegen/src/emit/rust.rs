@@ -121,6 +121,14 @@ fn constants(module: &Module) -> TokenStream {
     let nominal = module.parameters.iter().map(|(_, value, _)| literal(value, module.scalar));
     let width = module.parameters.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
     let mut meanings = vec![" Names of the parameters, in the order of the columns of `regressor`:".to_string(), String::new()];
+    if module.base_parameters {
+        meanings.extend([
+            " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's, grouped with all".into(),
+            " that cannot be told from it. Beside it stands its value in the standard parameters, of links in their own frames, inertia about".into(),
+            " their origins; SI units.".into(),
+            String::new(),
+        ]);
+    }
     meanings.push(" ```text".into());
     meanings.extend(module.parameters.iter().map(|(name, _, meaning)| format!(" {name:width$}  {meaning}")));
     meanings.push(" ```".into());
@@ -143,7 +151,7 @@ fn constants(module: &Module) -> TokenStream {
         /// Highest joint rate, rad/s or m/s; infinite where the description gives none.
         #[allow(dead_code, clippy::all)]
         pub const VELOCITY_LIMITS: [Real; DOF] = [#(#velocity),*];
-        /// Highest joint torque, N m or N; infinite where the description gives none.
+        /// Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.
         #[allow(dead_code, clippy::all)]
         pub const EFFORT_LIMITS: [Real; DOF] = [#(#effort),*];
         /// Number of rows of the operational space.
@@ -311,7 +319,7 @@ pub(super) fn body(module: &Module, function: &Function) -> (Vec<TokenStream>, V
 }
 
 fn function(module: &Module, function: &Function) -> TokenStream {
-    let documentation = documentation::function(function);
+    let documentation = documentation::function(function, &module.gravity);
     let name = format_ident!("{}", function.name());
     let arguments = function.arguments.iter().map(|&a| {
         let (name, length) = argument(a);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::optimise::optimise;
 use super::{Cost, Function, Module, Operand, Operation, Output, Step, Trig};
-use crate::derive::parameters::View;
+use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::derive::plan::{Pass, Passes};
 use crate::equations::{Argument, Derivation, Quantity, DIVISION};
 use crate::exact::Number;
@@ -44,6 +44,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
     Module {
         name: manipulator.name.clone(),
         joints: manipulator.joints.iter().map(|j| (j.name.clone(), j.kind == JointKind::Revolute)).collect(),
+        gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
         limits: manipulator
             .joints
             .iter()
@@ -54,6 +55,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
             .collect(),
         task: manipulator.task.iter().map(|row| row.index()).collect(),
         parameters: model.parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
+        base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
         functions,
         scalar: options.scalar,
         trig: options.trig,
