@@ -260,6 +260,21 @@ fn growth_is_bounded() {
 }
 
 #[test]
+fn a_zero_that_no_reduction_sees_stands_in_no_ones_way() {
+    // sqrt(3 - 2 sqrt(2)) is sqrt(2) - 1, so that each of these has a conjugate that is 0.
+    check(&arm(&[("mass: 2", "mass: 1/(sqrt(3 - 2*sqrt(2)) + 1 + sqrt(2))")]), &[]);
+    let motor = "    motor: {inertia: 1, axis: [sqrt(sqrt(3-2*sqrt(2))), 1, sqrt(sqrt(2))]}\n";
+    let motor = only(&arm(&[("", motor)])).motor.expect("a motor");
+    let length: f64 = motor.axis.iter().map(|x| x.to_f64() * x.to_f64()).sum();
+    assert!((length - 1.0).abs() < 1e-15);
+    check(&arm(&[("mass: 2", "mass: 1/(sqrt(3 - 2*sqrt(2)) + 1 - sqrt(2))")]), &[Code::DivisionByZero]);
+    let axis = |x: &str| arm(&[("", &format!("    motor: {{inertia: 1, axis: [{x}]}}\n"))]);
+    check(&axis("sqrt(3 - 2*sqrt(2)) + 1 - sqrt(2), 0, 0"), &[Code::ZeroAxis]);
+    let long = "1+sqrt(2)+sqrt(3)+sqrt(5)+sqrt(7)+sqrt(11)+sqrt(13)";
+    check(&axis(&format!("{long}, 1, ({long})*pi")), &[Code::TooComplex]);
+}
+
+#[test]
 fn a_name_that_is_used_above_its_definition_is_not_called_unused() {
     let text = arm(&[("parameters: {}", "parameters: {a: b, b: 2, c: 1}"), ("a: 0.5", "a: a")]);
     check(&text, &[Code::UnknownName, Code::UnusedParameter]);
