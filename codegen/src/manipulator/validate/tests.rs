@@ -274,6 +274,22 @@ fn a_zero_that_no_reduction_sees_stands_in_no_ones_way() {
     check(&axis(&format!("{long}, 1, ({long})*pi")), &[Code::TooComplex]);
 }
 
+/// The sums of a mass and of its centre of mass are not multiplied out: 3 times 60³/2 products here.
+#[test]
+fn long_sums_stay_sums_in_the_equations() {
+    use crate::derive::arm::Arm;
+    use crate::derive::parameters::View;
+    use crate::ring::Pool;
+    let sum = |letter: &str| (0..60).map(|i| format!("{letter}{i}")).collect::<Vec<_>>().join("+");
+    let mut parameters = String::from("parameters:\n");
+    ["a", "b"].iter().for_each(|letter| (0..60).for_each(|i| parameters += &format!("  {letter}{i}: 1\n")));
+    let body = format!("{{mass: {}, com: [{}, 0.1, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}", sum("a"), sum("b"));
+    let (arm, _) = valid(&arm(&[("parameters: {}\n", &parameters), ("{mass: 2}", &body)]));
+    let mut pool = Pool::new(crate::equations::field_of(&arm).expect("a field"));
+    Arm::new(&mut pool, &arm, View::Symbolic);
+    assert!(pool.len() < 1000, "{} nodes", pool.len());
+}
+
 #[test]
 fn a_name_that_is_used_above_its_definition_is_not_called_unused() {
     let text = arm(&[("parameters: {}", "parameters: {a: b, b: 2, c: 1}"), ("a: 0.5", "a: a")]);
