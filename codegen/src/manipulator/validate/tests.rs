@@ -254,8 +254,8 @@ fn growth_is_bounded() {
     check(&arm(&[("mass: 2", "mass: sqrt(sqrt(sqrt(sqrt(sqrt(sqrt(sqrt(2 + pi)))))))")]), &[Code::TooComplex]);
     check(&arm(&[("mass: 2", "mass: 1/(1 + 1/(2 + 1/(3 + 1/(4 + pi))))")]), &[Code::TooComplex]);
     check(&arm(&[("mass: 2", "mass: sqrt(2 + sqrt(2 + sqrt(2)))")]), &[]);
-    let chain: String = (1..9000).map(|i| format!("  x{i}: x{}\n", i - 1)).collect();
-    let (arm, _) = valid(&arm(&[("parameters: {}\n", &format!("parameters:\n  x0: 2\n{chain}")), ("a: 0.5", "a: 1/x8999")]));
+    let chain: String = (1..1000).map(|i| format!("  x{i}: x{}\n", i - 1)).collect();
+    let (arm, _) = valid(&arm(&[("parameters: {}\n", &format!("parameters:\n  x0: 2\n{chain}")), ("a: 0.5", "a: 1/x999")]));
     assert!(arm.parameters.is_empty());
 }
 
@@ -298,6 +298,45 @@ fn roots_of_motors_and_friction_are_in_the_field() {
         let root = field.number(&n(7, 1).sqrt().expect("positive"));
         assert_eq!(field.mul(root, root), field.from_u64(7), "{edit}");
     }
+}
+
+#[test]
+fn many_unknown_names_are_reported_but_not_all_guessed_at() {
+    let sum = |n: usize| (0..n).map(|i| format!("gear{i}")).collect::<Vec<_>>().join("+");
+    let parameters = "parameters:\n  gear: 2\n";
+    let edits = [("parameters: {}\n", parameters), ("a: 0.5", "a: gear"), ("d: 0.25", &format!("d: {}", sum(100)))];
+    let source = Source::new("robot.yaml", arm(&edits));
+    let (_, diagnostics) = read(&source);
+    assert_eq!(diagnostics.errors(), 100);
+    assert_eq!(diagnostics.iter().filter(|d| d.help.starts_with("did you mean")).count(), 50);
+    let regressor = format!("regressor: [{}]\n", sum(100).replace('+', ", "));
+    let source = Source::new("robot.yaml", arm(&[("parameters: {}\n", parameters), ("a: 0.5", "a: gear"), ("", &regressor)]));
+    let (_, diagnostics) = read(&source);
+    assert_eq!(diagnostics.errors(), 100);
+    assert_eq!(diagnostics.iter().filter(|d| d.help.starts_with("did you mean")).count(), 50);
+}
+
+#[test]
+fn names_are_counted() {
+    let parameters = |n: usize| format!("parameters:\n{}", (0..n).map(|i| format!("  p{i}: 1\n")).collect::<String>());
+    check(&arm(&[("parameters: {}\n", &parameters(MAX_PARAMETERS))]), &[Code::UnusedParameter; MAX_PARAMETERS]);
+    check(&arm(&[("parameters: {}\n", &parameters(MAX_PARAMETERS + 1))]), &[Code::TooLarge]);
+}
+
+#[test]
+fn terms_are_counted_over_all_values() {
+    let names = |letter: &str, n: usize| (0..n).map(|i| format!("{letter}{i}")).collect::<Vec<_>>();
+    let mut parameters = String::from("parameters:\n");
+    names("a", 100).iter().for_each(|name| parameters += &format!("  {name}: 1\n"));
+    parameters += &format!("  s: {}\n", names("a", 100).join("+"));
+    let body = "{mass: s, com: [s, s, s], inertia: {xx: s, yy: s, zz: s}}";
+    check(&arm(&[("parameters: {}\n", &parameters), ("{mass: 2}", body)]), &[]);
+    // Each of them has as many terms as the sum.
+    (0..MAX_PARAMETERS - 101).for_each(|i| parameters += &format!("  t{i}: s + {i}\n"));
+    let last = format!("t{}", MAX_PARAMETERS - 102);
+    let text = arm(&[("parameters: {}\n", &parameters), ("mass: 2", &format!("mass: {last}"))]);
+    let (_, diagnostics) = read(&Source::new("robot.yaml", text));
+    assert_eq!(diagnostics.iter().filter(|d| d.code == Code::TooComplex).count(), 1);
 }
 
 /// The sums of a mass and of its centre of mass are not multiplied out: 3 times 60³/2 products here.
