@@ -373,6 +373,19 @@ fn each_name_that_is_not_linear_is_reported_once_and_not_all_of_very_many() {
 }
 
 #[test]
+fn the_longest_expressions_need_little_stack() {
+    let sum = |operators: usize| vec!["1"; operators + 1].join(if operators % 2 == 0 { "+" } else { "*" });
+    let nested = |operators: usize| "(".repeat(31) + &sum(operators) + &")".repeat(31);
+    for (text, codes) in
+        [(sum(128), &[][..]), (nested(128), &[]), (sum(129), &[Code::TooComplex]), (sum(999), &[Code::TooComplex])]
+    {
+        let text = arm(&[("mass: 2", &format!("mass: {text}"))]);
+        let read = move || check(&text, codes);
+        std::thread::Builder::new().stack_size(512 << 10).spawn(read).expect("a thread").join().expect("no overflow");
+    }
+}
+
+#[test]
 fn a_name_that_is_used_above_its_definition_is_not_called_unused() {
     let text = arm(&[("parameters: {}", "parameters: {a: b, b: 2, c: 1}"), ("a: 0.5", "a: a")]);
     check(&text, &[Code::UnknownName, Code::UnusedParameter]);
