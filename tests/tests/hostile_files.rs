@@ -114,7 +114,7 @@ fn large_and_deep_files_end() {
         format!("{head}{}", "a: 1\n".repeat(40_000)),
         format!("{head}{}", (0..20_000).map(|i| format!("k{i}: 1\n")).collect::<String>()),
         format!("{head}joints:\n{}", (0..2500).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect::<String>()),
-        format!("{head}joints:\n{}", (0..64).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect::<String>()),
+        format!("{head}joints:\n{}", (0..32).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect::<String>()),
         format!("{head}parameters:\n{}joints: []\n", (0..12_000).map(|i| format!("  p{i}: p{}\n", i + 1)).collect::<String>()),
         format!("{head}joints: [{}", "[".repeat(100_000)),
         format!("{head}gravity: [{}]", vec!["1e400"; 30_000].join(", ")),
