@@ -312,7 +312,7 @@ pub fn render_one(
     let within = |span: Span| span.start - window.start..span.end - window.start;
     // A carriage return would show as a symbol at the end of each line.
     let lines = source.slice(window).replace("\r\n", " \n");
-    let lines = lines.strip_suffix('\r').unwrap_or(&lines);
+    let lines = lines.strip_suffix('\r').unwrap_or(&lines).replace('\r', "\n");
     let mut snippet = Snippet::source(lines).path(source.name()).line_start(source.place(window.start).line);
     for (i, label) in labels.iter().enumerate() {
         let kind = if i == 0 { AnnotationKind::Primary } else { AnnotationKind::Context };

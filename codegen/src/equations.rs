@@ -408,8 +408,14 @@ fn moving(symbol: Symbol) -> Option<fn(u16) -> Symbol> {
     }
 }
 
-/// A field in which the constants of an arm have their roots.
+/// A field in which the constants of a valid arm have their roots.
 pub fn field_of(manipulator: &Manipulator) -> Field {
+    find_field(manipulator).expect("validation refuses an arm without a field")
+}
+
+/// A field in which the constants of an arm have their roots: all of them, wherever the equations may meet them. `None` if their
+/// different roots are too many for any field that is tried, which validation reports.
+pub fn find_field(manipulator: &Manipulator) -> Option<Field> {
     let mut numbers = Vec::new();
     for joint in &manipulator.joints {
         for placement in [&joint.placement, &joint.link_frame, &manipulator.tool] {
@@ -423,11 +429,12 @@ pub fn field_of(manipulator: &Manipulator) -> Field {
         }
         if let Some(motor) = &joint.motor {
             numbers.extend(motor.axis.iter().cloned());
-            numbers
-                .extend(motor.position.iter().chain([&motor.ratio, &motor.mass]).flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+            let all = motor.position.iter().chain([&motor.ratio, &motor.mass]).chain(&motor.inertia).chain(&motor.viscous);
+            numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }
+        numbers.extend(joint.viscous.iter().chain(&joint.coulomb).flat_map(|p| p.terms().map(|(_, c)| c.clone())));
     }
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
     numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
-    Field::for_constants(&numbers)
+    Field::with_roots_of(&numbers)
 }

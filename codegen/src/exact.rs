@@ -18,9 +18,10 @@ mod enclosure;
 mod polynomial;
 
 use std::cmp::Ordering;
+use std::collections::btree_map::Entry;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 use std::sync::Arc;
 
 use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
@@ -59,6 +60,12 @@ pub struct Number {
 
 /// Integers are searched for square factors up to this prime.
 const TRIAL_DIVISION: u32 = 10_000;
+
+/// An inverse is rationalised in so many steps, each of which removes a root and may double the terms and their digits; beyond, it
+/// stays the atom [`Atom::Inverse`].
+const RATIONALISING_STEPS: u32 = 6;
+/// The same for the number of terms on the way.
+const RATIONALISED_TERMS: usize = 64;
 
 static ZERO: Rational = Rational::ZERO;
 
@@ -146,20 +153,27 @@ impl Number {
         Some(self * &divisor.inverse()?)
     }
 
+    /// One over the number; `None` exactly where [`Number::sign`] finds a zero.
     fn inverse(&self) -> Option<Number> {
+        (self.sign() != Ordering::Equal).then(|| self.inverse_within(RATIONALISING_STEPS))
+    }
+
+    /// One over a number other than 0, rationalised in at most so many steps.
+    fn inverse_within(&self, steps: u32) -> Number {
         let mut terms = self.terms.iter();
-        let (monomial, coefficient) = terms.next()?;
+        let (monomial, coefficient) = terms.next().expect("a number other than 0 has a term");
         if terms.next().is_none() {
             let mut inverse = Number::from(Rational::ONE / coefficient);
             for (atom, power) in monomial {
-                inverse = &inverse * &invert_power(atom, *power);
+                inverse = &inverse * &invert_power(atom, *power, steps);
             }
-            return Some(inverse);
+            return inverse;
         }
-        // a + b sqrt(n), with sqrt(n) in neither a nor b: multiply by the conjugate until no root is left.
+        // a + b sqrt(n), with sqrt(n) in neither a nor b: multiply by the conjugate until no root is left. The conjugate can be a zero
+        // that reduction does not see, as that of sqrt(3 - 2 sqrt(2)) + 1 + sqrt(2) by sqrt(2) nearly is: it leads nowhere.
         let root =
             self.terms.keys().flatten().find(|(a, _)| matches!(a, Atom::Root(_) | Atom::RootOf(_))).map(|(a, _)| a.clone());
-        if let Some(root) = root {
+        if let Some(root) = root.filter(|_| steps > 0 && self.terms.len() <= RATIONALISED_TERMS) {
             let mut conjugate = self.clone();
             for (monomial, coefficient) in &mut conjugate.terms {
                 if monomial.iter().any(|(a, _)| *a == root) {
@@ -167,14 +181,31 @@ impl Number {
                 }
             }
             let norm = self * &conjugate;
-            if !norm.is_zero() {
-                return Some(&conjugate * &norm.inverse()?);
+            if norm.terms.len() <= RATIONALISED_TERMS && conjugate.sign() != Ordering::Equal && norm.sign() != Ordering::Equal {
+                let inverse = &conjugate * &norm.inverse_within(steps - 1);
+                if inverse.terms.len() <= RATIONALISED_TERMS {
+                    return inverse;
+                }
             }
         }
-        if self.sign() == Ordering::Equal {
-            return None;
+        Number::atom(Atom::Inverse(Arc::new(self.clone())))
+    }
+
+    /// Adds a term.
+    fn add_term(&mut self, monomial: Monomial, coefficient: Rational) {
+        match self.terms.entry(monomial) {
+            Entry::Vacant(entry) => {
+                if !coefficient.is_zero() {
+                    entry.insert(coefficient);
+                }
+            }
+            Entry::Occupied(mut entry) => {
+                *entry.get_mut() += coefficient;
+                if entry.get().is_zero() {
+                    entry.remove();
+                }
+            }
         }
-        Some(Number::atom(Atom::Inverse(Arc::new(self.clone()))))
     }
 
     /// The positive square root, or `None` of a negative number.
@@ -243,13 +274,14 @@ impl Number {
     }
 }
 
-fn invert_power(atom: &Atom, power: i32) -> Number {
+fn invert_power(atom: &Atom, power: i32, steps: u32) -> Number {
     let of = |power: i32| Number { terms: BTreeMap::from([(vec![(atom.clone(), power)], Rational::ONE)]) };
     match atom {
         Atom::Pi => of(-power),
         Atom::Root(n) => &of(1) * &Number::from(Rational::from_parts(IBig::ONE, n.clone())),
         Atom::Inverse(n) => (0..power).fold(Number::one(), |product, _| &product * n),
-        Atom::RootOf(n) => &of(1) * &n.inverse().expect("a root that stands is not zero"),
+        // A root that stands is that of a positive number.
+        Atom::RootOf(n) => &of(1) * &n.inverse_within(steps),
         Atom::Sine(_) | Atom::Cosine(_) => {
             let inverse = Number::atom(Atom::Inverse(Arc::new(of(1))));
             (0..power).fold(Number::one(), |product, _| &product * &inverse)
@@ -301,14 +333,16 @@ impl Add for &Number {
     type Output = Number;
     fn add(self, other: &Number) -> Number {
         let mut sum = self.clone();
-        for (monomial, coefficient) in &other.terms {
-            let entry = sum.terms.entry(monomial.clone()).or_insert(Rational::ZERO);
-            *entry += coefficient;
-            if entry.is_zero() {
-                sum.terms.remove(monomial);
-            }
-        }
+        sum += other;
         sum
+    }
+}
+
+impl AddAssign<&Number> for Number {
+    fn add_assign(&mut self, other: &Number) {
+        for (monomial, coefficient) in &other.terms {
+            self.add_term(monomial.clone(), coefficient.clone());
+        }
     }
 }
 
@@ -335,12 +369,10 @@ impl Mul for &Number {
         let mut product = Number::zero();
         for (a, ca) in &self.terms {
             for (b, cb) in &other.terms {
-                let mut term = multiply_monomials(a, b);
                 let coefficient = ca * cb;
-                for c in term.terms.values_mut() {
-                    *c *= &coefficient;
+                for (monomial, c) in multiply_monomials(a, b).terms {
+                    product.add_term(monomial, c * &coefficient);
                 }
-                product = &product + &term;
             }
         }
         product
@@ -455,7 +487,11 @@ fn first_octant(part: &Rational, angle: &Number) -> (Number, Number) {
 }
 
 fn atoms(angle: &Number) -> (Number, Number) {
-    let negative = angle.sign() == Ordering::Less;
+    let sign = angle.sign();
+    if sign == Ordering::Equal {
+        return (Number::zero(), Number::one());
+    }
+    let negative = sign == Ordering::Less;
     let positive = Arc::new(if negative { -angle } else { angle.clone() });
     let sine = Number::atom(Atom::Sine(positive.clone()));
     (if negative { -&sine } else { sine }, Number::atom(Atom::Cosine(positive)))

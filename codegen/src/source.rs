@@ -20,7 +20,10 @@ impl Source {
         if text.starts_with('\u{feff}') {
             text.drain(..'\u{feff}'.len_utf8());
         }
-        let line_starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        // A line ends with a line feed, a carriage return, or the two together: as YAML counts lines.
+        let bytes = text.as_bytes();
+        let ends = |&at: &usize| bytes[at] == b'\n' || (bytes[at] == b'\r' && bytes.get(at + 1) != Some(&b'\n'));
+        let line_starts = std::iter::once(0).chain((0..bytes.len()).filter(ends).map(|at| at + 1)).collect();
         Source { name: name.into(), text, line_starts }
     }
 
@@ -147,6 +150,9 @@ mod tests {
         check("äöü: x", 6, 1, 4);
         check("a\r\nb", 3, 2, 1);
         check("a\n", 2, 2, 1);
+        check("a\rb\r\rc", 2, 2, 1);
+        check("a\rb\r\rc", 5, 4, 1);
+        check("a\r\n\rb", 4, 3, 1);
         check("ä", 1, 1, 1);
         check("\u{feff}name", 0, 1, 1);
         check("a", 99, 1, 2);

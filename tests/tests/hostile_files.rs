@@ -1,17 +1,21 @@
-//! No text makes the reader panic or hang: every prefix of a valid file, and many files with one byte changed.
+//! No text makes the reader or the generator panic or hang: every prefix of a valid file, many files with one byte changed, and files
+//! made to cost much: long and deep ones, aliases of long texts, numbers whose exact value grows, sums that multiply out.
+//!
+//! No clock is asked, for a busy machine says nothing about the program: work is bounded by counts, so that each of these ends.
 
 use std::path::Path;
 
 use armgen_codegen::diagnostic::Colour;
-use armgen_codegen::manipulator;
+use armgen_codegen::manipulator::{self, Scalar};
+use armgen_codegen::program::Options;
 use armgen_codegen::source::Source;
 
 fn robot(name: &str) -> Vec<u8> {
-    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots").join(name)).expect("a robot")
+    std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a robot")
 }
 
-/// Reads the bytes as a file and renders what is said about them.
-fn read(bytes: &[u8]) {
+/// Reads the bytes as a file and renders what is said about them; whether they describe an arm.
+fn read(bytes: &[u8]) -> bool {
     let source = Source::new("robot.yaml", String::from_utf8_lossy(bytes));
     let (valid, diagnostics) = manipulator::read(&source);
     assert_eq!(valid.is_some(), !diagnostics.has_errors());
@@ -21,6 +25,42 @@ fn read(bytes: &[u8]) {
         assert!(diagnostic.labels.iter().all(|label| label.span.end <= source.text().len()), "{diagnostic:?}");
         assert!(!diagnostic.help.is_empty());
     }
+    valid.is_some()
+}
+
+/// Generates from the bytes, for both scalars.
+fn generate(bytes: &[u8]) {
+    let source = Source::new("robot.yaml", String::from_utf8_lossy(bytes));
+    for scalar in [Scalar::F64, Scalar::F32] {
+        let options = Options { scalar, ..Options::default() };
+        let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
+        assert_eq!(generated.is_some(), !diagnostics.has_errors(), "{}", diagnostics.render(&source, Colour::Never));
+    }
+}
+
+/// Of the files that are changed in so many rounds, those that still describe an arm go through the generator, as many as that.
+fn change(name: &str, seed: u64, rounds: usize, mut generated: usize) {
+    let text = robot(name);
+    let mut sequence = Sequence(seed);
+    let signs = b" \t\n\r:-[]{},#&*!|>'\"%@`?~\\/+()._0123456789eEaq\x00\x7f\x80\xc3\xff\xef\xbb\xbf";
+    for _ in 0..rounds {
+        let mut changed = text.clone();
+        let at = sequence.below(changed.len());
+        match sequence.below(3) {
+            0 => changed[at] = signs[sequence.below(signs.len())],
+            1 => {
+                changed.remove(at);
+            }
+            _ => changed.insert(at, signs[sequence.below(signs.len())]),
+        }
+        // A change in a comment changes no arm.
+        let comment = text[..at].iter().rev().take_while(|b| **b != b'\n').any(|b| *b == b'#');
+        if read(&changed) && !comment && generated > 0 {
+            generate(&changed);
+            generated -= 1;
+        }
+    }
+    assert_eq!(generated, 0, "too few of them were arms");
 }
 
 /// A fixed sequence of numbers below `bound`; the same in every run.
@@ -35,35 +75,22 @@ impl Sequence {
 
 #[test]
 fn every_prefix_of_a_file_is_read() {
-    let text = robot("scara.yaml");
+    let text = robot("../robots/scara.yaml");
     for end in (0..text.len()).step_by(if cfg!(debug_assertions) { 3 } else { 1 }) {
         read(&text[..end]);
     }
 }
 
 #[test]
-fn files_with_a_changed_byte_are_read() {
-    let text = robot("scara.yaml");
-    let mut sequence = Sequence(1);
-    let signs = b" \t\n\r:-[]{},#&*!|>'\"%@`?~\\/+()._0123456789eEaq\x00\x7f\x80\xc3\xff\xef\xbb\xbf";
-    let rounds = if cfg!(debug_assertions) { 1500 } else { 20_000 };
-    for _ in 0..rounds {
-        let mut changed = text.clone();
-        let at = sequence.below(changed.len());
-        match sequence.below(3) {
-            0 => changed[at] = signs[sequence.below(signs.len())],
-            1 => {
-                changed.remove(at);
-            }
-            _ => changed.insert(at, signs[sequence.below(signs.len())]),
-        }
-        read(&changed);
-    }
+fn files_with_a_changed_byte_are_read_and_generated() {
+    let debug = cfg!(debug_assertions);
+    change("../robots/scara.yaml", 1, if debug { 1500 } else { 20_000 }, if debug { 6 } else { 100 });
+    change("robots/everything.yaml", 2, if debug { 200 } else { 5_000 }, if debug { 2 } else { 20 });
 }
 
 #[test]
 fn lines_swapped_dropped_and_doubled_are_read() {
-    let text = String::from_utf8(robot("scara.yaml")).expect("text");
+    let text = String::from_utf8(robot("../robots/scara.yaml")).expect("text");
     let lines: Vec<&str> = text.lines().collect();
     for i in 0..lines.len() {
         let mut dropped = lines.clone();
@@ -78,7 +105,6 @@ fn lines_swapped_dropped_and_doubled_are_read() {
     }
 }
 
-/// Work is bounded by counts, so that each of these ends; no clock is asked, for a busy machine says nothing about the reader.
 #[test]
 fn large_and_deep_files_end() {
     let head = "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\n";
@@ -88,7 +114,7 @@ fn large_and_deep_files_end() {
         format!("{head}{}", "a: 1\n".repeat(40_000)),
         format!("{head}{}", (0..20_000).map(|i| format!("k{i}: 1\n")).collect::<String>()),
         format!("{head}joints:\n{}", (0..2500).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect::<String>()),
-        format!("{head}joints:\n{}", (0..64).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect::<String>()),
+        format!("{head}joints:\n{}", (0..32).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect::<String>()),
         format!("{head}parameters:\n{}joints: []\n", (0..12_000).map(|i| format!("  p{i}: p{}\n", i + 1)).collect::<String>()),
         format!("{head}joints: [{}", "[".repeat(100_000)),
         format!("{head}gravity: [{}]", vec!["1e400"; 30_000].join(", ")),
@@ -109,5 +135,61 @@ fn large_and_deep_files_end() {
     ];
     for text in &texts {
         read(text.as_bytes());
+    }
+}
+
+/// An arm of one joint with these lines in it.
+fn arm(parameters: &str, link: &str, rest: &str) -> String {
+    format!(
+        "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {{{parameters}}}\njoints:\n  - {{name: j, type: revolute, \
+         a: 0.5, alpha: pi/2, d: 0.25, theta: 0, link: {link}}}\n{rest}"
+    )
+}
+
+/// Files that cost much where something is compared with everything, copied, or multiplied out.
+#[test]
+fn costly_files_end() {
+    let names = |letter: &str, n: usize| (0..n).map(|i| format!("{letter}{i}")).collect::<Vec<_>>();
+    let each = |names: &[String], value: &str| names.iter().map(|name| format!("{name}: {value}")).collect::<Vec<_>>().join(", ");
+    let link = "{mass: 1, com: [0.1, 0, 0]}";
+    let sums = |n: usize| {
+        let (a, b) = (names("a", n), names("b", n));
+        let link = format!("{{mass: {}, com: [{}, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}", a.join("+"), b.join("+"));
+        (each(&[a.clone(), b.clone()].concat(), "1"), link, [a, b].concat())
+    };
+    let unseen = "sqrt(3-2*sqrt(2))+1-sqrt(2)";
+    let mut texts = vec![
+        // Names that are not defined, in the values of names, in values and in the list of the regressor.
+        arm(&each(&names("p", 12_000), "nosuch"), link, ""),
+        arm(&each(&names("p", 1_000), "nosuch+nearly+other"), link, &format!("regressor: [{}]\n", names("q", 20_000).join(", "))),
+        arm("", &format!("{{mass: {}}}", names("p", 300).join("+")), ""),
+        // Aliases of a long text.
+        format!("name: &a {}\nlist: [{}]\n", "x".repeat(128_000), vec!["*a"; 30_000].join(", ")),
+        format!("name: &a {}\nlist: [{}]\n", "[x, y]".repeat(20), vec!["*a"; 30_000].join(", ")),
+        // Zeros that no reduction sees, and many of them.
+        arm("", "{mass: 1/(sqrt(3-2*sqrt(2)) + 1 + sqrt(2)), com: [0.1, 0, 0]}", ""),
+        arm(&each(&names("p", 1_000), unseen), link, ""),
+        // Long sums, and long lines.
+        arm("", &format!("{{mass: {}}}", vec!["1"; 900].join("+")), ""),
+        format!("{{{}}}", names("k", 30_000).join(": 1, ")),
+    ];
+    for n in [12, 24, 60] {
+        let (parameters, link, all) = sums(n);
+        texts.push(arm(&parameters, &link, ""));
+        texts.push(arm(&parameters, &link, "regressor: standard\n"));
+        texts.push(arm(&parameters, &link, &format!("regressor: [{}]\n", all.join(", "))));
+    }
+    for text in &texts {
+        read(text.as_bytes());
+    }
+    let motor = "motor: {inertia: 1, axis: [sqrt(sqrt(3-2*sqrt(2))), 1, sqrt(sqrt(2))]}";
+    let (parameters, sums, _) = sums(24);
+    for text in [
+        arm("", &format!("{link}, {motor}"), ""),
+        arm("", "{mass: 1/(sqrt(3-2*sqrt(2)) + 1 + sqrt(2)), com: [0.1, 0, 0]}", ""),
+        arm(&parameters, &sums, "regressor: base\n"),
+    ] {
+        assert!(read(text.as_bytes()), "{text}");
+        generate(text.as_bytes());
     }
 }

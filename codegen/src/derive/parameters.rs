@@ -1,5 +1,7 @@
 //! The parameter vector pi: what the regressor's columns are, and what each entry of the model is in terms of it.
 
+use std::cell::RefCell;
+
 use crate::exact::{Number, Polynomial, Rational};
 use crate::manipulator::{Body, LinkId, Manipulator, ParameterId};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -64,41 +66,88 @@ impl StandardParameter {
         }
     }
 
-    /// Its value in terms of the description's names.
-    pub fn value(self, manipulator: &Manipulator) -> Polynomial {
+    /// What it is an entry of, and which.
+    fn part(self, manipulator: &Manipulator) -> Part<'_> {
         let joint = |i: u16| &manipulator.joints[usize::from(i)];
         let motor = |i: u16| joint(i).motor.as_ref();
         match self {
-            StandardParameter::Link(i, k) => inertial(&joint(i).link)[usize::from(k)].clone(),
-            StandardParameter::RotorInertia(i) => motor(i).and_then(|m| m.inertia.clone()).unwrap_or_default(),
-            StandardParameter::RotorViscous(i) => motor(i).and_then(|m| m.viscous.clone()).unwrap_or_default(),
-            StandardParameter::Viscous(i) => joint(i).viscous.clone().unwrap_or_default(),
-            StandardParameter::Coulomb(i) => joint(i).coulomb.clone().unwrap_or_default(),
-            StandardParameter::Payload(k) => {
-                manipulator.payload.as_ref().map_or(Polynomial::zero(), |p| inertial(p)[usize::from(k)].clone())
+            StandardParameter::Link(i, k) => Part::OfBody(Some(&joint(i).link), usize::from(k)),
+            StandardParameter::RotorInertia(i) => Part::Whole(motor(i).and_then(|m| m.inertia.as_ref())),
+            StandardParameter::RotorViscous(i) => Part::Whole(motor(i).and_then(|m| m.viscous.as_ref())),
+            StandardParameter::Viscous(i) => Part::Whole(joint(i).viscous.as_ref()),
+            StandardParameter::Coulomb(i) => Part::Whole(joint(i).coulomb.as_ref()),
+            StandardParameter::Payload(k) => Part::OfBody(manipulator.payload.as_ref(), usize::from(k)),
+        }
+    }
+
+    /// Its value at the nominal values of all names.
+    pub fn nominal(self, manipulator: &Manipulator) -> Number {
+        match self.part(manipulator) {
+            Part::Whole(value) => value.map_or_else(Number::zero, |value| nominal(manipulator, value)),
+            Part::OfBody(body, k) => body.map_or_else(Number::zero, |body| {
+                let mut number = |polynomial: &Polynomial| nominal(manipulator, polynomial);
+                inertial(body, k, &mut number, &mut |a, b| a * b, &mut |a, b| a + b, &mut |a| -a)
+            }),
+        }
+    }
+}
+
+/// Where a standard parameter is found.
+enum Part<'a> {
+    /// It is given as such.
+    Whole(Option<&'a Polynomial>),
+    /// One of the ten of a body.
+    OfBody(Option<&'a Body>, usize),
+}
+
+/// The k-th of the ten inertial parameters of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c'), where `of` gives the
+/// entries of the body, and the others are the operations on what it gives.
+fn inertial<T>(
+    body: &Body,
+    k: usize,
+    of: &mut dyn FnMut(&Polynomial) -> T,
+    mul: &mut dyn FnMut(&T, &T) -> T,
+    add: &mut dyn FnMut(&T, &T) -> T,
+    neg: &mut dyn FnMut(&T) -> T,
+) -> T {
+    let mut square = |of: &mut dyn FnMut(&Polynomial) -> T, i: usize, j: usize| {
+        let (m, a, b) = (of(&body.mass), of(&body.com[i]), of(&body.com[j]));
+        let moment = mul(&m, &a);
+        mul(&moment, &b)
+    };
+    match k {
+        0 => of(&body.mass),
+        1..=3 => {
+            let (m, c) = (of(&body.mass), of(&body.com[k - 1]));
+            mul(&m, &c)
+        }
+        _ => {
+            let element = of(&body.inertia[k - 4]);
+            // Of each element, the coordinates of the products that it takes: those of a moment are added, a product of inertia is
+            // taken away.
+            match [[(1, 1), (2, 2)], [(0, 1); 2], [(0, 0), (2, 2)], [(0, 2); 2], [(1, 2); 2], [(0, 0), (1, 1)]][k - 4] {
+                [one, other] if one != other => {
+                    let (one, other) = (square(of, one.0, one.1), square(of, other.0, other.1));
+                    let sum = add(&element, &one);
+                    add(&sum, &other)
+                }
+                [(i, j), _] => {
+                    let product = square(of, i, j);
+                    add(&element, &neg(&product))
+                }
             }
         }
     }
 }
 
-/// The ten inertial parameters of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c').
-pub fn inertial(body: &Body) -> [Polynomial; 10] {
-    let (m, c) = (&body.mass, &body.com);
-    let moment: [Polynomial; 3] = [0, 1, 2].map(|i| m * &c[i]);
-    let square = |i: usize, j: usize| &moment[i] * &c[j];
-    let [xx, xy, yy, xz, yz, zz] = &body.inertia;
-    [
-        m.clone(),
-        moment[0].clone(),
-        moment[1].clone(),
-        moment[2].clone(),
-        &(xx + &square(1, 1)) + &square(2, 2),
-        xy - &square(0, 1),
-        &(yy + &square(0, 0)) + &square(2, 2),
-        xz - &square(0, 2),
-        yz - &square(1, 2),
-        &(zz + &square(0, 0)) + &square(1, 1),
-    ]
+/// Products of polynomials with more terms than this are formed by the pool, which shares the factors.
+const EXPANDED_TERMS: usize = 64;
+
+/// Whether the products m c c' of a body stay short.
+fn stays_short(body: &Body) -> bool {
+    let terms = |p: &Polynomial| p.terms().count();
+    let longest = body.com.iter().map(terms).max().unwrap_or(0);
+    terms(&body.mass) * longest * longest <= EXPANDED_TERMS
 }
 
 /// The columns of the regressor.
@@ -176,15 +225,33 @@ impl View<'_> {
 
     /// A standard parameter as an expression.
     pub fn standard(self, pool: &mut Pool, manipulator: &Manipulator, parameter: StandardParameter) -> ExprId {
-        let (View::Vector(vector) | View::Known(vector)) = self else {
-            return self.polynomial(pool, manipulator, &parameter.value(manipulator));
-        };
-        match &vector.kind {
-            ParameterKind::Names(_) => self.polynomial(pool, manipulator, &parameter.value(manipulator)),
-            ParameterKind::Standard(_) | ParameterKind::Base(_) => match vector.position(parameter) {
-                Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
-                _ => ExprId::ZERO,
-            },
+        match self {
+            View::Nominal => pool.constant(&parameter.nominal(manipulator)),
+            View::Vector(vector) | View::Known(vector) if !matches!(vector.kind, ParameterKind::Names(_)) => {
+                match vector.position(parameter) {
+                    Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
+                    _ => ExprId::ZERO,
+                }
+            }
+            View::Symbolic | View::Vector(_) | View::Known(_) => self.in_names(pool, manipulator, parameter),
+        }
+    }
+
+    /// A standard parameter as an expression in the names of the description.
+    fn in_names(self, pool: &mut Pool, manipulator: &Manipulator, parameter: StandardParameter) -> ExprId {
+        match parameter.part(manipulator) {
+            Part::Whole(value) => value.map_or(ExprId::ZERO, |value| self.polynomial(pool, manipulator, value)),
+            Part::OfBody(None, _) => ExprId::ZERO,
+            Part::OfBody(Some(body), k) if stays_short(body) => {
+                let value = inertial(body, k, &mut Polynomial::clone, &mut |a, b| a * b, &mut |a, b| a + b, &mut |a| -a);
+                self.polynomial(pool, manipulator, &value)
+            }
+            Part::OfBody(Some(body), k) => {
+                let pool = RefCell::new(pool);
+                let mut entry = |value: &Polynomial| self.polynomial(&mut pool.borrow_mut(), manipulator, value);
+                let mut mul = |a: &ExprId, b: &ExprId| pool.borrow_mut().mul(*a, *b);
+                inertial(body, k, &mut entry, &mut mul, &mut |a, b| pool.borrow_mut().add(*a, *b), &mut |a| -*a)
+            }
         }
     }
 }
@@ -211,11 +278,7 @@ impl ParameterVector {
         let columns = StandardParameter::all(manipulator);
         let entries = columns
             .iter()
-            .map(|&p| Entry {
-                name: p.name(),
-                nominal: nominal(manipulator, &p.value(manipulator)),
-                meaning: p.meaning(manipulator),
-            })
+            .map(|&p| Entry { name: p.name(), nominal: p.nominal(manipulator), meaning: p.meaning(manipulator) })
             .collect();
         ParameterVector { entries, kind: ParameterKind::Standard(columns) }
     }

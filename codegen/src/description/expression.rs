@@ -19,6 +19,8 @@ use crate::source::Span;
 
 /// Parentheses, functions and signs may nest so deep.
 const MAX_DEPTH: usize = 32;
+/// Operators between two operands: a sum of so many terms is a tree as deep, and everything that reads it goes down as deep.
+const MAX_OPERATORS: usize = 128;
 /// Characters of an expression.
 const MAX_TEXT: usize = 2000;
 /// Digits of a decimal.
@@ -134,7 +136,7 @@ impl Expression {
 
 /// The expression that a scalar at `span` holds. (The error is large, but rare.)
 pub fn parse(scalar: &Scalar, span: Span) -> Result<Expression, Box<Diagnostic>> {
-    let mut parser = Parser { text: &scalar.text, at: 0, depth: 0, verbatim: scalar.verbatim, whole: span };
+    let mut parser = Parser { text: &scalar.text, at: 0, depth: 0, operators: 0, verbatim: scalar.verbatim, whole: span };
     if scalar.text.len() > MAX_TEXT {
         let (message, help) = if scalar.text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b)) {
             (format!("a number of {} characters", scalar.text.len()), "no quantity is known to so many digits: shorten it")
@@ -161,6 +163,7 @@ struct Parser<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
+    operators: usize,
     verbatim: Option<usize>,
     whole: Span,
 }
@@ -233,6 +236,13 @@ impl<'a> Parser<'a> {
                 return Ok(left);
             };
             self.at += 1;
+            self.operators += 1;
+            if self.operators > MAX_OPERATORS {
+                let message = format!("an expression of more than {MAX_OPERATORS} operators is too long");
+                let help = "give parts of it names under `parameters`";
+                let span = self.span(self.at - 1, self.at);
+                return Err(Box::new(Diagnostic::new(Code::TooComplex, span, message, "one too many", help)));
+            }
             if self.rest().starts_with('*') {
                 return Err(self.error(self.at - 1, self.at + 1, "powers are not supported", "write the product out: `a*a`"));
             }

@@ -89,4 +89,8 @@ fn too_much_of_anything_is_an_error() {
         laughs += &format!("a{i}: &a{i} [{}]\n", vec![format!("*a{}", i - 1); 10].join(", "));
     }
     check(&laughs, &[Code::TooLarge]);
+    // Aliases of one long text: counted by its bytes.
+    let long = |aliases: usize| format!("a: &a {}\nb: [{}]\n", "x".repeat(100_000), vec!["*a"; aliases].join(", "));
+    check(&long(10), &[Code::UnknownKey, Code::MissingKey, Code::UnknownKey]);
+    check(&long(11), &[Code::TooLarge]);
 }

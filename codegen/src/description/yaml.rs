@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use serde_yaml::granit_parser::{options, ErrorKind, Event, Parser, ScalarStyle, ScanError};
+use granit_parser::{options, ErrorKind, Event, Parser, ScalarStyle, ScanError, Span as ParserSpan, StructureStyle};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::source::{Source, Span, Spanned};
@@ -17,6 +17,8 @@ const MAX_TEXT: usize = 256 * 1024;
 const MAX_DEPTH: usize = 24;
 /// Nodes after the copying of aliases.
 const MAX_NODES: usize = 200_000;
+/// Bytes that the copying of aliases adds.
+const MAX_COPIED: usize = 1 << 20;
 
 /// A value in the tree.
 #[derive(Clone, Debug)]
@@ -60,11 +62,15 @@ impl Node {
         }
     }
 
-    fn size(&self) -> usize {
+    /// Number of nodes in it, and bytes of their texts.
+    fn size(&self) -> (usize, usize) {
+        let sum = |a: (usize, usize), b: (usize, usize)| (a.0 + b.0, a.1 + b.1);
         match &self.kind {
-            Kind::Scalar(_) => 1,
-            Kind::List(items) => 1 + items.iter().map(Node::size).sum::<usize>(),
-            Kind::Mapping(entries) => 1 + entries.iter().map(|(_, value)| 1 + value.size()).sum::<usize>(),
+            Kind::Scalar(scalar) => (1, scalar.text.len()),
+            Kind::List(items) => items.iter().map(Node::size).fold((1, 0), sum),
+            Kind::Mapping(entries) => {
+                entries.iter().map(|(key, value)| sum((1, key.value.len()), value.size())).fold((1, 0), sum)
+            }
         }
     }
 }
@@ -85,7 +91,7 @@ pub fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
             Span::new(0, 0),
             format!("the file has {} bytes, more than the {MAX_TEXT} that are read", text.len()),
             "",
-            "describe one robot per file; a description of 64 joints has some 50 000 bytes",
+            "describe one robot per file; a description of 32 joints has some 30 000 bytes",
         ));
         return None;
     }
@@ -95,7 +101,7 @@ pub fn read(source: &Source, diagnostics: &mut Diagnostics) -> Option<Node> {
         flow_nesting_limit: MAX_DEPTH,
         block_nesting_limit: MAX_DEPTH,
     };
-    let builder = Builder { source, diagnostics, open: Vec::new(), anchors: BTreeMap::new(), nodes: 0, root: None };
+    let builder = Builder { source, diagnostics, open: Vec::new(), anchors: BTreeMap::new(), nodes: 0, copied: 0, root: None };
     builder.run(Parser::new_from_str_with_options(text, options))
 }
 
@@ -119,14 +125,12 @@ struct Builder<'a> {
     open: Vec<Open>,
     anchors: BTreeMap<usize, Node>,
     nodes: usize,
+    copied: usize,
     root: Option<Node>,
 }
 
 impl Builder<'_> {
-    fn run<'i>(
-        mut self,
-        events: impl Iterator<Item = Result<(Event<'i>, serde_yaml::granit_parser::Span), ScanError>>,
-    ) -> Option<Node> {
+    fn run<'i>(mut self, events: impl Iterator<Item = Result<(Event<'i>, ParserSpan), ScanError>>) -> Option<Node> {
         let mut documents = 0;
         for event in events {
             let (event, at) = match event {
@@ -167,23 +171,30 @@ impl Builder<'_> {
                     self.place(node, anchor)?;
                 }
                 Event::SequenceStart(style, anchor, _) => {
-                    let flow = style == serde_yaml::granit_parser::StructureStyle::Flow;
+                    let flow = style == StructureStyle::Flow;
                     self.open.push(Open { start: span, anchor, flow, content: Content::List(Vec::new()) });
                 }
                 Event::MappingStart(style, anchor, _) => {
-                    let flow = style == serde_yaml::granit_parser::StructureStyle::Flow;
+                    let flow = style == StructureStyle::Flow;
                     let content = Content::Mapping(Vec::new(), BTreeMap::new(), None);
                     self.open.push(Open { start: span, anchor, flow, content });
                 }
                 Event::SequenceEnd | Event::MappingEnd => self.close(span)?,
                 Event::Alias(anchor) => match self.anchors.get(&anchor) {
                     Some(node) => {
-                        self.nodes += node.size();
-                        if self.nodes > MAX_NODES {
+                        let (nodes, bytes) = node.size();
+                        self.nodes += nodes;
+                        self.copied += bytes;
+                        if self.nodes > MAX_NODES || self.copied > MAX_COPIED {
+                            let much = if self.nodes > MAX_NODES {
+                                format!("{MAX_NODES} values")
+                            } else {
+                                format!("{MAX_COPIED} bytes")
+                            };
                             self.diagnostics.push(Diagnostic::new(
                                 Code::TooLarge,
                                 span,
-                                format!("written out, the aliases of this file give more than {MAX_NODES} values"),
+                                format!("written out, the aliases of this file give more than {much}"),
                                 "too much here",
                                 "write the values out instead of referring to them by aliases",
                             ));

@@ -20,6 +20,7 @@ fn check(text: &str, part: &str, place: &str, line: &str, underline: &str) {
 fn places_agree_with_the_rendered_line() {
     check("a: 1\nbc: 2\n", "bc", "2:1", "2 | bc: 2", "^^");
     check("a: 1\r\nbc: xyz\r\n", "xyz", "2:5", "2 | bc: xyz", "    ^^^");
+    check("a: 1\rbc: xyz\rd: 2\r", "xyz", "2:5", "2 | bc: xyz", "    ^^^");
     check("\u{feff}a: 1", "1", "1:4", "1 | a: 1", "   ^");
     check("ä: \u{1f916} x", "x", "1:6", "1 | ä: \u{1f916} x", "      ^");
     check("a:\tx", "x", "1:4", "1 | a:    x", "      ^");

@@ -29,7 +29,11 @@ pub struct Origin {
 impl Origin {
     /// Of a description: its file name, not its folder, so that the output is the same everywhere.
     pub fn of(source: &Source) -> Origin {
-        let file = source.name().rsplit(['/', '\\']).next().unwrap_or_default().to_string();
+        let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
+        // In a comment, which a line break or a mark of writing direction would end or disguise, and `*/` in C.
+        let plain = |c: char| c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && c != '*');
+        let escaped = |c: char| if plain(c) { c.to_string() } else { c.escape_unicode().to_string() };
+        let file = name.chars().map(escaped).collect();
         let digest = Sha256::digest(source.text().as_bytes());
         Origin { file, hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect() }
     }
@@ -439,4 +443,18 @@ fn private_block(module: &Module) -> TokenStream {
         }
     });
     quote!(#sin_cos #sign)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Origin;
+    use crate::source::Source;
+
+    #[test]
+    fn the_name_of_a_file_cannot_leave_the_comment_it_stands_in() {
+        let file = |name: &str| Origin::of(&Source::new(name, "")).file;
+        assert_eq!(file("robots/my arm_2.yaml"), "my arm_2.yaml");
+        assert_eq!(file("r\u{e4}der.yaml"), "r\u{e4}der.yaml");
+        assert_eq!(file("a\nb\r*\u{202e}.yaml"), "a\\u{a}b\\u{d}\\u{2a}\\u{202e}.yaml");
+    }
 }

@@ -1,5 +1,6 @@
 //! Polynomials in the named parameters of a description, with exact coefficients.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -47,13 +48,31 @@ impl Polynomial {
 
     /// The value where each parameter has the value `of` says.
     pub fn evaluate(&self, of: &dyn Fn(ParameterId) -> Number) -> Number {
-        self.terms.iter().fold(Number::zero(), |sum, (powers, coefficient)| {
-            let term = powers.iter().fold(coefficient.clone(), |term, (&parameter, &power)| {
+        let mut sum = Number::zero();
+        for (powers, coefficient) in &self.terms {
+            sum += &powers.iter().fold(coefficient.clone(), |term, (&parameter, &power)| {
                 let value = of(parameter);
                 (0..power).fold(term, |term, _| &term * &value)
             });
-            &sum + &term
-        })
+        }
+        sum
+    }
+
+    /// Adds a term.
+    fn add_term(&mut self, powers: Powers, coefficient: &Number) {
+        match self.terms.entry(powers) {
+            Entry::Vacant(entry) => {
+                if !coefficient.is_zero() {
+                    entry.insert(coefficient.clone());
+                }
+            }
+            Entry::Occupied(mut entry) => {
+                *entry.get_mut() += coefficient;
+                if entry.get().is_zero() {
+                    entry.remove();
+                }
+            }
+        }
     }
 
     /// The parameters that occur.
@@ -83,12 +102,7 @@ impl Add for &Polynomial {
     fn add(self, other: &Polynomial) -> Polynomial {
         let mut sum = self.clone();
         for (powers, coefficient) in &other.terms {
-            let total = sum.terms.get(powers).map_or_else(|| coefficient.clone(), |c| c + coefficient);
-            if total.is_zero() {
-                sum.terms.remove(powers);
-            } else {
-                sum.terms.insert(powers.clone(), total);
-            }
+            sum.add_term(powers.clone(), coefficient);
         }
         sum
     }
@@ -118,7 +132,7 @@ impl Mul for &Polynomial {
                 for (&parameter, &power) in b {
                     *powers.entry(parameter).or_default() += power;
                 }
-                product = &product + &Polynomial { terms: BTreeMap::from([(powers, ca * cb)]) };
+                product.add_term(powers, &(ca * cb));
             }
         }
         product

@@ -60,6 +60,17 @@ fn quotients_are_exact() {
         assert_eq!(&quotient * &divisor, Number::from(5), "{divisor}");
     }
     assert_eq!(Number::one().checked_div(&Number::zero()), None);
+    // sqrt(3 - 2 sqrt(2)) is sqrt(2) - 1: zeros that no reduction sees, as the number and as its conjugate.
+    let unseen = (&Number::from(3) - &(&Number::from(2) * &root(2))).sqrt().unwrap();
+    let one = Number::one();
+    assert_eq!(one.checked_div(&(&(&unseen + &one) - &root(2))), None);
+    let quotient = one.checked_div(&(&(&unseen + &one) + &root(2))).unwrap();
+    assert!((quotient.to_f64() - 0.125f64.sqrt()).abs() < 1e-16);
+    // Many roots are not rationalised.
+    let many = [2, 3, 5, 7, 11, 13, 17, 19].iter().fold(Number::one(), |sum, &n| &sum + &root(n));
+    let quotient = one.checked_div(&many).unwrap();
+    assert!((quotient.to_f64() - 1.0 / many.to_f64()).abs() < 1e-16);
+    assert!(quotient.terms().count() <= 64);
     let opaque = Number::one().checked_div(&(&Number::one() + &Number::pi())).unwrap();
     assert!((opaque.to_f64() - 1.0 / (1.0 + std::f64::consts::PI)).abs() < 1e-16);
 }

@@ -37,7 +37,10 @@ use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};
 
 /// Equations and emitted code grow with the number of joints; an arm of more than this is a mistake.
-pub const MAX_JOINTS: usize = 64;
+pub const MAX_JOINTS: usize = 32;
+
+/// Named quantities: an arm of as many joints as can be, with a name for every number of its data sheet, has fewer.
+pub const MAX_PARAMETERS: usize = 1024;
 
 /// The floating-point type of the emitted code; its range bounds the numbers of a description.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +62,7 @@ pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
 pub fn read_for(source: &Source, scalar: Scalar) -> (Option<(Manipulator, Places)>, Diagnostics) {
     let (description, mut diagnostics) = RobotDescription::parse(source);
     let valid = description.and_then(|d| validate(source, &d, scalar, &mut diagnostics));
+    assert!(valid.is_some() || diagnostics.has_errors(), "what is no arm has a fault that says why");
     diagnostics.sort();
     (valid.filter(|_| !diagnostics.has_errors()), diagnostics)
 }
@@ -86,6 +90,14 @@ fn validate(
 ) -> Option<(Manipulator, Places)> {
     let complete = !diagnostics.has_errors();
     names::check(description, diagnostics);
+    if let Some(parameter) = description.parameters.get(MAX_PARAMETERS) {
+        let message =
+            format!("{} named quantities are more than the {MAX_PARAMETERS} that can be kept", description.parameters.len());
+        let help = "give names to what several values share or what the regressor lists; write the others out";
+        let label = format!("name {}", MAX_PARAMETERS + 1);
+        diagnostics.push(Diagnostic::new(Code::TooLarge, parameter.name.span, message, label, help));
+        return None;
+    }
     let parameters = Parameters::resolve(description, scalar, diagnostics);
     let mut context = Context { source, evaluator: Evaluator::new(parameters, scalar), diagnostics, planar: Vec::new() };
     let gravity = description.gravity.as_ref().and_then(|g| context.polynomials(&g.value));

@@ -15,7 +15,7 @@ use crate::exact::{Atom, Number, Rational};
 /// 2^64 - 2^32 + 1.
 const FIRST_PRIME: u64 = 0xffff_ffff_0000_0001;
 
-/// How many primes are tried before a root is left without its algebraic value.
+/// How many primes are tried before an arm is called too complex.
 const PRIMES_TRIED: usize = 4096;
 
 /// An element of the field, in Montgomery form: equal elements have equal representations.
@@ -34,8 +34,14 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field in which the roots of `numbers` exist.
+    /// A field in which the roots of `numbers`, fewer than a dozen different ones, exist.
     pub fn for_constants<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Field {
+        Field::with_roots_of(numbers).expect("few roots have a field")
+    }
+
+    /// A field in which the roots of `numbers` exist; `None` if there is none among the primes that are tried. Each root is missing
+    /// from every other field, so that happens from some twelve different roots on.
+    pub fn with_roots_of<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Option<Field> {
         let mut roots = BTreeSet::new();
         for number in numbers {
             collect_roots(number, &mut roots);
@@ -43,8 +49,7 @@ impl Field {
         let mut candidates = std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24)).filter(|&p| is_prime(p));
         (0..PRIMES_TRIED)
             .filter_map(|_| candidates.next().map(Field::modulo))
-            .find(|field| roots.iter().all(|root| field.clone().root_atom(root).is_some()))
-            .unwrap_or_else(|| Field::modulo(FIRST_PRIME))
+            .find(|field| roots.iter().all(|root| field.root_atom(root).is_some()))
     }
 
     fn modulo(p: u64) -> Field {
@@ -199,7 +204,7 @@ impl Field {
         value
     }
 
-    fn root_atom(&mut self, atom: &Atom) -> Option<Element> {
+    fn root_atom(&self, atom: &Atom) -> Option<Element> {
         let square = match atom {
             // A root of a product that was not factored or nested might be tied to others, with a sign that
             // the field does not know: only roots of primes get their algebraic value.
@@ -287,6 +292,19 @@ mod tests {
         assert_eq!(field.sqrt(field.from_u64(7)), None);
         assert_eq!(field.mul(field.from_u64(3), field.inverse(field.from_u64(3))), field.one());
         assert_eq!(field.to_u64(field.sub(field.from_u64(3), field.from_u64(5))), FIRST_PRIME - 2);
+    }
+
+    #[test]
+    fn a_field_has_every_root_or_there_is_none() {
+        let root = |n: i64| Number::from(n).sqrt().unwrap();
+        let nine = [5, 7, 11, 13, 17, 19, 23, 29, 31].map(root);
+        let mut field = Field::for_constants(&nine);
+        for number in &nine {
+            let value = field.number(number);
+            assert_eq!(field.mul(value, value), field.number(&(number * number)));
+        }
+        let many = [5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97].map(root);
+        assert!(Field::with_roots_of(&many).is_none());
     }
 
     #[test]

@@ -113,6 +113,8 @@ fn long_inputs_end_soon() {
     }
     assert_eq!(read(&"1".repeat(201)).expect_err("too many digits").code, Code::TooComplex);
     assert!(read(&"1".repeat(200)).is_ok());
-    assert!(read("1+".repeat(900).trim_end_matches('+')).is_ok());
+    assert!(read("1+".repeat(129).trim_end_matches('+')).is_ok());
+    let long = read("1*".repeat(130).trim_end_matches('*')).expect_err("too many operators");
+    assert_eq!((long.code, long.span()), (Code::TooComplex, Span::new(257, 258)));
     assert_eq!(read(&"-".repeat(1000)).expect_err("too deep").code, Code::TooComplex);
 }

@@ -6,6 +6,9 @@ use crate::description::{did_you_mean, excerpt, RegressorDescription, RobotDescr
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::manipulator::{RegressorChoice, TaskRow};
 
+/// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
+const GUESSES: usize = 50;
+
 /// The rows, all six where the file names none.
 pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Vec<TaskRow> {
     let Some(task) = &description.task else { return TaskRow::ALL.to_vec() };
@@ -40,6 +43,8 @@ pub(super) fn regressor(description: &RobotDescription, context: &mut Context<'_
     let mut symbols = Vec::new();
     let mut faults = Vec::new();
     let parameters = &context.evaluator.parameters;
+    let known = parameters.names();
+    let mut guesses = 0..GUESSES;
     for name in names {
         let shown = excerpt(&name.value);
         if let Some(first) = seen.get(name.value.as_str()) {
@@ -51,8 +56,7 @@ pub(super) fn regressor(description: &RobotDescription, context: &mut Context<'_
         }
         seen.insert(&name.value, name.span);
         let Some(entry) = parameters.get(&name.value) else {
-            let known = parameters.names();
-            let help = match did_you_mean(&name.value, &known) {
+            let help = match guesses.next().and_then(|_| did_you_mean(&name.value, &known)) {
                 Some(meant) => format!("did you mean `{meant}`? Otherwise define it under `parameters`"),
                 None if name.value == "standard" || name.value == "base" => {
                     format!("write `regressor: {}`, without brackets", name.value)

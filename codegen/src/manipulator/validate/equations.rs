@@ -7,6 +7,8 @@
 //!
 //! Each is decided exactly, in the prime field of the expressions' fingerprints.
 
+use std::ops::Range;
+
 use super::{Places, Role, Scalar};
 use crate::derive::arm::Arm;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
@@ -15,7 +17,7 @@ use crate::derive::plan::Plan;
 use crate::derive::regressor::derivative_by_parameter;
 use crate::derive::{inertia, kinematics};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::equations::field_of;
+use crate::equations::find_field;
 use crate::exact::Number;
 use crate::manipulator::{Manipulator, ParameterId, RegressorChoice};
 use crate::ring::field::{Element, Field};
@@ -24,7 +26,12 @@ use crate::source::Span;
 
 /// Reports every fault of a description that only its equations show.
 pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnostics) {
-    let field = field_of(manipulator);
+    let Some(field) = find_field(manipulator) else {
+        let message = "the numbers of this arm hold too many different square roots to work with them exactly";
+        let help = "use fewer different roots, a dozen at most; write a length that is measured as the decimal that it is";
+        diagnostics.push(Diagnostic::new(Code::TooComplex, places.name, message, "the equations of this arm", help));
+        return;
+    };
     let mut found: Vec<Option<Diagnostic>> = Vec::new();
     for (one, other) in nonlinear_pairs(manipulator, &field) {
         found.push(nonlinear(manipulator, places, one, Some(other)));
@@ -43,7 +50,11 @@ pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mu
     found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));
 }
 
-/// Pairs of listed names, equal ones included, by which the second derivative of tau is not zero.
+/// So many names are reported.
+const REPORTED_NAMES: usize = 50;
+
+/// Pairs of listed names, equal ones included, by which the second derivative of tau is not zero: for each name the first from itself
+/// on, as long as they are not very many.
 fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId, ParameterId)> {
     let RegressorChoice::Names(names) = &manipulator.regressor else { return Vec::new() };
     let vector = ParameterVector::named(manipulator, names);
@@ -51,27 +62,42 @@ fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId
     let arm = Arm::new(&mut pool, manipulator, View::Vector(&vector));
     let motion = Motion::with_reference(&mut pool, &arm);
     let tau = inverse_dynamics(&mut pool, &arm, &motion);
-    // All second derivatives at once: the second derivative along a direction with a symbol of its own for each name.
-    let mut along_all = |exprs: &[ExprId]| {
-        pool.differentiate(exprs, &mut |pool, symbol| match symbol {
-            Symbol::Parameter(k) => pool.symbol(Symbol::Torque(k)),
-            _ => ExprId::ZERO,
-        })
-    };
-    let first = along_all(&tau);
-    if along_all(&first).iter().all(|&e| e == ExprId::ZERO) {
+    // Derivatives by many names at once: along a direction with a symbol of its own for each of them.
+    let first = along(&mut pool, &tau, &(0..names.len()));
+    if !depends(&mut pool, &first, &(0..names.len())) {
         return Vec::new();
     }
     let mut pairs = Vec::new();
     for one in 0..names.len() {
-        let column = derivative_by_parameter(&mut pool, &tau, one as u16);
-        for other in one..names.len() {
-            if derivative_by_parameter(&mut pool, &column, other as u16).iter().any(|&e| e != ExprId::ZERO) {
-                pairs.push((names[one], names[other]));
-            }
+        if pairs.len() == REPORTED_NAMES {
+            break;
         }
+        let column = derivative_by_parameter(&mut pool, &tau, one as u16);
+        let mut range = one..names.len();
+        if !depends(&mut pool, &column, &range) {
+            continue;
+        }
+        // The first name that the column holds, by halving: a few derivatives, not one for each name there is.
+        while range.len() > 1 {
+            let middle = range.start + range.len() / 2;
+            range = if depends(&mut pool, &column, &(range.start..middle)) { range.start..middle } else { middle..range.end };
+        }
+        pairs.push((names[one], names[range.start]));
     }
     pairs
+}
+
+/// The derivative along the names in `range`, each with a symbol of its own as the direction.
+fn along(pool: &mut Pool, exprs: &[ExprId], range: &Range<usize>) -> Vec<ExprId> {
+    pool.differentiate(exprs, &mut |pool, symbol| match symbol {
+        Symbol::Parameter(k) if range.contains(&usize::from(k)) => pool.symbol(Symbol::Torque(k)),
+        _ => ExprId::ZERO,
+    })
+}
+
+/// Whether one of them depends on one of the names in `range`.
+fn depends(pool: &mut Pool, exprs: &[ExprId], range: &Range<usize>) -> bool {
+    along(pool, exprs, range).iter().any(|&e| e != ExprId::ZERO)
 }
 
 /// The joints at which symmetric elimination of B, at a generic state, meets a pivot of 0. B is positive semidefinite: such a joint

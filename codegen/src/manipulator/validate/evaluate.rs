@@ -25,6 +25,8 @@ const MAX_DIVISOR_ATOMS: usize = 3;
 const MAX_POLYNOMIAL: usize = 256;
 /// Degree of a polynomial in the symbols.
 const MAX_DEGREE: u32 = 12;
+/// Terms of all abbreviations, and of all values of an arm: an arm of as many joints as can be, each quantity a sum of ten names, has less.
+const MAX_ALL_TERMS: usize = 16_384;
 
 type Evaluated<T> = Result<T, Option<Box<Diagnostic>>>;
 
@@ -178,19 +180,32 @@ pub(super) struct Evaluator<'d> {
     scalar: Scalar,
     /// What each abbreviation stands for; `None` for other names, and where there is no value.
     abbreviations: Vec<Option<Polynomial>>,
+    /// Terms of the polynomials evaluated so far.
+    terms: usize,
 }
 
 impl<'d> Evaluator<'d> {
     pub(super) fn new(parameters: Parameters<'d>, scalar: Scalar) -> Evaluator<'d> {
-        let mut evaluator = Evaluator { parameters, scalar, abbreviations: Vec::new() };
+        let mut evaluator = Evaluator { parameters, scalar, abbreviations: Vec::new(), terms: 0 };
         for i in 0..evaluator.parameters.entries.len() {
             let entry = &evaluator.parameters.entries[i];
             let value = entry.value.filter(|_| entry.abbreviation && entry.number.is_none() && entry.nominal.is_some());
             // A value that is too complex is reported where it is used.
-            let polynomial = value.and_then(|v| evaluator.symbolic(v).ok());
+            let polynomial = value.and_then(|v| evaluator.counted(v).ok());
             evaluator.abbreviations.push(polynomial);
         }
+        evaluator.terms = 0;
         evaluator
+    }
+
+    /// The polynomial of an expression, as long as all of them together are not too long.
+    fn counted(&mut self, expression: &Expression) -> Evaluated<Polynomial> {
+        if self.terms > MAX_ALL_TERMS {
+            return Err(too_complex(expression));
+        }
+        let polynomial = self.symbolic(expression)?;
+        self.terms += polynomial.terms().count();
+        Ok(polynomial)
     }
 
     fn symbolic(&self, expression: &Expression) -> Evaluated<Polynomial> {
@@ -198,7 +213,7 @@ impl<'d> Evaluator<'d> {
         let value = match &expression.kind {
             ExpressionKind::Decimal(_) | ExpressionKind::Pi | ExpressionKind::Root(_) => Polynomial::from(number(expression)?),
             ExpressionKind::Name(name) => {
-                let i = self.parameters.entries.iter().position(|e| e.name == name).ok_or(None)?;
+                let i = self.parameters.position(name).ok_or(None)?;
                 let entry = &self.parameters.entries[i];
                 match (entry.symbol, &entry.number) {
                     (Some(symbol), _) => Polynomial::variable(symbol),
@@ -251,7 +266,7 @@ impl Context<'_> {
         if expression.named().is_empty() {
             return Some(Polynomial::from(value));
         }
-        match self.evaluator.symbolic(expression) {
+        match self.evaluator.counted(expression) {
             Ok(polynomial) => Some(polynomial),
             Err(fault) => {
                 if let Some(fault) = fault {

@@ -19,6 +19,8 @@ use crate::source::Span;
 const LARGEST_ANGLE: i64 = 1_000_000;
 /// How near, in rad, a decimal must come to a multiple of pi/12 to be called a rounded one.
 const NEAR: f64 = 2e-3;
+/// Terms of the squared length of an axis.
+const MAX_SQUARE: usize = 32;
 /// A limit beyond this many radians is probably one in degrees: nearly five turns.
 const SUSPECT_LIMIT: f64 = 30.0;
 
@@ -148,6 +150,12 @@ pub(super) fn tool(tool: Option<&ToolDescription>, context: &mut Context<'_>) ->
 /// A unit vector along `direction`; faults are reported at `span`.
 pub(super) fn unit_vector(direction: [Number; 3], span: Span, called: &str, context: &mut Context<'_>) -> Option<[Number; 3]> {
     let square = direction.iter().fold(Number::zero(), |sum, x| &sum + &(x * x));
+    if square.terms().count() > MAX_SQUARE {
+        let message = format!("the motor axis of joint {called} grows too large when its length becomes 1");
+        let help = "numbers are kept exactly, roots included: use fewer different roots and shorter decimals here";
+        context.report(Code::TooComplex, span, message, "too large to be kept exactly", help);
+        return None;
+    }
     let length = square.sqrt().filter(|length| !length.is_zero());
     let Some(length) = length else {
         let help = "give the direction as a vector other than 0, or leave `axis` out for the joint axis";
@@ -160,8 +168,7 @@ pub(super) fn unit_vector(direction: [Number; 3], span: Span, called: &str, cont
         );
         return None;
     };
-    let [x, y, z] = direction.map(|x| x.checked_div(&length));
-    Some([x?, y?, z?])
+    Some(direction.map(|x| x.checked_div(&length).expect("a length other than 0")))
 }
 
 /// No rotation, no translation.

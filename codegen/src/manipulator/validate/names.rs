@@ -5,7 +5,7 @@ use crate::description::{excerpt, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::source::Spanned;
 
-/// Words of Rust, editions 2015 to 2024, that cannot be the name of a module.
+/// Words of Rust, editions 2015 to 2024, that cannot be the name of anything there.
 const KEYWORDS: [&str; 53] = [
     "Self", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn", "else",
     "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod", "move",
@@ -19,8 +19,9 @@ const VARIABLES: [&str; 5] = ["q", "dq", "ddq", "dqr", "ddqr"];
 
 /// Checks every name that the file gives.
 pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostics) {
-    if let Some(name) = &description.name {
-        check_name(name, "the robot", diagnostics);
+    // The robot's name stands in the emitted text as a text and as the beginning of names: no word is reserved for it.
+    if let Some(name) = description.name.as_ref().filter(|name| !KEYWORDS.contains(&name.value.as_str()) || name.value == "_") {
+        check_identifier(name, "the robot", diagnostics);
     }
     for parameter in &description.parameters {
         check_name(&parameter.name, "a parameter", diagnostics);
@@ -46,7 +47,14 @@ fn check_name(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics)
         let message = format!("`{shown}` cannot be the name of {what}: it is {meaning}");
         let help = format!("choose another name, such as `{}_`", name.value.trim_matches('_').to_lowercase());
         diagnostics.push(Diagnostic::new(Code::ReservedName, name.span, message, "reserved", help));
-    } else if !is_identifier(&name.value) {
+    } else {
+        check_identifier(name, what, diagnostics);
+    }
+}
+
+fn check_identifier(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics) {
+    let shown = excerpt(&name.value);
+    if !is_identifier(&name.value) {
         let message = format!("`{shown}` cannot be the name of {what}: it is not an identifier");
         let help = match suggestion(&name.value) {
             Some(better) => format!("use letters, digits and `_`, a letter first: `{better}`"),

@@ -22,7 +22,12 @@ pub(super) struct Parameters<'d> {
     by_name: BTreeMap<&'d str, usize>,
     /// Names that stand in values above their definition, which is reported.
     forward: BTreeSet<&'d str>,
+    /// How many unknown names were reported.
+    unknown: usize,
 }
+
+/// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
+const GUESSES: usize = 50;
 
 /// A named quantity.
 pub(super) struct Entry<'d> {
@@ -65,21 +70,21 @@ impl Reason {
 impl<'d> Parameters<'d> {
     /// Finds out what each name is, and reports names that are not defined.
     pub(super) fn resolve(description: &'d RobotDescription, scalar: Scalar, diagnostics: &mut Diagnostics) -> Parameters<'d> {
-        let listed: Vec<&str> = match &description.regressor {
+        let listed: BTreeSet<&str> = match &description.regressor {
             Some(regressor) => match &regressor.value {
                 RegressorDescription::Names(names) => names.iter().map(|n| n.value.as_str()).collect(),
-                _ => Vec::new(),
+                _ => BTreeSet::new(),
             },
-            None => Vec::new(),
+            None => BTreeSet::new(),
         };
-        let mut parameters = Parameters { entries: Vec::new(), by_name: BTreeMap::new(), forward: BTreeSet::new() };
-        let later: Vec<&str> = description.parameters.iter().map(|p| p.name.value.as_str()).collect();
+        let mut parameters = Parameters { entries: Vec::new(), by_name: BTreeMap::new(), forward: BTreeSet::new(), unknown: 0 };
+        let later: BTreeSet<&str> = description.parameters.iter().map(|p| p.name.value.as_str()).collect();
         for parameter in &description.parameters {
             let name = parameter.name.value.as_str();
             if let Some(value) = &parameter.value {
                 parameters.note_uses(value, Role::Parameter, &later, diagnostics);
             }
-            let abbreviation = parameter.value.as_ref().is_some_and(|v| !v.named().is_empty()) && !listed.contains(&name);
+            let abbreviation = parameter.value.as_ref().is_some_and(|v| !v.named().is_empty()) && !listed.contains(name);
             let nominal = parameter.value.as_ref().and_then(|v| evaluate::number(v, &parameters, scalar, diagnostics));
             let entry = Entry {
                 name,
@@ -120,7 +125,12 @@ impl<'d> Parameters<'d> {
 
     /// The named quantity called `name`.
     pub(super) fn get(&self, name: &str) -> Option<&Entry<'d>> {
-        self.by_name.get(name).map(|&i| &self.entries[i])
+        self.position(name).map(|i| &self.entries[i])
+    }
+
+    /// Where it stands among the entries.
+    pub(super) fn position(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
     }
 
     /// The quantities that are symbols, in the order of their ids.
@@ -144,29 +154,35 @@ impl<'d> Parameters<'d> {
     }
 
     /// Notes where names stand; reports those that nothing above defines.
-    fn note_uses(&mut self, expression: &Expression, role: Role, later: &[&'d str], diagnostics: &mut Diagnostics) {
+    fn note_uses(&mut self, expression: &Expression, role: Role, later: &BTreeSet<&'d str>, diagnostics: &mut Diagnostics) {
         for (name, span) in expression.named() {
             match self.by_name.get(name) {
                 Some(&i) => self.entries[i].uses.push(Use { span, role }),
                 None => {
-                    self.forward.extend(later.iter().find(|defined| **defined == name));
+                    self.forward.extend(later.get(name));
+                    self.unknown += 1;
                     diagnostics.push(self.unknown(name, span, later));
                 }
             }
         }
     }
 
-    fn unknown(&self, name: &str, span: Span, later: &[&str]) -> Diagnostic {
+    fn unknown(&self, name: &str, span: Span, later: &BTreeSet<&'d str>) -> Diagnostic {
         let shown = excerpt(name);
         if matches!(name.to_ascii_lowercase().as_str(), "inf" | "infinity" | "nan") {
             let help = "every quantity of an arm is finite; leave the key out where it is optional and unknown";
             return Diagnostic::new(Code::NotFinite, span, format!("`{shown}` is not a finite number"), "not finite", help);
         }
-        let mut words = self.names();
-        words.push("pi");
-        let help = if later.contains(&name) {
+        let guess = || {
+            let mut words = self.names();
+            words.push("pi");
+            did_you_mean(name, &words)
+        };
+        let help = if later.contains(name) {
             format!("`{shown}` is defined further down: a value may use the names above it; move it up")
-        } else if let Some(meant) = did_you_mean(name, &words) {
+        } else if self.unknown > GUESSES {
+            format!("define `{shown}` under `parameters`, or correct it")
+        } else if let Some(meant) = guess() {
             format!("did you mean `{meant}`? Otherwise define `{shown}` under `parameters`")
         } else if self.entries.is_empty() {
             format!("define it: `parameters: {{{shown}: ...}}`; without definitions an expression knows only `pi`")

@@ -254,9 +254,135 @@ fn growth_is_bounded() {
     check(&arm(&[("mass: 2", "mass: sqrt(sqrt(sqrt(sqrt(sqrt(sqrt(sqrt(2 + pi)))))))")]), &[Code::TooComplex]);
     check(&arm(&[("mass: 2", "mass: 1/(1 + 1/(2 + 1/(3 + 1/(4 + pi))))")]), &[Code::TooComplex]);
     check(&arm(&[("mass: 2", "mass: sqrt(2 + sqrt(2 + sqrt(2)))")]), &[]);
-    let chain: String = (1..9000).map(|i| format!("  x{i}: x{}\n", i - 1)).collect();
-    let (arm, _) = valid(&arm(&[("parameters: {}\n", &format!("parameters:\n  x0: 2\n{chain}")), ("a: 0.5", "a: 1/x8999")]));
+    let chain: String = (1..1000).map(|i| format!("  x{i}: x{}\n", i - 1)).collect();
+    let (arm, _) = valid(&arm(&[("parameters: {}\n", &format!("parameters:\n  x0: 2\n{chain}")), ("a: 0.5", "a: 1/x999")]));
     assert!(arm.parameters.is_empty());
+}
+
+#[test]
+fn a_zero_that_no_reduction_sees_stands_in_no_ones_way() {
+    // sqrt(3 - 2 sqrt(2)) is sqrt(2) - 1, so that each of these has a conjugate that is 0.
+    check(&arm(&[("mass: 2", "mass: 1/(sqrt(3 - 2*sqrt(2)) + 1 + sqrt(2))")]), &[]);
+    let motor = "    motor: {inertia: 1, axis: [sqrt(sqrt(3-2*sqrt(2))), 1, sqrt(sqrt(2))]}\n";
+    let motor = only(&arm(&[("", motor)])).motor.expect("a motor");
+    let length: f64 = motor.axis.iter().map(|x| x.to_f64() * x.to_f64()).sum();
+    assert!((length - 1.0).abs() < 1e-15);
+    check(&arm(&[("mass: 2", "mass: 1/(sqrt(3 - 2*sqrt(2)) + 1 - sqrt(2))")]), &[Code::DivisionByZero]);
+    let axis = |x: &str| arm(&[("", &format!("    motor: {{inertia: 1, axis: [{x}]}}\n"))]);
+    check(&axis("sqrt(3 - 2*sqrt(2)) + 1 - sqrt(2), 0, 0"), &[Code::ZeroAxis]);
+    let long = "1+sqrt(2)+sqrt(3)+sqrt(5)+sqrt(7)+sqrt(11)+sqrt(13)";
+    check(&axis(&format!("{long}, 1, ({long})*pi")), &[Code::TooComplex]);
+}
+
+#[test]
+fn an_arm_has_a_field_with_all_its_roots_or_is_too_complex() {
+    let roots = |primes: &[i64]| primes.iter().map(|p| format!("sqrt({p})/100")).collect::<Vec<_>>().join("+");
+    let two = format!("{{mass: 2, com: [{}, {}, 0]}}", roots(&[5, 7, 11]), roots(&[13, 17]));
+    check(&arm(&[("{mass: 2}", &two)]), &[]);
+    let all = [roots(&[5, 7, 11, 13, 17, 19, 23]), roots(&[29, 31, 37, 41, 43, 47, 53]), roots(&[59, 61, 67, 71, 73, 79])];
+    check(&arm(&[("{mass: 2}", &format!("{{mass: 2, com: [{}]}}", all.join(", ")))]), &[Code::TooComplex]);
+}
+
+/// A root in any quantity that the equations hold squares to its number in the field.
+#[test]
+fn roots_of_motors_and_friction_are_in_the_field() {
+    for edit in [
+        "    motor: {inertia: sqrt(7)}\n",
+        "    motor: {viscous: sqrt(7)}\n",
+        "    motor: {mass: sqrt(7)}\n",
+        "    friction: {viscous: sqrt(7)}\n",
+        "    friction: {coulomb: sqrt(7)}\n",
+    ] {
+        let (arm, _) = valid(&arm(&[("", edit)]));
+        let mut field = crate::equations::field_of(&arm);
+        let root = field.number(&n(7, 1).sqrt().expect("positive"));
+        assert_eq!(field.mul(root, root), field.from_u64(7), "{edit}");
+    }
+}
+
+#[test]
+fn many_unknown_names_are_reported_but_not_all_guessed_at() {
+    let sum = |n: usize| (0..n).map(|i| format!("gear{i}")).collect::<Vec<_>>().join("+");
+    let parameters = "parameters:\n  gear: 2\n";
+    let edits = [("parameters: {}\n", parameters), ("a: 0.5", "a: gear"), ("d: 0.25", &format!("d: {}", sum(100)))];
+    let source = Source::new("robot.yaml", arm(&edits));
+    let (_, diagnostics) = read(&source);
+    assert_eq!(diagnostics.errors(), 100);
+    assert_eq!(diagnostics.iter().filter(|d| d.help.starts_with("did you mean")).count(), 50);
+    let regressor = format!("regressor: [{}]\n", sum(100).replace('+', ", "));
+    let source = Source::new("robot.yaml", arm(&[("parameters: {}\n", parameters), ("a: 0.5", "a: gear"), ("", &regressor)]));
+    let (_, diagnostics) = read(&source);
+    assert_eq!(diagnostics.errors(), 100);
+    assert_eq!(diagnostics.iter().filter(|d| d.help.starts_with("did you mean")).count(), 50);
+}
+
+#[test]
+fn names_are_counted() {
+    let parameters = |n: usize| format!("parameters:\n{}", (0..n).map(|i| format!("  p{i}: 1\n")).collect::<String>());
+    check(&arm(&[("parameters: {}\n", &parameters(MAX_PARAMETERS))]), &[Code::UnusedParameter; MAX_PARAMETERS]);
+    check(&arm(&[("parameters: {}\n", &parameters(MAX_PARAMETERS + 1))]), &[Code::TooLarge]);
+}
+
+#[test]
+fn terms_are_counted_over_all_values() {
+    let names = |letter: &str, n: usize| (0..n).map(|i| format!("{letter}{i}")).collect::<Vec<_>>();
+    let mut parameters = String::from("parameters:\n");
+    names("a", 100).iter().for_each(|name| parameters += &format!("  {name}: 1\n"));
+    parameters += &format!("  s: {}\n", names("a", 100).join("+"));
+    let body = "{mass: s, com: [s, s, s], inertia: {xx: s, yy: s, zz: s}}";
+    check(&arm(&[("parameters: {}\n", &parameters), ("{mass: 2}", body)]), &[]);
+    // Each of them has as many terms as the sum.
+    (0..MAX_PARAMETERS - 101).for_each(|i| parameters += &format!("  t{i}: s + {i}\n"));
+    let last = format!("t{}", MAX_PARAMETERS - 102);
+    let text = arm(&[("parameters: {}\n", &parameters), ("mass: 2", &format!("mass: {last}"))]);
+    let (_, diagnostics) = read(&Source::new("robot.yaml", text));
+    assert_eq!(diagnostics.iter().filter(|d| d.code == Code::TooComplex).count(), 1);
+}
+
+/// The sums of a mass and of its centre of mass are not multiplied out: 3 times 60³/2 products here.
+#[test]
+fn long_sums_stay_sums_in_the_equations() {
+    use crate::derive::arm::Arm;
+    use crate::derive::parameters::View;
+    use crate::ring::Pool;
+    let sum = |letter: &str| (0..60).map(|i| format!("{letter}{i}")).collect::<Vec<_>>().join("+");
+    let mut parameters = String::from("parameters:\n");
+    ["a", "b"].iter().for_each(|letter| (0..60).for_each(|i| parameters += &format!("  {letter}{i}: 1\n")));
+    let body = format!("{{mass: {}, com: [{}, 0.1, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}", sum("a"), sum("b"));
+    let (arm, _) = valid(&arm(&[("parameters: {}\n", &parameters), ("{mass: 2}", &body)]));
+    let mut pool = Pool::new(crate::equations::field_of(&arm));
+    Arm::new(&mut pool, &arm, View::Symbolic);
+    assert!(pool.len() < 1000, "{} nodes", pool.len());
+}
+
+#[test]
+fn each_name_that_is_not_linear_is_reported_once_and_not_all_of_very_many() {
+    let names = |letter: &str, n: usize| (0..n).map(|i| format!("{letter}{i}")).collect::<Vec<_>>();
+    let with = |n: usize| {
+        let (a, b) = (names("a", n), names("b", n));
+        let all = [a.clone(), b.clone()].concat();
+        let parameters: String = all.iter().map(|name| format!("  {name}: 1\n")).collect();
+        let link = format!("{{mass: {}, com: [{}, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}", a.join("+"), b.join("+"));
+        let regressor = format!("regressor: [{}]\n", all.join(", "));
+        let edits = [("parameters: {}\n", format!("parameters:\n{parameters}")), ("{mass: 2}", link), ("", regressor)];
+        arm(&edits.each_ref().map(|(old, new)| (*old, new.as_str())))
+    };
+    // The a's with the first b, the b's with themselves.
+    check(&with(4), &[Code::NonlinearParameter; 8]);
+    check(&with(60), &[Code::NonlinearParameter; 50]);
+}
+
+#[test]
+fn the_longest_expressions_need_little_stack() {
+    let sum = |operators: usize| vec!["1"; operators + 1].join(if operators % 2 == 0 { "+" } else { "*" });
+    let nested = |operators: usize| "(".repeat(31) + &sum(operators) + &")".repeat(31);
+    for (text, codes) in
+        [(sum(128), &[][..]), (nested(128), &[]), (sum(129), &[Code::TooComplex]), (sum(999), &[Code::TooComplex])]
+    {
+        let text = arm(&[("mass: 2", &format!("mass: {text}"))]);
+        let read = move || check(&text, codes);
+        std::thread::Builder::new().stack_size(512 << 10).spawn(read).expect("a thread").join().expect("no overflow");
+    }
 }
 
 #[test]
