@@ -374,7 +374,7 @@ fn each_name_that_is_not_linear_is_reported_once_and_not_all_of_very_many() {
 
 #[test]
 fn the_longest_expressions_need_little_stack() {
-    let sum = |operators: usize| vec!["1"; operators + 1].join(if operators % 2 == 0 { "+" } else { "*" });
+    let sum = |operators: usize| vec!["1"; operators + 1].join(if operators.is_multiple_of(2) { "+" } else { "*" });
     let nested = |operators: usize| "(".repeat(31) + &sum(operators) + &")".repeat(31);
     for (text, codes) in
         [(sum(128), &[][..]), (nested(128), &[]), (sum(129), &[Code::TooComplex]), (sum(999), &[Code::TooComplex])]
