@@ -33,7 +33,14 @@ fn main() {
                     writeln!(modules, "    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));").expect("text");
                 }
                 modules.push_str("}\n");
-                writeln!(list, "    emitted!({module}, \"{path}\"),").expect("text");
+                let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("a build script has it"));
+                let text = std::fs::read_to_string(out.join(format!("{module}.rs"))).expect("it was just written");
+                let inertia = if text.contains("pub fn operational_inertia(") {
+                    format!("|a| call!({module}::operational_inertia, a, q).flat()")
+                } else {
+                    "|_| panic!(\"the arm cannot do its task\")".to_owned()
+                };
+                writeln!(list, "    emitted!({module}, \"{path}\", {inertia}),").expect("text");
             };
             Robot::new(&path).generate();
             add(&stem);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
+use armgen_codegen::program::Selection;
 use armgen_codegen::source::Source;
 use armgen_codegen::Model;
 
@@ -70,4 +71,23 @@ pub(crate) fn model(path: &Path) -> Result<Model, u8> {
 /// `1 error`, `2 errors`.
 pub(crate) fn counted(count: usize, word: &str) -> String {
     format!("{count} {word}{}", if count == 1 { "" } else { "s" })
+}
+
+/// The functions of the names, all if there are none; what is wrong with a name goes to standard error.
+pub(crate) fn selection(names: &[String]) -> Option<Selection> {
+    if names.is_empty() {
+        return Some(Selection::ALL);
+    }
+    Selection::named(names).map_err(|message| terminal::error(&message)).ok()
+}
+
+/// Whether the arm has every function that was asked for; those that it does not have, and why, go to standard error.
+pub(crate) fn all_there(robot: &str, absent: &[(String, String)], selection: Selection) -> bool {
+    if selection.is_all() {
+        return true;
+    }
+    for (name, reason) in absent {
+        terminal::error(&format!("{robot} has no `{name}`: {reason}"));
+    }
+    absent.is_empty()
 }

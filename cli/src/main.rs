@@ -105,6 +105,7 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --out robot.rs --verify      with a certificate, robot.cert.json
   armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
   armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
+  armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
 
 The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
@@ -125,6 +126,9 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         /// functions for one state only, of which each of these gives the bits
         #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
         batch: Option<u16>,
+        /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them)
+        #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+        functions: Vec<String>,
         #[command(flatten)]
         beside: Beside,
     },
@@ -151,6 +155,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
     #[command(after_help = "Examples:
   armgen count robot.yaml
   armgen count robot.yaml --format json
+  armgen count robot.yaml --functions inverse_dynamics,gravity
 
 mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine.")]
     Count {
@@ -160,6 +165,9 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         /// Form of the output
         #[arg(long, value_enum, default_value_t = CountFormat::Text)]
         format: CountFormat,
+        /// Functions to count, separated by commas; all if none is named
+        #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+        functions: Vec<String>,
     },
     /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected
     #[command(after_help = "Examples:
@@ -232,11 +240,11 @@ fn main() -> ExitCode {
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar, trig, batch, beside } => {
-            commands::generate::run(&file, out.as_deref(), scalar, trig, batch, &beside)
+        Command::Generate { file, out, scalar, trig, batch, functions, beside } => {
+            commands::generate::run(&file, out.as_deref(), scalar, trig, batch, &functions, &beside)
         }
         Command::Verify { description, module } => commands::verify::run(&description, &module),
-        Command::Count { file, format } => commands::count::run(&file, format),
+        Command::Count { file, format, functions } => commands::count::run(&file, format, &functions),
         Command::Run { files, out } => commands::run::run(&files, &out),
         Command::Completions { shell } => commands::completions::run(shell),
     };

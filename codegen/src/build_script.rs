@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use crate::diagnostic::Colour;
 pub use crate::program::{Pass, Scalar, Trig};
 
-use crate::program::Options;
+use crate::program::{Options, Selection};
 use crate::source::Source;
 
 /// Why nothing was generated: every fault of the description with its place, or the file that cannot be read or written.
@@ -40,6 +40,7 @@ impl std::error::Error for BuildError {}
 pub struct Robot {
     description: PathBuf,
     options: Options,
+    functions: Vec<String>,
     stem: Option<String>,
     c_abi: bool,
 }
@@ -47,7 +48,13 @@ pub struct Robot {
 impl Robot {
     /// The description in `path`, relative to the folder of the crate that is built.
     pub fn new(path: impl AsRef<Path>) -> Robot {
-        Robot { description: path.as_ref().to_path_buf(), options: Options::default(), stem: None, c_abi: false }
+        Robot {
+            description: path.as_ref().to_path_buf(),
+            options: Options::default(),
+            functions: Vec::new(),
+            stem: None,
+            c_abi: false,
+        }
     }
 
     /// The scalar type behind `Real`; f64 unless chosen.
@@ -73,6 +80,13 @@ impl Robot {
     /// Adds the modules `lanes` and `batch`: the functions for many states, so many at a time. 8 serve f64 on every present processor, 16 serve f32.
     pub fn batch(mut self, lanes: usize) -> Robot {
         self.options.batch = Some(lanes);
+        self
+    }
+
+    /// The functions of the module by their names, `["gravity", "inertia_matrix_with"]`, say; all unless some are chosen. A name that no
+    /// function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
+    pub fn functions<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Robot {
+        self.functions = names.into_iter().map(Into::into).collect();
         self
     }
 
@@ -113,8 +127,15 @@ impl Robot {
         let bytes = std::fs::read(&self.description).map_err(|e| format!("error: cannot read {path}: {e}"))?;
         let text = String::from_utf8(bytes).map_err(|e| format!("error: {path} is not UTF-8: {e}"))?;
         let source = Source::new(path.to_string(), text);
-        let (generated, diagnostics) = crate::generate(&source, &self.options);
+        let mut options = self.options;
+        if !self.functions.is_empty() {
+            options.functions = Selection::named(&self.functions).map_err(|message| format!("error: {message}"))?;
+        }
+        let (generated, diagnostics) = crate::generate(&source, &options);
         let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
+        if let (false, Some((name, reason))) = (options.functions.is_all(), generated.absent.first()) {
+            return Err(format!("error: {path} has no `{name}`: {reason}"));
+        }
         for warning in diagnostics.iter() {
             let place = source.place(warning.span().range().start);
             println!("cargo:warning={path}:{}:{}: {}", place.line, place.column, warning.message);

@@ -4,6 +4,7 @@ pub mod c;
 pub mod rust;
 
 mod batch;
+mod body;
 mod documentation;
 mod literal;
 mod runtime;

@@ -5,7 +5,7 @@
 
 use crate::derive::arm::Arm;
 use crate::derive::newton_euler::Motion;
-use crate::derive::parameters::{ParameterVector, View};
+use crate::derive::parameters::View;
 use crate::derive::passes::Use;
 use crate::derive::plan::{Pass, Passes, Plan};
 use crate::derive::{self};
@@ -48,6 +48,18 @@ pub enum Quantity {
     KineticEnergy,
     /// U(q).
     PotentialEnergy,
+    /// B dq.
+    Momentum,
+    /// C' dq.
+    CoriolisTransposeTimes,
+    /// Y_b(q, dq, ddq).
+    BaseRegressor,
+    /// (J B^-1 J')^-1.
+    OperationalInertia,
+    /// ∂tau/∂q and ∂tau/∂dq.
+    InverseDynamicsDerivatives,
+    /// ∂ddq/∂q, ∂ddq/∂dq and B^-1.
+    ForwardDynamicsDerivatives,
 }
 
 /// An argument of an emitted function.
@@ -69,7 +81,7 @@ pub enum Argument {
     Tau,
 }
 
-/// Shape of a result, in terms of the n joints and the p parameters.
+/// Shape of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A number.
@@ -86,20 +98,42 @@ pub enum Shape {
     Square,
     /// n x p.
     Regressor,
+    /// n x b, of the base parameters.
+    BaseRegressor,
+    /// m x m, of the rows of the task.
+    Task,
     /// B, C and g: n x n, n x n, n.
     EquationsOfMotion,
+    /// So many n x n.
+    Squares(u8),
+}
+
+/// What the shapes of an arm's quantities depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// Number of joints.
+    pub dof: usize,
+    /// Number of parameters.
+    pub parameters: usize,
+    /// Number of base parameters.
+    pub base_parameters: usize,
+    /// Number of rows of the task.
+    pub task: usize,
 }
 
 impl Shape {
     /// Rows and columns of one matrix, or of each of several.
-    pub fn rows_columns(self, n: usize, p: usize) -> (usize, usize) {
+    pub fn rows_columns(self, sizes: &Sizes) -> (usize, usize) {
+        let n = sizes.dof;
         match self {
             Shape::Scalar => (1, 1),
             Shape::Vector => (n, 1),
             Shape::Frame | Shape::Frames => (4, 4),
             Shape::Jacobian => (6, n),
-            Shape::Square | Shape::EquationsOfMotion => (n, n),
-            Shape::Regressor => (n, p),
+            Shape::Square | Shape::EquationsOfMotion | Shape::Squares(_) => (n, n),
+            Shape::Regressor => (n, sizes.parameters),
+            Shape::BaseRegressor => (n, sizes.base_parameters),
+            Shape::Task => (sizes.task, sizes.task),
         }
     }
 }
@@ -125,7 +159,7 @@ pub const CLOSED_FORM_TERMS: usize = 300;
 
 impl Quantity {
     /// All, in the order of the emitted module.
-    pub const ALL: [Quantity; 15] = [
+    pub const ALL: [Quantity; 21] = [
         Quantity::DirectKinematics,
         Quantity::LinkFrames,
         Quantity::GeometricJacobian,
@@ -141,6 +175,12 @@ impl Quantity {
         Quantity::KnownTorque,
         Quantity::KineticEnergy,
         Quantity::PotentialEnergy,
+        Quantity::Momentum,
+        Quantity::CoriolisTransposeTimes,
+        Quantity::BaseRegressor,
+        Quantity::OperationalInertia,
+        Quantity::InverseDynamicsDerivatives,
+        Quantity::ForwardDynamicsDerivatives,
     ];
 
     /// The emitted function's name.
@@ -161,6 +201,12 @@ impl Quantity {
             Quantity::KnownTorque => "known_torque",
             Quantity::KineticEnergy => "kinetic_energy",
             Quantity::PotentialEnergy => "potential_energy",
+            Quantity::Momentum => "momentum",
+            Quantity::CoriolisTransposeTimes => "coriolis_transpose_times",
+            Quantity::BaseRegressor => "base_regressor",
+            Quantity::OperationalInertia => "operational_inertia",
+            Quantity::InverseDynamicsDerivatives => "inverse_dynamics_derivatives",
+            Quantity::ForwardDynamicsDerivatives => "forward_dynamics_derivatives",
         }
     }
 
@@ -182,6 +228,16 @@ impl Quantity {
             Quantity::KnownTorque => ("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
             Quantity::KineticEnergy => ("T(q, dq)", "\\mathcal T(q, \\dot q)"),
             Quantity::PotentialEnergy => ("U(q)", "\\mathcal U(q)"),
+            Quantity::Momentum => ("B dq", "B(q) \\dot q"),
+            Quantity::CoriolisTransposeTimes => ("C' dq", "C^T(q, \\dot q) \\dot q"),
+            Quantity::BaseRegressor => ("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"),
+            Quantity::OperationalInertia => ("(J B^-1 J')^-1", "(J B^{-1} J^T)^{-1}"),
+            Quantity::InverseDynamicsDerivatives => {
+                ("dtau/dq, dtau/d(dq)", "\\partial\\tau/\\partial q, \\partial\\tau/\\partial\\dot q")
+            }
+            Quantity::ForwardDynamicsDerivatives => {
+                ("d(ddq)/dq, d(ddq)/d(dq), B^-1", "\\partial\\ddot q/\\partial q, \\partial\\ddot q/\\partial\\dot q, B^{-1}")
+            }
         }
     }
 
@@ -194,13 +250,17 @@ impl Quantity {
             | Quantity::GeometricJacobian
             | Quantity::InertiaMatrix
             | Quantity::Gravity
-            | Quantity::PotentialEnergy => &[Q],
-            Quantity::GeometricJacobianDot | Quantity::CoriolisMatrix | Quantity::EquationsOfMotion | Quantity::KineticEnergy => {
-                &[Q, Dq]
-            }
+            | Quantity::PotentialEnergy
+            | Quantity::OperationalInertia => &[Q],
+            Quantity::GeometricJacobianDot
+            | Quantity::CoriolisMatrix
+            | Quantity::EquationsOfMotion
+            | Quantity::KineticEnergy
+            | Quantity::Momentum
+            | Quantity::CoriolisTransposeTimes => &[Q, Dq],
             Quantity::Friction => &[Dq],
-            Quantity::InverseDynamics => &[Q, Dq, Ddq],
-            Quantity::ForwardDynamics => &[Q, Dq, Tau],
+            Quantity::InverseDynamics | Quantity::BaseRegressor | Quantity::InverseDynamicsDerivatives => &[Q, Dq, Ddq],
+            Quantity::ForwardDynamics | Quantity::ForwardDynamicsDerivatives => &[Q, Dq, Tau],
             Quantity::Regressor | Quantity::KnownTorque => &[Q, Dq, Dqr, Ddqr],
         }
     }
@@ -222,6 +282,21 @@ impl Quantity {
         )
     }
 
+    /// Why an arm does not have the quantity, if it does not.
+    pub fn missing(self, model: &Model) -> Option<String> {
+        if self != Quantity::OperationalInertia {
+            return None;
+        }
+        let task = model.manipulator.task_rows();
+        let mut pool = Pool::new(model.field.clone());
+        let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
+        let defined = derive::operational_inertia::is_defined(&model.field, &arm, &mut pool, &task);
+        (!defined).then(|| {
+            let (rows, joints) = (task.len(), model.manipulator.dof());
+            format!("J B^-1 J' is singular for every q: the arm's {joints} joints cannot move the {rows} rows of the task independently")
+        })
+    }
+
     /// Shape of the result.
     pub fn shape(self) -> Shape {
         match self {
@@ -233,10 +308,16 @@ impl Quantity {
             | Quantity::Friction
             | Quantity::InverseDynamics
             | Quantity::ForwardDynamics
-            | Quantity::KnownTorque => Shape::Vector,
+            | Quantity::KnownTorque
+            | Quantity::Momentum
+            | Quantity::CoriolisTransposeTimes => Shape::Vector,
             Quantity::EquationsOfMotion => Shape::EquationsOfMotion,
             Quantity::Regressor => Shape::Regressor,
             Quantity::KineticEnergy | Quantity::PotentialEnergy => Shape::Scalar,
+            Quantity::BaseRegressor => Shape::BaseRegressor,
+            Quantity::OperationalInertia => Shape::Task,
+            Quantity::InverseDynamicsDerivatives => Shape::Squares(2),
+            Quantity::ForwardDynamicsDerivatives => Shape::Squares(3),
         }
     }
 
@@ -256,6 +337,7 @@ impl Quantity {
         let view = match self {
             Quantity::Regressor => View::Vector(parameters),
             Quantity::KnownTorque => View::Known(parameters),
+            Quantity::BaseRegressor => View::Vector(model.base_parameters()),
             _ => view,
         };
         let used = self.used(view);
@@ -264,9 +346,13 @@ impl Quantity {
         let derive = |pool: &mut Pool, plan: &mut Plan| {
             let mut arm = arm.clone();
             derive::passes::rewrite(pool, &mut arm, plan, used);
-            self.entries(pool, &arm, parameters, plan)
+            self.entries(pool, &arm, model, plan)
         };
         let mut plan = plan;
+        if self == Quantity::OperationalInertia {
+            // The Jacobian wants the lengths of the description.
+            plan.keep_off(Pass::UnitOfLength);
+        }
         derive::passes::suit(&pool, &arm, &mut plan);
         if effort > 0 {
             let sketch = pool.sketch();
@@ -292,7 +378,18 @@ impl Quantity {
         use Quantity::*;
         match self {
             DirectKinematics | LinkFrames | GeometricJacobian | GeometricJacobianDot => Use::Frames,
-            InertiaMatrix | CoriolisMatrix | Gravity | EquationsOfMotion | InverseDynamics | ForwardDynamics | KineticEnergy
+            InertiaMatrix
+            | CoriolisMatrix
+            | Gravity
+            | EquationsOfMotion
+            | InverseDynamics
+            | ForwardDynamics
+            | KineticEnergy
+            | Momentum
+            | CoriolisTransposeTimes
+            | OperationalInertia
+            | InverseDynamicsDerivatives
+            | ForwardDynamicsDerivatives
                 if matches!(view, View::Nominal) =>
             {
                 Use::Dynamics
@@ -302,7 +399,7 @@ impl Quantity {
     }
 
     /// The entries for an arm in a pool, row by row.
-    pub fn entries(self, pool: &mut Pool, arm: &Arm, parameters: &ParameterVector, plan: &mut Plan) -> Vec<ExprId> {
+    pub fn entries(self, pool: &mut Pool, arm: &Arm, model: &Model, plan: &mut Plan) -> Vec<ExprId> {
         match self {
             Quantity::DirectKinematics => derive::kinematics::direct_kinematics(pool, arm).concat(),
             Quantity::LinkFrames => derive::kinematics::link_frames(pool, arm).concat().concat(),
@@ -325,13 +422,28 @@ impl Quantity {
                 derive::newton_euler::inverse_dynamics(pool, arm, &motion)
             }
             Quantity::ForwardDynamics => derive::forward_dynamics::forward_dynamics(pool, arm, plan),
-            Quantity::Regressor => derive::regressor::regressor(pool, arm, parameters).concat(),
+            Quantity::Regressor => derive::regressor::regressor(pool, arm, &model.parameters).concat(),
             Quantity::KnownTorque => {
                 let motion = Motion::with_reference(pool, arm);
                 derive::newton_euler::inverse_dynamics(pool, arm, &motion)
             }
             Quantity::KineticEnergy => vec![derive::energy::kinetic_energy(pool, arm)],
             Quantity::PotentialEnergy => vec![derive::gravity::potential_energy(pool, arm)],
+            Quantity::Momentum => derive::momentum::momentum(pool, arm),
+            Quantity::CoriolisTransposeTimes => derive::momentum::coriolis_transpose_times(pool, arm),
+            Quantity::BaseRegressor => derive::base::base_regressor(pool, arm, model.base_parameters()).concat(),
+            Quantity::OperationalInertia => {
+                derive::operational_inertia::operational_inertia(pool, arm, plan, &model.manipulator.task_rows()).concat()
+            }
+            Quantity::InverseDynamicsDerivatives => {
+                let motion = Motion::plain(pool, arm);
+                let (by_q, by_dq) = derive::derivatives::inverse_dynamics_derivatives(pool, arm, plan, &motion);
+                [by_q, by_dq].concat().concat()
+            }
+            Quantity::ForwardDynamicsDerivatives => {
+                let (by_q, by_dq, inverse) = derive::derivatives::forward_dynamics_derivatives(pool, arm, plan);
+                [by_q, by_dq, inverse].concat().concat()
+            }
         }
     }
 }

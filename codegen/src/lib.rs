@@ -26,6 +26,7 @@ pub mod show;
 pub mod source;
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use derive::parameters::ParameterVector;
 use diagnostic::Diagnostics;
@@ -48,6 +49,8 @@ pub struct Generated {
     pub c: CFace,
     /// The exact constants behind the literals of the module, by function.
     pub constants: BTreeMap<String, Vec<Number>>,
+    /// Functions that this arm does not have: name and reason.
+    pub absent: Vec<(String, String)>,
 }
 
 /// A valid arm with what its equations are formed in.
@@ -59,6 +62,8 @@ pub struct Model {
     pub field: Field,
     /// The parameter vector that its `regressor` chooses.
     pub parameters: ParameterVector,
+    /// Its base parameters, found when first asked for.
+    base: OnceLock<ParameterVector>,
 }
 
 impl Model {
@@ -66,7 +71,22 @@ impl Model {
     pub fn new(manipulator: Manipulator) -> Model {
         let field = equations::field_of(&manipulator);
         let parameters = derive::parameter_vector(&manipulator, &field);
-        Model { manipulator, field, parameters }
+        Model { manipulator, field, parameters, base: OnceLock::new() }
+    }
+
+    /// The base parameters, the masses of rotors among their values.
+    pub fn base_parameters(&self) -> &ParameterVector {
+        self.base.get_or_init(|| derive::base::base_parameters_with_rotors(&self.manipulator, &self.field))
+    }
+
+    /// What the shapes of the quantities depend on.
+    pub fn sizes(&self) -> equations::Sizes {
+        equations::Sizes {
+            dof: self.manipulator.dof(),
+            parameters: self.parameters.len(),
+            base_parameters: self.base_parameters().len(),
+            task: self.manipulator.task.len(),
+        }
     }
 
     /// The programs of all functions.
@@ -90,6 +110,7 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         runtime: emit::rust::print_runtime(&module, &origin),
         c: emit::c::print(&module, &origin),
         constants: module.constants(),
+        absent: module.absent,
     };
     (Some(generated), diagnostics)
 }

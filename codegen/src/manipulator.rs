@@ -174,6 +174,11 @@ impl Manipulator {
     pub fn dof(&self) -> usize {
         self.joints.len()
     }
+
+    /// Rows of the geometric Jacobian that make up the task.
+    pub fn task_rows(&self) -> Vec<usize> {
+        self.task.iter().map(|row| row.index()).collect()
+    }
 }
 
 impl TaskRow {

@@ -7,11 +7,13 @@ mod constants;
 mod cost;
 mod optimise;
 mod schedule;
+mod selection;
 
 pub use crate::derive::plan::{Pass, Passes};
 pub use crate::manipulator::Scalar;
 pub use cost::Cost;
 pub use schedule::{module, Options};
+pub use selection::Selection;
 
 use crate::equations::{Argument, Quantity};
 use crate::exact::Number;
@@ -120,8 +122,12 @@ pub struct Module {
     pub parameters: Vec<(String, Number, String)>,
     /// Whether the parameters are a base set: combinations in joint frames.
     pub base_parameters: bool,
+    /// Base parameters: name, nominal value, exact combination of standard parameters; none if no function needs them.
+    pub base_set: Vec<(String, Number, String)>,
     /// Functions in order.
     pub functions: Vec<Function>,
+    /// Functions that this arm does not have: name and reason.
+    pub absent: Vec<(String, String)>,
     /// The scalar.
     pub scalar: Scalar,
     /// Where sines and cosines come from.
@@ -141,7 +147,8 @@ impl Module {
             Operand::Constant(value) => Some(value),
             Operand::Step(_) | Operand::Input(_) => None,
         });
-        constants.chain(self.parameters.iter().map(|(_, value, _)| value)).find(|value| !self.scalar.holds(value))
+        let parameters = self.parameters.iter().chain(&self.base_set).map(|(_, value, _)| value);
+        constants.chain(parameters).find(|value| !self.scalar.holds(value))
     }
 }
 

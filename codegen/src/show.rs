@@ -148,6 +148,17 @@ impl Item {
     }
 }
 
+impl Item {
+    fn name(self) -> String {
+        match self {
+            Item::Plain(quantity) => quantity.name().into(),
+            Item::With(quantity) => format!("{}_with", quantity.name()),
+            Item::LinkFrame(i) => format!("link_frame_{}", i + 1),
+            Item::Determinant => DETERMINANT.into(),
+        }
+    }
+}
+
 impl Sheet {
     /// The quantities asked for, each once, in the order of asking.
     pub fn new(model: &Model, items: &[Item], reading: Reading) -> Sheet {
@@ -156,7 +167,7 @@ impl Sheet {
         for &item in items {
             match shown(model, item, reading) {
                 Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),
-                Err(reason) => sheet.absent.push((DETERMINANT.into(), reason)),
+                Err(reason) => sheet.absent.push((item.name(), reason)),
             }
         }
         sheet.absent.dedup();
@@ -230,6 +241,21 @@ fn shown(model: &Model, item: Item, reading: Reading) -> Result<Vec<Shown>, Stri
             let derivation = symbolic_regressor(model, quantity).unwrap_or_else(|| quantity.by_recursion(model, view));
             vec![matrix(model, quantity, quantity.name().into(), derivation)]
         }
+        Item::Plain(quantity) if quantity.missing(model).is_some() => return Err(quantity.missing(model).unwrap_or_default()),
+        Item::Plain(quantity @ (Quantity::InverseDynamicsDerivatives | Quantity::ForwardDynamicsDerivatives)) => {
+            let derivation = quantity.by_recursion(model, view);
+            derivatives(quantity)
+                .iter()
+                .zip(derivation.entries.chunks(dof * dof))
+                .map(|((by, text, latex), entries)| {
+                    let part = Derivation { entries: entries.to_vec(), ..derivation.clone() };
+                    let mut shown = matrix(model, Quantity::InertiaMatrix, format!("{}_{by}", quantity.name()), part);
+                    shown.symbol = [(*text).into(), (*latex).into()];
+                    shown.letter = letter(quantity);
+                    shown
+                })
+                .collect()
+        }
         Item::Plain(quantity) => vec![matrix(model, quantity, quantity.name().into(), quantity.by_recursion(model, view))],
         Item::With(quantity) => {
             let mut shown = matrix(model, quantity, format!("{}_with", quantity.name()), quantity.by_recursion(model, view));
@@ -237,6 +263,21 @@ fn shown(model: &Model, item: Item, reading: Reading) -> Result<Vec<Shown>, Stri
             vec![shown]
         }
     })
+}
+
+/// The matrices of a quantity that has several: by what the derivative is, and its symbol in plain text and in LaTeX.
+fn derivatives(quantity: Quantity) -> &'static [(&'static str, &'static str, &'static str)] {
+    match quantity {
+        Quantity::InverseDynamicsDerivatives => {
+            &[("q", "dtau/dq", "\\partial\\tau/\\partial q"), ("dq", "dtau/d(dq)", "\\partial\\tau/\\partial\\dot q")]
+        }
+        Quantity::ForwardDynamicsDerivatives => &[
+            ("q", "d(ddq)/dq", "\\partial\\ddot q/\\partial q"),
+            ("dq", "d(ddq)/d(dq)", "\\partial\\ddot q/\\partial\\dot q"),
+            ("tau", "B^-1", "B^{-1}"),
+        ],
+        _ => &[],
+    }
 }
 
 /// The determinant with its factors; its closed form if that is not too long.
@@ -275,7 +316,7 @@ fn frame(model: &Model, frames: &Derivation, i: usize) -> Shown {
 }
 
 fn matrix(model: &Model, quantity: Quantity, name: String, derivation: Derivation) -> Shown {
-    let (rows, columns) = quantity.shape().rows_columns(model.manipulator.dof(), model.parameters.len());
+    let (rows, columns) = quantity.shape().rows_columns(&model.sizes());
     debug_assert_eq!(derivation.entries.len(), rows * columns);
     let (text, latex) = quantity.symbol();
     Shown {
@@ -284,8 +325,12 @@ fn matrix(model: &Model, quantity: Quantity, name: String, derivation: Derivatio
         letter: letter(quantity),
         rows,
         columns,
-        column_names: (quantity.shape() == Shape::Regressor)
-            .then(|| model.parameters.entries.iter().map(|entry| entry.name.clone()).collect()),
+        column_names: match quantity.shape() {
+            Shape::Regressor => Some(&model.parameters),
+            Shape::BaseRegressor => Some(model.base_parameters()),
+            _ => None,
+        }
+        .map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
         content: match derivation.closed_forms() {
             Some(forms) => Content::Closed(forms),
             None => Content::Program(Box::new(derivation)),
@@ -348,6 +393,12 @@ fn letter(quantity: Quantity) -> [&'static str; 2] {
         Quantity::KnownTorque => ["tau_known", "\\tau_0"],
         Quantity::KineticEnergy => ["T", "\\mathcal T"],
         Quantity::PotentialEnergy => ["U", "\\mathcal U"],
+        Quantity::Momentum => ["p", "p"],
+        Quantity::CoriolisTransposeTimes => ["c", "c"],
+        Quantity::BaseRegressor => ["y_b", "y_b"],
+        Quantity::OperationalInertia => ["b_a", "b_A"],
+        Quantity::InverseDynamicsDerivatives => ["dtau", "\\partial\\tau"],
+        Quantity::ForwardDynamicsDerivatives => ["dddq", "\\partial\\ddot q"],
     }
 }
 

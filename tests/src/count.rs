@@ -19,23 +19,28 @@ pub struct Operations {
     pub sincos: usize,
 }
 
-/// Operations of every public function of a module.
+/// Operations of every public function of a module, with those of the private functions `NAME_part_1` and so on that hold parts of it.
 ///
 /// Panics where the text is not Rust, or holds what no emitted function may: another operator or call, an index that is no literal,
 /// a loop, a branch, a macro, an unsafe block.
 pub fn count(text: &str) -> BTreeMap<String, Operations> {
     let file = syn::parse_file(text).expect("the emitted text is Rust");
-    let functions = file.items.iter().filter_map(|item| match item {
-        syn::Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => Some(function),
-        _ => None,
-    });
-    functions
-        .map(|function| {
-            let mut operations = Operations::default();
-            operations.visit_block(&function.block);
-            (function.sig.ident.to_string(), operations)
-        })
-        .collect()
+    let mut counted: BTreeMap<String, Operations> = BTreeMap::new();
+    for item in &file.items {
+        let syn::Item::Fn(function) = item else { continue };
+        let name = function.sig.ident.to_string();
+        let public = matches!(function.vis, syn::Visibility::Public(_));
+        let whole = if public { Some(name.as_str()) } else { part_of(&name) };
+        let Some(whole) = whole else { continue };
+        counted.entry(whole.to_owned()).or_default().visit_block(&function.block);
+    }
+    counted
+}
+
+/// The function that a private function holds a part of.
+fn part_of(name: &str) -> Option<&str> {
+    let (whole, number) = name.rsplit_once("_part_")?;
+    number.parse::<usize>().is_ok().then_some(whole)
 }
 
 impl<'a> Visit<'a> for Operations {
@@ -57,6 +62,7 @@ impl<'a> Visit<'a> for Operations {
                 match path.path.get_ident().map(ToString::to_string).as_deref() {
                     Some("sin_cos") => self.sincos += 1,
                     Some("sign") => (),
+                    Some(name) if part_of(name).is_some() => (),
                     _ => panic!("a call of something else than sin_cos and sign"),
                 }
             }

@@ -23,6 +23,7 @@ pub struct Emitted {
     dof: usize,
     parameter_names: &'static [&'static str],
     nominal: fn() -> Vec<f64>,
+    nominal_base: fn() -> Vec<f64>,
     free: fn(&str, &Arguments) -> Vec<f64>,
     traits: fn(&str, &Arguments) -> Vec<f64>,
 }
@@ -53,6 +54,14 @@ impl Functions for Emitted {
         (self.nominal)()
     }
 
+    fn nominal_base(&self) -> Vec<f64> {
+        (self.nominal_base)()
+    }
+
+    fn has(&self, function: &str) -> bool {
+        self.text.contains(&format!("pub fn {function}("))
+    }
+
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
         (self.free)(function, arguments)
     }
@@ -73,6 +82,10 @@ impl Functions for ThroughTraits {
 
     fn nominal(&self) -> Vec<f64> {
         (self.0.traits)("parameters", &Arguments::default())
+    }
+
+    fn has(&self, function: &str) -> bool {
+        self.0.runtime_text.contains(&format!("fn {}(", function.trim_end_matches("_with")))
     }
 
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
@@ -121,6 +134,18 @@ impl<T: Flat, const N: usize> Flat for [T; N] {
     }
 }
 
+impl<A: Flat, B: Flat> Flat for (A, B) {
+    fn flat(self) -> Vec<f64> {
+        [self.0.flat(), self.1.flat()].concat()
+    }
+}
+
+impl<A: Flat, B: Flat, C: Flat> Flat for (A, B, C) {
+    fn flat(self) -> Vec<f64> {
+        [self.0.flat(), self.1.flat(), self.2.flat()].concat()
+    }
+}
+
 fn flat_matrix<T: Real, const R: usize, const C: usize>(m: &SMatrix<T, R, C>) -> Vec<f64> {
     (0..R).flat_map(|i| (0..C).map(move |j| m[(i, j)].into())).collect()
 }
@@ -162,9 +187,12 @@ macro_rules! call {
     };
 }
 
-/// The table entry of an emitted module.
+/// The table entry of an emitted module, with what computes the function that not every module has.
 macro_rules! emitted {
-    ($module:ident, $path:literal) => {{
+    ($module:ident, $path:literal, $operational_inertia:expr) => {{
+        fn nominal_base() -> Vec<f64> {
+            $module::NOMINAL_BASE_PARAMETERS.flat()
+        }
         fn nominal() -> Vec<f64> {
             $module::NOMINAL_PARAMETERS.flat()
         }
@@ -197,6 +225,15 @@ macro_rules! emitted {
                 "kinetic_energy_with" => call!($module::kinetic_energy_with, a, pi, q, dq).flat(),
                 "potential_energy" => call!($module::potential_energy, a, q).flat(),
                 "potential_energy_with" => call!($module::potential_energy_with, a, pi, q).flat(),
+                "momentum" => call!($module::momentum, a, q, dq).flat(),
+                "coriolis_transpose_times" => call!($module::coriolis_transpose_times, a, q, dq).flat(),
+                "base_regressor" => call!($module::base_regressor, a, q, dq, ddq).flat(),
+                "operational_inertia" => {
+                    let operational_inertia: fn(&Arguments) -> Vec<f64> = $operational_inertia;
+                    operational_inertia(a)
+                }
+                "inverse_dynamics_derivatives" => call!($module::inverse_dynamics_derivatives, a, q, dq, ddq).flat(),
+                "forward_dynamics_derivatives" => call!($module::forward_dynamics_derivatives, a, q, dq, tau).flat(),
                 _ => panic!("no function `{function}`"),
             }
         }
@@ -216,6 +253,7 @@ macro_rules! emitted {
             dof: $module::DOF,
             parameter_names: &$module::PARAMETER_NAMES,
             nominal,
+            nominal_base,
             free,
             traits,
         }

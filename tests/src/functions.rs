@@ -30,14 +30,22 @@ pub trait Functions {
     /// Values of the parameters in the description.
     fn nominal(&self) -> Vec<f64>;
 
-    /// The value of a function by its name in the emitted module, row by row; `equations_of_motion` gives B, C and g one after the other.
+    /// Values of the base parameters in the description; none where there is no `base_regressor`.
+    fn nominal_base(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Whether there is a function: the traits of the runtime do not have all of them, and not every arm has an operational inertia.
+    fn has(&self, function: &str) -> bool;
+
+    /// The value of a function by its name in the emitted module, row by row; of functions with several results one after the other.
     ///
     /// Panics where there is no such function.
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64>;
 }
 
-/// The functions of every emitted module, in its order.
-pub const FUNCTIONS: [&str; 24] = [
+/// The functions of every emitted module, in its order; `operational_inertia` only where the arm can do its task.
+pub const FUNCTIONS: [&str; 30] = [
     "direct_kinematics",
     "link_frames",
     "geometric_jacobian",
@@ -62,4 +70,13 @@ pub const FUNCTIONS: [&str; 24] = [
     "kinetic_energy_with",
     "potential_energy",
     "potential_energy_with",
+    "momentum",
+    "coriolis_transpose_times",
+    "base_regressor",
+    "operational_inertia",
+    "inverse_dynamics_derivatives",
+    "forward_dynamics_derivatives",
 ];
+
+/// The function that not every arm has.
+pub const OPTIONAL: &str = "operational_inertia";

@@ -47,6 +47,14 @@ impl Functions for Interpreted {
         self.module.parameters.iter().map(|(_, value, _)| value.to_f64()).collect()
     }
 
+    fn nominal_base(&self) -> Vec<f64> {
+        self.module.base_set.iter().map(|(_, value, _)| value.to_f64()).collect()
+    }
+
+    fn has(&self, function: &str) -> bool {
+        self.module.functions.iter().any(|f| f.name() == function)
+    }
+
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
         let found = self.module.functions.iter().find(|f| f.name() == function);
         run(found.unwrap_or_else(|| panic!("no function `{function}`")), arguments)

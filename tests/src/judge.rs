@@ -11,7 +11,7 @@
 //! ```
 
 use crate::functions::{Arguments, Functions};
-use crate::oracle::{rank, times, Description, Matrix, Model, RegressorChoice};
+use crate::oracle::{rank, solve, times, Description, Matrix, Model, RegressorChoice};
 use crate::precision::{agree, NEAR_NOMINAL};
 use crate::random::{self, Random, State};
 
@@ -67,6 +67,18 @@ fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
+fn transposed(m: &Matrix) -> Matrix {
+    (0..m.first().map_or(0, Vec::len)).map(|j| m.iter().map(|row| row[j]).collect()).collect()
+}
+
+fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    transposed(&transposed(b).iter().map(|column| times(a, column)).collect())
+}
+
+fn largest(m: &Matrix) -> f64 {
+    m.iter().flatten().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -92,6 +104,7 @@ impl Case<'_> {
         expect("geometric_jacobian_dot", model.geometric_jacobian_dot(q, dq).concat());
         self.expect_dynamics("", model, &a);
         self.expect_forward_dynamics("forward_dynamics", model, a.clone());
+        self.judge_beyond(&a);
 
         // The regressor of the file's choice, column by column where the oracle knows the columns; and what it adds up to.
         let y = robot.call("regressor", &a);
@@ -110,6 +123,69 @@ impl Case<'_> {
         let with_own = Arguments { dqr: dq.clone(), ddqr: ddq.clone(), ..a.clone() };
         let tau = self.torque(&with_own, &robot.nominal());
         self.check("Y(q, dq, dq, ddq) pi + tau_known", &tau, &robot.call("inverse_dynamics", &a));
+    }
+
+    /// The functions beyond the traits: momentum, base regressor, operational inertia, derivatives.
+    fn judge_beyond(&self, a: &Arguments) {
+        let (robot, model, n) = (self.robot, &self.model, self.robot.dof());
+        if !robot.has("momentum") {
+            return;
+        }
+        let b = model.inertia_matrix(&a.q);
+        let c = model.coriolis_matrix(&a.q, &a.dq);
+        self.check("momentum", &robot.call("momentum", a), &times(&b, &a.dq));
+        self.check("coriolis_transpose_times", &robot.call("coriolis_transpose_times", a), &times(&transposed(&c), &a.dq));
+
+        let base = robot.nominal_base();
+        let y: Matrix = robot.call("base_regressor", a).chunks(base.len()).map(<[f64]>::to_vec).collect();
+        self.check("Y_b pi_b", &times(&y, &base), &model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
+        let mut base_rows: Matrix = Vec::new();
+        for k in 0..(10 * n as u64 + 20) {
+            let state = arguments(&random::state(n, 78_000 + k), &[]);
+            base_rows.extend(robot.call("base_regressor", &state).chunks(base.len()).map(<[f64]>::to_vec));
+        }
+        assert_eq!(rank(&base_rows), base.len(), "{}: base_regressor has full column rank", self.what);
+
+        if matches!(self.description.regressor_choice(), RegressorChoice::Base) {
+            let own = Arguments { dqr: a.dq.clone(), ddqr: a.ddq.clone(), ..a.clone() };
+            self.check("base_regressor by regressor", &y.concat(), &robot.call("regressor", &own));
+        }
+
+        let (by_q, by_dq) = model.inverse_dynamics_derivatives(&a.q, &a.dq, &a.ddq);
+        let found = robot.call("inverse_dynamics_derivatives", a);
+        self.check("dtau/dq", &found[..n * n], &by_q.concat());
+        self.check("dtau/d(dq)", &found[n * n..], &by_dq.concat());
+
+        // B times the derivatives of forward dynamics, at the accelerations that the torques cause.
+        let a = Arguments { tau: model.inverse_dynamics(&a.q, &a.dq, &a.ddq), ..a.clone() };
+        let found = robot.call("forward_dynamics_derivatives", &a);
+        let squares: Vec<Matrix> = found.chunks(n * n).map(|m| m.chunks(n).map(<[f64]>::to_vec).collect()).collect();
+        let identity: Matrix = (0..n).map(|i| unit(n, i, 1.0)).collect();
+        let negative = |m: &Matrix| m.iter().map(|row| row.iter().map(|x| -x).collect()).collect::<Matrix>();
+        for (what, found, expected) in [
+            ("B d(ddq)/dq", &squares[0], negative(&by_q)),
+            ("B d(ddq)/d(dq)", &squares[1], negative(&by_dq)),
+            ("B B^-1", &squares[2], identity),
+        ] {
+            // Rounded to the scale of B times what it is multiplied by.
+            let scale = (largest(&b) * largest(found)).max(1.0);
+            let residual = |m: &Matrix| m.concat().iter().map(|x| x / scale).collect::<Vec<f64>>();
+            let product = product(&b, found);
+            agree(&format!("{}: {what}", self.what), &residual(&product), &residual(&expected), self.tolerance.residual);
+        }
+
+        if robot.has("operational_inertia") {
+            let task: Vec<usize> = self.description.task_rows();
+            let jacobian = model.geometric_jacobian(&a.q);
+            let rows: Matrix = task.iter().map(|&row| jacobian[row].clone()).collect();
+            let columns: Matrix = rows.iter().map(|row| solve(&b, row).expect("B is positive definite")).collect();
+            let mobility = product(&rows, &transposed(&columns));
+            let inertia: Matrix = robot.call("operational_inertia", &a).chunks(task.len()).map(<[f64]>::to_vec).collect();
+            let scale = (largest(&inertia) * largest(&mobility)).max(1.0);
+            let back: Vec<f64> = product(&inertia, &mobility).concat().iter().map(|x| x / scale).collect();
+            let expected: Vec<f64> = (0..task.len()).flat_map(|i| unit(task.len(), i, 1.0 / scale)).collect();
+            agree(&format!("{}: operational_inertia", self.what), &back, &expected, self.tolerance.residual);
+        }
     }
 
     /// The functions of the dynamics but for the forward one, plain (`""`) or `_with`, against a model.

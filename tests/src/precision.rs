@@ -13,6 +13,8 @@ pub const ORACLE: f64 = 1e-12;
 pub const SINGLE: f64 = 2e-5;
 /// Forward dynamics in f32, the residual (1.1e-6 found).
 pub const SINGLE_RESIDUAL: f64 = 5e-6;
+/// Central differences of torques at a step of 1e-5: third derivatives times 1e-10, and some roundings of 1e-16 times tau over the step.
+pub const DIFFERENCES: f64 = 1e-6;
 /// Parameters at which B is sure to be positive: the nominal ones times a common factor and up to so much apart.
 pub const NEAR_NOMINAL: f64 = 1e-4;
 /// The check state of the technical project: its numbers are given to 16 digits.

@@ -44,11 +44,11 @@ fn snapshot(robot: &Emitted, what: &str, text: &str) {
 #[test]
 fn costs() {
     for robot in robots() {
-        let mut table = format!("{:26}{:>6}{:>6}{:>6}{:>6}{:>8}  derived by\n", "", "mul", "add", "div", "neg", "sincos");
+        let mut table = format!("{:32}{:>6}{:>6}{:>6}{:>6}{:>8}  derived by\n", "", "mul", "add", "div", "neg", "sincos");
         for function in model(robot).module(&Options::default()).functions {
             let Cost { mul, add, div, neg, sincos } = Cost::of(&function);
             let (name, method) = (function.name(), function.method);
-            writeln!(table, "{name:26}{mul:6}{add:6}{div:6}{neg:6}{sincos:8}  {method}").expect("text");
+            writeln!(table, "{name:32}{mul:6}{add:6}{div:6}{neg:6}{sincos:8}  {method}").expect("text");
         }
         snapshot(robot, "cost", &table);
     }
@@ -70,11 +70,14 @@ fn meanings() {
                 if with && !quantity.has_parameters() {
                     continue;
                 }
+                if quantity.missing(&model).is_some() {
+                    continue;
+                }
                 let view = if with { View::Vector(&model.parameters) } else { View::Nominal };
                 let derivation = quantity.by_recursion(&model, view);
                 let columns = match quantity.shape() {
                     Shape::EquationsOfMotion | Shape::Vector => model.manipulator.dof(),
-                    shape => shape.rows_columns(model.manipulator.dof(), model.parameters.len()).1.max(1),
+                    shape => shape.rows_columns(&model.sizes()).1.max(1),
                 };
                 writeln!(text, "\n{}{}", quantity.name(), if with { "_with" } else { "" }).expect("text");
                 for row in derivation.entries.chunks(columns) {

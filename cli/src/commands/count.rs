@@ -6,14 +6,18 @@ use armgen_codegen::program::{Cost, Options};
 use serde_json::{json, Map, Value};
 
 use crate::table::{Align, Table};
-use crate::{input, terminal, CountFormat};
+use crate::{input, terminal, CountFormat, FAULTY};
 
-pub(crate) fn run(file: &Path, format: CountFormat) -> u8 {
+pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String]) -> u8 {
+    let Some(functions) = input::selection(functions) else { return FAULTY };
     let model = match input::model(file) {
         Ok(model) => model,
         Err(code) => return code,
     };
-    let module = model.module(&Options::default());
+    let module = model.module(&Options { functions, ..Options::default() });
+    if !input::all_there(&module.name, &module.absent, functions) {
+        return FAULTY;
+    }
     let costs: Vec<(String, Cost, &str)> =
         module.functions.iter().map(|function| (function.name(), Cost::of(function), function.method)).collect();
     terminal::print(&match format {

@@ -42,8 +42,10 @@ pub(crate) fn run(
     scalar: ScalarName,
     trig: TrigName,
     batch: Option<u16>,
+    functions: &[String],
     beside: &Beside,
 ) -> u8 {
+    let Some(functions) = input::selection(functions) else { return FAULTY };
     let scalar = match scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
@@ -64,12 +66,15 @@ pub(crate) fn run(
     if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
         return code;
     }
-    let (generated, diagnostics) =
-        armgen_codegen::generate(&source, &Options { scalar, trig, batch: batch.map(usize::from), ..Options::default() });
+    let options = Options { scalar, trig, batch: batch.map(usize::from), functions, ..Options::default() };
+    let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
     let Some(generated) = generated else {
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
         return FAULTY;
     };
+    if !input::all_there(source.name(), &generated.absent, functions) {
+        return FAULTY;
+    }
     let Some(out) = out else { return terminal::print(&generated.module) };
     if same_file(file, out) {
         terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));

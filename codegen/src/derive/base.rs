@@ -227,18 +227,38 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
     (pool, y)
 }
 
+/// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction.
+pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
+    let ParameterKind::Base(columns) = &vector.kind else { unreachable!("asked for base parameters only") };
+    let motion = Motion::plain(pool, arm);
+    columns_in_joint_frames(pool, arm, &motion, columns)
+}
+
 /// The base parameters of an arm.
 ///
 /// What no joint feels is first grouped towards the base in joint frames, exactly and without a division. What still depends on others
 /// then, because a motion near the base is restricted or a rotor turns with a link, is found by rank.
 pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVector {
+    grouped(manipulator, field, false)
+}
+
+/// The base parameters of an arm, with the masses of its rotors among the values: Y pi is then the whole torque.
+pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> ParameterVector {
+    grouped(manipulator, field, true)
+}
+
+/// The base parameters. The masses of rotors are no parameters; they are known, or part of the links' values.
+fn grouped(manipulator: &Manipulator, field: &Field, with_rotor_masses: bool) -> ParameterVector {
     let mut pool = Pool::new(field.clone());
     let standard = ParameterVector::standard(manipulator);
     let mut arm = Arm::new(&mut pool, manipulator, View::Vector(&standard));
     arm.group_towards_base(&mut pool, Rest::NoInertiaAboutY);
     let mut columns = candidates(manipulator);
     columns.sort_by_key(|&column| preference(column));
-    let values: Vec<Vec<Number>> = columns.iter().map(|&c| combination(&mut pool, &arm, &standard, c)).collect();
+    let mut values: Vec<Vec<Number>> = columns.iter().map(|&c| combination(&mut pool, &arm, &standard, c)).collect();
+    if !with_rotor_masses {
+        values.iter_mut().for_each(|of| *of.last_mut().expect("the rest stands last") = Number::zero());
+    }
 
     let motion = Motion::with_reference(&mut pool, &arm);
     let y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns);
@@ -278,7 +298,7 @@ fn candidates(manipulator: &Manipulator) -> Vec<StandardParameter> {
         .collect()
 }
 
-/// A parameter of the grouped arm as coefficients of the standard parameters.
+/// A parameter of the grouped arm as coefficients of the standard parameters, and last the rest that depends on none.
 fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter: StandardParameter) -> Vec<Number> {
     let expr = match parameter {
         StandardParameter::Link(i, k) => {
@@ -303,7 +323,7 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
     // A rotor's column holds all that its inertia does, its turning with the parent link included: that part of the body is not the link's.
     let of_rotor = |k: u16| matches!(&standard.kind, ParameterKind::Standard(all) if matches!(all[usize::from(k)], StandardParameter::RotorInertia(_)));
     let of_link = matches!(parameter, StandardParameter::Link(..));
-    (0..standard.len() as u16)
+    let mut coefficients: Vec<Number> = (0..standard.len() as u16)
         .map(|k| {
             if of_link && of_rotor(k) {
                 return Number::zero();
@@ -311,7 +331,11 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
             let derivative = derivative_by_parameter(pool, &[expr], k)[0];
             pool.as_constant(derivative).expect("grouping is linear in the parameters")
         })
-        .collect()
+        .collect();
+    let mut without = Pool::new(pool.field().clone());
+    let rest = pool.substitute_into(&mut without, &[expr], &|_, _| ExprId::ZERO)[0];
+    coefficients.push(without.as_constant(rest).expect("grouping asks for no joint angle"));
+    coefficients
 }
 
 /// A base parameter: named like the standard parameter that it is, with an R where it stands in the joint frame or others are regrouped into it.
@@ -336,7 +360,13 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
             (false, _) => format!("({size})*{}", entry.name),
         };
     }
-    if let [(entry, k)] = parts[..] {
+    let rest = &coefficients[standard.len()];
+    if !rest.is_zero() {
+        nominal = &nominal + rest;
+        meaning += if meaning.is_empty() { "" } else { " + " };
+        meaning += &format!("({rest} from the masses of rotors)");
+    }
+    if let ([(entry, k)], true) = (&parts[..], rest.is_zero()) {
         if k.is_one() && entry.name == parameter.name() {
             name = entry.name.clone();
             meaning = entry.meaning.clone();

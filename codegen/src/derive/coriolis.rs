@@ -36,13 +36,13 @@ use crate::ring::{ExprId, Pool, Symbol};
 
 /// What moves in a composite body, in its joint frame and relative to it.
 #[derive(Clone, Copy)]
-struct Flow {
+pub(super) struct Flow {
     /// h' = ∫ v dm.
-    first: Vector,
+    pub(super) first: Vector,
     /// K = ∫ v r' dm.
-    second: Matrix,
+    pub(super) second: Matrix,
     /// s = Σ I_m k dq a.
-    spin: Vector,
+    pub(super) spin: Vector,
 }
 
 /// C(q, dq), all entries.
@@ -98,7 +98,7 @@ fn own_entries(pool: &mut Pool, joint: &Joint, column: &Column) -> (ExprId, Expr
 }
 
 /// Angular velocity of each joint frame, in its own axes.
-fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
+pub(super) fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
     let mut omega: Vec<Vector> = Vec::with_capacity(arm.dof());
     for joint in &arm.joints {
         let outer = joint.parent.map_or(ZERO, |p| omega[p]);
@@ -110,7 +110,7 @@ fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
 }
 
 /// Velocity moments of each composite body relative to the link that carries all of it, in its joint frame.
-fn flows(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<Flow> {
+pub(super) fn flows(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<Flow> {
     let still = Flow { first: ZERO, second: [ZERO; 3], spin: ZERO };
     let mut flows: Vec<Flow> = arm.joints.iter().map(|joint| swept(pool, joint.drift, &joint.body, &still)).collect();
     for i in (0..arm.dof()).rev() {
@@ -163,7 +163,7 @@ fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &Flow) -> Flow {
 }
 
 /// A composite body in the axes of its parent turned by `fixed`, and its motion relative to that parent.
-fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flow) -> (Body, Flow) {
+pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flow) -> (Body, Flow) {
     // Traces do not turn: taken here, they are found again.
     pool.add(body.second[0], body.second[2]);
     pool.add(flow.second[0][0], flow.second[1][1]);
@@ -177,7 +177,7 @@ fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flow) -> (Body
 }
 
 /// The wrenches of column j about the origin of its frame, in the axes of `about_axis`.
-fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &Flow) -> Column {
+pub(super) fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &Flow) -> Column {
     let (h, rate, k) = (body.first, flow.first, flow.second);
     if !joint.is_revolute() {
         // ∂x = z, its rate Ω × z; E + n × Ω = h' × z + (Ω × z) × h.

@@ -154,8 +154,13 @@ fn along_z(x: ExprId) -> Vector {
 /// B ddqr + C(q, dq) dqr + g: the torques without friction.
 pub fn newton_euler(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) -> Vec<ExprId> {
     let motions = link_motions(pool, arm, motion, gravity);
+    wrenches(pool, arm, motion, &motions).0
+}
+
+/// The torques without friction, and the force and moment that move what each joint carries, about the origin of its frame and in its axes.
+pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMotion]) -> (Vec<ExprId>, Vec<(Vector, Vector)>) {
     let mut wrench: Vec<(Vector, Vector)> = Vec::with_capacity(arm.dof());
-    for (joint, LinkMotion { acceleration, field, .. }) in arm.joints.iter().zip(&motions) {
+    for (joint, LinkMotion { acceleration, field, .. }) in arm.joints.iter().zip(motions) {
         let body = &joint.body;
         let (weighted, turned) = (pool.scale(body.mass, acceleration), pool.transform(field, &body.first));
         let force = pool.add_vectors(&weighted, &turned);
@@ -197,7 +202,7 @@ pub fn newton_euler(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) 
             wrench[p] = (pool.add_vectors(&wrench[p].0, &force), pool.add_vectors(&wrench[p].1, &moment));
         }
     }
-    tau
+    (tau, wrench)
 }
 
 /// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42).

@@ -214,10 +214,12 @@ fn reduced_arms() -> Vec<Manipulator> {
 fn every_way_of_a_plan_leads_to_the_same_expressions() {
     for manipulator in arms().into_iter().take(1).chain(reduced_arms()) {
         let model = crate::Model::new(manipulator);
-        for quantity in Quantity::ALL.into_iter().filter(|q| !matches!(q, Quantity::Regressor | Quantity::KnownTorque)) {
+        for quantity in Quantity::ALL.into_iter().filter(|q| {
+            !matches!(q, Quantity::Regressor | Quantity::KnownTorque | Quantity::BaseRegressor) && q.missing(&model).is_none()
+        }) {
             let mut pool = Pool::new(model.field.clone());
             let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
-            let plain = quantity.entries(&mut pool, &arm, &model.parameters, &mut Plan::default());
+            let plain = quantity.entries(&mut pool, &arm, &model, &mut Plan::default());
             for seed in 0..8 {
                 let found = quantity.by_plan(&model, View::Nominal, Plan::scattered(seed), 0);
                 for (k, (&a, &b)) in plain.iter().zip(&found.entries).enumerate() {
@@ -517,4 +519,135 @@ fn six_axis_arms_have_their_textbook_factors() {
     assert_eq!(singular, [Some("q3 = atan(-4318/203) + k pi"), Some("q5 = k pi"), None]);
     let panda = model(include_str!("../../../robots/panda7.yaml"));
     assert!(determinant::determinant(&panda, View::Nominal).is_err_and(|why| why.contains("not square")));
+}
+
+#[test]
+fn momentum_and_coriolis_transposed_are_those_of_the_matrices() {
+    check(|pool, arm, _| {
+        let rates = arm.symbols(pool, Symbol::Rate);
+        let b = inertia::inertia_matrix(pool, arm, &mut Plan::default());
+        let expected = times(pool, &b, &rates);
+        let found = momentum::momentum(pool, arm);
+        assert_equal(pool, &found, &expected);
+
+        let found = momentum::coriolis_transpose_times(pool, arm);
+        let c = coriolis::coriolis_matrix(pool, arm, &mut Plan::default());
+        let transposed: Vec<Vec<ExprId>> = (0..arm.dof()).map(|j| c.iter().map(|row| row[j]).collect()).collect();
+        let expected = times(pool, &transposed, &rates);
+        assert_equal(pool, &found, &expected);
+        // dB/dt dq - C dq, and the gradient of the kinetic energy.
+        let b_rate = pool.time_derivative(&b.concat());
+        let b_rate: Vec<Vec<ExprId>> = b_rate.chunks(arm.dof()).map(<[ExprId]>::to_vec).collect();
+        let (changing, centrifugal) = (times(pool, &b_rate, &rates), times(pool, &c, &rates));
+        let difference: Vec<ExprId> = changing.iter().zip(&centrifugal).map(|(&a, &b)| pool.sub(a, b)).collect();
+        assert_equal(pool, &found, &difference);
+        let energy = energy::kinetic_energy(pool, arm);
+        let gradient: Vec<ExprId> = (0..arm.dof() as u16).map(|i| pool.partial_derivative(&[energy], i)[0]).collect();
+        assert_equal(pool, &found, &gradient);
+    });
+}
+
+#[test]
+fn torque_is_the_base_regressor_times_the_base_parameters() {
+    for manipulator in arms().into_iter().chain(reduced_arms()) {
+        let model = crate::Model::new(manipulator);
+        let vector = model.base_parameters();
+        let mut pool = Pool::new(model.field.clone());
+        let arm = Arm::new(&mut pool, &model.manipulator, View::Vector(vector));
+        let y = base::base_regressor(&mut pool, &arm, vector);
+        assert_eq!(base::rank(&pool, &y), vector.len());
+        let values: Vec<ExprId> = vector.entries.iter().map(|entry| pool.constant(&entry.nominal)).collect();
+        let product = times(&mut pool, &y, &values);
+        let described = Arm::new(&mut pool, &model.manipulator, View::Nominal);
+        let motion = Motion::plain(&mut pool, &described);
+        let tau = inverse_dynamics(&mut pool, &described, &motion);
+        assert_equal(&pool, &product, &tau);
+    }
+}
+
+#[test]
+fn derivatives_of_inverse_dynamics_are_derivatives() {
+    check(|pool, arm, _| {
+        let motion = Motion::plain(pool, arm);
+        let tau = inverse_dynamics(pool, arm, &motion);
+        let (by_q, by_dq) = derivatives::inverse_dynamics_derivatives(pool, arm, &mut Plan::default(), &motion);
+        for j in 0..arm.dof() {
+            let column = |m: &[Vec<ExprId>]| m.iter().map(|row| row[j]).collect::<Vec<_>>();
+            let expected = pool.partial_derivative(&tau, j as u16);
+            assert_equal(pool, &column(&by_q), &expected);
+            let expected = pool.differentiate(&tau, &mut |_, symbol| match symbol {
+                Symbol::Rate(i) if usize::from(i) == j => ExprId::ONE,
+                _ => ExprId::ZERO,
+            });
+            assert_equal(pool, &column(&by_dq), &expected);
+        }
+    });
+}
+
+#[test]
+fn derivatives_of_forward_dynamics_are_derivatives() {
+    check(|pool, arm, _| {
+        let acceleration = forward_dynamics::forward_dynamics(pool, arm, &mut Plan::default());
+        let (by_q, by_dq, by_tau) = derivatives::forward_dynamics_derivatives(pool, arm, &mut Plan::default());
+        for j in 0..arm.dof() {
+            let column = |m: &[Vec<ExprId>]| m.iter().map(|row| row[j]).collect::<Vec<_>>();
+            let expected = pool.partial_derivative(&acceleration, j as u16);
+            assert_equal(pool, &column(&by_q), &expected);
+            for (matrix, wanted) in [(&by_dq, Symbol::Rate(j as u16)), (&by_tau, Symbol::Torque(j as u16))] {
+                let expected = pool.differentiate(&acceleration, &mut |_, symbol| {
+                    if symbol == wanted {
+                        ExprId::ONE
+                    } else {
+                        ExprId::ZERO
+                    }
+                });
+                assert_equal(pool, &column(matrix), &expected);
+            }
+        }
+    });
+}
+
+#[test]
+fn operational_inertia_is_the_inverse_of_the_mobility_of_the_task() {
+    let mut defined = 0;
+    for manipulator in arms().into_iter().chain(reduced_arms()) {
+        for task in [vec![0], vec![0, 2], vec![0, 1, 2]] {
+            let mut pool = Pool::new(field_of(&manipulator));
+            let arm = Arm::new(&mut pool, &manipulator, View::Nominal);
+            let field = pool.field().clone();
+            if !operational_inertia::is_defined(&field, &arm, &mut pool, &task) {
+                continue;
+            }
+            defined += 1;
+            let found = operational_inertia::operational_inertia(&mut pool, &arm, &mut Plan::default(), &task);
+            // B_A J B^-1 J' = 1, B^-1 by columns from forward dynamics without forces but one.
+            let jacobian = kinematics::geometric_jacobian(&mut pool, &arm);
+            let b = inertia::inertia_matrix(&mut pool, &arm, &mut Plan::default());
+            let factors = factors::Factors::new(&mut pool, &b);
+            for (s, &row) in task.iter().enumerate() {
+                let accelerations = factors.solve(&mut pool, &jacobian[row]);
+                let back = times(&mut pool, &b, &accelerations);
+                assert_equal(&pool, &back, &jacobian[row]);
+                let moved: Vec<ExprId> = task.iter().map(|&r| pool.dot(&jacobian[r], &accelerations)).collect();
+                let felt = times(&mut pool, &found, &moved);
+                let unit: Vec<ExprId> = (0..task.len()).map(|r| if r == s { ExprId::ONE } else { ExprId::ZERO }).collect();
+                assert_equal(&pool, &felt, &unit);
+            }
+        }
+    }
+    assert!(defined >= 12, "{defined} cases");
+}
+
+#[test]
+fn a_task_that_the_arm_cannot_do_has_no_operational_inertia() {
+    let missing = |task: &str| {
+        let rows = ["type: revolute, a: 1, alpha: 0, d: 0, theta: 0"; 3];
+        let source = Source::new("arm.yaml", arm_text(&rows, task));
+        let model = crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0);
+        Quantity::OperationalInertia.missing(&model)
+    };
+    assert_eq!(missing("task: [x, y, rz]\n"), None);
+    assert_eq!(missing("task: [x, rz]\n"), None);
+    assert!(missing("task: [x, y, z]\n").is_some_and(|why| why.contains("3 joints cannot move the 3 rows")));
+    assert!(missing("").is_some());
 }

@@ -23,16 +23,8 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));
     let of_slices = module.functions.iter().map(|f| of_slices(module, f));
     let sines = rust::asks_for_sines(module).then(|| sincos::of_lanes(module));
-    let blocks = syn::parse_file(BLOCKS).expect("the text to take in is a Rust file").items;
-    quote! {
-        /// The functions for `LANES` states at a time, side by side: `q[joint][lane]`, `b[row][column][lane]`. The result is written into the last argument.
-        #[allow(dead_code)]
-        pub mod lanes {
-            use super::*;
-            /// States in a block.
-            pub const LANES: usize = #width;
-            /// A number for each state of a block.
-            pub type Lanes = [Real; LANES];
+    let terms = rust::returns(module, Shape::EquationsOfMotion).then(|| {
+        quote! {
             /// The terms of the equation of motion of a block.
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct EquationsOfMotion {
@@ -43,6 +35,19 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
                 /// Gravity term g(q).
                 pub gravity: [Lanes; DOF],
             }
+        }
+    });
+    let blocks = syn::parse_file(BLOCKS).expect("the text to take in is a Rust file").items;
+    quote! {
+        /// The functions for `LANES` states at a time, side by side: `q[joint][lane]`, `b[row][column][lane]`. The result is written into the last argument.
+        #[allow(dead_code)]
+        pub mod lanes {
+            use super::*;
+            /// States in a block.
+            pub const LANES: usize = #width;
+            /// A number for each state of a block.
+            pub type Lanes = [Real; LANES];
+            #terms
             #(#of_blocks)*
             #sines
         }
@@ -74,7 +79,7 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
         let entries = (0..length).map(usize_literal).map(|i| quote!(#name[#i][k]));
         quote!(let #name = [#(#entries),*];)
     });
-    let (lines, entries) = rust::body(module, function);
+    let (lines, entries) = super::body::whole(module, function);
     let places = places(function.quantity.shape(), dof, entries.len());
     let kind = block_of(function.quantity.shape());
     quote! {
@@ -109,6 +114,12 @@ fn block_of(shape: Shape) -> TokenStream {
         Shape::Jacobian => quote!([[Lanes; DOF]; 6]),
         Shape::Square => quote!([[Lanes; DOF]; DOF]),
         Shape::Regressor => quote!([[Lanes; PARAMETERS]; DOF]),
+        Shape::BaseRegressor => quote!([[Lanes; BASE_PARAMETERS]; DOF]),
+        Shape::Task => quote!([[Lanes; TASK_ROWS]; TASK_ROWS]),
+        Shape::Squares(count) => {
+            let types = (0..count).map(|_| quote!([[Lanes; DOF]; DOF]));
+            quote!((#(#types),*))
+        }
         Shape::EquationsOfMotion => quote!(EquationsOfMotion),
     }
 }
@@ -127,7 +138,12 @@ fn places(shape: Shape, dof: usize, count: usize) -> Vec<TokenStream> {
         Shape::Frames => (0..dof).map(usize_literal).flat_map(|link| matrix(quote!([#link]), 4, 4)).collect(),
         Shape::Jacobian => matrix(quote!(), 6, dof),
         Shape::Square => matrix(quote!(), dof, dof),
-        Shape::Regressor => matrix(quote!(), dof, count / dof),
+        Shape::Regressor | Shape::BaseRegressor => matrix(quote!(), dof, count / dof),
+        Shape::Task => matrix(quote!(), count.isqrt(), count.isqrt()),
+        Shape::Squares(squares) => {
+            let field = |i: u8| usize_literal(usize::from(i));
+            (0..squares).map(field).flat_map(|field| matrix(quote!(.#field), dof, dof)).collect()
+        }
         Shape::EquationsOfMotion => {
             [matrix(quote!(.inertia), dof, dof), matrix(quote!(.coriolis), dof, dof), vector(quote!(.gravity))].concat()
         }
@@ -155,6 +171,15 @@ fn of_slices(module: &Module, function: &Function) -> TokenStream {
         Shape::Jacobian => (quote!([[[0.0; LANES]; DOF]; 6]), flat()),
         Shape::Square => (quote!([[[0.0; LANES]; DOF]; DOF]), flat()),
         Shape::Regressor => (quote!([[[0.0; LANES]; PARAMETERS]; DOF]), flat()),
+        Shape::BaseRegressor => (quote!([[[0.0; LANES]; BASE_PARAMETERS]; DOF]), flat()),
+        Shape::Task => (quote!([[[0.0; LANES]; TASK_ROWS]; TASK_ROWS]), flat()),
+        Shape::Squares(count) => {
+            let zeros = (0..count).map(|_| quote!([[[0.0; LANES]; DOF]; DOF]));
+            let fields = (0..count).map(|i| usize_literal(usize::from(i)));
+            let scattered =
+                fields.map(|field| quote!(scatter(k, block.#field.as_flattened(), result.#field.as_flattened_mut());));
+            (quote!((#(#zeros),*)), quote!(#(#scattered)*))
+        }
         Shape::EquationsOfMotion => (
             quote!(lanes::EquationsOfMotion {
                 inertia: [[[0.0; LANES]; DOF]; DOF],

@@ -28,14 +28,17 @@ pub fn print(module: &Module, origin: &Origin) -> CFace {
     CFace { header: header(module, origin), wrappers: wrappers(module, origin) }
 }
 
-/// An output of a function: its name in C and its shape in Rust's order, outermost first; no shape for a number.
+/// An output of a function: its name in C, the field of the result that it is if the result has several, and its shape in Rust's order,
+/// outermost first; no shape for a number.
 struct Out {
     name: &'static str,
+    field: Option<&'static str>,
     shape: Vec<&'static str>,
 }
 
 fn outs(shape: Shape) -> Vec<Out> {
-    let out = |name, shape: &[&'static str]| Out { name, shape: shape.to_vec() };
+    let out = |name, shape: &[&'static str]| Out { name, field: None, shape: shape.to_vec() };
+    let part = |name, field, shape: &[&'static str]| Out { name, field: Some(field), shape: shape.to_vec() };
     match shape {
         Shape::Scalar => vec![],
         Shape::Vector => vec![out("result", &["DOF"])],
@@ -45,7 +48,14 @@ fn outs(shape: Shape) -> Vec<Out> {
         Shape::Square => vec![out("result", &["DOF", "DOF"])],
         Shape::Regressor => vec![out("result", &["DOF", "PARAMETERS"])],
         Shape::EquationsOfMotion => {
-            vec![out("inertia", &["DOF", "DOF"]), out("coriolis", &["DOF", "DOF"]), out("gravity", &["DOF"])]
+            let square = |name| part(name, name, &["DOF", "DOF"]);
+            vec![square("inertia"), square("coriolis"), part("gravity", "gravity", &["DOF"])]
+        }
+        Shape::BaseRegressor => vec![out("result", &["DOF", "BASE_PARAMETERS"])],
+        Shape::Task => vec![out("result", &["TASK_ROWS", "TASK_ROWS"])],
+        Shape::Squares(count) => {
+            let names = [("by_q", "0"), ("by_dq", "1"), ("by_tau", "2")];
+            names.iter().take(usize::from(count)).map(|&(name, field)| part(name, field, &["DOF", "DOF"])).collect()
         }
     }
 }
@@ -94,9 +104,11 @@ fn header(module: &Module, origin: &Origin) -> String {
         "#ifndef {guard}\n#define {guard}\n\n\
          #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
          /* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
-         /* Number of joints, and of parameters. */\n#define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n\n",
+         /* Number of joints, of parameters, and of rows of the operational space. */\n\
+         #define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n#define {upper}_TASK_ROWS {}\n\n",
         module.joints.len(),
         module.parameters.len(),
+        module.task.len(),
     );
     text += "/* Initialisers of arrays. Limits are rad or m, per s, N m or N; infinite (math.h) where the description gives none. */\n";
     let _ = writeln!(text, "#define {upper}_JOINT_NAMES {}", braces(module.joints.iter().map(joint).collect()));
@@ -113,6 +125,13 @@ fn header(module: &Module, origin: &Origin) -> String {
         let mut meanings = vec!["The parameters, in the order of the columns of the regressor:".to_string(), String::new()];
         meanings.extend(module.parameters.iter().map(|(name, _, meaning)| format!("{name:width$}  {meaning}")));
         text += &comment("", meanings);
+    }
+    if !module.base_set.is_empty() {
+        let names = module.base_set.iter().map(|(name, ..)| format!("\"{name}\"")).collect();
+        let nominal = module.base_set.iter().map(|(_, value, _)| constant(value, module.scalar)).collect();
+        let _ = writeln!(text, "\n#define {upper}_BASE_PARAMETERS {}", module.base_set.len());
+        let _ = writeln!(text, "#define {upper}_BASE_PARAMETER_NAMES {}", braces(names));
+        let _ = writeln!(text, "#define {upper}_NOMINAL_BASE_PARAMETERS {}", braces(nominal));
     }
     text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
     for function in functions(module) {
@@ -228,9 +247,9 @@ fn wrapper(robot: &str, function: &Function) -> String {
         outs => {
             let _ = writeln!(text, "    let value = unsafe {{ {call} }};");
             let _ = writeln!(text, "    // SAFETY: the caller promises that each result points to an array of this shape; no reference to an argument is left.");
-            let write = |out: &Out| match out.name {
-                "result" => "result.write(value);".to_string(),
-                name => format!("{name}.write(value.{name});"),
+            let write = |out: &Out| match out.field {
+                None => format!("{}.write(value);", out.name),
+                Some(field) => format!("{}.write(value.{field});", out.name),
             };
             let _ = writeln!(text, "    unsafe {{");
             for out in outs {

@@ -93,6 +93,41 @@ fn text(quantity: Quantity) -> Text {
             "U(q) = - sum_i m_i g0' p_li                                       (Siciliano et al., eq. 7.36)",
             "an energy, J.",
         ),
+        Quantity::Momentum => (
+            "Generalised momentum B(q) dq, for a momentum observer.",
+            "p = B(q) dq = dT/d(dq)                                            (De Luca and Mattone 2003)",
+            "a momentum, N m s (revolute) or N s (prismatic), for each joint.",
+        ),
+        Quantity::CoriolisTransposeTimes => (
+            "C(q, dq)' dq with C by Christoffel symbols, for a momentum observer.",
+            "C' dq = dT/dq = (dB/dt) dq - C dq,  dp/dt = tau + C' dq - F - g    (De Luca and Mattone 2003)",
+            "a torque, N m (revolute), or a force, N (prismatic), for each joint, on the right of the equation of dp/dt.",
+        ),
+        Quantity::BaseRegressor => (
+            "Regressor Y_b(q, dq, ddq) of the base parameters: columns of full rank.",
+            "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = Y_b pi_b                  (Gautier and Khalil 1990)",
+            "`y[joint][base parameter]`, parameters in the order of `BASE_PARAMETER_NAMES`: those of the links in their joint frames, inertias of rotors, \
+             viscous and Coulomb friction, as far as the description gives them. Masses of rotors are part of the links that carry them. With \
+             `NOMINAL_BASE_PARAMETERS` it is the torque of `inverse_dynamics`.",
+        ),
+        Quantity::OperationalInertia => (
+            "Inertia of the end effector along and about the rows of the task, in the base frame.",
+            "B_A(q) = (J B(q)^-1 J')^-1, J the rows `TASK` of the geometric Jacobian (Siciliano et al., Sect. 7.8)",
+            "`b[row][column]` in the order of `TASK`, symmetric; kg, kg m, kg m². Positive definite where those rows of J are independent; at a singular \
+             configuration it is infinite, and its entries are not finite or, by rounding, very large.",
+        ),
+        Quantity::InverseDynamicsDerivatives => (
+            "Derivatives of the torques of `inverse_dynamics` by joint variables and by rates.",
+            "(dtau/dq, dtau/d(dq)) at (q, dq, ddq);  dtau/d(ddq) = B(q)         (Singh, Russell and Wensing 2022)",
+            "two matrices `m[joint of tau][joint of q or dq]`; units of tau per rad or m, and per rad/s or m/s. Coulomb friction counts as constant: its \
+             derivative is taken as 0, at rest too.",
+        ),
+        Quantity::ForwardDynamicsDerivatives => (
+            "Derivatives of the accelerations of `forward_dynamics` by joint variables, by rates and by torques.",
+            "(-B^-1 dtau/dq, -B^-1 dtau/d(dq), B^-1) at ddq = forward_dynamics(q, dq, tau)  (Carpentier and Mansard 2018)",
+            "three matrices `m[joint of ddq][joint of q, dq or tau]`; units of ddq per rad or m, per rad/s or m/s, and per N m or N. The third is the \
+             inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
+        ),
     };
     Text { title, formula, result }
 }

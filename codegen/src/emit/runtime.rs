@@ -39,22 +39,39 @@ pub(super) fn implementation(module: &Module) -> TokenStream {
     }
 }
 
+/// Methods of the trait `Kinematics`.
+const KINEMATICS: [Quantity; 4] =
+    [Quantity::DirectKinematics, Quantity::LinkFrames, Quantity::GeometricJacobian, Quantity::GeometricJacobianDot];
+/// Methods of the trait `Dynamics`.
+const DYNAMICS: [Quantity; 9] = [
+    Quantity::InertiaMatrix,
+    Quantity::CoriolisMatrix,
+    Quantity::Gravity,
+    Quantity::Friction,
+    Quantity::EquationsOfMotion,
+    Quantity::InverseDynamics,
+    Quantity::ForwardDynamics,
+    Quantity::KineticEnergy,
+    Quantity::PotentialEnergy,
+];
+/// Methods of the trait `Regressor`.
+const REGRESSOR: [Quantity; 2] = [Quantity::Regressor, Quantity::KnownTorque];
+
+/// Functions that the implementation calls and the module does not have.
+pub(super) fn missing(module: &Module) -> Vec<String> {
+    let all = KINEMATICS.into_iter().chain(DYNAMICS).chain(REGRESSOR);
+    let needed = all.flat_map(|quantity| {
+        let with = quantity.has_parameters().then_some((quantity, true));
+        std::iter::once((quantity, false)).chain(with)
+    });
+    let has = |(quantity, with)| module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with));
+    let name = |(quantity, with): (Quantity, bool)| format!("{}{}", quantity.name(), if with { "_with" } else { "" });
+    needed.filter(|&function| !has(function)).map(name).collect()
+}
+
 fn traits(robot: &TokenStream, with_parameters: bool) -> TokenStream {
     let of = |quantities: &[Quantity]| quantities.iter().map(|&q| method(q, with_parameters)).collect::<Vec<_>>();
-    let kinematics =
-        of(&[Quantity::DirectKinematics, Quantity::LinkFrames, Quantity::GeometricJacobian, Quantity::GeometricJacobianDot]);
-    let dynamics = of(&[
-        Quantity::InertiaMatrix,
-        Quantity::CoriolisMatrix,
-        Quantity::Gravity,
-        Quantity::Friction,
-        Quantity::EquationsOfMotion,
-        Quantity::InverseDynamics,
-        Quantity::ForwardDynamics,
-        Quantity::KineticEnergy,
-        Quantity::PotentialEnergy,
-    ]);
-    let regressor = of(&[Quantity::Regressor, Quantity::KnownTorque]);
+    let (kinematics, dynamics, regressor) = (of(&KINEMATICS), of(&DYNAMICS), of(&REGRESSOR));
     let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     quote! {
         impl armgen_runtime::robot::Kinematics<DOF> for #robot {
@@ -115,6 +132,7 @@ fn method(quantity: Quantity, with_parameters: bool) -> TokenStream {
         Shape::Regressor => {
             (quote!(armgen_runtime::nalgebra::SMatrix<Real, DOF, PARAMETERS>), quote!(armgen_runtime::robot::matrix(&#call)))
         }
+        Shape::BaseRegressor | Shape::Task | Shape::Squares(_) => unreachable!("the traits have no method of this shape"),
         Shape::EquationsOfMotion => (
             quote!(armgen_runtime::robot::EquationsOfMotion<Real, DOF>),
             quote! {{

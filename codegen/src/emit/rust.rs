@@ -1,21 +1,18 @@
 //! Rust text of a module: free functions over arrays, outer attributes only, so that the file serves as `mod robot;` and inside
 //! `include!` alike. No path outside `core` and `libm`, no index that is not a constant, no `unsafe`, no `cfg`.
 
-use std::collections::BTreeMap;
-
-use proc_macro2::{Ident, Literal, Span, TokenStream, TokenTree};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 use sha2::{Digest, Sha256};
 
+use super::body::{self, Body};
 use super::literal::literal;
 use super::{batch, documentation, runtime, sincos};
 use crate::equations::{Argument, Shape};
-use crate::program::{Function, Module, Operand, Operation, Scalar, Step};
+use crate::exact::Number;
+use crate::program::{Function, Module, Operand, Scalar};
 use crate::ring::Symbol;
 use crate::source::Source;
-
-/// Steps with one use are written inside the step that uses them, up to so many operands in a line.
-const OPERANDS_IN_A_LINE: usize = 6;
 
 /// The header that says where a file came from.
 #[derive(Clone, Debug)]
@@ -58,12 +55,28 @@ pub fn print(module: &Module, origin: &Origin) -> String {
         #private
         #batches
     };
-    header(origin) + &format(tokens)
+    header(origin) + &absent(module) + &format(tokens)
+}
+
+/// What the arm does not have, and why.
+fn absent(module: &Module) -> String {
+    let line = |(name, reason): &(String, String)| format!("// There is no `{name}`: {reason}.\n");
+    let lines: String = module.absent.iter().map(line).collect();
+    if lines.is_empty() {
+        lines
+    } else {
+        lines + "\n"
+    }
 }
 
 /// The implementation of the runtime's traits for the module in `path`, as text for a file beside it.
 pub fn print_runtime(module: &Module, origin: &Origin) -> String {
-    header(origin) + &format(runtime::implementation(module))
+    let missing = runtime::missing(module);
+    if missing.is_empty() {
+        return header(origin) + &format(runtime::implementation(module));
+    }
+    header(origin)
+        + &format!("// The traits of the runtime are not implemented: the module was generated without {}.\n", missing.join(", "))
 }
 
 /// The comment that says where a file came from.
@@ -110,7 +123,7 @@ fn constants(module: &Module) -> TokenStream {
     let joint_names = module.joints.iter().map(|(name, _)| name);
     let revolute = module.joints.iter().map(|(_, revolute)| revolute);
     let (rows, task) = (usize_literal(module.task.len()), module.task.iter().map(|&row| usize_literal(row)));
-    let number = |value: &Option<crate::exact::Number>, infinite: TokenStream| match value {
+    let number = |value: &Option<Number>, infinite: TokenStream| match value {
         Some(value) => literal(value, module.scalar),
         None => infinite,
     };
@@ -123,19 +136,12 @@ fn constants(module: &Module) -> TokenStream {
     let effort = module.limits.iter().map(|limits| number(&limits[3], infinity()));
     let parameter_names = module.parameters.iter().map(|(name, ..)| name);
     let nominal = module.parameters.iter().map(|(_, value, _)| literal(value, module.scalar));
-    let width = module.parameters.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
-    let mut meanings = vec![" Names of the parameters, in the order of the columns of `regressor`:".to_string(), String::new()];
+    let mut meanings = meanings(" Names of the parameters, in the order of the columns of `regressor`:", &module.parameters);
     if module.base_parameters {
-        meanings.extend([
-            " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's, grouped with all".into(),
-            " that cannot be told from it. Beside it stands its value in the standard parameters, of links in their own frames, inertia about".into(),
-            " their origins; SI units.".into(),
-            String::new(),
-        ]);
+        meanings.splice(2..2, base_note());
     }
-    meanings.push(" ```text".into());
-    meanings.extend(module.parameters.iter().map(|(name, _, meaning)| format!(" {name:width$}  {meaning}")));
-    meanings.push(" ```".into());
+    let base = base_constants(module);
+    let equations_of_motion = equations_of_motion(module);
     quote! {
         /// Name of the robot.
         #[allow(dead_code)]
@@ -173,6 +179,67 @@ fn constants(module: &Module) -> TokenStream {
         /// Values of the parameters in the description.
         #[allow(dead_code, clippy::all)]
         pub const NOMINAL_PARAMETERS: [Real; PARAMETERS] = [#(#nominal),*];
+        #base
+        #equations_of_motion
+    }
+}
+
+/// Names with what they mean, as documentation.
+fn meanings(title: &str, parameters: &[(String, Number, String)]) -> Vec<String> {
+    let width = parameters.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+    let mut lines = vec![title.to_string(), String::new(), " ```text".into()];
+    lines.extend(parameters.iter().map(|(name, _, meaning)| format!(" {name:width$}  {meaning}")));
+    lines.push(" ```".into());
+    lines
+}
+
+/// What a name of a base parameter means.
+fn base_note() -> [String; 4] {
+    [
+        " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's, grouped with all".into(),
+        " that cannot be told from it. Beside it stands its value in the standard parameters, of links in their own frames, inertia about".into(),
+        " their origins; SI units.".into(),
+        String::new(),
+    ]
+}
+
+/// Whether a function of the module returns this.
+pub(super) fn returns(module: &Module, shape: Shape) -> bool {
+    module.functions.iter().any(|function| function.quantity.shape() == shape)
+}
+
+/// The base parameters, for the function that has them.
+fn base_constants(module: &Module) -> Option<TokenStream> {
+    if !returns(module, Shape::BaseRegressor) {
+        return None;
+    }
+    let count = usize_literal(module.base_set.len());
+    let names = module.base_set.iter().map(|(name, ..)| name);
+    let nominal = module.base_set.iter().map(|(_, value, _)| literal(value, module.scalar));
+    let mut meanings = meanings(
+        " Names of the base parameters, in the order of the columns of `base_regressor`, each an exact combination of standard parameters:",
+        &module.base_set,
+    );
+    meanings.splice(2..2, base_note());
+    Some(quote! {
+        /// Number of base parameters: as many as a motion can tell apart.
+        #[allow(dead_code)]
+        pub const BASE_PARAMETERS: usize = #count;
+        #(#[doc = #meanings])*
+        #[allow(dead_code)]
+        pub const BASE_PARAMETER_NAMES: [&str; BASE_PARAMETERS] = [#(#names),*];
+        /// Values of the base parameters in the description, the masses of rotors included.
+        #[allow(dead_code, clippy::all)]
+        pub const NOMINAL_BASE_PARAMETERS: [Real; BASE_PARAMETERS] = [#(#nominal),*];
+    })
+}
+
+/// The type that `equations_of_motion` returns, if there is such a function.
+fn equations_of_motion(module: &Module) -> Option<TokenStream> {
+    if !returns(module, Shape::EquationsOfMotion) {
+        return None;
+    }
+    Some(quote! {
         /// The terms of the equation of motion at one state.
         #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,7 +251,7 @@ fn constants(module: &Module) -> TokenStream {
             /// Gravity term g(q), on the left of the equation of motion.
             pub gravity: [Real; DOF],
         }
-    }
+    })
 }
 
 /// The name of an argument and its array length.
@@ -206,7 +273,7 @@ pub(super) fn argument_text(argument: Argument) -> (&'static str, &'static str) 
     }
 }
 
-fn input(symbol: Symbol) -> TokenStream {
+pub(super) fn input(symbol: Symbol) -> TokenStream {
     let (argument_kind, index) = match symbol {
         Symbol::Sine(i) => {
             let name = format_ident!("s{}", i + 1);
@@ -232,7 +299,7 @@ fn input(symbol: Symbol) -> TokenStream {
     quote!(#name[#index])
 }
 
-fn argument_of(symbol: Symbol) -> Argument {
+pub(super) fn argument_of(symbol: Symbol) -> Argument {
     match symbol {
         Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::Position(_) => Argument::Q,
         Symbol::Rate(_) | Symbol::RateSign(_) => Argument::Dq,
@@ -242,84 +309,6 @@ fn argument_of(symbol: Symbol) -> Argument {
         Symbol::Torque(_) => Argument::Tau,
         Symbol::Parameter(_) => Argument::Pi,
     }
-}
-
-/// An expression in the making, with what its surroundings must know of it.
-#[derive(Clone)]
-struct Text {
-    tokens: TokenStream,
-    operands: usize,
-    operation: Option<Operation>,
-}
-
-impl Text {
-    fn inside(&self, outer: Operation, right: bool) -> TokenStream {
-        let tokens = &self.tokens;
-        let bare = match (self.operation, outer) {
-            (None, _) => true,
-            (Some(Operation::Multiply | Operation::Divide), Operation::Add | Operation::Subtract) => true,
-            (Some(Operation::Add | Operation::Subtract), Operation::Add | Operation::Subtract) => !right,
-            (Some(Operation::Multiply | Operation::Divide), Operation::Multiply | Operation::Divide) => !right,
-            (Some(Operation::Add | Operation::Subtract), Operation::Multiply | Operation::Divide) => false,
-        };
-        if bare {
-            quote!(#tokens)
-        } else {
-            quote!((#tokens))
-        }
-    }
-}
-
-/// The body of a function: lines, then the entries of the result.
-pub(super) fn body(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
-    let mut uses = vec![0usize; function.steps.len()];
-    let operands = function.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(function.outputs.iter().map(|o| &o.operand));
-    for operand in operands {
-        if let Operand::Step(i) = operand {
-            uses[*i as usize] += 1;
-        }
-    }
-    let mut lines = Vec::new();
-    let mut texts: BTreeMap<u32, Text> = BTreeMap::new();
-    let mut named = 0usize;
-    let operand = |texts: &BTreeMap<u32, Text>, operand: &Operand| match operand {
-        Operand::Step(i) => texts[i].clone(),
-        Operand::Input(symbol) => Text { tokens: input(*symbol), operands: 1, operation: None },
-        Operand::Constant(value) => Text { tokens: literal(value, module.scalar), operands: 1, operation: None },
-    };
-    for (index, Step { operation, left, right }) in function.steps.iter().enumerate() {
-        let (left, right) = (operand(&texts, left), operand(&texts, right));
-        let (a, b) = (left.inside(*operation, false), right.inside(*operation, true));
-        let tokens = match operation {
-            Operation::Add => quote!(#a + #b),
-            Operation::Subtract => quote!(#a - #b),
-            Operation::Multiply => quote!(#a * #b),
-            Operation::Divide => quote!(#a / #b),
-        };
-        let text = Text { tokens, operands: left.operands + right.operands, operation: Some(*operation) };
-        let text = if uses[index] == 1 && text.operands <= OPERANDS_IN_A_LINE {
-            text
-        } else {
-            named += 1;
-            let (name, tokens) = (format_ident!("t{named}"), text.tokens);
-            lines.push(quote!(let #name = #tokens;));
-            Text { tokens: quote!(#name), operands: 1, operation: None }
-        };
-        texts.insert(index as u32, text);
-    }
-    let entries = function.outputs.iter().map(|output| {
-        let text = operand(&texts, &output.operand);
-        let tokens = &text.tokens;
-        // `--x` is no decrement in Rust, but the compiler warns of it.
-        let signed = matches!(tokens.clone().into_iter().next(), Some(TokenTree::Punct(p)) if p.as_char() == '-');
-        match (output.negated, text.operation) {
-            (false, _) => quote!(#tokens),
-            (true, None | Some(Operation::Multiply | Operation::Divide)) if !signed => quote!(-#tokens),
-            (true, _) => quote!(-(#tokens)),
-        }
-    });
-    let entries = entries.collect();
-    (lines, entries)
 }
 
 fn function(module: &Module, function: &Function) -> TokenStream {
@@ -332,7 +321,7 @@ fn function(module: &Module, function: &Function) -> TokenStream {
     let symbols = symbols(function);
     let (_, ignored) = used_and_ignored(function);
     let sines = sincos::lines(module, &symbols);
-    let (lines, entries) = body(module, function);
+    let Body { parts, lines, entries } = body::body(module, function);
     let (returns, result) =
         (type_of(function.quantity.shape()), result(function.quantity.shape(), &entries, module.joints.len()));
     quote! {
@@ -344,6 +333,8 @@ fn function(module: &Module, function: &Function) -> TokenStream {
             #(#lines)*
             #result
         }
+
+        #(#parts)*
     }
 }
 
@@ -385,7 +376,13 @@ pub(super) fn type_of(shape: Shape) -> TokenStream {
         Shape::Jacobian => quote!([[Real; DOF]; 6]),
         Shape::Square => quote!([[Real; DOF]; DOF]),
         Shape::Regressor => quote!([[Real; PARAMETERS]; DOF]),
+        Shape::BaseRegressor => quote!([[Real; BASE_PARAMETERS]; DOF]),
+        Shape::Task => quote!([[Real; TASK_ROWS]; TASK_ROWS]),
         Shape::EquationsOfMotion => quote!(EquationsOfMotion),
+        Shape::Squares(count) => {
+            let types = (0..count).map(|_| quote!([[Real; DOF]; DOF]));
+            quote!((#(#types),*))
+        }
     }
 }
 
@@ -407,7 +404,12 @@ fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> TokenStream {
             quote!([#(#frames),*])
         }
         Shape::Jacobian => matrix(entries, 6),
-        Shape::Square | Shape::Regressor => matrix(entries, dof),
+        Shape::Square | Shape::Regressor | Shape::BaseRegressor => matrix(entries, dof),
+        Shape::Task => matrix(entries, entries.len().isqrt()),
+        Shape::Squares(_) => {
+            let squares = entries.chunks(dof * dof).map(|square| matrix(square, dof));
+            quote!((#(#squares),*))
+        }
         Shape::EquationsOfMotion => {
             let (inertia, rest) = entries.split_at(dof * dof);
             let (coriolis, gravity) = rest.split_at(dof * dof);

@@ -22,6 +22,8 @@ impl Module {
         }
         let nominal = self.parameters.iter().map(|(_, value, _)| value.clone());
         constants.insert("NOMINAL_PARAMETERS".into(), nominal.collect());
+        let nominal = self.base_set.iter().map(|(_, value, _)| value.clone());
+        constants.insert("NOMINAL_BASE_PARAMETERS".into(), nominal.collect());
         constants
     }
 }

@@ -23,10 +23,17 @@ use super::{Pass, Passes};
 use crate::ring::{ExprId, Pool};
 use circuit::Circuit;
 
+/// Expressions of more gates than this, those of arms with more than some ten joints, are left as they are: the work grows faster than with
+/// the square of their number.
+const GATES: usize = 8000;
+
 /// The same expressions with fewer operations, in a pool of their own.
 pub(super) fn optimise(pool: &Pool, entries: &[ExprId], without: Passes) -> (Pool, Vec<ExprId>) {
-    let has = |pass| !without.contains(pass);
     let mut circuit = Circuit::of(pool, entries);
+    if circuit.gates.len() > GATES {
+        return (pool.clone(), entries.to_vec());
+    }
+    let has = |pass| !without.contains(pass);
     if has(Pass::Idle) && idle::drop_idle(&mut circuit) > 0 {
         // Gates that have become equal are one again.
         let (pool, entries) = circuit.to_pool();

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::optimise::optimise;
-use super::{Cost, Function, Module, Operand, Operation, Output, Step, Trig};
-use crate::derive::parameters::{nominal, ParameterKind, View};
+use super::{Cost, Function, Module, Operand, Operation, Output, Selection, Step, Trig};
+use crate::derive::parameters::{nominal, ParameterKind, ParameterVector, View};
 use crate::derive::plan::{Pass, Passes};
 use crate::equations::{Argument, Derivation, Quantity, DIVISION};
 use crate::exact::Number;
@@ -23,6 +23,8 @@ pub struct Options {
     pub without: Passes,
     /// How many states the functions for many states take at a time; none: there are no such functions.
     pub batch: Option<usize>,
+    /// Functions that are emitted.
+    pub functions: Selection,
 }
 
 /// A closed form with so many times the operations of the recursion is not looked at further.
@@ -33,13 +35,22 @@ const EFFORT: usize = 1_000_000;
 
 /// The module of an arm.
 pub fn module(model: &Model, options: &Options) -> Module {
-    let mut functions = Vec::new();
+    let (mut functions, mut absent) = (Vec::new(), Vec::new());
     for quantity in Quantity::ALL {
-        functions.push(function(model, quantity, false, options));
-        if quantity.has_parameters() {
-            functions.push(function(model, quantity, true, options));
+        for with_parameters in [false, true] {
+            if with_parameters && !quantity.has_parameters() || !options.functions.contains(quantity, with_parameters) {
+                continue;
+            }
+            match quantity.missing(model) {
+                Some(reason) => absent.push((quantity.name().to_string(), reason)),
+                None => functions.push(function(model, quantity, with_parameters, options)),
+            }
         }
     }
+    let listed = |vector: &ParameterVector| {
+        vector.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect::<Vec<_>>()
+    };
+    let base = options.functions.contains(Quantity::BaseRegressor, false);
     let manipulator = &model.manipulator;
     Module {
         name: manipulator.name.clone(),
@@ -53,10 +64,12 @@ pub fn module(model: &Model, options: &Options) -> Module {
                 [low, high, joint.limits.velocity.clone(), joint.limits.effort.clone()]
             })
             .collect(),
-        task: manipulator.task.iter().map(|row| row.index()).collect(),
-        parameters: model.parameters.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect(),
+        task: manipulator.task_rows(),
+        parameters: listed(&model.parameters),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
+        base_set: if base { listed(model.base_parameters()) } else { Vec::new() },
         functions,
+        absent,
         scalar: options.scalar,
         trig: options.trig,
         batch: options.batch.filter(|&lanes| lanes > 0),

@@ -173,6 +173,17 @@ impl Numbers {
 }
 
 impl Description {
+    /// Rows of the geometric Jacobian that make up the task: all six if the file does not say.
+    pub fn task_rows(&self) -> Vec<usize> {
+        const ROWS: [&str; 6] = ["x", "y", "z", "rx", "ry", "rz"];
+        let listed = self.task.iter().filter_map(|name| ROWS.iter().position(|row| row == name));
+        if self.task.is_empty() {
+            (0..6).collect()
+        } else {
+            listed.collect()
+        }
+    }
+
     /// Reads the text of a file.
     pub fn read(text: &str) -> Result<Self, String> {
         serde_yaml::from_str(text).map_err(|error| error.to_string())

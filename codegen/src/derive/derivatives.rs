@@ -1,0 +1,261 @@
+//! Derivatives of inverse and of forward dynamics by joint variables and rates.
+//!
+//! ```text
+//! ∂tau/∂dq = 2 C(q, dq) + F_v           as C dq is quadratic in dq with Christoffel's symbols for coefficients, symmetric in the last two
+//! ∂tau_i/∂q_j = ∫ ∂_i ∂_j x · (d²x/dt² - g0) dm + ∫ ∂_i x · d²/dt² (∂_j x) dm         from tau_i = ∫ ∂_i x · (d²x/dt² - g0) dm
+//! ```
+//!
+//! For a revolute joint j, ∂_j x = z × r with r from its origin o, over all that joint j carries, and
+//! d²/dt² (z × r) = z'' × r + 2 z' × r' + z × r''. With the force f and moment n that move what joint j carries (Newton-Euler), the
+//! acceleration a of o less g0, the angular velocity Ω and acceleration field U of the link, z' = Ω × z and z'' = U z, r' = Ω × r + v,
+//! and the moments S, h, K = ∫ v r' dm, h' = ∫ v dm of `coriolis.rs`, each joint at or before j feels the wrench
+//!
+//! ```text
+//! F = z × f - m z × a + z'' × h + 2 (z' · h) Ω + 2 z' × h'
+//! N = z × n - h × (z × a) + (tr S - S) z'' + 2 (S z') × Ω + 2 (tr K - K) z'
+//! ```
+//!
+//! A joint i beyond j feels, with the column (f_i, n_i) of B and E_i = ∫ r' × (z_i × r_i) dm of `coriolis.rs`, all about o_j,
+//!
+//! ```text
+//! ∂tau_i/∂q_j = z'' · n_i + 2 z' · E_i - (z × a) · f_i = (z'' - 2 Ω × z') · n_i + 2 z' · (E_i + n_i × Ω) - (z × a) · f_i
+//! ```
+//!
+//! where E + n × Ω is what `coriolis.rs` hands on, and z'' - 2 Ω × z' is the z row of U, negated: nothing new.
+//! A prismatic joint has ∂_j x = z: F = m z'', N = z × f + h × z'' before it, z'' · f_i beyond it.
+//! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and its spin s adds z' × s to N.
+//! The formulas are those of Singh, Russell and Wensing (2022, "Efficient analytical derivatives of rigid-body dynamics using spatial
+//! vector algebra"); moments instead of 6 x 6 matrices, and one set of columns for B, C and ∂tau/∂q, are ours.
+//!
+//! ```text
+//! ∂ddq/∂q = -B^-1 ∂tau/∂q,   ∂ddq/∂dq = -B^-1 ∂tau/∂dq,   ∂ddq/∂tau = B^-1            at ddq = B^-1 (tau - C dq - F - g)
+//! ```
+
+use super::arm::{symmetric, Arm, Body};
+use super::columns::origin_rate;
+use super::coriolis::{self, Flow};
+use super::factors::Factors;
+use super::gravity::gravity;
+use super::inertia::{along, composite_bodies, wrench_outward};
+use super::newton_euler::{friction, link_motions, wrenches, LinkMotion, Motion};
+use super::plan::Plan;
+use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+type Rows = Vec<Vec<ExprId>>;
+
+/// ∂tau/∂q and ∂tau/∂dq of the torques with friction; Coulomb friction counts as constant.
+pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan, motion: &Motion) -> (Rows, Rows) {
+    let c = coriolis::coriolis_matrix(pool, arm, plan);
+    let two = pool.integer(2);
+    let mut by_rates: Rows = c.iter().map(|row| row.iter().map(|&entry| pool.mul(two, entry)).collect()).collect();
+    for (i, joint) in arm.joints.iter().enumerate() {
+        by_rates[i][i] = pool.add(by_rates[i][i], joint.viscous);
+    }
+    (by_positions(pool, arm, motion), by_rates)
+}
+
+/// ∂ddq/∂q, ∂ddq/∂dq and B^-1.
+pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Rows, Rows, Rows) {
+    let n = arm.dof();
+    let (b, c) = coriolis::inertia_and_coriolis(pool, arm, plan);
+    let g = gravity(pool, arm, plan);
+    let rates = arm.symbols(pool, Symbol::Rate);
+    let resistance = friction(pool, arm, &rates);
+    let right: Vec<ExprId> = (0..n)
+        .map(|i| {
+            let centrifugal = pool.dot(&c[i], &rates);
+            let bias = pool.sum([centrifugal, g[i], resistance[i]]);
+            let tau = pool.symbol(Symbol::Torque(i as u16));
+            pool.sub(tau, bias)
+        })
+        .collect();
+    let factors = Factors::new(pool, &b);
+    let motion = Motion { accelerations: factors.solve(pool, &right), ..Motion::plain(pool, arm) };
+    let inverse = factors.inverse(pool);
+    let (by_q, by_rates) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
+    let mut solved = |m: &Rows| -> Rows {
+        let columns: Rows = (0..n).map(|j| m.iter().map(|row| row[j]).collect()).collect();
+        inverse.iter().map(|row| columns.iter().map(|column| -pool.dot(row, column)).collect()).collect()
+    };
+    (solved(&by_q), solved(&by_rates), inverse)
+}
+
+/// ∂tau/∂q.
+fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
+    let n = arm.dof();
+    let motions = link_motions(pool, arm, motion, true);
+    let (_, loads) = wrenches(pool, arm, motion, &motions);
+    let composite = composite_bodies(pool, arm);
+    let omega = coriolis::angular_velocities(pool, arm);
+    let flows = coriolis::flows(pool, arm, &composite);
+    let before: Vec<Before> = (0..n).map(|j| Before::new(pool, &omega[j], &motions[j])).collect();
+    let mut derivative = vec![vec![ExprId::ZERO; n]; n];
+    for j in (0..n).rev() {
+        // What joint j changes at itself and before it.
+        let (mut force, mut moment) = changed_wrench(pool, arm, j, &before[j], &omega[j], &loads[j], &composite[j], &flows[j]);
+        derivative[j][j] = along(arm, j, &force, &moment);
+        let mut link = j;
+        while let Some(parent) = arm.joints[link].parent {
+            (force, moment) = wrench_outward(pool, arm, link, &force, &moment);
+            derivative[parent][j] = along(arm, parent, &force, &moment);
+            link = parent;
+        }
+        // What the joints before j change at it.
+        let mut travelling = Travelling::start(pool, arm, j, &omega, &composite[j], &flows[j]);
+        while let Some(parent) = travelling.go(pool, arm, &omega) {
+            derivative[j][parent] = travelling.felt(pool, arm.joints[parent].is_revolute(), &before[parent]);
+        }
+    }
+    derivative
+}
+
+/// What a joint hands to those beyond it, in its own axes.
+struct Before {
+    /// 2 z'.
+    twice_rate: Vector,
+    /// z''.
+    second_rate: Vector,
+    /// z'' - 2 Ω × z'.
+    row: Vector,
+    /// z × a.
+    swept: Vector,
+}
+
+impl Before {
+    fn new(pool: &mut Pool, omega: &Vector, motion: &LinkMotion) -> Before {
+        let two = pool.integer(2);
+        let twice_rate = [pool.mul(two, omega[1]), -pool.mul(two, omega[0]), ExprId::ZERO];
+        let second_rate = motion.field.map(|row| row[2]);
+        let turning = pool.cross(omega, &twice_rate);
+        let row = pool.sub_vectors(&second_rate, &turning);
+        let a = motion.acceleration;
+        Before { twice_rate, second_rate, row, swept: [-a[1], a[0], ExprId::ZERO] }
+    }
+}
+
+/// F and N.
+#[allow(clippy::too_many_arguments)]
+fn changed_wrench(
+    pool: &mut Pool,
+    arm: &Arm,
+    j: usize,
+    before: &Before,
+    omega: &Vector,
+    load: &(Vector, Vector),
+    body: &Body,
+    flow: &Flow,
+) -> (Vector, Vector) {
+    let (h, second) = (body.first, symmetric(&body.second));
+    let Before { twice_rate, second_rate, swept, .. } = before;
+    let about_z = |v: &Vector| [-v[1], v[0], ExprId::ZERO];
+    if !arm.joints[j].is_revolute() {
+        let lever = pool.cross(&h, second_rate);
+        return (pool.scale(body.mass, second_rate), pool.add_vectors(&about_z(&load.0), &lever));
+    }
+    let mut force = about_z(&load.0);
+    let weighted = pool.scale(body.mass, swept);
+    force = pool.sub_vectors(&force, &weighted);
+    let along_rate = pool.dot3(twice_rate, &h);
+    for part in [pool.cross(second_rate, &h), pool.scale(along_rate, omega), pool.cross(twice_rate, &flow.first)] {
+        force = pool.add_vectors(&force, &part);
+    }
+    let mut moment = about_z(&load.1);
+    let lever = pool.cross(&h, swept);
+    moment = pool.sub_vectors(&moment, &lever);
+    let half = pool.fraction(1, 2);
+    let spin = pool.scale(half, &flow.spin);
+    let turned = pool.transform(&second, twice_rate);
+    for part in [
+        less_trace(pool, &second, second_rate),
+        pool.cross(&turned, omega),
+        less_trace(pool, &flow.second, twice_rate),
+        pool.cross(twice_rate, &spin),
+    ] {
+        moment = pool.add_vectors(&moment, &part);
+    }
+    (force, moment)
+}
+
+/// (tr M - M) v.
+fn less_trace(pool: &mut Pool, m: &crate::ring::matrix::Matrix, v: &Vector) -> Vector {
+    let mut less = m.map(|row| row.map(|x| -x));
+    for (k, (i, j)) in [(1, 2), (2, 0), (0, 1)].into_iter().enumerate() {
+        less[k][k] = pool.add(m[i][i], m[j][j]);
+    }
+    pool.transform(&less, v)
+}
+
+/// The column (f, n) of B and E + n × Ω of C on their way to the base, about the origin and relative to the frame of the link that they are at.
+struct Travelling {
+    link: usize,
+    /// Whether they are still in the axes of the parent turned by `fixed`, E relative to the parent.
+    fresh: bool,
+    force: Vector,
+    moment: Vector,
+    rate: Vector,
+}
+
+impl Travelling {
+    fn start(pool: &mut Pool, arm: &Arm, j: usize, omega: &[Vector], body: &Body, flow: &Flow) -> Travelling {
+        let joint = &arm.joints[j];
+        let outer = joint.parent.map_or(ZERO, |p| omega[p]);
+        let turning = pool.transform_back(&joint.fixed, &outer);
+        let (body, flow) = coriolis::about_axis(pool, joint, body, flow);
+        let column = coriolis::column(pool, joint, &turning, &body, &flow);
+        let rate = column.rate.map_or(ZERO, |rate| rate.transposed);
+        Travelling { link: j, fresh: true, force: column.inertial.0, moment: column.inertial.1, rate }
+    }
+
+    /// On to the parent, if there is one.
+    fn go(&mut self, pool: &mut Pool, arm: &Arm, omega: &[Vector]) -> Option<usize> {
+        let joint = &arm.joints[self.link];
+        let parent = joint.parent?;
+        if !self.fresh {
+            let change = pool.cross(&self.moment, &[ExprId::ZERO, ExprId::ZERO, -joint.spin]);
+            self.rate = pool.add_vectors(&self.rate, &change);
+        }
+        let fresh = self.fresh;
+        let mut turn = |v: &Vector| match (*v == ZERO, fresh) {
+            (true, _) => ZERO,
+            (_, true) => pool.transform(&joint.fixed, v),
+            (_, false) => joint.outward(pool, v),
+        };
+        (self.force, self.moment, self.rate) = (turn(&self.force), turn(&self.moment), turn(&self.rate));
+        let relative = origin_rate(pool, arm, self.link);
+        let lagging = pool.cross(&self.force, &omega[parent]);
+        for (at, force) in [(&relative, &self.force), (&joint.origin, &lagging)] {
+            let lever = pool.cross(at, force);
+            self.rate = pool.add_vectors(&self.rate, &lever);
+        }
+        let lever = pool.cross(&joint.origin, &self.force);
+        self.moment = pool.add_vectors(&self.moment, &lever);
+        if let (Some(rotor), true) = (joint.rotor, self.fresh) {
+            let (coupling, half) = (pool.mul(rotor.inertia, rotor.ratio), pool.fraction(1, 2));
+            let momentum = pool.scale(coupling, &rotor.axis);
+            let mut turning = omega[parent];
+            turning[2] = pool.add(turning[2], arm.joints[parent].drift);
+            let gyroscopic = pool.cross(&turning, &momentum);
+            let gyroscopic = pool.scale(half, &gyroscopic);
+            let seen = pool.cross(&momentum, &omega[parent]);
+            self.moment = pool.add_vectors(&self.moment, &momentum);
+            self.rate = pool.add_vectors(&self.rate, &gyroscopic);
+            self.rate = pool.add_vectors(&self.rate, &seen);
+        }
+        (self.link, self.fresh) = (parent, false);
+        Some(parent)
+    }
+
+    /// ∂tau_i/∂q_j, joint j being that of the link which the column of joint i is at.
+    fn felt(&self, pool: &mut Pool, revolute: bool, before: &Before) -> ExprId {
+        if !revolute {
+            return pool.dot3(&before.second_rate, &self.force);
+        }
+        let parts = [
+            pool.dot3(&before.row, &self.moment),
+            pool.dot3(&before.twice_rate, &self.rate),
+            -pool.dot3(&before.swept, &self.force),
+        ];
+        pool.sum(parts)
+    }
+}

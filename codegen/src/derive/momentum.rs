@@ -1,0 +1,101 @@
+//! What a momentum observer needs: the generalised momentum B dq and C' dq, by one recursion.
+//!
+//! ```text
+//! p = B dq = ∂T/∂dq                                                              (the book, Sect. 7.1.1)
+//! C' dq = ∂T/∂q          as Σ_ij c_ijk dq_i dq_j = ½ Σ_ij ∂b_ij/∂q_k dq_i dq_j for Christoffel's symbols
+//! tau = dp/dt - C' dq + F + g                                                    (De Luca and Mattone 2003)
+//! ```
+//!
+//! All that joint k carries has the linear momentum f and the angular momentum n about o_k. A joint feels its component along the axis in
+//! p. Turned by dq_k, all it carries sees the motion of the link before turned back: with ω and v those of link k,
+//!
+//! ```text
+//! p_k = z · n,   ∂T/∂q_k = n · (ω × z) + f · (v × z)        (revolute)
+//! p_k = z · f,   ∂T/∂q_k = f · (ω × z)                      (prismatic)
+//! ```
+//!
+//! The rotor of joint i has I_m k dq_i z_m beside what turns with its link, and p_i holds I_m k (k dq_i + z_m · ω).
+
+use super::arm::{symmetric, Arm};
+use super::inertia::{along, wrench_outward};
+use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// Velocities of a link, and the momentum of all that it carries, in its joint frame.
+struct State {
+    omega: Vector,
+    velocity: Vector,
+    linear: Vector,
+    angular: Vector,
+}
+
+/// B(q) dq.
+pub fn momentum(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
+    momenta(pool, arm).0
+}
+
+/// C(q, dq)' dq.
+pub fn coriolis_transpose_times(pool: &mut Pool, arm: &Arm) -> Vec<ExprId> {
+    let (_, states) = momenta(pool, arm);
+    states
+        .iter()
+        .zip(&arm.joints)
+        .map(|(State { omega: w, velocity: v, linear: f, angular: n }, joint)| {
+            if joint.is_revolute() {
+                pool.dot(&[n[0], -n[1], f[0], -f[1]], &[w[1], w[0], v[1], v[0]])
+            } else {
+                pool.dot(&[f[0], -f[1]], &[w[1], w[0]])
+            }
+        })
+        .collect()
+}
+
+fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
+    let rates = arm.symbols(pool, Symbol::Rate);
+    let mut states: Vec<State> = Vec::with_capacity(arm.dof());
+    for (joint, &rate) in arm.joints.iter().zip(&rates) {
+        let (outer, moving) = joint.parent.map_or((ZERO, ZERO), |p| (states[p].omega, states[p].velocity));
+        let swept = pool.cross(&outer, &joint.origin);
+        let origin = pool.add_vectors(&moving, &swept);
+        let (mut omega, mut velocity) = (joint.inward(pool, &outer), joint.inward(pool, &origin));
+        let driven = if joint.is_revolute() { &mut omega } else { &mut velocity };
+        driven[2] = pool.add(driven[2], rate);
+
+        // f = m v + ω × h,   n = h × v + (tr(S) 1 - S) ω
+        let body = &joint.body;
+        let (weighted, turning) = (pool.scale(body.mass, &velocity), pool.cross(&omega, &body.first));
+        let linear = pool.add_vectors(&weighted, &turning);
+        let second = symmetric(&body.second);
+        let mut inertia = second.map(|row| row.map(|x| -x));
+        for (k, (i, j)) in [(1, 2), (2, 0), (0, 1)].into_iter().enumerate() {
+            inertia[k][k] = pool.add(second[i][i], second[j][j]);
+        }
+        let (spun, lever) = (pool.transform(&inertia, &omega), pool.cross(&body.first, &velocity));
+        let angular = pool.add_vectors(&spun, &lever);
+        states.push(State { omega, velocity, linear, angular });
+    }
+    let mut p = vec![ExprId::ZERO; arm.dof()];
+    for i in (0..arm.dof()).rev() {
+        let joint = &arm.joints[i];
+        let (linear, angular) = (states[i].linear, states[i].angular);
+        p[i] = along(arm, i, &linear, &angular);
+        let mut spin = ZERO;
+        if let Some(rotor) = joint.rotor {
+            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+            let outer = joint.parent.map_or(ZERO, |parent| states[parent].omega);
+            let (own, carried) = (pool.mul(rotor.ratio, rates[i]), pool.dot3(&rotor.axis, &outer));
+            let speed = pool.add(own, carried);
+            let felt = pool.mul(coupling, speed);
+            p[i] = pool.add(p[i], felt);
+            let momentum = pool.mul(coupling, rates[i]);
+            spin = pool.scale(momentum, &rotor.axis);
+        }
+        if let Some(parent) = joint.parent {
+            let (linear, angular) = wrench_outward(pool, arm, i, &linear, &angular);
+            let angular = pool.add_vectors(&angular, &spin);
+            states[parent].linear = pool.add_vectors(&states[parent].linear, &linear);
+            states[parent].angular = pool.add_vectors(&states[parent].angular, &angular);
+        }
+    }
+    (p, states)
+}
