@@ -63,7 +63,9 @@ fn names() -> Vec<String> {
 fn complaint(name: &str) -> String {
     let names = names();
     let words: Vec<&str> = names.iter().map(String::as_str).collect();
-    match did_you_mean(name, &words) {
+    // Not every function has a form with the parameters at run time.
+    let plain = name.strip_suffix("_with").and_then(|plain| words.iter().copied().find(|&word| word == plain));
+    match plain.or_else(|| did_you_mean(name, &words)) {
         Some(near) => format!("there is no function `{name}`: do you mean `{near}`?"),
         None => format!("there is no function `{name}`; there are {}", names.join(", ")),
     }
