@@ -230,6 +230,12 @@ fn an_edit_of_a_mass_reaches_all_that_is_built_on_it() {
         "forward_dynamics",
         "kinetic_energy",
         "potential_energy",
+        "NOMINAL_BASE_PARAMETERS",
+        "momentum",
+        "coriolis_transpose_times",
+        "operational_inertia",
+        "inverse_dynamics_derivatives",
+        "forward_dynamics_derivatives",
     ]);
     assert_eq!(changed, expected);
 
