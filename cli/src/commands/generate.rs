@@ -15,10 +15,10 @@ use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 #[derive(Debug, clap::Args)]
 pub(crate) struct Beside {
     /// Verify the module and write the certificate beside it: robot.cert.json for robot.rs
-    #[arg(long, conflicts_with = "batch")]
+    #[arg(long, conflicts_with_all = ["batch", "functions"])]
     verify: bool,
     /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine
-    #[arg(long, conflicts_with = "batch")]
+    #[arg(long, conflicts_with_all = ["batch", "functions"])]
     tests: bool,
     /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is
     #[arg(long)]
