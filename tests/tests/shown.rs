@@ -95,7 +95,14 @@ fn check(what: &str, text: &str) {
                         quantity.factors.iter().flatten().map(|text| value(text).unwrap_or_else(|e| panic!("{what}: {e}")));
                     vec![factors.product()]
                 }
-                (None, name) => program.call(name, &a),
+                // The matrices of one function, by what the derivative is.
+                (None, name) => match name.rsplit_once("_derivatives_") {
+                    Some((function, by)) => {
+                        let place = ["q", "dq", "tau"].iter().position(|known| *known == by).expect("a known matrix");
+                        program.call(&format!("{function}_derivatives"), &a)[place * dof * dof..][..dof * dof].to_vec()
+                    }
+                    None => program.call(name, &a),
+                },
             };
             agree(&what, &found, &expected, ORACLE);
         }

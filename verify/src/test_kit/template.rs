@@ -109,7 +109,9 @@ fn moved(q: &[Real; DOF], dq: &[Real; DOF], t: Real) -> [Real; DOF] {
 fn functions_have_the_values_of_the_equations() {
     for (name, state, found, expected) in values() {
         if !name.starts_with("forward_dynamics") {
-            agree(&format!("{name} at state {state}"), &found, &expected, ROUNDING);
+            // An inverse loses what the condition of its matrix takes.
+            let lost = if name == "operational_inertia" { 256.0 } else { 1.0 };
+            agree(&format!("{name} at state {state}"), &found, &expected, lost * ROUNDING);
         }
     }
 }
