@@ -60,18 +60,18 @@ fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
 
 fn wide_state(arguments: &Arguments<f64>) -> Option<State<Wide>> {
     let inputs = WideArguments::new(arguments)?;
-    let of = |v: &[f64]| v.iter().map(|&x| Wide::from_f64(x)).collect::<Vec<_>>();
     let n = arguments.q.len();
+    let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments.map(Wide::from_f64);
     Some(State {
         angles: (0..n).map(|i| inputs.sine_cosine(&[(i, 1)])).collect(),
-        q: of(&arguments.q),
-        dq: of(&arguments.dq),
-        ddq: of(&arguments.ddq),
-        dqr: of(&arguments.dqr),
-        ddqr: of(&arguments.ddqr),
-        tau: of(&arguments.tau),
+        q,
+        dq,
+        ddq,
+        dqr,
+        ddqr,
+        tau,
         signs: (0..n).map(|i| Inputs::<Wide>::sign(&inputs, i)).collect(),
-        pi: of(&arguments.pi),
+        pi,
         zero: Wide::from_f64(0.0),
         one: Wide::from_f64(1.0),
     })
