@@ -50,14 +50,14 @@ fn exhaustive() {
     };
     let mut bits = 1;
     while bits <= last {
-        let x: [f32; 64] = std::array::from_fn(|i| f32::from_bits((bits + i as u32).min(last)));
-        let (sines, cosines) = emitted::f32::all(x);
-        for i in 0..64 {
+        let x: [f32; 8] = std::array::from_fn(|i| f32::from_bits((bits + i as u32).min(last)));
+        let (sines, cosines) = emitted::f32::eight(x);
+        for i in 0..8 {
             let (sine, cosine) = libm::sincos(x[i].into());
             worst = (worst.0.max(ulps(sines[i], sine)), worst.1.max(ulps(cosines[i], cosine)));
         }
-        count += 64;
-        bits += 64;
+        count += 8;
+        bits += 8;
     }
     println!("Every f32 up to {}, {count} of them: sine {:.4}, cosine {:.4}.", emitted::f32::RANGE, worst.0, worst.1);
 }
@@ -65,19 +65,15 @@ fn exhaustive() {
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let count = arguments.first().and_then(|a| a.parse().ok()).unwrap_or(1_000_000);
-    let fast = |x: f64| {
-        let ([sine], [cosine]) = emitted::f64::all([x]);
-        (sine, cosine)
-    };
     let fast_single = |x: f64| {
-        let ([sine], [cosine]) = emitted::f32::all([x as f32]);
+        let (sine, cosine) = emitted::f32::one(x as f32);
         (f64::from(sine), f64::from(cosine))
     };
     let libm_single = |x: f64| {
         let (sine, cosine) = libm::sincosf(x as f32);
         (f64::from(sine), f64::from(cosine))
     };
-    let functions: [(&str, SinCos); 3] = [("fast", &fast), ("libm", &libm::sincos), ("std", &f64::sin_cos)];
+    let functions: [(&str, SinCos); 3] = [("fast", &emitted::f64::one), ("libm", &libm::sincos), ("std", &f64::sin_cos)];
     table("f64", F64, (-1074.0, emitted::f64::RANGE), count, &functions);
     let functions: [(&str, SinCos); 2] = [("fast", &fast_single), ("libm", &libm_single)];
     table("f32", F32, (-149.0, emitted::f32::RANGE.into()), count, &functions);

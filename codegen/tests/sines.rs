@@ -31,16 +31,13 @@ fn check(format: Format, smallest: f64, largest: f64, sin_cos: impl Fn(f64) -> (
 
 #[test]
 fn sines_in_f64_are_within_an_ulp() {
-    check(F64, -1074.0, emitted::f64::RANGE, |x| {
-        let ([sine], [cosine]) = emitted::f64::all([x]);
-        (sine, cosine)
-    });
+    check(F64, -1074.0, emitted::f64::RANGE, emitted::f64::one);
 }
 
 #[test]
 fn sines_in_f32_are_within_an_ulp() {
     check(F32, -149.0, f64::from(emitted::f32::RANGE), |x| {
-        let ([sine], [cosine]) = emitted::f32::all([x as f32]);
+        let (sine, cosine) = emitted::f32::one(x as f32);
         (f64::from(sine), f64::from(cosine))
     });
 }
@@ -48,28 +45,33 @@ fn sines_in_f32_are_within_an_ulp() {
 #[test]
 fn an_angle_has_the_same_sine_beside_any_others() {
     let angles = [0.3, -2.0, 1e9, 7.0, -0.0, f64::NAN, 65536.0, 12.5];
-    let alone = angles.map(|x| emitted::f64::few([x]));
-    let (sines, cosines) = emitted::f64::all(angles);
     let singles = angles.map(|x| x as f32);
-    let alone_single = singles.map(|x| emitted::f32::few([x]));
-    let (sines_single, cosines_single) = emitted::f32::all(singles);
+    let (double, single) = (emitted::f64::eight(angles), emitted::f32::eight(singles));
+    let [a, b, c, d, ..] = angles;
+    let (double_of_four, single_of_four) = (emitted::f64::four([a, b, c, d]), emitted::f32::four([a, b, c, d].map(|x| x as f32)));
     for i in 0..angles.len() {
-        assert_eq!((sines[i].to_bits(), cosines[i].to_bits()), (alone[i].0[0].to_bits(), alone[i].1[0].to_bits()));
-        assert_eq!(
-            (sines_single[i].to_bits(), cosines_single[i].to_bits()),
-            (alone_single[i].0[0].to_bits(), alone_single[i].1[0].to_bits())
-        );
+        let (sine, cosine) = emitted::f64::one(angles[i]);
+        let (sine_single, cosine_single) = emitted::f32::one(singles[i]);
+        assert_eq!((double.0[i].to_bits(), double.1[i].to_bits()), (sine.to_bits(), cosine.to_bits()));
+        assert_eq!((single.0[i].to_bits(), single.1[i].to_bits()), (sine_single.to_bits(), cosine_single.to_bits()));
+        if i < 4 {
+            assert_eq!((double_of_four.0[i].to_bits(), double_of_four.1[i].to_bits()), (sine.to_bits(), cosine.to_bits()));
+            assert_eq!(
+                (single_of_four.0[i].to_bits(), single_of_four.1[i].to_bits()),
+                (sine_single.to_bits(), cosine_single.to_bits())
+            );
+        }
     }
 }
 
 #[test]
 fn zeros_keep_their_sign_and_the_smallest_numbers_their_bits() {
     for x in [0.0, -0.0, f64::from_bits(1), -f64::from_bits(1), f64::MIN_POSITIVE] {
-        let ([sine], [cosine]) = emitted::f64::all([x]);
+        let (sine, cosine) = emitted::f64::one(x);
         assert_eq!((sine.to_bits(), cosine), (x.to_bits(), 1.0));
     }
     for x in [0.0, -0.0, f32::from_bits(1), -f32::from_bits(1), f32::MIN_POSITIVE] {
-        let ([sine], [cosine]) = emitted::f32::all([x]);
+        let (sine, cosine) = emitted::f32::one(x);
         assert_eq!((sine.to_bits(), cosine), (x.to_bits(), 1.0));
     }
 }
@@ -78,12 +80,12 @@ fn zeros_keep_their_sign_and_the_smallest_numbers_their_bits() {
 fn beyond_the_range_the_answer_is_that_of_libm() {
     let above = f64::from_bits(emitted::f64::RANGE.to_bits() + 1);
     for x in [above, -above, 1e22, -f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
-        let (([sine], [cosine]), expected) = (emitted::f64::all([x]), libm::sincos(x));
+        let ((sine, cosine), expected) = (emitted::f64::one(x), libm::sincos(x));
         assert!(same(sine, expected.0) && same(cosine, expected.1), "{x:e}");
     }
     let above = f32::from_bits(emitted::f32::RANGE.to_bits() + 1);
     for x in [above, -above, 1e22, -f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
-        let (([sine], [cosine]), expected) = (emitted::f32::all([x]), libm::sincosf(x));
+        let ((sine, cosine), expected) = (emitted::f32::one(x), libm::sincosf(x));
         assert!(same(sine.into(), expected.0.into()) && same(cosine.into(), expected.1.into()), "{x:e}");
     }
 }
@@ -96,13 +98,13 @@ fn same(a: f64, b: f64) -> bool {
 #[test]
 fn a_turn_the_other_way_changes_only_the_sign_of_the_sine() {
     for x in Range::Uniform(emitted::f64::RANGE).arguments(COUNT, emitted::f64::RANGE, F64) {
-        let ((s, c), (t, d)) = (emitted::f64::all([x]), emitted::f64::all([-x]));
-        assert_eq!((s[0], c[0]), (-t[0], d[0]), "{x:e}");
+        let ((s, c), (t, d)) = (emitted::f64::one(x), emitted::f64::one(-x));
+        assert_eq!((s, c), (-t, d), "{x:e}");
     }
     let largest = f64::from(emitted::f32::RANGE);
     for x in Range::Uniform(largest).arguments(COUNT, largest, F32) {
-        let ((s, c), (t, d)) = (emitted::f32::all([x as f32]), emitted::f32::all([-x as f32]));
-        assert_eq!((s[0], c[0]), (-t[0], d[0]), "{x:e}");
+        let ((s, c), (t, d)) = (emitted::f32::one(x as f32), emitted::f32::one(-x as f32));
+        assert_eq!((s, c), (-t, d), "{x:e}");
     }
 }
 

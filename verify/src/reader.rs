@@ -1,8 +1,8 @@
 //! Reads an emitted module back: constants as values, functions as straight-line programs.
 //!
 //! The reader knows a small part of Rust and names everything else as an error: `let` with a name, `_` or a tuple; names, `x[3]`, decimal
-//! literals, `+ - * /`, a minus sign, tuples, arrays, one struct; calls of `sin_cos`, of `sin_cos_all` for several angles, of `sign` and of
-//! the module's own private functions, which are taken in where they are called. No `cfg`, no macro, no loop, no `use`, no block that could hide a step.
+//! literals, `+ - * /`, a minus sign, tuples, arrays, one struct; calls of `sin_cos`, of `sin_cos_four` and
+//! `sin_cos_eight` for several angles, of `sign` and of the module's own private functions, which are taken in where they are called. No `cfg`, no macro, no loop, no `use`, no block that could hide a step.
 
 mod constant;
 mod expression;
@@ -77,22 +77,42 @@ const PRIVATE: [(&str, Option<Float>, &str); 5] = [
     ("sign", None, "fn sign(x:Real)->Real{if x>0.0{1.0}else if x<0.0{-1.0}else{x}}"),
 ];
 
-/// Accepted items of the private block that answers for all angles together, by the SHA-256 of their texts without blanks: name, scalar, hash.
-const TOGETHER: [(&str, Float, &str); 10] = [
-    ("SIN_COS_RANGE", Float::F64, "1b1d904a5bf4f2b907d0f5f3c8e747d577099c0d45c88129a46191582bb857bd"),
-    ("sin_cos", Float::F64, "c3a464d0942e1e27be5b08a992ed5cdf2bd84effd79bc74aa74e0195df00c63c"),
-    ("sin_cos_all", Float::F64, "fb26be38e2497a379a62a91dcc50b5ada821a807bc42bf2d013713a7a6b9eb27"),
-    ("sin_cos_few", Float::F64, "47efd60c6c274be70fc0791726b6ec04770a1c3d074bca9877855476019a6239"),
-    ("sin_cos_beyond", Float::F64, "fafd2792aad41e7524a7180750020b7db7bc5be4e448af98d948fc40fb227425"),
-    ("SIN_COS_RANGE", Float::F32, "20698ad98ba01987199d4794215fcb537e1ca0794a3ac967f936e96473726608"),
-    ("sin_cos", Float::F32, "dfafcf1df1ddaaa3b3290c9defc89af2d5d43e2ab0f7d4787227254c2750b61f"),
-    ("sin_cos_all", Float::F32, "42a4eedef962b6e7d07ff5a0c982e8a938523b12ca8eb60d7c73ed8fa411bb16"),
-    ("sin_cos_few", Float::F32, "b1cdcf1fd0b81537b8a207a07e23e44e988e47d3a5d07f0ded0921709f1fe060"),
-    ("sin_cos_beyond", Float::F32, "b481d6bc3791e07f5d87dbee07791201b4ed8c1178418a228344f382e3a107ff"),
+/// The private functions that are accepted by their text alone.
+const LEAVES: [&str; 8] = [
+    "sin_cos",
+    "sin_cos_one",
+    "sin_cos_beyond",
+    "sin_cos_four",
+    "sin_cos_each_of_four",
+    "sin_cos_eight",
+    "sin_cos_each_of_eight",
+    "sign",
 ];
 
-/// The largest angle of that block.
-const RANGE: &str = "SIN_COS_RANGE";
+/// Accepted items of the private block that answers for several angles at once, by the SHA-256 of their texts without blanks: name, scalar, hash.
+const TOGETHER: [(&str, Float, &str); 18] = [
+    ("SIN_COS_RANGE", Float::F64, "1b1d904a5bf4f2b907d0f5f3c8e747d577099c0d45c88129a46191582bb857bd"),
+    ("SIN_COS_VECTORS", Float::F64, "58b089d92156784f5c1e1103d0c52d01932d7910d0e33879af2ee02344e2b83c"),
+    ("sin_cos", Float::F64, "c3a464d0942e1e27be5b08a992ed5cdf2bd84effd79bc74aa74e0195df00c63c"),
+    ("sin_cos_one", Float::F64, "a84e8321b11c4e25bcab5f40f8549a7c03d4f55bad0a0d0ff9ad5a3de07ebaf0"),
+    ("sin_cos_beyond", Float::F64, "ebcd279734b400d8fdee9bc980ca395acd75f28019990fbd55474fe834171b0b"),
+    ("sin_cos_four", Float::F64, "6a6737ad28070d7b0bd0fd9e46611132bb11cef21427913107893dc721eebf0d"),
+    ("sin_cos_each_of_four", Float::F64, "5a1cc06a9ce6647e77478a07987e9e64c3dd118693245e955757f1a77f1ac64e"),
+    ("sin_cos_eight", Float::F64, "8a77237e41135304eb4efbd9e6f1d4b40f003baf2eb82f583d60e2eacf6b02e9"),
+    ("sin_cos_each_of_eight", Float::F64, "dd99be907e78348b1ad62a00c5bf22c9140ec5a087656d08c0eb43d465c80985"),
+    ("SIN_COS_RANGE", Float::F32, "20698ad98ba01987199d4794215fcb537e1ca0794a3ac967f936e96473726608"),
+    ("SIN_COS_VECTORS", Float::F32, "58b089d92156784f5c1e1103d0c52d01932d7910d0e33879af2ee02344e2b83c"),
+    ("sin_cos", Float::F32, "dfafcf1df1ddaaa3b3290c9defc89af2d5d43e2ab0f7d4787227254c2750b61f"),
+    ("sin_cos_one", Float::F32, "621c647067ad90b8fd7e19bf6286fc98ffb9900cef71e8572ed861bfded458e3"),
+    ("sin_cos_beyond", Float::F32, "c68eebfff99b50ce6e91a1946ffc32a85d3e91dbc584ccf8d5d9c13b8fb78515"),
+    ("sin_cos_four", Float::F32, "bb0c04029156d2beb99e65878a7070df7bf9aaf74505e8d12012a08bc21cc593"),
+    ("sin_cos_each_of_four", Float::F32, "158dd5a49afcbf6db016a6586c5ba26dcacca608997534b7563d60c2b0c4034f"),
+    ("sin_cos_eight", Float::F32, "18bef8bb8aab0ac1aee71d98d48b7b90d0d180d6b3ec98dc4b73f6df8eb9bb00"),
+    ("sin_cos_each_of_eight", Float::F32, "964d174ba34c33557dc4151ff39eeecd53b8c1d15c8129bd92cf7e7018b4fa82"),
+];
+
+/// The constants of that block: the largest angle, and whether the lanes that are left are computed too.
+const SETTINGS: [&str; 2] = ["SIN_COS_RANGE", "SIN_COS_VECTORS"];
 
 /// Whether an item of the block for all angles together is the one that is known to be right.
 fn known_together(name: &str, real: Float, text: &str) -> Result<(), String> {
@@ -156,7 +176,7 @@ impl Module {
         let mut values = BTreeMap::new();
         for constant in constants {
             let name = constant.ident.to_string();
-            if name == RANGE && matches!(constant.vis, Visibility::Inherited) {
+            if SETTINGS.contains(&name.as_str()) && matches!(constant.vis, Visibility::Inherited) {
                 let mut bare = constant.clone();
                 bare.attrs.clear();
                 known_together(&name, real, &text(&bare))?;
@@ -200,8 +220,8 @@ fn check_struct(structure: &syn::ItemStruct) -> Result<(), String> {
 /// Gives the name of the one that answers.
 fn check_leaves(private: &BTreeMap<String, &ItemFn>, real: Float) -> Result<Option<&'static str>, String> {
     let mut trig = None;
-    let together = private.contains_key("sin_cos_all");
-    for name in ["sin_cos", "sin_cos_all", "sin_cos_few", "sin_cos_beyond", "sign"] {
+    let together = private.contains_key("sin_cos_one");
+    for name in LEAVES {
         let Some(function) = private.get(name) else { continue };
         let mut bare = (*function).clone();
         bare.attrs.clear();

@@ -1,8 +1,9 @@
 //! Sine and cosine in the emitted module: where the functions ask for them, and the private block that answers.
 //!
-//! `libm` and `std` answer angle by angle. `fast` answers for a whole array: the text in `sincos/fast_f64.rs` and `sincos/fast_f32.rs`, real Rust
-//! files that are taken in as they stand. A function then hands over the shortest piece of `q` that holds its angles, so that they are loaded as
-//! vectors: a copy of chosen ones, written number by number and read back as a vector, costs more than the sines do.
+//! `libm` and `std` answer angle by angle. `fast` answers for four or eight angles at once: the text in `sincos/fast_f64.rs` and
+//! `sincos/fast_f32.rs`, real Rust files that are taken in as they stand. Its angles are arguments one by one, which travel in registers:
+//! a processor that reads a vector from numbers that were just written one by one waits for all the writes, longer than the sines take.
+//! One or two angles gain nothing from vectors and are asked for alone.
 
 use std::collections::BTreeMap;
 
@@ -16,9 +17,6 @@ use crate::ring::Symbol;
 
 const FAST_F64: &str = include_str!("sincos/fast_f64.rs");
 const FAST_F32: &str = include_str!("sincos/fast_f32.rs");
-
-/// Fewer joints than this are a few: the loop over them is called, not taken in.
-const FEW: usize = 6;
 
 /// Which of sine and cosine a function uses, angle by angle.
 fn angles(symbols: &[Symbol]) -> BTreeMap<usize, (bool, bool)> {
@@ -44,7 +42,7 @@ pub(super) fn lines(module: &Module, symbols: &[Symbol]) -> Vec<TokenStream> {
             };
             angles.iter().map(line).collect()
         }
-        Trig::Fast => together(&angles, module.joints.len()),
+        Trig::Fast => together(&angles),
     }
 }
 
@@ -56,38 +54,32 @@ fn name(letter: &str, angle: usize, used: bool) -> TokenStream {
     }
 }
 
-/// `let ([s1, s2], [c1, c2]) = sin_cos_all(q);`, of a piece of `q` where the function does not use its ends.
-fn together(angles: &BTreeMap<usize, (bool, bool)>, dof: usize) -> Vec<TokenStream> {
-    let Some((first, last)) = piece(angles, dof) else { return Vec::new() };
-    let all = first..=last;
-    let names = |letter: &str, used: fn(&(bool, bool)) -> bool| {
-        let names = all.clone().map(|i| name(letter, i, angles.get(&i).is_some_and(used)));
-        quote!([#(#names),*])
-    };
-    let (sines, cosines) = (names("s", |u| u.0), names("c", |u| u.1));
-    let call = format_ident!("{}", if last - first + 1 < FEW { "sin_cos_few" } else { "sin_cos_all" });
-    if (first, last) == (0, dof - 1) {
-        return vec![quote!(let (#sines, #cosines) = #call(q);)];
+/// `let ([s1, s2, s3, _], [c1, c2, c3, _]) = sin_cos_four(3, q[0], q[1], q[2], q[2]);` and so on: the lanes that are left repeat the last angle.
+fn together(angles: &BTreeMap<usize, (bool, bool)>) -> Vec<TokenStream> {
+    let angles: Vec<(usize, (bool, bool))> = angles.iter().map(|(&i, &used)| (i, used)).collect();
+    let mut lines = Vec::new();
+    for group in angles.chunks(8) {
+        let (lanes, function) = match group.len() {
+            1 | 2 => {
+                lines.extend(group.iter().map(|&(i, (sine, cosine))| {
+                    let (s, c, index) = (name("s", i, sine), name("c", i, cosine), usize_literal(i));
+                    quote!(let (#s, #c) = sin_cos_one(q[#index]);)
+                }));
+                continue;
+            }
+            3 | 4 => (4, "sin_cos_four"),
+            _ => (8, "sin_cos_eight"),
+        };
+        let (function, count) = (format_ident!("{function}"), usize_literal(group.len()));
+        let names = |letter: &str, used: fn(&(bool, bool)) -> bool| {
+            let names = (0..lanes).map(|lane| group.get(lane).map_or(quote!(_), |(i, u)| name(letter, *i, used(u))));
+            quote!([#(#names),*])
+        };
+        let (sines, cosines) = (names("s", |u| u.0), names("c", |u| u.1));
+        let arguments = (0..lanes).map(|lane| usize_literal(group[lane.min(group.len() - 1)].0));
+        lines.push(quote!(let (#sines, #cosines) = #function(#count, #(q[#arguments]),*);));
     }
-    let (before, after) = (vec![quote!(_,); first], vec![quote!(, _); dof - 1 - last]);
-    vec![quote!(let [#(#before)* angles @ .. #(#after)*] = q;), quote!(let (#sines, #cosines) = #call(angles);)]
-}
-
-/// The first and the last joint of the piece of `q` to hand over: three or more joints in an even number where there are further ones, because
-/// vectors are even.
-fn piece(angles: &BTreeMap<usize, (bool, bool)>, dof: usize) -> Option<(usize, usize)> {
-    let (&first, &last) = (angles.keys().next()?, angles.keys().next_back()?);
-    let count = last - first + 1;
-    Some(match count >= 3 && count % 2 == 1 {
-        true if last + 1 < dof => (first, last + 1),
-        true if first > 0 => (first - 1, last),
-        _ => (first, last),
-    })
-}
-
-/// Whether a function asks for a few angles only.
-fn asks_for_few(symbols: &[Symbol], dof: usize) -> bool {
-    piece(&angles(symbols), dof).is_some_and(|(first, last)| last - first + 1 < FEW)
+    lines
 }
 
 /// The lines that give `s1`, `c1` and so on as arrays of lanes, and those in the loop over lanes `k` that give the numbers.
@@ -104,13 +96,22 @@ pub(super) fn lines_of_lanes(symbols: &[Symbol]) -> (Vec<TokenStream>, Vec<Token
 /// The private function behind those lines.
 pub(super) fn of_lanes(module: &Module) -> TokenStream {
     let body = match module.trig {
-        Trig::Fast => quote!(sin_cos_all(x)),
+        Trig::Fast => quote! {
+            let mut inside = true;
+            for k in 0..LANES {
+                (sines[k], cosines[k]) = sin_cos(x[k]);
+                inside &= x[k].abs() <= SIN_COS_RANGE;
+            }
+            if !inside {
+                for k in 0..LANES {
+                    (sines[k], cosines[k]) = sin_cos_one(x[k]);
+                }
+            }
+        },
         Trig::Libm | Trig::Std => quote! {
-            let (mut sines, mut cosines) = ([0.0; LANES], [0.0; LANES]);
             for k in 0..LANES {
                 (sines[k], cosines[k]) = sin_cos(x[k]);
             }
-            (sines, cosines)
         },
     };
     quote! {
@@ -118,7 +119,9 @@ pub(super) fn of_lanes(module: &Module) -> TokenStream {
         #[allow(clippy::all)]
         #[inline(never)]
         fn sin_cos_lanes(x: &Lanes) -> (Lanes, Lanes) {
+            let (mut sines, mut cosines) = ([0.0; LANES], [0.0; LANES]);
             #body
+            (sines, cosines)
         }
     }
 }
@@ -126,14 +129,7 @@ pub(super) fn of_lanes(module: &Module) -> TokenStream {
 /// The private functions behind the lines, for the symbols of each function.
 pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStream {
     let call = match (module.trig, module.scalar) {
-        (Trig::Fast, scalar) => {
-            let mut file = syn::parse_file(if scalar == Scalar::F64 { FAST_F64 } else { FAST_F32 })
-                .expect("the text to take in is a Rust file");
-            if !functions.iter().any(|symbols| asks_for_few(symbols, module.joints.len())) {
-                file.items.retain(|item| !matches!(item, Item::Fn(function) if function.sig.ident == "sin_cos_few"));
-            }
-            return file.into_token_stream();
-        }
+        (Trig::Fast, scalar) => return fast(scalar, functions),
         (Trig::Std, _) => quote!(x.sin_cos()),
         (Trig::Libm, Scalar::F64) => quote!(libm::sincos(x)),
         (Trig::Libm, Scalar::F32) => quote!(libm::sincosf(x)),
@@ -147,13 +143,27 @@ pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStre
     }
 }
 
+/// The items of the text for `fast` that these functions need.
+fn fast(scalar: Scalar, functions: &[Vec<Symbol>]) -> TokenStream {
+    let mut file =
+        syn::parse_file(if scalar == Scalar::F64 { FAST_F64 } else { FAST_F32 }).expect("the text to take in is a Rust file");
+    let calls: String = functions.iter().flat_map(|symbols| together(&angles(symbols))).map(|line| line.to_string()).collect();
+    let unused: Vec<&str> = ["four", "eight"].into_iter().filter(|lanes| !calls.contains(&format!("sin_cos_{lanes}"))).collect();
+    file.items.retain(|item| match item {
+        Item::Fn(function) => !unused.iter().any(|lanes| function.sig.ident.to_string().ends_with(lanes)),
+        Item::Const(constant) => constant.ident != "SIN_COS_VECTORS" || unused.len() < 2,
+        _ => true,
+    });
+    file.into_token_stream()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[track_caller]
-    fn check(symbols: &[Symbol], dof: usize, expected: &[&str]) {
-        let lines = together(&angles(symbols), dof);
+    fn check(symbols: &[Symbol], expected: &[&str]) {
+        let lines = together(&angles(symbols));
         let lines: Vec<String> = lines.iter().map(|line| line.to_string().replace(' ', "")).collect();
         let expected: Vec<String> = expected.iter().map(|line| line.replace(' ', "")).collect();
         assert_eq!(lines, expected);
@@ -161,40 +171,43 @@ mod tests {
 
     #[test]
     fn a_function_without_angles_asks_for_none() {
-        check(&[Symbol::Position(0)], 1, &[]);
+        check(&[Symbol::Position(0)], &[]);
     }
 
     #[test]
-    fn angles_of_all_joints_are_one_array() {
-        let symbols = [Symbol::Sine(0), Symbol::Cosine(0), Symbol::Cosine(1), Symbol::Sine(3)];
-        check(&symbols, 4, &["let ([s1, _, _, s4], [c1, c2, _, _]) = sin_cos_few(q);"]);
+    fn one_or_two_angles_are_asked_for_alone() {
+        let two = [Symbol::Sine(1), Symbol::Cosine(3), Symbol::Sine(3)];
+        check(&two, &["let (s2, _) = sin_cos_one(q[1]);", "let (s4, c4) = sin_cos_one(q[3]);"]);
     }
 
     #[test]
-    fn a_piece_of_the_joints_is_handed_over_in_even_numbers() {
-        let two = [Symbol::Sine(1), Symbol::Cosine(2)];
-        check(&two, 4, &["let [_, angles @ .., _] = q;", "let ([s2, _], [_, c3]) = sin_cos_few(angles);"]);
-        let three = [Symbol::Sine(1), Symbol::Cosine(3)];
-        check(&three, 5, &["let [_, angles @ ..] = q;", "let ([s2, _, _, _], [_, _, c4, _]) = sin_cos_few(angles);"]);
-        check(&three, 4, &["let ([_, s2, _, _], [_, _, _, c4]) = sin_cos_few(q);"]);
-        check(&[Symbol::Sine(0), Symbol::Sine(2)], 3, &["let ([s1, _, s3], [_, _, _]) = sin_cos_few(q);"]);
-    }
-
-    #[test]
-    fn many_angles_are_taken_in_where_they_are_asked_for() {
-        let seven: Vec<Symbol> = (0..7).map(Symbol::Sine).collect();
-        check(&seven, 7, &["let ([s1, s2, s3, s4, s5, s6, s7], [_, _, _, _, _, _, _]) = sin_cos_all(q);"]);
+    fn lanes_that_are_left_repeat_the_last_angle() {
+        let three = [Symbol::Sine(0), Symbol::Cosine(0), Symbol::Cosine(1), Symbol::Sine(3)];
+        check(&three, &["let ([s1, _, s4, _], [c1, c2, _, _]) = sin_cos_four(3, q[0], q[1], q[3], q[3]);"]);
+        let five: Vec<Symbol> = (0..5).map(Symbol::Sine).collect();
         check(
-            &seven[1..6],
-            7,
-            &["let [_, angles @ ..] = q;", "let ([s2, s3, s4, s5, s6, _], [_, _, _, _, _, _]) = sin_cos_all(angles);"],
+            &five,
+            &["let ([s1, s2, s3, s4, s5, _, _, _], [_, _, _, _, _, _, _, _]) = sin_cos_eight(5, q[0], q[1], q[2], q[3], q[4], q[4], q[4], q[4]);"],
         );
     }
 
     #[test]
-    fn the_text_to_take_in_is_rust() {
-        for text in [FAST_F64, FAST_F32] {
-            assert!(syn::parse_file(text).is_ok_and(|file| file.items.len() == 5));
+    fn more_than_eight_angles_come_in_groups() {
+        let nine: Vec<Symbol> = (0..9).map(Symbol::Cosine).collect();
+        let eight = "let ([_, _, _, _, _, _, _, _], [c1, c2, c3, c4, c5, c6, c7, c8]) = sin_cos_eight(8, q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7]);";
+        check(&nine, &[eight, "let (_, c9) = sin_cos_one(q[8]);"]);
+    }
+
+    #[test]
+    fn only_what_is_called_is_taken_in() {
+        let texts = |count: u8| fast(Scalar::F64, &[(0..count).map(|i| Symbol::Sine(i.into())).collect()]).to_string();
+        for (count, four, eight) in [(2, false, false), (3, true, false), (8, false, true), (11, true, true)] {
+            let text = texts(count);
+            assert_eq!(
+                (text.contains("_four"), text.contains("_eight"), text.contains("VECTORS")),
+                (four, eight, four || eight),
+                "{count}"
+            );
         }
     }
 }

@@ -5,13 +5,18 @@ pub(crate) mod f64 {
 
     pub(crate) const RANGE: f64 = SIN_COS_RANGE;
 
-    pub(crate) fn all<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
-        sin_cos_all(&x)
+    pub(crate) fn one(x: f64) -> (f64, f64) {
+        sin_cos_one(x)
     }
 
     #[allow(dead_code)] // The table of errors does without.
-    pub(crate) fn few<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
-        sin_cos_few(&x)
+    pub(crate) fn four([a, b, c, d]: [f64; 4]) -> ([f64; 4], [f64; 4]) {
+        sin_cos_four(4, a, b, c, d)
+    }
+
+    #[allow(dead_code)] // The table of errors does without.
+    pub(crate) fn eight([a, b, c, d, e, f, g, h]: [f64; 8]) -> ([f64; 8], [f64; 8]) {
+        sin_cos_eight(8, a, b, c, d, e, f, g, h)
     }
 }
 
@@ -20,12 +25,16 @@ pub(crate) mod f32 {
 
     pub(crate) const RANGE: f32 = SIN_COS_RANGE;
 
-    pub(crate) fn all<const N: usize>(x: [f32; N]) -> ([f32; N], [f32; N]) {
-        sin_cos_all(&x)
+    pub(crate) fn one(x: f32) -> (f32, f32) {
+        sin_cos_one(x)
     }
 
     #[allow(dead_code)] // The table of errors does without.
-    pub(crate) fn few<const N: usize>(x: [f32; N]) -> ([f32; N], [f32; N]) {
-        sin_cos_few(&x)
+    pub(crate) fn four([a, b, c, d]: [f32; 4]) -> ([f32; 4], [f32; 4]) {
+        sin_cos_four(4, a, b, c, d)
+    }
+
+    pub(crate) fn eight([a, b, c, d, e, f, g, h]: [f32; 8]) -> ([f32; 8], [f32; 8]) {
+        sin_cos_eight(8, a, b, c, d, e, f, g, h)
     }
 }

@@ -98,10 +98,7 @@ impl Compiler<'_> {
             if init.diverge.is_some() {
                 return Err(format!("`{}` has an else", shortened(line)));
             }
-            let mut value = self.expression(&init.expr, &scope)?;
-            if matches!(local.pat, Pat::Slice(_)) {
-                value = self.entries(value)?;
-            }
+            let value = self.expression(&init.expr, &scope)?;
             bind(&local.pat, value, &mut scope)?;
         }
         match last {
@@ -189,6 +186,9 @@ impl Compiler<'_> {
             }
             Expr::Call(call) => {
                 let name = text(&call.func);
+                if name == "sin_cos_four" || name == "sin_cos_eight" {
+                    return self.sines_and_cosines(&name, call, scope);
+                }
                 let arguments: Result<Vec<Value>, String> = call.args.iter().map(|a| self.expression(a, scope)).collect();
                 self.call(&name, arguments?)
             }
@@ -196,26 +196,26 @@ impl Compiler<'_> {
         }
     }
 
-    /// Joint variables one by one, where the whole argument stands.
-    fn entries(&mut self, value: Value) -> Result<Value, String> {
-        match value {
-            Value::Argument(Argument::Q) => {
-                let entries: Result<_, _> = (0..self.joints).map(|joint| self.push(Step::Input(Argument::Q, joint))).collect();
-                Ok(Value::List('[', entries?))
-            }
-            value => Ok(value),
+    /// Sines, then cosines, of the first so many of four or eight angles. Those of the others are no numbers: a processor without vectors leaves
+    /// them out, so that nothing may use them.
+    fn sines_and_cosines(&mut self, name: &str, call: &syn::ExprCall, scope: &Scope) -> Result<Value, String> {
+        if !self.private.contains_key(name) {
+            return Err(format!("call of `{name}`"));
         }
-    }
-
-    /// Sines, then cosines, of an array of angles.
-    fn sines_and_cosines(&mut self, angles: Value) -> Result<Value, String> {
-        let Value::List('[', angles) = self.entries(angles)? else { return Err("sines of what is no array".into()) };
-        let (mut sines, mut cosines) = (Vec::new(), Vec::new());
-        for angle in angles {
+        let lanes = if name == "sin_cos_four" { 4 } else { 8 };
+        let mut arguments = call.args.iter();
+        let count = arguments.next().map(integer).transpose()?;
+        let angles = arguments.map(|angle| self.expression(angle, scope)).collect::<Result<Vec<Value>, String>>()?;
+        let Some(count) = count.filter(|&count| count <= lanes && angles.len() == lanes) else {
+            return Err(format!("`{name}` does not take these arguments"));
+        };
+        let nothing = Value::List('(', Vec::new());
+        let (mut sines, mut cosines) = (vec![nothing.clone(); lanes], vec![nothing; lanes]);
+        for (lane, angle) in angles.into_iter().enumerate().take(count) {
             let Value::Step(step) = angle else { return Err("sine of what is no number".into()) };
             let angle = self.angle(step)?;
-            sines.push(self.push(Step::Sine(angle.clone()))?);
-            cosines.push(self.push(Step::Cosine(angle))?);
+            sines[lane] = self.push(Step::Sine(angle.clone()))?;
+            cosines[lane] = self.push(Step::Cosine(angle))?;
         }
         Ok(Value::List('(', vec![Value::List('[', sines), Value::List('[', cosines)]))
     }
@@ -223,7 +223,7 @@ impl Compiler<'_> {
     fn call(&mut self, name: &str, arguments: Vec<Value>) -> Result<Value, String> {
         let Some(function) = self.private.get(name) else { return Err(format!("call of `{name}`")) };
         match (name, arguments.as_slice()) {
-            ("sin_cos", [Value::Step(angle)]) => {
+            ("sin_cos" | "sin_cos_one", [Value::Step(angle)]) => {
                 let angle = self.angle(*angle)?;
                 let (sine, cosine) = (self.push(Step::Sine(angle.clone()))?, self.push(Step::Cosine(angle))?);
                 return Ok(Value::List('(', vec![sine, cosine]));
@@ -234,13 +234,7 @@ impl Compiler<'_> {
                     _ => Err("sign of something that is not a joint rate".into()),
                 }
             }
-            ("sin_cos_all" | "sin_cos_few", [_]) => {
-                let angles = arguments.into_iter().next().ok_or("no angles")?;
-                return self.sines_and_cosines(angles);
-            }
-            ("sin_cos" | "sin_cos_all" | "sin_cos_few" | "sin_cos_beyond" | "sign", _) => {
-                return Err(format!("`{name}` does not take these arguments"))
-            }
+            (name, _) if super::LEAVES.contains(&name) => return Err(format!("`{name}` does not take these arguments")),
             _ => {}
         }
         if self.calls.iter().any(|caller| caller == name) {
@@ -286,32 +280,11 @@ fn bind(pattern: &Pat, value: Value, scope: &mut Scope) -> Result<(), String> {
         (Pat::Tuple(patterns), Value::List('(', values)) if patterns.elems.len() == values.len() => {
             patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| bind(pattern, value, scope))
         }
-        (Pat::Slice(patterns), Value::List('[', values)) if patterns.elems.iter().any(is_rest) => {
-            let before = patterns.elems.iter().take_while(|p| !is_rest(p)).count();
-            let after = patterns.elems.len() - before - 1;
-            if before + after > values.len() {
-                return Err(format!("`let {}` takes more than there is", text(pattern)));
-            }
-            let rest = Value::List('[', values[before..values.len() - after].to_vec());
-            let values = values[..before].iter().cloned().chain([rest]).chain(values[values.len() - after..].iter().cloned());
-            patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| match pattern {
-                Pat::Ident(name) if is_rest(pattern) && name.by_ref.is_none() && name.mutability.is_none() => {
-                    scope.insert(name.ident.to_string(), value);
-                    Ok(())
-                }
-                pattern => bind(pattern, value, scope),
-            })
-        }
         (Pat::Slice(patterns), Value::List('[', values)) if patterns.elems.len() == values.len() => {
             patterns.elems.iter().zip(values).try_for_each(|(pattern, value)| bind(pattern, value, scope))
         }
         (pattern, _) => Err(format!("`let {}` does not fit its value", text(pattern))),
     }
-}
-
-/// `name @ ..`: as many entries as are left.
-fn is_rest(pattern: &Pat) -> bool {
-    matches!(pattern, Pat::Ident(name) if matches!(&name.subpat, Some((_, rest)) if matches!(**rest, Pat::Rest(_))))
 }
 
 fn integer(expression: &Expr) -> Result<usize, String> {

@@ -42,35 +42,78 @@ fn sin_cos(x: f64) -> (f64, f64) {
     (f64::from_bits(sine.to_bits() ^ exchange ^ sine_sign), f64::from_bits(cosine.to_bits() ^ exchange ^ cosine_sign))
 }
 
-/// Sines and cosines of angles in rad, all in one loop; those of angles beyond `SIN_COS_RANGE`, infinite or not a number are those of `libm`.
+/// Sine and cosine of an angle in rad.
 #[allow(clippy::all)]
-#[inline(always)]
-fn sin_cos_all<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
-    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
-    for i in 0..N {
-        (sines[i], cosines[i]) = sin_cos(x[i]);
+#[inline]
+fn sin_cos_one(x: f64) -> (f64, f64) {
+    if x.abs() <= SIN_COS_RANGE {
+        sin_cos(x)
+    } else {
+        sin_cos_beyond(x)
     }
-    if !x.iter().fold(true, |inside, x| inside & (x.abs() <= SIN_COS_RANGE)) {
-        sin_cos_beyond(x, &mut sines, &mut cosines);
-    }
-    (sines, cosines)
 }
 
-/// Sines and cosines of a few angles: called, because a short loop that is taken in falls apart into single angles.
-#[allow(clippy::all)]
-#[inline(never)]
-fn sin_cos_few<const N: usize>(x: &[f64; N]) -> ([f64; N], [f64; N]) {
-    sin_cos_all(x)
-}
-
-/// Replaces what `sin_cos` cannot know.
+/// Sine and cosine of an angle that is beyond `SIN_COS_RANGE`, infinite or not a number.
 #[allow(clippy::all)]
 #[cold]
 #[inline(never)]
-fn sin_cos_beyond(x: &[f64], sines: &mut [f64], cosines: &mut [f64]) {
-    for ((x, sine), cosine) in x.iter().zip(sines).zip(cosines) {
-        if !(x.abs() <= SIN_COS_RANGE) {
-            (*sine, *cosine) = libm::sincos(*x);
-        }
+fn sin_cos_beyond(x: f64) -> (f64, f64) {
+    libm::sincos(x)
+}
+
+/// Whether the processor has vectors of floats. On others the lanes without an angle of their own are left out.
+const SIN_COS_VECTORS: bool = cfg!(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128"));
+
+/// Sines and cosines of the first `count` of four angles, rad, all in one loop, which becomes vector instructions.
+#[allow(clippy::all)]
+#[inline(never)]
+fn sin_cos_four(count: usize, a: f64, b: f64, c: f64, d: f64) -> ([f64; 4], [f64; 4]) {
+    let (x, mut sines, mut cosines) = ([a, b, c, d], [0.0; 4], [0.0; 4]);
+    let mut inside = true;
+    let lanes = if SIN_COS_VECTORS { 4 } else { count.min(4) };
+    for i in 0..lanes {
+        (sines[i], cosines[i]) = sin_cos(x[i]);
+        inside &= x[i].abs() <= SIN_COS_RANGE;
     }
+    if inside {
+        (sines, cosines)
+    } else {
+        sin_cos_each_of_four(a, b, c, d)
+    }
+}
+
+/// The same where one of the angles is beyond `SIN_COS_RANGE`.
+#[allow(clippy::all)]
+#[cold]
+#[inline(never)]
+fn sin_cos_each_of_four(a: f64, b: f64, c: f64, d: f64) -> ([f64; 4], [f64; 4]) {
+    let pairs = [a, b, c, d].map(sin_cos_one);
+    (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
+}
+
+/// Sines and cosines of the first `count` of eight angles, rad, all in one loop, which becomes vector instructions.
+#[allow(clippy::all)]
+#[inline(never)]
+fn sin_cos_eight(count: usize, a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64) -> ([f64; 8], [f64; 8]) {
+    let (x, mut sines, mut cosines) = ([a, b, c, d, e, f, g, h], [0.0; 8], [0.0; 8]);
+    let mut inside = true;
+    let lanes = if SIN_COS_VECTORS { 8 } else { count.min(8) };
+    for i in 0..lanes {
+        (sines[i], cosines[i]) = sin_cos(x[i]);
+        inside &= x[i].abs() <= SIN_COS_RANGE;
+    }
+    if inside {
+        (sines, cosines)
+    } else {
+        sin_cos_each_of_eight(a, b, c, d, e, f, g, h)
+    }
+}
+
+/// The same where one of the angles is beyond `SIN_COS_RANGE`.
+#[allow(clippy::all)]
+#[cold]
+#[inline(never)]
+fn sin_cos_each_of_eight(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64) -> ([f64; 8], [f64; 8]) {
+    let pairs = [a, b, c, d, e, f, g, h].map(sin_cos_one);
+    (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
 }
