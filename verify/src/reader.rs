@@ -188,11 +188,10 @@ impl Module {
             }
         }
         let trig = check_leaves(&private, real)?;
-        let joints = match values.get("DOF") {
-            Some((_, Constant::Integer(dof))) => *dof as usize,
-            _ => return Err("the module has no number of joints `DOF`".into()),
-        };
-        let functions = public.iter().map(|f| (f.sig.ident.to_string(), read_function(f, &private, real, joints))).collect();
+        if !matches!(values.get("DOF"), Some((_, Constant::Integer(_)))) {
+            return Err("the module has no number of joints `DOF`".into());
+        }
+        let functions = public.iter().map(|f| (f.sig.ident.to_string(), read_function(f, &private, real))).collect();
         Ok(Module { real, trig, constants: values, functions })
     }
 
@@ -261,9 +260,9 @@ fn signature(function: &ItemFn) -> Result<(Vec<(String, String)>, String), Strin
     Ok((arguments, result))
 }
 
-fn read_function(function: &ItemFn, private: &BTreeMap<String, &ItemFn>, real: Float, joints: usize) -> Result<Function, String> {
+fn read_function(function: &ItemFn, private: &BTreeMap<String, &ItemFn>, real: Float) -> Result<Function, String> {
     let (arguments, result) = signature(function)?;
     let listed: Vec<String> = arguments.iter().map(|(name, ty)| format!("{name}:{ty}")).collect();
-    let program = expression::compile(function, &arguments, private, real, joints)?;
+    let program = expression::compile(function, &arguments, private, real)?;
     Ok(Function { signature: format!("({})->{result}", listed.join(",")), program })
 }

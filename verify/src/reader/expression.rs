@@ -26,7 +26,6 @@ type Scope = BTreeMap<String, Value>;
 struct Compiler<'a> {
     private: &'a BTreeMap<String, &'a ItemFn>,
     real: Float,
-    joints: usize,
     steps: Vec<Step>,
     literals: Vec<Literal>,
     calls: Vec<String>,
@@ -40,9 +39,8 @@ pub(super) fn compile(
     arguments: &[(String, String)],
     private: &BTreeMap<String, &ItemFn>,
     real: Float,
-    joints: usize,
 ) -> Result<Program, String> {
-    let mut compiler = Compiler { private, real, joints, steps: Vec::new(), literals: Vec::new(), calls: Vec::new() };
+    let mut compiler = Compiler { private, real, steps: Vec::new(), literals: Vec::new(), calls: Vec::new() };
     let mut scope = Scope::new();
     let mut known = Vec::new();
     for (name, _) in arguments {

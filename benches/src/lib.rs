@@ -1,0 +1,108 @@
+//! The emitted functions of four robots as cases to measure: `benches/time.rs` by the clock, `benches/instructions.rs` by the instruction.
+
+use std::hint::black_box;
+
+/// Positions, rates and accelerations or torques; a robot takes as many of each as it has joints.
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    /// Joint variables, rad or m.
+    pub q: [f64; 7],
+    /// Their rates.
+    pub dq: [f64; 7],
+    /// Their accelerations, or the torques of forward dynamics.
+    pub ddq: [f64; 7],
+}
+
+impl State {
+    /// State number `i` of a sequence that fills the cube of angles within pi evenly: multiples of irrational numbers, each less its whole part.
+    pub fn number(i: usize) -> State {
+        let part = |j: usize, root: f64| ((i + 1) as f64 * (root + j as f64).sqrt()).fract() * 2.0 - 1.0;
+        State {
+            q: std::array::from_fn(|j| std::f64::consts::PI * part(j, 2.3)),
+            dq: std::array::from_fn(|j| 2.0 * part(j, 11.7)),
+            ddq: std::array::from_fn(|j| 5.0 * part(j, 23.1)),
+        }
+    }
+}
+
+/// One function of one robot.
+#[derive(Clone, Copy)]
+pub struct Case {
+    /// The robot's file in `robots/`, without its ending.
+    pub robot: &'static str,
+    /// Where the sines come from, as `armgen generate --trig` names it.
+    pub trig: &'static str,
+    /// The emitted function.
+    pub function: &'static str,
+    /// Calls it and drops the result.
+    pub call: fn(&State),
+}
+
+/// Hands the measured functions and their arguments to a macro.
+#[macro_export]
+macro_rules! functions {
+    ($callback:ident $($head:tt)*) => {
+        $callback! {
+            $($head)*
+            direct_kinematics(q);
+            geometric_jacobian(q);
+            geometric_jacobian_dot(q, dq);
+            inertia_matrix(q);
+            coriolis_matrix(q, dq);
+            gravity(q);
+            equations_of_motion(q, dq);
+            inverse_dynamics(q, dq, ddq);
+            forward_dynamics(q, dq, ddq);
+            regressor(q, dq, dq, ddq);
+            base_regressor(q, dq, ddq);
+            inverse_dynamics_derivatives(q, dq, ddq);
+            forward_dynamics_derivatives(q, dq, ddq);
+            momentum(q, dq);
+            coriolis_transpose_times(q, dq);
+        }
+    };
+}
+
+macro_rules! cases {
+    ($module:ident $robot:literal $trig:literal $($function:ident($($argument:ident),*);)*) => {
+        [$(Case {
+            robot: $robot,
+            trig: $trig,
+            function: stringify!($function),
+            call: |state| {
+                black_box($module::$function($(black_box(part(&state.$argument))),*));
+            },
+        }),*]
+    };
+}
+
+macro_rules! robots {
+    ($($module:ident $robot:literal $trig:literal;)*) => {
+        $(#[allow(dead_code, missing_docs, unreachable_pub)]
+        mod $module {
+            include!(concat!(env!("OUT_DIR"), "/", stringify!($module), ".rs"));
+        })*
+
+        /// Every function of every robot, with the sines of `libm` and with the fast ones.
+        pub fn cases() -> Vec<Case> {
+            let mut all = Vec::new();
+            $(all.extend(functions!(cases $module $robot $trig));)*
+            all
+        }
+    };
+}
+
+robots! {
+    scara4_libm "scara4" "libm";
+    scara4_fast "scara4" "fast";
+    puma560_libm "puma560" "libm";
+    puma560_fast "puma560" "fast";
+    ur5_libm "ur5" "libm";
+    ur5_fast "ur5" "fast";
+    panda7_libm "panda7" "libm";
+    panda7_fast "panda7" "fast";
+}
+
+fn part<const N: usize>(all: &[f64; 7]) -> &[f64; N] {
+    all.first_chunk().expect("no robot here has more than seven joints")
+}
