@@ -4,6 +4,7 @@
 //! that do not depend on it: for each a, the fingerprint that b would need to have is looked up. What a and b need stays, and is not gained.
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
+use crate::ring::field::Element;
 use crate::ring::Fingerprint;
 
 /// Circuits with more gates than this are left alone: the work grows with the square.
@@ -18,7 +19,7 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
     }
     circuit.index(&all);
     let zero = [circuit.field.zero(); 2];
-    let inverses: Vec<Fingerprint> = circuit.values.iter().map(|v| v.map(|x| circuit.field.inverse(x))).collect();
+    let inverses = inverses(circuit, &all);
     let (mut order, mut uses) = (all.clone(), circuit.uses());
     for &gate in all.iter().rev() {
         if uses[gate as usize] == 0 || circuit.cost(gate) == 0 {
@@ -53,6 +54,28 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
         }
     }
     before - circuit.operations()
+}
+
+/// 1/value of each gate of a list, 0 for 0, by one inversion in all: products from the left, and back again.
+fn inverses(circuit: &Circuit, gates: &[GateId]) -> Vec<Fingerprint> {
+    let field = &circuit.field;
+    let mut found = vec![[field.zero(); 2]; circuit.gates.len()];
+    for point in 0..2 {
+        let values = gates.iter().map(|&g| (g as usize, circuit.values[g as usize][point])).filter(|&(_, x)| x != field.zero());
+        let values: Vec<(usize, Element)> = values.collect();
+        let mut product = field.one();
+        let mut before = Vec::with_capacity(values.len());
+        for &(_, x) in &values {
+            before.push(product);
+            product = field.mul(product, x);
+        }
+        let mut inverse = field.inverse(product);
+        for (&(gate, x), before) in values.iter().zip(before).rev() {
+            found[gate][point] = field.mul(inverse, before);
+            inverse = field.mul(inverse, x);
+        }
+    }
+    found
 }
 
 /// The gate and those that only it needs.
