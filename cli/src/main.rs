@@ -24,7 +24,9 @@ mod terminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use armgen_codegen::program::Pass;
 use clap::builder::styling::{AnsiColor, Styles};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use commands::generate::Beside;
@@ -122,6 +124,9 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         /// Where the sines and cosines come from
         #[arg(long, value_enum, default_value_t = TrigName::Libm)]
         trig: TrigName,
+        /// Passes to leave out, of those that make the functions cheaper (docs/passes.md)
+        #[arg(long, value_name = "PASS", value_delimiter = ',', value_parser = pass_parser(), hide_possible_values = true)]
+        without: Vec<Pass>,
         /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32; the checker reads
         /// functions for one state only, of which each of these gives the bits
         #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -156,6 +161,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
   armgen count robot.yaml
   armgen count robot.yaml --format json
   armgen count robot.yaml --functions inverse_dynamics,gravity
+  armgen count robot.yaml --without grouping,slides       what these passes are worth
 
 mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine.")]
     Count {
@@ -168,6 +174,9 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         /// Functions to count, separated by commas; all if none is named
         #[arg(long, value_name = "NAMES", value_delimiter = ',')]
         functions: Vec<String>,
+        /// Passes to leave out, of those that make the functions cheaper (docs/passes.md)
+        #[arg(long, value_name = "PASS", value_delimiter = ',', value_parser = pass_parser(), hide_possible_values = true)]
+        without: Vec<Pass>,
     },
     /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected
     #[command(after_help = "Examples:
@@ -235,16 +244,20 @@ enum TrigName {
     Fast,
 }
 
+fn pass_parser() -> impl TypedValueParser<Value = Pass> {
+    PossibleValuesParser::new(Pass::ALL.map(Pass::name)).map(|name| Pass::named(&name).expect("one of the names of passes"))
+}
+
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar, trig, batch, functions, beside } => {
-            commands::generate::run(&file, out.as_deref(), scalar, trig, batch, &functions, &beside)
+        Command::Generate { file, out, scalar, trig, without, batch, functions, beside } => {
+            commands::generate::run(&file, out.as_deref(), scalar, trig, without, batch, &functions, &beside)
         }
         Command::Verify { description, module } => commands::verify::run(&description, &module),
-        Command::Count { file, format, functions } => commands::count::run(&file, format, &functions),
+        Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
         Command::Run { files, out } => commands::run::run(&files, &out),
         Command::Completions { shell } => commands::completions::run(shell),
     };

@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-use armgen_codegen::program::{Cost, Options};
+use armgen_codegen::program::{Cost, Options, Pass};
 use serde_json::{json, Map, Value};
 
 use crate::table::{Align, Table};
 use crate::{input, terminal, CountFormat, FAULTY};
 
-pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String]) -> u8 {
+pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String], without: Vec<Pass>) -> u8 {
     let Some(functions) = input::selection(functions) else { return FAULTY };
     let model = match input::model(file) {
         Ok(model) => model,
         Err(code) => return code,
     };
-    let module = model.module(&Options { functions, ..Options::default() });
+    let module = model.module(&Options { functions, without: without.into_iter().collect(), ..Options::default() });
     if !input::all_there(&module.name, &module.absent, functions) {
         return FAULTY;
     }

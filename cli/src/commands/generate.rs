@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::manipulator::Scalar;
-use armgen_codegen::program::{Options, Trig};
+use armgen_codegen::program::{Options, Pass, Trig};
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
@@ -41,6 +41,7 @@ pub(crate) fn run(
     out: Option<&Path>,
     scalar: ScalarName,
     trig: TrigName,
+    without: Vec<Pass>,
     batch: Option<u16>,
     functions: &[String],
     beside: &Beside,
@@ -66,7 +67,8 @@ pub(crate) fn run(
     if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
         return code;
     }
-    let options = Options { scalar, trig, batch: batch.map(usize::from), functions, ..Options::default() };
+    let without = without.into_iter().collect();
+    let options = Options { scalar, trig, without, batch: batch.map(usize::from), functions };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
     let Some(generated) = generated else {
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
