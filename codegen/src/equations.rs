@@ -377,7 +377,7 @@ impl Quantity {
     fn used(self, view: View<'_>) -> Use {
         use Quantity::*;
         match self {
-            DirectKinematics | LinkFrames | GeometricJacobian | GeometricJacobianDot => Use::Frames,
+            DirectKinematics | LinkFrames | GeometricJacobian | GeometricJacobianDot | Regressor | BaseRegressor => Use::Frames,
             InertiaMatrix
             | CoriolisMatrix
             | Gravity
@@ -422,7 +422,7 @@ impl Quantity {
                 derive::newton_euler::inverse_dynamics(pool, arm, &motion)
             }
             Quantity::ForwardDynamics => derive::forward_dynamics::forward_dynamics(pool, arm, plan),
-            Quantity::Regressor => derive::regressor::regressor(pool, arm, &model.parameters).concat(),
+            Quantity::Regressor => derive::regressor::regressor_by_plan(pool, arm, &model.parameters, plan).concat(),
             Quantity::KnownTorque => {
                 let motion = Motion::with_reference(pool, arm);
                 derive::newton_euler::inverse_dynamics(pool, arm, &motion)
@@ -431,7 +431,7 @@ impl Quantity {
             Quantity::PotentialEnergy => vec![derive::gravity::potential_energy(pool, arm)],
             Quantity::Momentum => derive::momentum::momentum(pool, arm),
             Quantity::CoriolisTransposeTimes => derive::momentum::coriolis_transpose_times(pool, arm),
-            Quantity::BaseRegressor => derive::base::base_regressor(pool, arm, model.base_parameters()).concat(),
+            Quantity::BaseRegressor => derive::base::base_regressor(pool, arm, model.base_parameters(), plan).concat(),
             Quantity::OperationalInertia => {
                 derive::operational_inertia::operational_inertia(pool, arm, plan, &model.manipulator.task_rows()).concat()
             }

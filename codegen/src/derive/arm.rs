@@ -58,6 +58,8 @@ pub struct Joint {
     pub drift: ExprId,
     /// The joint frame in the axes that the link is described in: turned only where parallel axes share one orientation.
     pub own_axes: Matrix,
+    /// The origin of the joint frame before it slid along the axis.
+    pub own_origin: Vector,
     /// Origin of the joint frame in the parent's joint frame.
     pub origin: Vector,
     /// Rotation of the user's link frame in the joint frame.
@@ -301,6 +303,7 @@ impl Arm {
         joint.origin = pool.add_vectors(&joint.origin, &along);
         joint.body = joint.body.moved(pool, &[ExprId::ZERO, ExprId::ZERO, -shift]);
         joint.link_origin[2] = pool.sub(joint.link_origin[2], shift);
+        joint.own_origin[2] = pool.sub(joint.own_origin[2], shift);
         if self.tip == i {
             self.tool_origin[2] = pool.sub(self.tool_origin[2], shift);
         }
@@ -407,6 +410,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         spin,
         drift: ExprId::ZERO,
         own_axes: crate::ring::matrix::IDENTITY,
+        own_origin: ZERO,
         origin,
         link_rotation,
         link_origin,

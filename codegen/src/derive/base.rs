@@ -8,6 +8,7 @@
 use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
 use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View};
+use super::plan::Plan;
 use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::{Number, Rational};
 use crate::manipulator::{JointKind, Manipulator};
@@ -228,10 +229,10 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
 }
 
 /// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction.
-pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
+pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let ParameterKind::Base(columns) = &vector.kind else { unreachable!("asked for base parameters only") };
     let motion = Motion::plain(pool, arm);
-    columns_in_joint_frames(pool, arm, &motion, columns)
+    columns_in_joint_frames(pool, arm, &motion, columns, plan)
 }
 
 /// The base parameters of an arm.
@@ -261,7 +262,7 @@ fn grouped(manipulator: &Manipulator, field: &Field, with_rotor_masses: bool) ->
     }
 
     let motion = Motion::with_reference(&mut pool, &arm);
-    let y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns);
+    let y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns, &mut Plan::default());
     let dependence = dependence(&pool, &y);
     let mut base: Vec<(StandardParameter, Entry)> = dependence
         .independent

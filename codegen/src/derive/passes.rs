@@ -17,7 +17,7 @@ pub enum Use {
     Dynamics,
     /// Motion and forces; the parameters of the links are symbols, or the potential counts, which grouping drops.
     Plain,
-    /// Frames alone.
+    /// Frames, and columns of parameters that stay in them.
     Frames,
 }
 

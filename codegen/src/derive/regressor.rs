@@ -5,19 +5,32 @@
 //! and the acceleration field a + U r,
 //!
 //! ```text
-//! tau_j = ∫ (z × r + v)·(a + U r) dm = m v·a + h·(U'v + a × z) + z · n(I)
+//! tau_j = ∫ (z × r + v)·(a + U r) dm = v · f + z · n,   f = m a + U h,   n = h × a + n(I)
 //! ```
 //!
-//! where n(I) is the moment of Euler's equation, linear in the six inertias (the book, Sect. 7.2.2).
+//! where n(I) is the moment of Euler's equation, linear in the six inertias (the book, Sect. 7.2.2). A parameter of 1 alone has a wrench (f, n)
+//! with many zeros; z · n and v · f may be formed in the frame of any link between j and the body.
+
+use std::collections::BTreeMap;
 
 use super::arm::Arm;
+use super::inertia::{along, wrench_outward};
 use super::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{ParameterKind, ParameterVector, StandardParameter};
+use super::plan::{Pass, Plan};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
+/// Forks of the regressor, apart from those of the columns of B.
+const REGRESSOR: usize = 1 << 17;
+
 /// Y, for an arm whose parameter vector are symbols (named parameters) or for the standard parameters of any arm.
 pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
+    regressor_by_plan(pool, arm, vector, &mut Plan::default())
+}
+
+/// Y, in the ways that a plan takes.
+pub fn regressor_by_plan(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let motion = Motion::with_reference(pool, arm);
     match &vector.kind {
         ParameterKind::Names(names) => {
@@ -25,8 +38,8 @@ pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Ve
             let columns: Vec<Vec<ExprId>> = (0..names.len() as u16).map(|k| derivative_by_parameter(pool, &tau, k)).collect();
             (0..arm.dof()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
         }
-        ParameterKind::Standard(columns) => standard_columns(pool, arm, &motion, columns),
-        ParameterKind::Base(columns) => columns_in_joint_frames(pool, arm, &motion, columns),
+        ParameterKind::Standard(columns) => standard_columns(pool, arm, &motion, columns, plan),
+        ParameterKind::Base(columns) => columns_in_joint_frames(pool, arm, &motion, columns, plan),
     }
 }
 
@@ -36,15 +49,27 @@ pub fn derivative_by_parameter(pool: &mut Pool, exprs: &[ExprId], k: u16) -> Vec
 }
 
 /// Columns of standard parameters, those of a link in its link frame.
-pub fn standard_columns(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
+pub fn standard_columns(
+    pool: &mut Pool,
+    arm: &Arm,
+    motion: &Motion,
+    columns: &[StandardParameter],
+    plan: &mut Plan,
+) -> Vec<Vec<ExprId>> {
     let frames: Vec<(Matrix, Vector)> = arm.joints.iter().map(|joint| (joint.link_rotation, joint.link_origin)).collect();
-    columns_in(pool, arm, motion, columns, &frames)
+    columns_in(pool, arm, motion, columns, &frames, plan)
 }
 
 /// The same with the parameters of a link in its joint frame.
-pub fn columns_in_joint_frames(pool: &mut Pool, arm: &Arm, motion: &Motion, columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
-    let frames: Vec<(Matrix, Vector)> = arm.joints.iter().map(|joint| (joint.own_axes, ZERO)).collect();
-    columns_in(pool, arm, motion, columns, &frames)
+pub fn columns_in_joint_frames(
+    pool: &mut Pool,
+    arm: &Arm,
+    motion: &Motion,
+    columns: &[StandardParameter],
+    plan: &mut Plan,
+) -> Vec<Vec<ExprId>> {
+    let frames: Vec<(Matrix, Vector)> = arm.joints.iter().map(|joint| (joint.own_axes, joint.own_origin)).collect();
+    columns_in(pool, arm, motion, columns, &frames, plan)
 }
 
 fn columns_in(
@@ -53,7 +78,9 @@ fn columns_in(
     motion: &Motion,
     columns: &[StandardParameter],
     frames: &[(Matrix, Vector)],
+    plan: &mut Plan,
 ) -> Vec<Vec<ExprId>> {
+    let mut twists = Twists { arm, axes: BTreeMap::new(), velocities: BTreeMap::new(), arms: BTreeMap::new() };
     let motions = link_motions(pool, arm, motion, true);
     let mut y = vec![vec![ExprId::ZERO; columns.len()]; arm.dof()];
     let mut links: Vec<Option<LinkColumns>> = vec![None; arm.dof()];
@@ -63,12 +90,14 @@ fn columns_in(
             StandardParameter::Link(i, k) => {
                 let i = usize::from(i);
                 let (rotation, origin) = &frames[i];
-                let of = links[i].get_or_insert_with(|| link_columns(pool, arm, &motions, i, rotation, origin));
+                let of =
+                    links[i].get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, (i, i), (rotation, origin)));
                 of.iter().for_each(|(row, entries)| y[*row][column] = entries[usize::from(k)]);
             }
             StandardParameter::Payload(k) => {
-                let of = payload
-                    .get_or_insert_with(|| link_columns(pool, arm, &motions, arm.tip, &arm.tool_rotation, &arm.tool_origin));
+                let tool = (&arm.tool_rotation, &arm.tool_origin);
+                let of =
+                    payload.get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, (arm.tip, arm.dof()), tool));
                 of.iter().for_each(|(row, entries)| y[*row][column] = entries[usize::from(k)]);
             }
             StandardParameter::RotorInertia(i) => {
@@ -93,52 +122,150 @@ fn columns_in(
 /// For each joint that feels a link: the ten entries.
 type LinkColumns = Vec<(usize, [ExprId; 10])>;
 
+/// A wrench: force, and moment about an origin.
+type Wrench = (Vector, Vector);
+
+/// The twists of joints in the frames of the links that they move, found when first asked for.
+struct Twists<'a> {
+    arm: &'a Arm,
+    /// z_j in frame i.
+    axes: BTreeMap<(usize, usize), Vector>,
+    /// Velocity of o_i as joint j turns by one, in frame i.
+    velocities: BTreeMap<(usize, usize), Vector>,
+    /// o_i - o_j in frame i.
+    arms: BTreeMap<(usize, usize), Vector>,
+}
+
+impl Twists<'_> {
+    fn axis(&mut self, pool: &mut Pool, j: usize, i: usize) -> Vector {
+        if i == j {
+            return [ExprId::ZERO, ExprId::ZERO, ExprId::ONE];
+        }
+        if let Some(&known) = self.axes.get(&(j, i)) {
+            return known;
+        }
+        let outer = self.axis(pool, j, self.before(i));
+        let found = self.arm.joints[i].inward(pool, &outer);
+        self.axes.insert((j, i), found);
+        found
+    }
+
+    fn velocity(&mut self, pool: &mut Pool, j: usize, i: usize) -> Vector {
+        if !self.arm.joints[j].is_revolute() {
+            return self.axis(pool, j, i);
+        }
+        if i == j {
+            return ZERO;
+        }
+        if let Some(&known) = self.velocities.get(&(j, i)) {
+            return known;
+        }
+        let p = self.before(i);
+        let (z, v) = (self.axis(pool, j, p), self.velocity(pool, j, p));
+        let swept = pool.cross(&z, &self.arm.joints[i].origin);
+        let sum = pool.add_vectors(&v, &swept);
+        let found = self.arm.joints[i].inward(pool, &sum);
+        self.velocities.insert((j, i), found);
+        found
+    }
+
+    fn arm(&mut self, pool: &mut Pool, j: usize, i: usize) -> Vector {
+        if i == j {
+            return ZERO;
+        }
+        if let Some(&known) = self.arms.get(&(j, i)) {
+            return known;
+        }
+        let outer = self.arm(pool, j, self.before(i));
+        let sum = pool.add_vectors(&outer, &self.arm.joints[i].origin);
+        let found = self.arm.joints[i].inward(pool, &sum);
+        self.arms.insert((j, i), found);
+        found
+    }
+
+    fn before(&self, i: usize) -> usize {
+        self.arm.joints[i].parent.expect("j is an ancestor of i")
+    }
+
+    /// What joint j feels of a wrench in frame i: z·n + v·f, or z·(n + (o_i - o_j) × f), where joints whose axes meet share the bracket.
+    fn felt(&mut self, pool: &mut Pool, j: usize, i: usize, wrench: &Wrench, by_moment: bool) -> ExprId {
+        let (f, n) = wrench;
+        let z = self.axis(pool, j, i);
+        if !self.arm.joints[j].is_revolute() {
+            return pool.dot3(&z, f);
+        }
+        if by_moment {
+            let d = self.arm(pool, j, i);
+            let lever = pool.cross(&d, f);
+            let about = pool.add_vectors(n, &lever);
+            return pool.dot3(&z, &about);
+        }
+        let v = self.velocity(pool, j, i);
+        let (turned, pushed) = (pool.dot3(&z, n), pool.dot3(&v, f));
+        pool.add(turned, pushed)
+    }
+}
+
 /// The columns of a body in a frame fixed in joint frame `i`.
-fn link_columns(pool: &mut Pool, arm: &Arm, motions: &[LinkMotion], i: usize, rotation: &Matrix, origin: &Vector) -> LinkColumns {
+///
+/// The wrench of each unit parameter goes from link to link towards the base, and each joint on the way feels it directly; where it stops, the
+/// joints further in feel it by their twists. Where that is, and in which of two forms, the plan says, for forces and couples apart.
+fn link_columns(
+    pool: &mut Pool,
+    plan: &mut Plan,
+    twists: &mut Twists<'_>,
+    motions: &[LinkMotion],
+    (i, place): (usize, usize),
+    (rotation, origin): (&Matrix, &Vector),
+) -> LinkColumns {
+    let arm = twists.arm;
     let m = &motions[i];
     let carried = pool.transform(&m.field, origin);
     let at_origin = pool.add_vectors(&m.acceleration, &carried);
     let a = pool.transform_back(rotation, &at_origin);
     let turned = pool.product(&m.field, rotation);
     let u = pool.product(&transpose(rotation), &turned);
-    let moments = inertia_moments(pool, &u);
-    // Twists of the joints from i down to the base, in the frame: z and the velocity v of its origin.
-    let mut columns = Vec::new();
-    let mut joint = Some(i);
-    let mut path = Vec::new();
-    while let Some(j) = joint {
-        let mut z: Vector = ZERO;
-        let mut v: Vector = ZERO;
-        if arm.joints[j].is_revolute() {
-            z[2] = ExprId::ONE;
-        } else {
-            v[2] = ExprId::ONE;
+    let mut path = vec![i];
+    while let Some(p) = arm.joints[*path.last().expect("not empty")].parent {
+        path.push(p);
+    }
+    // Each frame of the path in either form, except the last, where nothing is left.
+    let ways = 2 * path.len() - 1;
+    let forces = plan.way(Pass::Meeting, REGRESSOR + 2 * place, ways);
+    let couples = plan.way(Pass::Meeting, REGRESSOR + 2 * place + 1, (path.len() - 1).max(1));
+    let mut columns: LinkColumns = path.iter().map(|&j| (j, [ExprId::ZERO; 10])).collect();
+    for (k, (force, moment)) in unit_wrenches(pool, &a, &u).into_iter().enumerate() {
+        let (stop, by_moment) = if k < 4 { (forces / 2, forces % 2 == 1) } else { (couples, false) };
+        // Into the joint frame.
+        let force = pool.transform(rotation, &force);
+        let turned = pool.transform(rotation, &moment);
+        let lever = pool.cross(origin, &force);
+        let mut wrench = (force, pool.add_vectors(&turned, &lever));
+        for (step, &j) in path.iter().enumerate().take(stop + 1) {
+            if step > 0 {
+                wrench = wrench_outward(pool, arm, path[step - 1], &wrench.0, &wrench.1);
+            }
+            columns[step].1[k] = along(arm, j, &wrench.0, &wrench.1);
         }
-        for &k in path.iter().rev() {
-            let link: &super::arm::Joint = &arm.joints[k];
-            let swept = pool.cross(&z, &link.origin);
-            let at = pool.add_vectors(&v, &swept);
-            (z, v) = (link.inward(pool, &z), link.inward(pool, &at));
+        for (step, &j) in path.iter().enumerate().skip(stop + 1) {
+            columns[step].1[k] = twists.felt(pool, j, path[stop], &wrench, by_moment);
         }
-        let swept = pool.cross(&z, origin);
-        let at = pool.add_vectors(&v, &swept);
-        let (z, v) = (pool.transform_back(rotation, &z), pool.transform_back(rotation, &at));
-        columns.push((j, entries(pool, &z, &v, &a, &u, &moments)));
-        path.push(j);
-        joint = arm.joints[j].parent;
     }
     columns
 }
 
-fn entries(pool: &mut Pool, z: &Vector, v: &Vector, a: &Vector, u: &Matrix, moments: &[Vector; 6]) -> [ExprId; 10] {
-    let mass = pool.dot3(v, a);
-    let (turned, lever) = (pool.transform_back(u, v), pool.cross(a, z));
-    let first = pool.add_vectors(&turned, &lever);
-    let inertia = moments.map(|moment| pool.dot3(z, &moment));
-    let mut all = [ExprId::ZERO; 10];
-    all[0] = mass;
-    all[1..4].copy_from_slice(&first);
-    all[4..].copy_from_slice(&inertia);
+/// The wrenches of m, mcx, mcy, mcz, Ixx, ... = 1 for a body whose origin accelerates by a and in which U is the field.
+fn unit_wrenches(pool: &mut Pool, a: &Vector, u: &Matrix) -> [Wrench; 10] {
+    let mut all = [(ZERO, ZERO); 10];
+    all[0].0 = *a;
+    for k in 0..3 {
+        let mut unit = ZERO;
+        unit[k] = ExprId::ONE;
+        all[1 + k] = (u.map(|row| row[k]), pool.cross(&unit, a));
+    }
+    for (wrench, moment) in all[4..].iter_mut().zip(inertia_moments(pool, u)) {
+        wrench.1 = moment;
+    }
     all
 }
 
