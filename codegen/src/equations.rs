@@ -154,6 +154,9 @@ pub struct Derivation {
 /// A division counts like so many additions.
 pub const DIVISION: usize = 4;
 
+/// And a pair of sine and cosine.
+pub const PAIR: usize = 16;
+
 /// A closed form is tried up to so many terms an entry, on the way and at the end.
 pub const CLOSED_FORM_TERMS: usize = 300;
 
@@ -342,7 +345,10 @@ impl Quantity {
         };
         let used = self.used(view);
         let mut pool = Pool::new(model.field.clone());
-        let arm = Arm::new(&mut pool, &model.manipulator, view);
+        let mut arm = Arm::new(&mut pool, &model.manipulator, view);
+        if self == Quantity::BaseRegressor {
+            derive::base::settle(&mut pool, &mut arm);
+        }
         let derive = |pool: &mut Pool, plan: &mut Plan| {
             let mut arm = arm.clone();
             derive::passes::rewrite(pool, &mut arm, plan, used);
@@ -356,10 +362,11 @@ impl Quantity {
         derive::passes::suit(&pool, &arm, &mut plan);
         if effort > 0 {
             let sketch = pool.sketch();
-            plan = plan.search(effort, &mut |plan| {
+            plan = plan.search_from(self.starts(), effort, &mut |plan| {
                 let mut pool = sketch.clone();
                 let entries = derive(&mut pool, plan);
-                (pool.operations(&entries, DIVISION), pool.len())
+                let pairs = pool.angles(&entries).len();
+                (pool.operations(&entries, DIVISION) + PAIR * pairs, pool.len())
             });
         }
         let entries = derive(&mut pool, &mut plan);
@@ -370,6 +377,15 @@ impl Quantity {
             entries,
             parallel,
             method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" },
+        }
+    }
+
+    /// Where searches for its plan start.
+    fn starts(self) -> &'static [usize] {
+        match self {
+            // At their links, by twists; and two links further in, where axes meet.
+            Quantity::Regressor | Quantity::BaseRegressor => &[0, 5],
+            _ => &[0],
         }
     }
 

@@ -41,6 +41,10 @@ pub enum Symbol {
     Sine(u16),
     /// cos(q_i).
     Cosine(u16),
+    /// The sine of a sum of joint variables.
+    SineOf(AngleSum),
+    /// Its cosine.
+    CosineOf(AngleSum),
     /// q_i itself (prismatic joints).
     Position(u16),
     /// dq_i.
@@ -59,8 +63,39 @@ pub enum Symbol {
     Parameter(u16),
 }
 
+/// A sum of joint variables, some of them taken away: a bit for each joint, for the first 32.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct AngleSum {
+    /// Joints whose variables are added.
+    pub plus: u32,
+    /// Joints whose variables are taken away.
+    pub minus: u32,
+}
+
+impl AngleSum {
+    /// How many joints a sum can tell apart.
+    pub const JOINTS: u16 = 32;
+
+    /// The joints, and whether their variables are taken away; those that are added first.
+    pub fn terms(self) -> impl Iterator<Item = (u16, bool)> {
+        let of = |set: u32, minus: bool| (0..AngleSum::JOINTS).filter(move |&i| set >> i & 1 == 1).map(move |i| (i, minus));
+        of(self.plus, false).chain(of(self.minus, true))
+    }
+
+    /// The sum without its sign: the first joint is added. And whether the sign changed.
+    pub fn unsigned(self) -> (AngleSum, bool) {
+        let flip = self.minus.trailing_zeros() < self.plus.trailing_zeros();
+        (if flip { AngleSum { plus: self.minus, minus: self.plus } } else { self }, flip)
+    }
+
+    /// Sine and cosine of the sum from those of its terms.
+    pub fn circle<T>(self, zero: (T, T), of: impl Fn(u16) -> (T, T), plus: impl Fn(&(T, T), &(T, T), bool) -> (T, T)) -> (T, T) {
+        self.terms().fold(zero, |sum, (i, minus)| plus(&sum, &of(i), minus))
+    }
+}
+
 impl Symbol {
-    /// The index of its joint or parameter.
+    /// The index of its joint or parameter; that of its first joint.
     pub fn index(self) -> u16 {
         match self {
             Symbol::Sine(i)
@@ -73,6 +108,7 @@ impl Symbol {
             | Symbol::ReferenceAcceleration(i)
             | Symbol::Torque(i)
             | Symbol::Parameter(i) => i,
+            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => (sum.plus | sum.minus).trailing_zeros() as u16,
         }
     }
 }
@@ -324,11 +360,19 @@ impl Pool {
         self.push(Node::Symbol(symbol), fingerprint)
     }
 
+    /// An input, even if another node has its value.
+    pub(crate) fn input(&mut self, symbol: Symbol) -> ExprId {
+        let fingerprint = [0, 1].map(|point| self.symbol_value(symbol, point));
+        self.push(Node::Symbol(symbol), fingerprint)
+    }
+
     fn symbol_value(&self, symbol: Symbol, point: u64) -> Element {
         let value = |kind: u64, index: u16| self.field.from_u64(scramble(scramble(kind << 20 | u64::from(index)) ^ (point + 1)));
         match symbol {
             Symbol::Sine(i) => self.field.circle(value(1, i)).0,
             Symbol::Cosine(i) => self.field.circle(value(1, i)).1,
+            Symbol::SineOf(sum) => self.field.circle_of(sum, |i| self.field.circle(value(1, i))).0,
+            Symbol::CosineOf(sum) => self.field.circle_of(sum, |i| self.field.circle(value(1, i))).1,
             Symbol::Position(i) => value(2, i),
             Symbol::Rate(i) => value(3, i),
             Symbol::RateSign(i) => value(4, i),

@@ -2,7 +2,7 @@
 
 use armgen_codegen::manipulator;
 use armgen_codegen::program::{Function, Module, Operand, Operation, Options};
-use armgen_codegen::ring::Symbol;
+use armgen_codegen::ring::{AngleSum, Symbol};
 use armgen_codegen::source::Source;
 use armgen_codegen::Model;
 
@@ -101,6 +101,8 @@ fn operand(function: &Function, values: &[f64], arguments: &Arguments, operand: 
     match symbol {
         Symbol::Sine(i) => given(Argument::Q, &a.q, i).sin(),
         Symbol::Cosine(i) => given(Argument::Q, &a.q, i).cos(),
+        Symbol::SineOf(sum) => sum_of(sum, &|i| given(Argument::Q, &a.q, i)).sin(),
+        Symbol::CosineOf(sum) => sum_of(sum, &|i| given(Argument::Q, &a.q, i)).cos(),
         Symbol::Position(i) => given(Argument::Q, &a.q, i),
         Symbol::Rate(i) => given(Argument::Dq, &a.dq, i),
         Symbol::RateSign(i) => match given(Argument::Dq, &a.dq, i) {
@@ -113,4 +115,10 @@ fn operand(function: &Function, values: &[f64], arguments: &Arguments, operand: 
         Symbol::Torque(i) => given(Argument::Tau, &a.tau, i),
         Symbol::Parameter(i) => given(Argument::Pi, &a.pi, i),
     }
+}
+
+/// A sum of joint variables, added in the order in which the text adds them.
+fn sum_of(sum: AngleSum, of: &dyn Fn(u16) -> f64) -> f64 {
+    let terms = sum.terms().map(|(i, minus)| if minus { -of(i) } else { of(i) });
+    terms.reduce(|a, b| a + b).unwrap_or_default()
 }

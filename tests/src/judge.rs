@@ -139,16 +139,24 @@ impl Case<'_> {
         let base = robot.nominal_base();
         let y: Matrix = robot.call("base_regressor", a).chunks(base.len()).map(<[f64]>::to_vec).collect();
         self.check("Y_b pi_b", &times(&y, &base), &model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
-        let mut base_rows: Matrix = Vec::new();
+        assert!(base.iter().all(|&x| x != 0.0), "{}: a base parameter without effect", self.what);
+        let all = matches!(self.description.regressor_choice(), RegressorChoice::Base);
+        let count = robot.nominal().len();
+        let (mut base_rows, mut joined_rows): (Matrix, Matrix) = (Vec::new(), Vec::new());
         for k in 0..(10 * n as u64 + 20) {
             let state = arguments(&random::state(n, 78_000 + k), &[]);
-            base_rows.extend(robot.call("base_regressor", &state).chunks(base.len()).map(<[f64]>::to_vec));
+            let rows: Matrix = robot.call("base_regressor", &state).chunks(base.len()).map(<[f64]>::to_vec).collect();
+            if all {
+                let own = Arguments { dqr: state.dq.clone(), ddqr: state.ddq.clone(), ..state.clone() };
+                let own = robot.call("regressor", &own);
+                joined_rows.extend(own.chunks(count).zip(&rows).map(|(own, base)| [own, base].concat()));
+            }
+            base_rows.extend(rows);
         }
         assert_eq!(rank(&base_rows), base.len(), "{}: base_regressor has full column rank", self.what);
-
-        if matches!(self.description.regressor_choice(), RegressorChoice::Base) {
-            let own = Arguments { dqr: a.dq.clone(), ddqr: a.ddq.clone(), ..a.clone() };
-            self.check("base_regressor by regressor", &y.concat(), &robot.call("regressor", &own));
+        if all {
+            // Its columns are combinations of those of the regressor of all base parameters.
+            assert_eq!(rank(&joined_rows), count, "{}: base_regressor by regressor", self.what);
         }
 
         let (by_q, by_dq) = model.inverse_dynamics_derivatives(&a.q, &a.dq, &a.ddq);

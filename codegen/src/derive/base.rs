@@ -7,12 +7,13 @@
 
 use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
-use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View};
+use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
 use super::plan::Plan;
 use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::{Number, Rational};
 use crate::manipulator::{JointKind, Manipulator};
 use crate::ring::field::{scramble, Element, Field};
+use crate::ring::matrix::ZERO;
 use crate::ring::{ExprId, Node, Pool, Symbol};
 
 /// The columns of a regressor, sorted into those that are independent and the rest.
@@ -60,6 +61,7 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
     let draw = |symbol: Symbol| {
         let (kind, index) = match symbol {
             Symbol::Sine(i) | Symbol::Cosine(i) => (1, i),
+            Symbol::SineOf(_) | Symbol::CosineOf(_) => (1, symbol.index()),
             Symbol::Position(i) => (2, i),
             Symbol::Rate(i) => (3, i),
             Symbol::RateSign(i) => (4, i),
@@ -80,6 +82,8 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
             Node::Constant(_) => constants.number(&pool.as_constant(expr).expect("a constant")),
             Node::Symbol(symbol @ Symbol::Sine(_)) => field.circle(draw(symbol)).0,
             Node::Symbol(symbol @ Symbol::Cosine(_)) => field.circle(draw(symbol)).1,
+            Node::Symbol(Symbol::SineOf(sum)) => field.circle_of(sum, |i| field.circle(draw(Symbol::Sine(i)))).0,
+            Node::Symbol(Symbol::CosineOf(sum)) => field.circle_of(sum, |i| field.circle(draw(Symbol::Sine(i)))).1,
             Node::Symbol(symbol) => draw(symbol),
             Node::Add(a, b) => field.add(of(a), of(b)),
             Node::Mul(a, b) => field.mul(of(a), of(b)),
@@ -228,7 +232,20 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
     (pool, y)
 }
 
-/// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction.
+/// Moves the origin of each joint frame along its axis to where that meets, or comes nearest to, the axis before: most torques of a force there
+/// have no lever. The base parameters of the arm's own regressor are those in these frames.
+pub fn settle(pool: &mut Pool, arm: &mut Arm) {
+    for i in (0..arm.dof()).filter(|&i| arm.joints[i].parent.is_some() && arm.joints[i].is_revolute()).collect::<Vec<_>>() {
+        let axis = arm.joints[i].fixed.map(|row| row[2]);
+        let along = pool.dot3(&arm.joints[i].origin, &axis);
+        if along != ExprId::ZERO && pool.is_constant(along) {
+            arm.slide(pool, i, -along);
+        }
+    }
+    arm.joints.iter_mut().for_each(|joint| joint.own_origin = ZERO);
+}
+
+/// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction; of an arm that has been settled.
 pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let ParameterKind::Base(columns) = &vector.kind else { unreachable!("asked for base parameters only") };
     let motion = Motion::plain(pool, arm);
@@ -240,24 +257,32 @@ pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan
 /// What no joint feels is first grouped towards the base in joint frames, exactly and without a division. What still depends on others
 /// then, because a motion near the base is restricted or a rotor turns with a link, is found by rank.
 pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    grouped(manipulator, field, false)
+    grouped(manipulator, field, Rest::NoInertiaAboutY, false)
 }
 
-/// The base parameters of an arm, with the masses of its rotors among the values: Y pi is then the whole torque.
+/// The base parameters of an arm that its own regressor asks for: those that are not zero, with the masses of its rotors among the values, so that
+/// Y pi is the whole torque. Links keep no second moment along their axes, for a mass on the x or y axis has a moment of two components only.
 pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    grouped(manipulator, field, true)
+    let ParameterVector { entries, kind } = grouped(manipulator, field, Rest::NoSecondMomentAlongAxis, true);
+    let ParameterKind::Base(columns) = kind else { unreachable!("base parameters are grouped") };
+    let used = entries.into_iter().zip(columns).filter(|(entry, _)| !entry.nominal.is_zero());
+    let (entries, columns) = used.unzip();
+    ParameterVector { entries, kind: ParameterKind::Base(columns) }
 }
 
-/// The base parameters. The masses of rotors are no parameters; they are known, or part of the links' values.
-fn grouped(manipulator: &Manipulator, field: &Field, with_rotor_masses: bool) -> ParameterVector {
+/// The base parameters. The masses of rotors are no parameters; they are known, or, for the arm's `own` regressor, part of the links' values.
+fn grouped(manipulator: &Manipulator, field: &Field, rest: Rest, own: bool) -> ParameterVector {
     let mut pool = Pool::new(field.clone());
     let standard = ParameterVector::standard(manipulator);
     let mut arm = Arm::new(&mut pool, manipulator, View::Vector(&standard));
-    arm.group_towards_base(&mut pool, Rest::NoInertiaAboutY);
-    let mut columns = candidates(manipulator);
+    if own {
+        settle(&mut pool, &mut arm);
+    }
+    arm.group_towards_base(&mut pool, rest);
+    let mut columns = candidates(manipulator, rest);
     columns.sort_by_key(|&column| preference(column));
     let mut values: Vec<Vec<Number>> = columns.iter().map(|&c| combination(&mut pool, &arm, &standard, c)).collect();
-    if !with_rotor_masses {
+    if !own {
         values.iter_mut().for_each(|of| *of.last_mut().expect("the rest stands last") = Number::zero());
     }
 
@@ -284,8 +309,14 @@ fn grouped(manipulator: &Manipulator, field: &Field, with_rotor_masses: bool) ->
     ParameterVector { entries, kind: ParameterKind::Base(kept) }
 }
 
-/// What can be left after grouping: links without m, mcz and Iyy (revolute) or without inertia (prismatic), rotors, friction.
-fn candidates(manipulator: &Manipulator) -> Vec<StandardParameter> {
+/// What can be left after grouping: links without m, mcz and Iyy or the second moment along the axis (revolute) or without inertia
+/// (prismatic), rotors, friction.
+fn candidates(manipulator: &Manipulator, rest: Rest) -> Vec<StandardParameter> {
+    let flat = |parameter: StandardParameter| match (rest, parameter) {
+        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, 4)) => StandardParameter::Link(i, FLAT_IXX),
+        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, 9)) => StandardParameter::Link(i, FLAT_IYY),
+        _ => parameter,
+    };
     StandardParameter::all(manipulator)
         .into_iter()
         .filter(|&parameter| match parameter {
@@ -296,6 +327,7 @@ fn candidates(manipulator: &Manipulator) -> Vec<StandardParameter> {
             StandardParameter::Payload(_) => false,
             _ => true,
         })
+        .map(flat)
         .collect()
 }
 
@@ -313,6 +345,8 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
                 6 => pool.add(xx, zz),
                 7 => -xz,
                 8 => -yz,
+                FLAT_IXX => yy,
+                FLAT_IYY => xx,
                 _ => pool.add(xx, yy),
             }
         }
@@ -379,7 +413,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
 /// Columns are kept in this order: friction, then links from the base outwards; within a link inertia about the axis first. Rotors are told
 /// apart from links only where nothing else can carry their effect.
 fn preference(parameter: StandardParameter) -> (u8, u16, u8) {
-    const RANK: [u8; 10] = [9, 3, 4, 8, 5, 1, 7, 2, 6, 0];
+    const RANK: [u8; 12] = [9, 3, 4, 8, 5, 1, 7, 2, 6, 0, 0, 5];
     match parameter {
         StandardParameter::RotorViscous(i) => (0, i, 0),
         StandardParameter::Viscous(i) => (0, i, 1),

@@ -9,7 +9,8 @@ use crate::ring::{ExprId, Pool, Symbol};
 /// One of the parameters in which the dynamics of every arm are linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StandardParameter {
-    /// One of the ten of a link, in its link frame, inertia about the origin: m mcx mcy mcz Ixx Ixy Iyy Ixz Iyz Izz.
+    /// One of the ten of a link, in its link frame, inertia about the origin: m mcx mcy mcz Ixx Ixy Iyy Ixz Iyz Izz. Beyond the ten, Ixx and Iyy of a
+    /// link without extent along z, Izz = Ixx + Iyy: what [`Rest::NoSecondMomentAlongAxis`](super::arm::Rest) leaves.
     Link(u16, u8),
     /// Inertia of the rotor of a joint about its axis.
     RotorInertia(u16),
@@ -23,8 +24,14 @@ pub enum StandardParameter {
     Payload(u8),
 }
 
-/// Names of the ten inertial parameters of a body, without the link's number.
-pub const INERTIAL_NAMES: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz"];
+/// Names of the inertial parameters of a body, without the link's number: the ten, and two of a link without extent along z.
+pub const INERTIAL_NAMES: [&str; 12] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz", "Ixx", "Iyy"];
+
+/// Ixx of a link without extent along z.
+pub const FLAT_IXX: u8 = 10;
+
+/// Iyy of a link without extent along z.
+pub const FLAT_IYY: u8 = 11;
 
 impl StandardParameter {
     /// All that a description gives, in the order of the regressor `standard`.
@@ -71,6 +78,8 @@ impl StandardParameter {
         let joint = |i: u16| &manipulator.joints[usize::from(i)];
         let motor = |i: u16| joint(i).motor.as_ref();
         match self {
+            StandardParameter::Link(i, FLAT_IXX) => Part::OfBody(Some(&joint(i).link), 4),
+            StandardParameter::Link(i, FLAT_IYY) => Part::OfBody(Some(&joint(i).link), 6),
             StandardParameter::Link(i, k) => Part::OfBody(Some(&joint(i).link), usize::from(k)),
             StandardParameter::RotorInertia(i) => Part::Whole(motor(i).and_then(|m| m.inertia.as_ref())),
             StandardParameter::RotorViscous(i) => Part::Whole(motor(i).and_then(|m| m.viscous.as_ref())),
@@ -305,7 +314,7 @@ impl ParameterVector {
 impl StandardParameter {
     /// What it is, with unit and frame.
     pub fn meaning(self, manipulator: &Manipulator) -> String {
-        const INERTIAL: [&str; 10] = [
+        const INERTIAL: [&str; 12] = [
             "mass, kg",
             "first moment m cx, kg m",
             "first moment m cy, kg m",
@@ -316,6 +325,8 @@ impl StandardParameter {
             "inertia Ixz = -∫xz dm about the frame's origin, kg m²",
             "inertia Iyz = -∫yz dm about the frame's origin, kg m²",
             "inertia Izz about the frame's origin, kg m²",
+            "inertia Ixx about the frame's origin, with as much in Izz, kg m²",
+            "inertia Iyy about the frame's origin, with as much in Izz, kg m²",
         ];
         let name = |i: u16| &manipulator.joints[usize::from(i)].name;
         match self {

@@ -25,6 +25,8 @@ pub enum Pass {
     Freedoms,
     /// Try the closed form beside the recursion.
     ClosedForm,
+    /// Ask for the sines and cosines of sums of angles as such.
+    AngleSums,
     /// Leave out what cancels in every output.
     Idle,
     /// Take common factors out of sums, and share partial sums and products.
@@ -37,7 +39,7 @@ pub enum Pass {
 
 impl Pass {
     /// All of them.
-    pub const ALL: [Pass; 12] = [
+    pub const ALL: [Pass; 13] = [
         Pass::ParallelAxes,
         Pass::UnitOfLength,
         Pass::Slides,
@@ -46,6 +48,7 @@ impl Pass {
         Pass::Grouping,
         Pass::Freedoms,
         Pass::ClosedForm,
+        Pass::AngleSums,
         Pass::Idle,
         Pass::Sharing,
         Pass::Sums,
@@ -63,6 +66,7 @@ impl Pass {
             Pass::Grouping => "grouping",
             Pass::Freedoms => "freedoms",
             Pass::ClosedForm => "closed-form",
+            Pass::AngleSums => "angle-sums",
             Pass::Idle => "idle",
             Pass::Sharing => "sharing",
             Pass::Sums => "sums",
@@ -115,6 +119,8 @@ pub struct Plan {
     /// How many ways each fork met so far has.
     forks: BTreeMap<Fork, usize>,
     without: Passes,
+    /// Where forks with many ways begin to count them.
+    start: usize,
     /// In tests: ways drawn by this seed where none is chosen.
     #[cfg(test)]
     scattered: Option<u64>,
@@ -142,6 +148,15 @@ impl Plan {
         self.without.insert(pass);
     }
 
+    /// Where forks with many ways begin to count them: a search goes downhill, and finds another valley from another start.
+    pub fn start(&self) -> usize {
+        if self.has(Pass::Meeting) {
+            self.start
+        } else {
+            0
+        }
+    }
+
     /// Which of `ways` to take at a fork.
     pub fn way(&mut self, pass: Pass, place: usize, ways: usize) -> usize {
         if ways < 2 || !self.has(pass) {
@@ -155,23 +170,29 @@ impl Plan {
         self.ways.get(&(pass, place)).copied().filter(|&way| way < ways).unwrap_or(0)
     }
 
-    /// The plan that costs least. `cost` tells the cost of a plan and the effort of finding out, of which `effort` is there in all.
-    pub fn search(mut self, mut effort: usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> Plan {
+    /// The cheapest of the plans that searches from several starts find, each with what effort those before have left.
+    pub fn search_from(self, starts: &[usize], mut effort: usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> Plan {
+        let found = starts.iter().map(|&start| Plan { start, ..self.clone() }.search(&mut effort, cost));
+        found.min_by_key(|(cost, _)| *cost).map_or(self.clone(), |(_, plan)| plan)
+    }
+
+    /// The plan that costs least, after its cost. `cost` tells the cost of a plan and the effort of finding out, of which `effort` is there.
+    fn search(mut self, effort: &mut usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> (usize, Plan) {
         let (mut best, spent) = cost(&mut self);
-        effort = effort.saturating_sub(spent);
+        *effort = effort.saturating_sub(spent);
         loop {
             let before = best;
             let forks: Vec<(Fork, usize)> = self.forks.iter().map(|(&fork, &ways)| (fork, ways)).collect();
             for (fork, ways) in forks {
                 let current = self.ways.get(&fork).copied().unwrap_or(0);
                 for way in (0..ways).filter(|&way| way != current) {
-                    if effort == 0 {
-                        return self;
+                    if *effort == 0 {
+                        return (best, self);
                     }
                     let mut changed = self.clone();
                     changed.ways.insert(fork, way);
                     let (found, spent) = cost(&mut changed);
-                    effort = effort.saturating_sub(spent);
+                    *effort = effort.saturating_sub(spent);
                     if found < best {
                         best = found;
                         self = changed;
@@ -179,7 +200,7 @@ impl Plan {
                 }
             }
             if best == before {
-                return self;
+                return (best, self);
             }
         }
     }
@@ -198,7 +219,7 @@ mod tests {
             (20 - [0, 3, 5, 4][slide] - 2 * extra, 1)
         };
         let best = |without, effort| {
-            let mut plan = Plan::new(without).search(effort, &mut { cost });
+            let mut plan = Plan::new(without).search_from(&[0], effort, &mut { cost });
             cost(&mut plan).0
         };
         assert_eq!(best(Passes::NONE, 100), 11);

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use super::arm::Arm;
 use super::inertia::{along, wrench_outward};
 use super::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
-use super::parameters::{ParameterKind, ParameterVector, StandardParameter};
+use super::parameters::{ParameterKind, ParameterVector, StandardParameter, FLAT_IXX, FLAT_IYY};
 use super::plan::{Pass, Plan};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -119,8 +119,8 @@ fn columns_in(
     y
 }
 
-/// For each joint that feels a link: the ten entries.
-type LinkColumns = Vec<(usize, [ExprId; 10])>;
+/// For each joint that feels a link: the entries of the ten parameters, and of the two of a link without extent along z.
+type LinkColumns = Vec<(usize, [ExprId; 12])>;
 
 /// A wrench: force, and moment about an origin.
 type Wrench = (Vector, Vector);
@@ -231,9 +231,13 @@ fn link_columns(
     }
     // Each frame of the path in either form, except the last, where nothing is left.
     let ways = 2 * path.len() - 1;
-    let forces = plan.way(Pass::Meeting, REGRESSOR + 2 * place, ways);
-    let couples = plan.way(Pass::Meeting, REGRESSOR + 2 * place + 1, (path.len() - 1).max(1));
-    let mut columns: LinkColumns = path.iter().map(|&j| (j, [ExprId::ZERO; 10])).collect();
+    let forces = (plan.way(Pass::Meeting, REGRESSOR + 2 * place, ways) + plan.start()) % ways;
+    // Couples go as far as forces (way 0), so that one set of twists will do, or stop elsewhere.
+    let couples = match plan.way(Pass::Meeting, REGRESSOR + 2 * place + 1, path.len()) {
+        0 => (forces / 2).min(path.len().saturating_sub(2)),
+        way => way - 1,
+    };
+    let mut columns: LinkColumns = path.iter().map(|&j| (j, [ExprId::ZERO; 12])).collect();
     for (k, (force, moment)) in unit_wrenches(pool, &a, &u).into_iter().enumerate() {
         let (stop, by_moment) = if k < 4 { (forces / 2, forces % 2 == 1) } else { (couples, false) };
         // Into the joint frame.
@@ -255,17 +259,21 @@ fn link_columns(
 }
 
 /// The wrenches of m, mcx, mcy, mcz, Ixx, ... = 1 for a body whose origin accelerates by a and in which U is the field.
-fn unit_wrenches(pool: &mut Pool, a: &Vector, u: &Matrix) -> [Wrench; 10] {
-    let mut all = [(ZERO, ZERO); 10];
+///
+/// Those of a body without extent along z are e × U e, of a mass on the y axis (Ixx = Izz) and on the x axis (Iyy = Izz).
+fn unit_wrenches(pool: &mut Pool, a: &Vector, u: &Matrix) -> [Wrench; 12] {
+    let mut all = [(ZERO, ZERO); 12];
     all[0].0 = *a;
     for k in 0..3 {
         let mut unit = ZERO;
         unit[k] = ExprId::ONE;
         all[1 + k] = (u.map(|row| row[k]), pool.cross(&unit, a));
     }
-    for (wrench, moment) in all[4..].iter_mut().zip(inertia_moments(pool, u)) {
+    for (wrench, moment) in all[4..10].iter_mut().zip(inertia_moments(pool, u)) {
         wrench.1 = moment;
     }
+    all[usize::from(FLAT_IXX)].1 = [u[2][1], ExprId::ZERO, -u[0][1]];
+    all[usize::from(FLAT_IYY)].1 = [ExprId::ZERO, -u[2][0], u[1][0]];
     all
 }
 

@@ -553,7 +553,8 @@ fn torque_is_the_base_regressor_times_the_base_parameters() {
         let model = crate::Model::new(manipulator);
         let vector = model.base_parameters();
         let mut pool = Pool::new(model.field.clone());
-        let arm = Arm::new(&mut pool, &model.manipulator, View::Vector(vector));
+        let mut arm = Arm::new(&mut pool, &model.manipulator, View::Vector(vector));
+        base::settle(&mut pool, &mut arm);
         let y = base::base_regressor(&mut pool, &arm, vector, &mut Plan::default());
         assert_eq!(base::rank(&pool, &y), vector.len());
         let values: Vec<ExprId> = vector.entries.iter().map(|entry| pool.constant(&entry.nominal)).collect();

@@ -11,6 +11,7 @@ use quote::{format_ident, quote};
 
 use super::literal::literal;
 use super::rust::{argument, argument_of, input, usize_literal};
+use super::sincos::{is_of_angle, name_of};
 use crate::equations::Argument;
 use crate::program::{Function, Module, Operand, Operation, Step};
 use crate::ring::Symbol;
@@ -38,16 +39,15 @@ pub(super) struct Body {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Name {
     Argument(Argument),
-    Sine(u16),
-    Cosine(u16),
+    /// A sine or cosine.
+    Angle(Symbol),
     Step(usize),
 }
 
 impl Name {
     fn of(symbol: Symbol) -> Name {
         match symbol {
-            Symbol::Sine(i) => Name::Sine(i),
-            Symbol::Cosine(i) => Name::Cosine(i),
+            of_angle if is_of_angle(of_angle) => Name::Angle(of_angle),
             other => Name::Argument(argument_of(other)),
         }
     }
@@ -55,8 +55,7 @@ impl Name {
     fn ident(self) -> Ident {
         match self {
             Name::Argument(of) => argument(of).0,
-            Name::Sine(i) => format_ident!("s{}", i + 1),
-            Name::Cosine(i) => format_ident!("c{}", i + 1),
+            Name::Angle(symbol) => name_of(symbol),
             Name::Step(i) => format_ident!("t{i}"),
         }
     }

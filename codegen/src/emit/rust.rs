@@ -203,6 +203,17 @@ fn base_note() -> [String; 4] {
     ]
 }
 
+/// What a name of a base parameter of `base_regressor` means.
+fn own_base_note() -> [String; 5] {
+    [
+        " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where".into(),
+        " that comes nearest to the axis before, grouped with all that cannot be told from it. Links of revolute joints have Izz = Ixx + Iyy there.".into(),
+        " Beside it stands its value in the standard parameters, of links in their own frames, inertia about their origins; SI units.".into(),
+        " Those that are 0 are left out.".into(),
+        String::new(),
+    ]
+}
+
 /// Whether a function of the module returns this.
 pub(super) fn returns(module: &Module, shape: Shape) -> bool {
     module.functions.iter().any(|function| function.quantity.shape() == shape)
@@ -220,9 +231,9 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
         " Names of the base parameters, in the order of the columns of `base_regressor`, each an exact combination of standard parameters:",
         &module.base_set,
     );
-    meanings.splice(2..2, base_note());
+    meanings.splice(2..2, own_base_note());
     Some(quote! {
-        /// Number of base parameters: as many as a motion can tell apart.
+        /// Number of base parameters: as many as a motion can tell apart, without those that are 0 in the description.
         #[allow(dead_code)]
         pub const BASE_PARAMETERS: usize = #count;
         #(#[doc = #meanings])*
@@ -283,6 +294,10 @@ pub(super) fn input(symbol: Symbol) -> TokenStream {
             let name = format_ident!("c{}", i + 1);
             return quote!(#name);
         }
+        Symbol::SineOf(_) | Symbol::CosineOf(_) => {
+            let name = sincos::name_of(symbol);
+            return quote!(#name);
+        }
         Symbol::RateSign(i) => {
             let index = usize_literal(usize::from(i));
             return quote!(sign(dq[#index]));
@@ -301,7 +316,7 @@ pub(super) fn input(symbol: Symbol) -> TokenStream {
 
 pub(super) fn argument_of(symbol: Symbol) -> Argument {
     match symbol {
-        Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::Position(_) => Argument::Q,
+        Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) | Symbol::Position(_) => Argument::Q,
         Symbol::Rate(_) | Symbol::RateSign(_) => Argument::Dq,
         Symbol::Acceleration(_) => Argument::Ddq,
         Symbol::ReferenceRate(_) => Argument::Dqr,
@@ -341,7 +356,7 @@ fn function(module: &Module, function: &Function) -> TokenStream {
 /// The arguments that the steps use, and the line that says of the others that they are not needed.
 pub(super) fn used_and_ignored(function: &Function) -> (Vec<Argument>, Option<TokenStream>) {
     let symbols = symbols(function);
-    let used = |a: Argument| symbols.iter().any(|&s| argument_of(s) == a && !matches!(s, Symbol::Sine(_) | Symbol::Cosine(_)));
+    let used = |a: Argument| symbols.iter().any(|&s| argument_of(s) == a && !sincos::is_of_angle(s));
     let unused: Vec<Ident> =
         function.arguments.iter().filter(|&&a| !symbols.iter().any(|&s| argument_of(s) == a)).map(|&a| argument(a).0).collect();
     let ignored = match unused.as_slice() {
@@ -421,7 +436,7 @@ fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> TokenStream {
 
 /// Whether any function needs a sine or a cosine.
 pub(super) fn asks_for_sines(module: &Module) -> bool {
-    module.functions.iter().flat_map(symbols).any(|s| matches!(s, Symbol::Sine(_) | Symbol::Cosine(_)))
+    module.functions.iter().flat_map(symbols).any(sincos::is_of_angle)
 }
 
 /// Sine and cosine, and the sign of a rate: the only calls in the module.

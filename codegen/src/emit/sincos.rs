@@ -7,63 +7,148 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote, ToTokens};
 use syn::Item;
 
 use super::rust::usize_literal;
 use crate::program::{Module, Scalar, Trig};
-use crate::ring::Symbol;
+use crate::ring::{AngleSum, Symbol};
 
 const FAST_F64: &str = include_str!("sincos/fast_f64.rs");
 const FAST_F32: &str = include_str!("sincos/fast_f32.rs");
 
-/// Which of sine and cosine a function uses, angle by angle.
-fn angles(symbols: &[Symbol]) -> BTreeMap<usize, (bool, bool)> {
-    let mut angles: BTreeMap<usize, (bool, bool)> = BTreeMap::new();
-    for symbol in symbols {
+/// Whether a symbol is a sine or a cosine.
+pub(super) fn is_of_angle(symbol: Symbol) -> bool {
+    matches!(symbol, Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_))
+}
+
+/// The name of a sine or a cosine: `s2`, `c2`, `s2_3` of q2 + q3, `c1_2_less_4` of q1 + q2 - q4.
+pub(super) fn name_of(symbol: Symbol) -> Ident {
+    match symbol {
+        Symbol::Cosine(i) => format_ident!("c{}", i + 1),
+        Symbol::SineOf(sum) => format_ident!("s{}", of_sum(sum)),
+        Symbol::CosineOf(sum) => format_ident!("c{}", of_sum(sum)),
+        other => format_ident!("s{}", other.index() + 1),
+    }
+}
+
+fn of_sum(sum: AngleSum) -> String {
+    let mut text = String::new();
+    for (k, (i, minus)) in sum.terms().enumerate() {
+        let first = minus && (sum.plus.count_ones() as usize == k);
+        text += if first {
+            "_less_"
+        } else if k > 0 {
+            "_"
+        } else {
+            ""
+        };
+        text += &(i + 1).to_string();
+    }
+    text
+}
+
+/// An angle that a function asks for, and the names of its sine and cosine.
+struct Asked {
+    angle: Angle,
+    sine: TokenStream,
+    cosine: TokenStream,
+}
+
+/// The angles that a function asks for: sums, then single ones.
+fn asked(symbols: &[Symbol]) -> Vec<Asked> {
+    let mut sums: BTreeMap<AngleSum, (bool, bool)> = BTreeMap::new();
+    let mut single: BTreeMap<u16, (bool, bool)> = BTreeMap::new();
+    for &symbol in symbols {
         match symbol {
-            Symbol::Sine(i) => angles.entry(usize::from(*i)).or_default().0 = true,
-            Symbol::Cosine(i) => angles.entry(usize::from(*i)).or_default().1 = true,
+            Symbol::Sine(i) => single.entry(i).or_default().0 = true,
+            Symbol::Cosine(i) => single.entry(i).or_default().1 = true,
+            Symbol::SineOf(sum) => sums.entry(sum).or_default().0 = true,
+            Symbol::CosineOf(sum) => sums.entry(sum).or_default().1 = true,
             _ => {}
         }
     }
-    angles
+    let name = |symbol: Symbol, used: bool| if used { name_of(symbol).to_token_stream() } else { quote!(_) };
+    let of_sum = |(sum, (sine, cosine))| Asked {
+        angle: Angle::Sum(sum),
+        sine: name(Symbol::SineOf(sum), sine),
+        cosine: name(Symbol::CosineOf(sum), cosine),
+    };
+    let of_one = |(i, (sine, cosine))| Asked {
+        angle: Angle::One(i),
+        sine: name(Symbol::Sine(i), sine),
+        cosine: name(Symbol::Cosine(i), cosine),
+    };
+    sums.into_iter().map(of_sum).chain(single.into_iter().map(of_one)).collect()
+}
+
+/// A joint variable, or a sum of some.
+#[derive(Clone, Copy)]
+enum Angle {
+    One(u16),
+    Sum(AngleSum),
+}
+
+impl Angle {
+    /// The joints, and whether their variables are taken away.
+    fn terms(self) -> Vec<(u16, bool)> {
+        match self {
+            Angle::One(i) => vec![(i, false)],
+            Angle::Sum(sum) => sum.terms().collect(),
+        }
+    }
+
+    /// `q[1] + q[2]`
+    fn text(self) -> TokenStream {
+        let mut text = TokenStream::new();
+        for (k, (i, minus)) in self.terms().into_iter().enumerate() {
+            let q = entry(i);
+            text.extend(match (k, minus) {
+                (0, _) => q,
+                (_, true) => quote!(- #q),
+                (_, false) => quote!(+ #q),
+            });
+        }
+        text
+    }
+
+    /// `q[1]`
+    fn first(self) -> TokenStream {
+        entry(self.terms()[0].0)
+    }
+}
+
+fn entry(i: u16) -> TokenStream {
+    let index = usize_literal(usize::from(i));
+    quote!(q[#index])
 }
 
 /// The lines that give `s1`, `c1` and so on for the angles among the symbols of a function.
 pub(super) fn lines(module: &Module, symbols: &[Symbol]) -> Vec<TokenStream> {
-    let angles = angles(symbols);
+    let asked = asked(symbols);
     match module.trig {
         Trig::Libm | Trig::Std => {
-            let line = |(&i, &(sine, cosine)): (&usize, &(bool, bool))| {
-                let (s, c, index) = (name("s", i, sine), name("c", i, cosine), usize_literal(i));
-                quote!(let (#s, #c) = sin_cos(q[#index]);)
+            let line = |Asked { angle, sine, cosine }: &Asked| {
+                let angle = angle.text();
+                quote!(let (#sine, #cosine) = sin_cos(#angle);)
             };
-            angles.iter().map(line).collect()
+            asked.iter().map(line).collect()
         }
-        Trig::Fast => together(&angles),
+        Trig::Fast => together(&asked),
     }
 }
 
-fn name(letter: &str, angle: usize, used: bool) -> TokenStream {
-    if used {
-        format_ident!("{letter}{}", angle + 1).to_token_stream()
-    } else {
-        quote!(_)
-    }
-}
-
-/// `let ([s1, s2, s3, _], [c1, c2, c3, _]) = sin_cos_four(3, q[0], q[1], q[2], q[2]);` and so on: the lanes that are left repeat the last angle.
-fn together(angles: &BTreeMap<usize, (bool, bool)>) -> Vec<TokenStream> {
-    let angles: Vec<(usize, (bool, bool))> = angles.iter().map(|(&i, &used)| (i, used)).collect();
+/// `let ([s1, s2, s3, _], [c1, c2, c3, _]) = sin_cos_four(3, q[0], q[1], q[2], q[2]);` and so on: the lanes that are left repeat the last angle, or the
+/// first joint variable of the last sum.
+fn together(asked: &[Asked]) -> Vec<TokenStream> {
     let mut lines = Vec::new();
-    for group in angles.chunks(8) {
+    for group in asked.chunks(8) {
         let (lanes, function) = match group.len() {
             1 | 2 => {
-                lines.extend(group.iter().map(|&(i, (sine, cosine))| {
-                    let (s, c, index) = (name("s", i, sine), name("c", i, cosine), usize_literal(i));
-                    quote!(let (#s, #c) = sin_cos_one(q[#index]);)
+                lines.extend(group.iter().map(|Asked { angle, sine, cosine }| {
+                    let angle = angle.text();
+                    quote!(let (#sine, #cosine) = sin_cos_one(#angle);)
                 }));
                 continue;
             }
@@ -71,13 +156,14 @@ fn together(angles: &BTreeMap<usize, (bool, bool)>) -> Vec<TokenStream> {
             _ => (8, "sin_cos_eight"),
         };
         let (function, count) = (format_ident!("{function}"), usize_literal(group.len()));
-        let names = |letter: &str, used: fn(&(bool, bool)) -> bool| {
-            let names = (0..lanes).map(|lane| group.get(lane).map_or(quote!(_), |(i, u)| name(letter, *i, used(u))));
+        let names = |of: fn(&Asked) -> &TokenStream| {
+            let names = (0..lanes).map(|lane| group.get(lane).map_or(quote!(_), |asked| of(asked).clone()));
             quote!([#(#names),*])
         };
-        let (sines, cosines) = (names("s", |u| u.0), names("c", |u| u.1));
-        let arguments = (0..lanes).map(|lane| usize_literal(group[lane.min(group.len() - 1)].0));
-        lines.push(quote!(let (#sines, #cosines) = #function(#count, #(q[#arguments]),*);));
+        let (sines, cosines) = (names(|asked| &asked.sine), names(|asked| &asked.cosine));
+        let last = &group[group.len() - 1].angle;
+        let arguments = (0..lanes).map(|lane| group.get(lane).map_or_else(|| last.first(), |asked| asked.angle.text()));
+        lines.push(quote!(let (#sines, #cosines) = #function(#count, #(#arguments),*);));
     }
     lines
 }
@@ -85,10 +171,26 @@ fn together(angles: &BTreeMap<usize, (bool, bool)>) -> Vec<TokenStream> {
 /// The lines that give `s1`, `c1` and so on as arrays of lanes, and those in the loop over lanes `k` that give the numbers.
 pub(super) fn lines_of_lanes(symbols: &[Symbol]) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let (mut before, mut inside) = (Vec::new(), Vec::new());
-    for (i, (sine, cosine)) in angles(symbols) {
-        let (s, c, index) = (name("s", i, sine), name("c", i, cosine), usize_literal(i));
-        before.push(quote!(let (#s, #c) = sin_cos_lanes(&q[#index]);));
-        inside.extend([(s, sine), (c, cosine)].iter().filter(|(_, used)| *used).map(|(name, _)| quote!(let #name = #name[k];)));
+    for Asked { angle, sine, cosine } in asked(symbols) {
+        let first = angle.first();
+        let added = angle.terms().into_iter().skip(1).map(|(i, minus)| {
+            let q = entry(i);
+            if minus {
+                quote!(angle[k] -= #q[k];)
+            } else {
+                quote!(angle[k] += #q[k];)
+            }
+        });
+        match angle {
+            Angle::One(_) => before.push(quote!(let (#sine, #cosine) = sin_cos_lanes(&#first);)),
+            Angle::Sum(_) => before.extend([
+                quote!(let mut angle = #first;),
+                quote!(for k in 0..LANES { #(#added)* }),
+                quote!(let (#sine, #cosine) = sin_cos_lanes(&angle);),
+            ]),
+        }
+        let used = [sine, cosine].into_iter().filter(|name| name.to_string() != "_");
+        inside.extend(used.map(|name| quote!(let #name = #name[k];)));
     }
     (before, inside)
 }
@@ -147,7 +249,7 @@ pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStre
 fn fast(scalar: Scalar, functions: &[Vec<Symbol>]) -> TokenStream {
     let mut file =
         syn::parse_file(if scalar == Scalar::F64 { FAST_F64 } else { FAST_F32 }).expect("the text to take in is a Rust file");
-    let calls: String = functions.iter().flat_map(|symbols| together(&angles(symbols))).map(|line| line.to_string()).collect();
+    let calls: String = functions.iter().flat_map(|symbols| together(&asked(symbols))).map(|line| line.to_string()).collect();
     let unused: Vec<&str> = ["four", "eight"].into_iter().filter(|lanes| !calls.contains(&format!("sin_cos_{lanes}"))).collect();
     file.items.retain(|item| match item {
         Item::Fn(function) => !unused.iter().any(|lanes| function.sig.ident.to_string().ends_with(lanes)),
@@ -163,7 +265,7 @@ mod tests {
 
     #[track_caller]
     fn check(symbols: &[Symbol], expected: &[&str]) {
-        let lines = together(&angles(symbols));
+        let lines = together(&asked(symbols));
         let lines: Vec<String> = lines.iter().map(|line| line.to_string().replace(' ', "")).collect();
         let expected: Vec<String> = expected.iter().map(|line| line.replace(' ', "")).collect();
         assert_eq!(lines, expected);
@@ -196,6 +298,21 @@ mod tests {
         let nine: Vec<Symbol> = (0..9).map(Symbol::Cosine).collect();
         let eight = "let ([_, _, _, _, _, _, _, _], [c1, c2, c3, c4, c5, c6, c7, c8]) = sin_cos_eight(8, q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7]);";
         check(&nine, &[eight, "let (_, c9) = sin_cos_one(q[8]);"]);
+    }
+
+    #[test]
+    fn sums_of_angles_come_first_and_are_added_up_once() {
+        let sum = AngleSum { plus: 0b110, minus: 0 };
+        let less = AngleSum { plus: 0b1, minus: 0b1000 };
+        check(
+            &[Symbol::SineOf(sum), Symbol::Cosine(4)],
+            &["let (s2_3, _) = sin_cos_one(q[1] + q[2]);", "let (_, c5) = sin_cos_one(q[4]);"],
+        );
+        let three = AngleSum { plus: 0b111, minus: 0 };
+        check(
+            &[Symbol::SineOf(sum), Symbol::CosineOf(less), Symbol::SineOf(three)],
+            &["let ([_, s2_3, s1_2_3, _], [c1_less_4, _, _, _]) = sin_cos_four(3, q[0] - q[3], q[1] + q[2], q[0] + q[1] + q[2], q[0]);"],
+        );
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Function, Operand, Operation};
+use crate::equations::{DIVISION, PAIR};
 use crate::ring::Symbol;
 
 /// Operations of a function: one per binary `*`, `+` or `-`, `/`; sign changes and sines apart.
@@ -34,17 +35,20 @@ impl Cost {
         }
         let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
         for operand in operands.chain(function.outputs.iter().map(|output| &output.operand)) {
-            if let Operand::Input(Symbol::Sine(i) | Symbol::Cosine(i)) = operand {
-                angles.insert(*i);
-            }
+            match operand {
+                Operand::Input(Symbol::Sine(i) | Symbol::Cosine(i)) => angles.insert((*i, None)),
+                Operand::Input(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) => angles.insert((0, Some(*sum))),
+                _ => continue,
+            };
         }
         cost.sincos = angles.len();
+        cost.add += angles.iter().filter_map(|(_, sum)| *sum).map(|sum| sum.terms().count() - 1).sum::<usize>();
         cost.neg = function.outputs.iter().filter(|output| output.negated).count();
         cost
     }
 
     /// A single figure to compare derivations by: a sine and cosine pair or a division counts like some additions, a sign change not at all.
     pub fn weight(&self) -> usize {
-        self.mul + self.add + 4 * self.div + 16 * self.sincos
+        self.mul + self.add + DIVISION * self.div + PAIR * self.sincos
     }
 }

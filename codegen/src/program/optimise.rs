@@ -3,6 +3,7 @@
 //! The shared graph of expressions is taken apart into sums and products of any number of operands ([`circuit`]), each with its
 //! fingerprint. What saves operations is then done as often as it is found, the greatest gain first:
 //!
+//! - sines and cosines of sums of angles about parallel axes become inputs ([`angles`]),
 //! - what cancels in every output is left out ([`idle`]),
 //! - x y + x z becomes x (y + z) ([`share`]),
 //! - constants of a sum or a product become one ([`tidy`]),
@@ -12,6 +13,7 @@
 //!
 //! Every step leaves the value of every output as it is: the fingerprints say so.
 
+mod angles;
 mod circuit;
 mod idle;
 mod resubstitute;
@@ -27,13 +29,22 @@ use circuit::Circuit;
 /// the square of their number.
 const GATES: usize = 8000;
 
-/// The same expressions with fewer operations, in a pool of their own.
-pub(super) fn optimise(pool: &Pool, entries: &[ExprId], without: Passes) -> (Pool, Vec<ExprId>) {
+/// The same expressions with fewer operations, in a pool of their own. `parallel` has for each joint the one before it on a parallel axis, and
+/// whether that points the other way.
+pub(super) fn optimise(
+    pool: &Pool,
+    entries: &[ExprId],
+    parallel: &[Option<(u16, bool)>],
+    without: Passes,
+) -> (Pool, Vec<ExprId>) {
     let mut circuit = Circuit::of(pool, entries);
     if circuit.gates.len() > GATES {
         return (pool.clone(), entries.to_vec());
     }
     let has = |pass| !without.contains(pass);
+    if has(Pass::AngleSums) {
+        angles::sums_of_angles(&mut circuit, parallel);
+    }
     if has(Pass::Idle) && idle::drop_idle(&mut circuit) > 0 {
         // Gates that have become equal are one again.
         let (pool, entries) = circuit.to_pool();
@@ -47,6 +58,10 @@ pub(super) fn optimise(pool: &Pool, entries: &[ExprId], without: Passes) -> (Poo
         }
         if has(Pass::Sums) {
             gain += sums::sums_from_sums(&mut circuit);
+            gain += sums::shift_constants(&mut circuit);
+            if has(Pass::Sharing) {
+                gain += sums::write_out(&mut circuit);
+            }
         }
         if has(Pass::Resubstitution) {
             gain += resubstitute::resubstitute(&mut circuit);

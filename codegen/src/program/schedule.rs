@@ -89,7 +89,7 @@ fn function(model: &Model, quantity: Quantity, with_parameters: bool, options: &
         .filter(|closed| closed.pool.operations(&closed.entries, DIVISION) <= most)
         .chain([recursion])
         .map(|derivation| {
-            let (pool, entries) = optimise(&derivation.pool, &derivation.entries, without);
+            let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, without);
             lower(quantity, with_parameters, &Derivation { pool, entries, ..derivation })
         })
         .min_by_key(|function| Cost::of(function).weight())

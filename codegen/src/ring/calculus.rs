@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{ExprId, Node, Pool, Symbol};
+use super::{AngleSum, ExprId, Node, Pool, Symbol};
 
 impl Pool {
     /// The derivative of each expression, where `of` gives the derivative of each symbol.
@@ -61,6 +61,10 @@ impl Pool {
         self.differentiate(exprs, &mut |pool, symbol| match symbol {
             Symbol::Sine(i) if i == joint => pool.symbol(Symbol::Cosine(i)),
             Symbol::Cosine(i) if i == joint => -pool.symbol(Symbol::Sine(i)),
+            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
+                let Some((_, minus)) = sum.terms().find(|&(i, _)| i == joint) else { return ExprId::ZERO };
+                turned(pool, symbol, sum).signed(minus)
+            }
             Symbol::Position(i) if i == joint => ExprId::ONE,
             _ => ExprId::ZERO,
         })
@@ -77,9 +81,22 @@ impl Pool {
                 let (s, rate) = (pool.symbol(Symbol::Sine(i)), pool.symbol(Symbol::Rate(i)));
                 -pool.mul(s, rate)
             }
+            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
+                let rates: Vec<ExprId> = sum.terms().map(|(i, minus)| pool.symbol(Symbol::Rate(i)).signed(minus)).collect();
+                let (rate, turned) = (pool.sum(rates), turned(pool, symbol, sum));
+                pool.mul(turned, rate)
+            }
             Symbol::Position(i) => pool.symbol(Symbol::Rate(i)),
             _ => ExprId::ZERO,
         })
+    }
+}
+
+/// The derivative of the sine or cosine of a sum of angles by the sum.
+fn turned(pool: &mut Pool, symbol: Symbol, sum: AngleSum) -> ExprId {
+    match symbol {
+        Symbol::SineOf(_) => pool.symbol(Symbol::CosineOf(sum)),
+        _ => -pool.symbol(Symbol::SineOf(sum)),
     }
 }
 

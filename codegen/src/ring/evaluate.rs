@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::{ExprId, Node, Pool, Symbol};
+use super::{AngleSum, ExprId, Node, Pool, Symbol};
 use crate::exact::Number;
 
 impl Pool {
@@ -33,7 +33,7 @@ impl Pool {
     /// The value of a node of constant value: where all angles are 0 and everything else is 0 too.
     pub(super) fn value_at_origin(&mut self, node: Node) -> Number {
         let origin = |symbol| match symbol {
-            Symbol::Cosine(_) => Number::one(),
+            Symbol::Cosine(_) | Symbol::CosineOf(_) => Number::one(),
             _ => Number::zero(),
         };
         let operands = match node {
@@ -81,7 +81,7 @@ impl Pool {
     pub fn simple_state(number: u64) -> impl Fn(Symbol) -> Number {
         move |symbol| {
             let kind = match symbol {
-                Symbol::Sine(_) | Symbol::Cosine(_) => 1,
+                Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) => 1,
                 Symbol::Position(_) => 2,
                 Symbol::Rate(_) | Symbol::RateSign(_) => 3,
                 Symbol::Acceleration(_) => 5,
@@ -94,10 +94,25 @@ impl Pool {
             Number::from(match symbol {
                 Symbol::Sine(_) => [0, 1, 0, -1][(drawn % 4) as usize],
                 Symbol::Cosine(_) => [1, 0, -1, 0][(drawn % 4) as usize],
+                Symbol::SineOf(sum) => [0, 1, 0, -1][quarters(number, sum)],
+                Symbol::CosineOf(sum) => [1, 0, -1, 0][quarters(number, sum)],
                 _ => (drawn % 3) as i64 - 1,
             })
         }
     }
+}
+
+/// Quarter turns of a sum of angles.
+fn quarters(number: u64, sum: AngleSum) -> usize {
+    let turns = sum.terms().map(|(i, minus)| {
+        let quarters = draw(number, 1, i) % 4;
+        if minus {
+            4 - quarters
+        } else {
+            quarters
+        }
+    });
+    (turns.sum::<u64>() % 4) as usize
 }
 
 fn draw(number: u64, kind: u64, index: u16) -> u64 {
@@ -117,9 +132,18 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
         let scale = crate::exact::Rational::ONE / (crate::exact::Rational::ONE + &square);
         (t * crate::exact::Rational::from(2) * &scale, (crate::exact::Rational::ONE - square) * scale)
     };
+    let circle_of = |sum: AngleSum| {
+        use crate::exact::Rational;
+        sum.circle((Rational::ZERO, Rational::ONE), circle, |(s, c), (t, d), minus| {
+            let t = if minus { -t } else { t.clone() };
+            (s * d + c * &t, c * d - s * &t)
+        })
+    };
     Number::from(match symbol {
         Symbol::Sine(i) => circle(i).0,
         Symbol::Cosine(i) => circle(i).1,
+        Symbol::SineOf(sum) => circle_of(sum).0,
+        Symbol::CosineOf(sum) => circle_of(sum).1,
         Symbol::Position(i) => small(2, i),
         Symbol::Rate(i) => small(3, i),
         Symbol::RateSign(i) => {

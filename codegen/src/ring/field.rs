@@ -10,6 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use dashu_base::{Signed, UnsignedAbs};
 use dashu_int::UBig;
 
+use super::AngleSum;
 use crate::exact::{Atom, Number, Rational};
 
 /// 2^64 - 2^32 + 1.
@@ -219,6 +220,14 @@ impl Field {
         let square = self.mul(t, t);
         let scale = self.inverse(self.add(self.one(), square));
         (self.mul(self.add(t, t), scale), self.mul(self.sub(self.one(), square), scale))
+    }
+
+    /// Sine and cosine of a sum of angles from those of its terms.
+    pub fn circle_of(&self, sum: AngleSum, of: impl Fn(u16) -> (Element, Element)) -> (Element, Element) {
+        sum.circle((self.zero(), self.one()), of, |&(s, c), &(t, d), minus| {
+            let t = if minus { self.neg(t) } else { t };
+            (self.add(self.mul(s, d), self.mul(c, t)), self.sub(self.mul(c, d), self.mul(s, t)))
+        })
     }
 
     /// A value on which nothing is known, fixed by the atom's text.

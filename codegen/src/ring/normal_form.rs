@@ -276,6 +276,14 @@ fn symbol_form(symbol: Symbol) -> NormalForm {
     let (wave, factors) = match symbol {
         Symbol::Sine(i) => (Wave { angles: vec![(i, 1)], sine: true }, vec![]),
         Symbol::Cosine(i) => (Wave { angles: vec![(i, 1)], sine: false }, vec![]),
+        Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
+            let (sum, flipped) = sum.unsigned();
+            let sine = matches!(symbol, Symbol::SineOf(_));
+            let mut angles: Vec<(u16, i32)> = sum.terms().map(|(i, minus)| (i, if minus { -1 } else { 1 })).collect();
+            angles.sort_unstable();
+            let form = NormalForm::term(Wave { angles, sine }, vec![], Number::one());
+            return if flipped && sine { form.negated() } else { form };
+        }
         other => (Wave::one(), vec![(other, 1)]),
     };
     NormalForm::term(wave, factors, Number::one())

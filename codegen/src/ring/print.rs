@@ -36,6 +36,20 @@ impl Printer<'_> {
                 let name = if matches!(symbol, Symbol::Sine(_)) { "sin" } else { "cos" };
                 return if text { format!("{name}(q{})", i + 1) } else { format!("\\{name} q_{{{}}}", i + 1) };
             }
+            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
+                let name = if matches!(symbol, Symbol::SineOf(_)) { "sin" } else { "cos" };
+                let sign = |(k, minus): (usize, bool)| match (k, minus) {
+                    (_, true) => "-",
+                    (0, false) => "",
+                    (_, false) => "+",
+                };
+                let terms = sum.terms().enumerate().map(|(k, (i, minus))| {
+                    let angle = self.symbol(Symbol::Position(i));
+                    format!("{}{angle}", sign((k, minus)))
+                });
+                let angle: String = terms.collect();
+                return if text { format!("{name}({angle})") } else { format!("\\{name}({angle})") };
+            }
             Symbol::RateSign(i) => {
                 return if text { format!("sign(dq{})", i + 1) } else { format!("\\operatorname{{sign}} \\dot q_{{{}}}", i + 1) };
             }

@@ -3,12 +3,12 @@
 //! Joints with parallel axes turn what they carry by the sum of their angles. Instead of turning everything joint by joint, the links
 //! between them are described in axes that all share: those of the link before the first of them (angle 0), or those of one of their links. Then only the bodies of
 //! these links and the offsets between the axes turn, which are constants, and what comes from beyond turns once, by the sum,
-//! whose sine and cosine are formed by the addition theorem.
+//! whose sine and cosine are asked for as such, or formed by the addition theorem.
 
 use super::super::arm::{Arm, Joint};
 use super::super::plan::{Pass, Plan};
 use crate::ring::matrix::IDENTITY;
-use crate::ring::{ExprId, Pool};
+use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 
 /// An angle: sine, cosine, rate.
 #[derive(Clone, Copy)]
@@ -16,21 +16,41 @@ struct Angle {
     sine: ExprId,
     cosine: ExprId,
     rate: ExprId,
+    /// The joint variables that it is the sum of, if it is nothing but that.
+    sum: Option<AngleSum>,
 }
 
 impl Angle {
-    const ZERO: Angle = Angle { sine: ExprId::ZERO, cosine: ExprId::ONE, rate: ExprId::ZERO };
+    const ZERO: Angle = Angle { sine: ExprId::ZERO, cosine: ExprId::ONE, rate: ExprId::ZERO, sum: None };
 
     fn plus(self, pool: &mut Pool, other: Angle) -> Angle {
+        let rate = pool.add(self.rate, other.rate);
+        if let (Some(a), Some(b)) = (self.sum, other.sum) {
+            let sum = AngleSum { plus: a.plus | b.plus, minus: a.minus | b.minus };
+            return Angle {
+                sine: pool.symbol(Symbol::SineOf(sum)),
+                cosine: pool.symbol(Symbol::CosineOf(sum)),
+                rate,
+                sum: Some(sum),
+            };
+        }
         Angle {
             sine: pool.dot(&[self.sine, self.cosine], &[other.cosine, other.sine]),
             cosine: pool.dot(&[self.cosine, -self.sine], &[other.cosine, other.sine]),
-            rate: pool.add(self.rate, other.rate),
+            rate,
+            sum: None,
         }
     }
 
     fn negated(self) -> Angle {
-        Angle { sine: -self.sine, rate: -self.rate, ..self }
+        Angle { sine: -self.sine, rate: -self.rate, sum: None, ..self }
+    }
+
+    /// Of a joint; its joint variable alone if sums may be asked for.
+    fn of(pool: &mut Pool, joint: &Joint, i: usize, sums: bool) -> Angle {
+        let alone = i < usize::from(AngleSum::JOINTS) && joint.sine == pool.symbol(Symbol::Sine(i as u16));
+        let sum = (sums && alone).then_some(AngleSum { plus: 1 << i, minus: 0 });
+        Angle { sine: joint.sine, cosine: joint.cosine, rate: joint.spin, sum }
     }
 }
 
@@ -51,7 +71,8 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
             // Own axes each; those of the link before; those of link k of the run, the last one included.
             let way = plan.way(Pass::ParallelAxes, first, length + 2);
             if way > 0 {
-                orient(pool, arm, &run, way - 1);
+                let sums = plan.has(Pass::AngleSums) && plan.way(Pass::AngleSums, first, 2) == 0;
+                orient(pool, arm, &run, way - 1, sums);
             }
         }
         // Runs of a tree need not be consecutive; those of joints after the first have been seen if they are.
@@ -60,14 +81,10 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
 }
 
 /// Describes all links of the run but the last in axes at angle `reference` (0: of the link before, k: of the k-th link).
-fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize) {
-    let steps: Vec<Angle> = run
-        .iter()
-        .map(|&i| {
-            let joint = &arm.joints[i];
-            Angle { sine: joint.sine, cosine: joint.cosine, rate: joint.spin }
-        })
-        .collect();
+///
+/// The sums of their angles are inputs if `sums` says so, else they are formed by the addition theorem.
+fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize, sums: bool) {
+    let steps: Vec<Angle> = run.iter().map(|&i| Angle::of(pool, &arm.joints[i], i, sums)).collect();
     // The angle from link a of the run to link b, 0 being the link before it.
     let between = |pool: &mut Pool, a: usize, b: usize| -> Angle {
         let (low, high) = (a.min(b), a.max(b));

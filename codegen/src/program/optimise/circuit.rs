@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use crate::ring::field::{Element, Field};
-use crate::ring::{ExprId, Fingerprint, Identity, Node, Pool};
+use crate::ring::{ExprId, Fingerprint, Identity, Node, Pool, Symbol};
 
 /// Index of a gate.
 pub(super) type GateId = u32;
@@ -279,7 +279,15 @@ impl Circuit {
         let from = &self.constants;
         let mut pool = Pool::new(self.field.clone());
         let mut built: HashMap<GateId, ExprId> = HashMap::new();
-        for gate in self.order() {
+        let order = self.order();
+        // Sines of sums of angles first: nothing that is formed from those of single angles shall stand for them.
+        for &gate in &order {
+            let Gate::Leaf(expr) = self.gates[gate as usize] else { continue };
+            if let Node::Symbol(symbol @ (Symbol::SineOf(_) | Symbol::CosineOf(_))) = from.node(expr) {
+                pool.symbol(symbol);
+            }
+        }
+        for gate in order {
             let expr = match &self.gates[gate as usize] {
                 Gate::Leaf(expr) => match from.node(*expr) {
                     Node::Symbol(symbol) => pool.symbol(symbol),

@@ -5,10 +5,17 @@
 //! have to cancel.
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
+use super::share::share;
 use crate::ring::ExprId;
 
 /// Circuits with more gates than this are left alone: the work grows with the square.
 const GATES: usize = 2000;
+
+/// In circuits with more gates than this no sums are written out: pairs are shared anew for each.
+const FEW_GATES: usize = 700;
+
+/// A sum that is written out may become so much longer.
+const LONGER: usize = 1;
 
 /// A sum, written out.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -41,6 +48,102 @@ pub(super) fn sums_from_sums(circuit: &mut Circuit) -> usize {
             order = circuit.order();
             forms = self::forms(circuit, &order);
         } else {
+            circuit.gates = gates;
+            circuit.values.truncate(values);
+        }
+    }
+    before - best
+}
+
+/// Writes sums out that are no longer so, shares pairs anew, and keeps what is cheaper; the number of operations saved.
+///
+/// Parts of the sums that a sum consists of may cancel or meet: a + b, with a = x + 2 y and b = z - x, is z + 2 y, and 2 y may be there anyway.
+pub(super) fn write_out(circuit: &mut Circuit) -> usize {
+    let before = circuit.operations();
+    let mut best = before;
+    let mut order = circuit.order();
+    if order.len() > FEW_GATES {
+        return 0;
+    }
+    let mut forms = forms(circuit, &order);
+    for target in order.clone().into_iter().rev() {
+        let Some(Some(form)) = forms.get(target as usize) else { continue };
+        let Gate::Sum(now) = &circuit.gates[target as usize] else { continue };
+        let length =
+            form.terms.iter().map(|(_, k)| k.unsigned_abs() as usize).sum::<usize>() + usize::from(form.constant != ExprId::ZERO);
+        let mut written: Vec<Edge> =
+            form.terms.iter().flat_map(|&(gate, k)| (0..k.abs()).map(move |_| Edge::new(gate, k < 0))).collect();
+        if length > now.len() + LONGER || now.len() < 3 || now.iter().all(|term| written.contains(term)) {
+            continue;
+        }
+        let (gates, values, constant) = (circuit.gates.clone(), circuit.values.len(), form.constant);
+        if constant != ExprId::ZERO {
+            let gate = circuit.push_constant_or_one(constant.unsigned());
+            written.push(Edge::new(gate, constant.is_negated()));
+        }
+        circuit.gates[target as usize] = Gate::Sum(written);
+        circuit.tidy();
+        share(circuit);
+        let found = circuit.operations();
+        if found < best {
+            best = found;
+            order = circuit.order();
+            forms = self::forms(circuit, &order);
+        } else {
+            circuit.gates = gates;
+            circuit.values.truncate(values);
+        }
+    }
+    before - best
+}
+
+/// Forms a sum from another one that differs from it by a constant, where that saves operations; the number of those saved.
+///
+/// With a = x + y + 1, a + 2 and a - 3 one of the last two is x + y + 3 and the other one a constant away, if nothing else needs a.
+pub(super) fn shift_constants(circuit: &mut Circuit) -> usize {
+    let before = circuit.operations();
+    let mut best = before;
+    let mut order = circuit.order();
+    if order.len() > GATES {
+        return 0;
+    }
+    let mut forms = forms(circuit, &order);
+    for target in order.clone() {
+        let Some(Some(form)) = forms.get(target as usize).cloned() else { continue };
+        let negative: Vec<(GateId, i64)> = form.terms.iter().map(|&(gate, k)| (gate, -k)).collect();
+        let alike: Vec<(GateId, bool, ExprId)> = order
+            .iter()
+            .filter(|&&other| other != target)
+            .filter_map(|&other| {
+                let of_other = forms[other as usize].as_ref()?;
+                let negated = of_other.terms == negative;
+                (negated || of_other.terms == form.terms).then_some((other, negated, of_other.constant))
+            })
+            .collect();
+        if alike.is_empty() {
+            continue;
+        }
+        let above = circuit.above(&order, target);
+        for (other, negated, constant) in alike {
+            if above[other as usize] {
+                continue;
+            }
+            let difference = circuit.constants.sub(form.constant, constant.signed(negated));
+            let (gates, values) = (circuit.gates.clone(), circuit.values.len());
+            let mut sum = vec![Edge::new(other, negated)];
+            if difference != ExprId::ZERO {
+                let gate = circuit.push_constant_or_one(difference.unsigned());
+                sum.push(Edge::new(gate, difference.is_negated()));
+            }
+            circuit.gates[target as usize] = Gate::Sum(sum);
+            circuit.tidy();
+            let found = circuit.operations();
+            if found < best {
+                best = found;
+                order = circuit.order();
+                forms = self::forms(circuit, &order);
+                break;
+            }
             circuit.gates = gates;
             circuit.values.truncate(values);
         }

@@ -1,0 +1,133 @@
+//! Sines and cosines of sums of angles, asked for as such.
+//!
+//! Where axes are parallel, a function needs sin(q2 + q3) beside, or instead of, sin(q3). By the addition theorem the pair costs six operations,
+//! by its own argument one, and a function that needs no single angle any more for it evaluates as many sines as before. The
+//! gates that have the value of a sum's sine or cosine are found by their fingerprints; a sum is taken if operations are saved and the pairs
+//! of sine and cosine do not become more than that is worth.
+
+use std::collections::BTreeSet;
+
+use super::circuit::{Circuit, Edge, Gate, GateId};
+use crate::equations::PAIR;
+use crate::ring::{AngleSum, ExprId, Node, Symbol};
+
+/// Sums of one run of parallel axes that are tried in all combinations; those beyond are tried one by one.
+const TOGETHER: usize = 6;
+
+/// Gates that are a sine or a cosine of a sum, and the leaves that stand for them.
+struct Found {
+    replaced: Vec<(GateId, Edge)>,
+    additions: usize,
+}
+
+/// Replaces the sines and cosines of sums of angles about parallel axes; `parallel` has for each joint the one before it on such an axis, and
+/// whether that points the other way.
+pub(super) fn sums_of_angles(circuit: &mut Circuit, parallel: &[Option<(u16, bool)>]) {
+    for run in runs(parallel) {
+        let found: Vec<Found> = run.into_iter().filter_map(|sum| find(circuit, sum)).collect();
+        if found.len() <= TOGETHER {
+            let chosen = (1usize..1 << found.len()).map(|set| chosen(&found, set)).min_by_key(|chosen| weight(circuit, chosen));
+            if let Some(chosen) = chosen {
+                take_if_cheaper(circuit, &chosen);
+            }
+        } else {
+            found.iter().for_each(|one| take_if_cheaper(circuit, &[one]));
+        }
+    }
+}
+
+/// The sums of two and more angles of each run of parallel axes.
+fn runs(parallel: &[Option<(u16, bool)>]) -> Vec<Vec<AngleSum>> {
+    let mut runs: Vec<Vec<AngleSum>> = Vec::new();
+    let mut of_joint: Vec<usize> = Vec::new();
+    for (last, before) in parallel.iter().enumerate() {
+        let Some((first, _)) = before else {
+            of_joint.push(runs.len());
+            runs.push(Vec::new());
+            continue;
+        };
+        let run = of_joint[usize::from(*first)];
+        of_joint.push(run);
+        let (mut joint, mut minus) = (last as u16, false);
+        let mut sum = AngleSum { plus: 0, minus: 0 };
+        while joint < AngleSum::JOINTS {
+            *(if minus { &mut sum.minus } else { &mut sum.plus }) |= 1 << joint;
+            if joint as usize != last {
+                runs[run].push(sum.unsigned().0);
+            }
+            let Some((before, opposite)) = parallel[usize::from(joint)] else { break };
+            minus ^= opposite;
+            joint = before;
+        }
+    }
+    runs
+}
+
+/// The gates that are the sine or the cosine of a sum.
+fn find(circuit: &mut Circuit, sum: AngleSum) -> Option<Found> {
+    let order = circuit.order();
+    let mut replaced = Vec::new();
+    for symbol in [Symbol::SineOf(sum), Symbol::CosineOf(sum)] {
+        let leaf = circuit.constants.input(symbol);
+        let value = circuit.constants.fingerprint(leaf);
+        let negative = value.map(|x| circuit.field.neg(x));
+        let gates: Vec<(GateId, bool)> = order
+            .iter()
+            .filter(|&&gate| !matches!(circuit.gates[gate as usize], Gate::Leaf(_)))
+            .filter_map(|&gate| {
+                let of_gate = circuit.values[gate as usize];
+                (of_gate == value || of_gate == negative).then_some((gate, of_gate == negative))
+            })
+            .collect();
+        if !gates.is_empty() {
+            let id = circuit.push(Gate::Leaf(leaf), value);
+            replaced.extend(gates.into_iter().map(|(gate, negated)| (gate, Edge::new(id, negated))));
+        }
+    }
+    (!replaced.is_empty()).then(|| Found { replaced, additions: sum.terms().count() - 1 })
+}
+
+fn chosen(found: &[Found], set: usize) -> Vec<&Found> {
+    found.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1).map(|(_, one)| one).collect()
+}
+
+/// The cost of the circuit with some of the sums.
+fn weight(circuit: &mut Circuit, chosen: &[&Found]) -> usize {
+    let before = take(circuit, chosen);
+    let additions: usize = chosen.iter().map(|one| one.additions).sum();
+    let weight = circuit.operations() + additions + PAIR * pairs(circuit);
+    before.into_iter().for_each(|(gate, was)| circuit.gates[gate as usize] = was);
+    weight
+}
+
+fn take_if_cheaper(circuit: &mut Circuit, chosen: &[&Found]) {
+    if weight(circuit, chosen) < weight(circuit, &[]) {
+        take(circuit, chosen);
+    }
+}
+
+/// Puts leaves where sums were; what stood there.
+fn take(circuit: &mut Circuit, chosen: &[&Found]) -> Vec<(GateId, Gate)> {
+    let replaced = chosen.iter().flat_map(|one| &one.replaced);
+    replaced.map(|&(gate, leaf)| (gate, std::mem::replace(&mut circuit.gates[gate as usize], Gate::Sum(vec![leaf])))).collect()
+}
+
+/// Pairs of sine and cosine that the outputs need.
+fn pairs(circuit: &Circuit) -> usize {
+    let uses = circuit.uses();
+    let used = |gate: usize| uses[gate] > 0;
+    let leaves = (0..circuit.gates.len()).filter(|&gate| used(gate)).filter_map(|gate| match circuit.gates[gate] {
+        Gate::Leaf(expr) => angle(circuit, expr),
+        _ => None,
+    });
+    leaves.collect::<BTreeSet<AngleSum>>().len()
+}
+
+fn angle(circuit: &Circuit, expr: ExprId) -> Option<AngleSum> {
+    match circuit.constants.node(expr) {
+        // Joints beyond those that a sum can tell apart count as the last of them: they are in no sum.
+        Node::Symbol(Symbol::Sine(i) | Symbol::Cosine(i)) => Some(AngleSum { plus: 1 << i.min(AngleSum::JOINTS - 1), minus: 0 }),
+        Node::Symbol(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) => Some(sum),
+        _ => None,
+    }
+}
