@@ -361,10 +361,12 @@ impl Quantity {
         }
         derive::passes::suit(&pool, &arm, &mut plan);
         if effort > 0 {
-            let sketch = pool.sketch();
+            let (sketch, mut nodes) = (pool.sketch(), 0);
             plan = plan.search_from(self.starts(), effort, &mut |plan| {
                 let mut pool = sketch.clone();
+                pool.reserve(nodes);
                 let entries = derive(&mut pool, plan);
+                nodes = pool.len();
                 let pairs = pool.angles(&entries).len();
                 (pool.operations(&entries, DIVISION) + PAIR * pairs, pool.len())
             });

@@ -169,6 +169,7 @@ pub struct Pool {
     /// Look-up only: its order reaches nothing.
     known: HashMap<Fingerprint, ExprId, BuildHasherDefault<Identity>>,
     at_origin: Vec<Option<Rc<Number>>>,
+    symbols: BTreeMap<Symbol, ExprId>,
     /// Whether constants are known by their fingerprints alone.
     sketch: bool,
 }
@@ -232,6 +233,7 @@ impl Pool {
             constant_nodes: BTreeMap::new(),
             known: HashMap::default(),
             at_origin: Vec::new(),
+            symbols: BTreeMap::new(),
             sketch: false,
         };
         assert_eq!((pool.constant(&Number::zero()), pool.constant(&Number::one())), (ExprId::ZERO, ExprId::ONE));
@@ -244,6 +246,15 @@ impl Pool {
         let mut copy = self.clone();
         copy.sketch = true;
         copy
+    }
+
+    /// Makes room for so many nodes in all.
+    pub fn reserve(&mut self, nodes: usize) {
+        let more = nodes.saturating_sub(self.nodes.len());
+        self.nodes.reserve(more);
+        self.fingerprints.reserve(more);
+        self.at_origin.reserve(more);
+        self.known.reserve(more);
     }
 
     /// The node behind an expression; its sign is the caller's to add.
@@ -353,6 +364,15 @@ impl Pool {
 
     /// An input.
     pub fn symbol(&mut self, symbol: Symbol) -> ExprId {
+        if let Some(&known) = self.symbols.get(&symbol) {
+            return known;
+        }
+        let expr = self.new_symbol(symbol);
+        self.symbols.insert(symbol, expr);
+        expr
+    }
+
+    fn new_symbol(&mut self, symbol: Symbol) -> ExprId {
         let fingerprint = [0, 1].map(|point| self.symbol_value(symbol, point));
         if let Some(&expr) = self.known.get(&fingerprint) {
             return expr;

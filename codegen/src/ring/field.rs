@@ -23,6 +23,13 @@ const PRIMES_TRIED: usize = 4096;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Element(u64);
 
+impl Element {
+    /// The bits that stand for the element: equal for equal elements, and as good as random for those of a computation.
+    pub fn bits(self) -> u64 {
+        self.0
+    }
+}
+
 /// The field, with the values of the atoms met so far.
 #[derive(Clone, Debug)]
 pub struct Field {

@@ -9,6 +9,9 @@ use crate::ring::{ExprId, Fingerprint, Identity, Node, Pool, Symbol};
 /// Index of a gate.
 pub(super) type GateId = u32;
 
+/// So many bits tell values apart roughly.
+const MAYBE: usize = 1 << 16;
+
 /// A gate and a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Edge {
@@ -39,6 +42,8 @@ pub(super) struct Circuit {
     pub(super) outputs: Vec<Edge>,
     /// The gate of a value or of its negative, by the lesser of the two, and whether that is the negative.
     known: HashMap<Fingerprint, Edge, BuildHasherDefault<Identity>>,
+    /// A bit for each known value and its negative, by their last bits: most values that are looked for are not there.
+    maybe: Vec<u64>,
 }
 
 impl Edge {
@@ -61,6 +66,7 @@ impl Circuit {
             values: Vec::new(),
             outputs: Vec::new(),
             known: HashMap::default(),
+            maybe: vec![0; MAYBE / 64],
         };
         let mut needed = vec![false; pool.len()];
         entries.iter().for_each(|e| needed[e.index()] = true);
@@ -113,14 +119,24 @@ impl Circuit {
     /// The gates of a list are found by value from now on.
     pub(super) fn index(&mut self, gates: &[GateId]) {
         self.known.clear();
+        self.maybe.fill(0);
         for &gate in gates {
+            let value = self.values[gate as usize][0];
+            for bit in [value, self.field.neg(value)].map(|x| x.bits() as usize % MAYBE) {
+                self.maybe[bit / 64] |= 1 << (bit % 64);
+            }
             let (key, negated) = self.key(&self.values[gate as usize]);
             self.known.entry(key).or_insert(Edge { gate, negated });
         }
     }
 
     /// The gate of a value, with the sign that it is found by.
+    #[inline]
     pub(super) fn find(&self, value: &Fingerprint) -> Option<Edge> {
+        let bit = value[0].bits() as usize % MAYBE;
+        if self.maybe[bit / 64] >> (bit % 64) & 1 == 0 {
+            return None;
+        }
         let (key, negated) = self.key(value);
         self.known.get(&key).map(|edge| edge.flipped(negated))
     }
