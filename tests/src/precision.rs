@@ -6,6 +6,8 @@
 pub const REFERENCE: f64 = 1e-12;
 /// Forward dynamics, as the residual B (ddq - ddq_ref) over max(1, |tau|): free of the condition number of B.
 pub const FORWARD_RESIDUAL: f64 = 1e-12;
+/// Functions with and without a pass: each is rounded a few hundred times on its own way.
+pub const WITHOUT_A_PASS: f64 = 1e-13;
 /// Emitted functions against the oracle on random arms up to eight joints, scaled alike.
 pub const ORACLE: f64 = 1e-12;
 /// Emitted functions in f32 against the oracle in f64: a state rounds by 6e-8 and so does every step; an energy is a sum of terms larger
