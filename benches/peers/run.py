@@ -1,0 +1,298 @@
+#!/usr/bin/env python3
+"""Times the emitted functions beside Pinocchio's and CasADi's, and compares their values; README.md says how.
+
+    ./run.py                                    everything: environment, libraries, bench; minutes at the first time
+    ./run.py --venv DIR --armgen PROGRAM        with a Python environment and a built armgen that are there already
+    ./run.py --robots ur5,panda7 --rounds 101   fewer arms, steadier figures
+    ./run.py --out table.md                     the tables as Markdown, too
+"""
+import argparse
+import hashlib
+import json
+import math
+import os
+import pathlib
+import platform
+import random
+import statistics
+import subprocess
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+PROJECT = HERE.parent.parent
+BUILD = HERE / "build"
+ROBOTS = ["scara4", "puma560", "ur5", "panda7"]
+FUNCTIONS = ["direct_kinematics", "geometric_jacobian", "inertia_matrix", "coriolis_matrix", "gravity", "equations_of_motion",
+             "inverse_dynamics", "forward_dynamics", "regressor", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"]
+STATES = 64
+SEED = 20
+TOLERANCE = 1e-9
+# Below this a call costs about as much as its being called and timed.
+SHORTEST_NS = 10
+OURS = "armgen"
+
+# What Pinocchio's own cmake files define for whoever uses the library. No -march: with wider vectors Eigen's classes would be laid out
+# otherwise than in the library, which is compiled for any x86-64.
+PINOCCHIO_FLAGS = ["-O3", "-DNDEBUG", "-w", "-DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION", "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
+                   "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS", "-DBOOST_FUSION_INVOKE_MAX_ARITY=12"]
+# The wrappers are then the only callers of CasADi's functions, which the compiler merges into them.
+CASADI_FLAGS = ["-O3", "-march=native", "-DCASADI_SYMBOL_EXPORT=static", "-Wno-unused-function"]
+
+CARGO_TOML = """[package]
+name = "emitted"
+version = "0.0.0"
+edition = "2021"
+
+[lib]
+crate-type = ["cdylib"]
+
+[dependencies]
+libm = "0.2"
+
+[profile.release]
+codegen-units = 1
+lto = true
+panic = "abort"
+
+[workspace]
+"""
+MODULE = """#[allow(dead_code)]
+mod {name} {{
+    include!("{name}.rs");
+    include!("{name}_c.rs");
+}}
+"""
+
+
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def run(command, **options):
+    return subprocess.run([str(word) for word in command], check=True, **options)
+
+
+def options():
+    names = lambda text: text.split(",")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--venv", type=pathlib.Path, help="Python environment with what requirements.txt lists; one is made if not given")
+    parser.add_argument("--armgen", type=pathlib.Path, help="the built program; cargo builds it if not given")
+    parser.add_argument("--eigen", type=pathlib.Path, help="folder with Eigen/Core, if the environment has not got it")
+    parser.add_argument("--robots", type=names, default=ROBOTS, help="names in robots/, separated by commas")
+    parser.add_argument("--rounds", type=int, default=41)
+    parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the tables")
+    return parser.parse_args()
+
+
+def enter_environment(venv):
+    """Goes on in the environment that has the peers' packages, made with pip if none is named."""
+    chosen = (venv or BUILD / "venv").absolute()
+    if pathlib.Path(sys.prefix).resolve() == chosen.resolve():
+        return
+    python = chosen / "bin" / "python"
+    if not python.exists():
+        if venv:
+            sys.exit(f"{venv} is not a Python environment: it has no bin/python")
+        say("Python environment: pip installs the peers")
+        run([sys.executable, "-m", "venv", chosen])
+    if not venv:
+        made(python, (HERE / "requirements.txt").read_text(),
+             lambda: run([python, "-m", "pip", "install", "-q", "-r", HERE / "requirements.txt"]))
+    os.execv(python, [str(python), *sys.argv])
+
+
+def made(target, inputs, make):
+    """Makes the target unless it was made from the same inputs; a file beside it keeps their fingerprint."""
+    stamp, fingerprint = target.with_name(target.name + ".made"), hashlib.sha256(inputs.encode()).hexdigest()
+    if not (target.exists() and stamp.exists() and stamp.read_text() == fingerprint):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        make()
+        stamp.write_text(fingerprint)
+    return target
+
+
+def compiled(target, source, compiler, flags, libraries=()):
+    command = [os.environ.get(*compiler), *flags, source, "-o", target, *libraries]
+
+    def make():
+        say(f"compiling {target.name}")
+        run(command)
+
+    return made(target, " ".join(map(str, command)) + source.read_text(), make)
+
+
+C, CXX = ("CC", "gcc"), ("CXX", "g++")
+
+
+def pinocchio_prefix():
+    """The folder of the wheel with include/ and lib/."""
+    import pinocchio
+
+    for folder in pathlib.Path(pinocchio.__file__).parents:
+        if (folder / "include" / "pinocchio").is_dir():
+            return folder
+    sys.exit("Pinocchio's headers are not beside its Python package: the package `pin` of PyPI has them")
+
+
+def pinocchio_library(eigen):
+    prefix = pinocchio_prefix()
+    eigen = eigen or prefix / "include" / "eigen3"
+    if not (eigen / "Eigen" / "Core").exists():
+        sys.exit(f"no Eigen/Core in {eigen}: install the package `cmeel-eigen` in the environment, or name a folder with --eigen")
+    flags = ["-std=c++17", "-fPIC", "-shared", *PINOCCHIO_FLAGS, f"-I{eigen}", f"-I{prefix / 'include'}"]
+    libraries = [f"-L{prefix / 'lib'}", f"-Wl,-rpath,{prefix / 'lib'}", "-lpinocchio_default", "-lboost_serialization"]
+    return compiled(BUILD / "pinocchio.so", HERE / "pinocchio_peer.cpp", CXX, flags, libraries)
+
+
+def casadi_library(arm):
+    import casadi
+    import casadi_peer
+
+    source = BUILD / "casadi" / f"{arm.name}.c"
+    derivation = pathlib.Path(casadi_peer.__file__).read_text()
+
+    def derive():
+        say(f"deriving {source.name} with CasADi")
+        source.write_text(casadi_peer.c_text(arm))
+
+    made(source, casadi.__version__ + derivation + repr(arm), derive)
+    return compiled(source.with_suffix(".so"), source, C, ["-fPIC", "-shared", *CASADI_FLAGS], ["-lm"])
+
+
+def emitted_library(armgen, robots):
+    """One library of all arms: the emitted modules and their faces for C."""
+    crate = BUILD / "emitted"
+    (crate / "src").mkdir(parents=True, exist_ok=True)
+    program = [armgen.absolute()] if armgen else ["cargo", "run", "--release", "--quiet", "--"]
+    for robot in robots:
+        run([*program, "generate", PROJECT / "robots" / f"{robot}.yaml", "--trig", "fast", "--c-abi", "--functions", ",".join(FUNCTIONS),
+             "--out", crate / "src" / f"{robot}.rs"], cwd=PROJECT, stdout=subprocess.DEVNULL)
+    (crate / "Cargo.toml").write_text(CARGO_TOML)
+    (crate / "src" / "lib.rs").write_text("".join(MODULE.format(name=robot) for robot in robots))
+    say("compiling the emitted modules")
+    environment = dict(os.environ, RUSTFLAGS="-Ctarget-cpu=native", CARGO_TARGET_DIR=str(crate / "target"))
+    run(["cargo", "build", "--release", "--quiet"], cwd=crate, env=environment)
+    return next((crate / "target" / "release").glob("libemitted.*[os]"))
+
+
+def states_text(arm):
+    """The stored states: joint variables, rates, accelerations; the same in every run."""
+    source = random.Random(SEED)
+    lines = [str(len(arm.joints))]
+    for _ in range(STATES):
+        lines.append(" ".join(repr(source.uniform(-1, 1) * (math.pi if joint.revolute else 0.3)) for joint in arm.joints))
+        lines += [" ".join(repr(source.uniform(-limit, limit)) for _ in arm.joints) for limit in (2, 4)]
+    return "\n".join([*lines, ""])
+
+
+def race(bench, arm, libraries, rounds):
+    """What the bench measured: for each function, every peer's nanoseconds by rounds and its error."""
+    import model
+
+    states, chain = BUILD / f"{arm.name}.states", BUILD / f"{arm.name}.chain"
+    states.write_text(states_text(arm))
+    chain.write_text(model.chain_text(arm))
+    pinocchio = f"{libraries['pinocchio']}:%s:{chain}"
+    peers = [f"{OURS}={libraries[OURS]}:{arm.name}_", f"casadi={libraries['casadi']}:casadi_", "pinocchio=" + pinocchio % "call_"]
+    output = run([bench, states, rounds, "reference=" + pinocchio % "reference_", *peers], stdout=subprocess.PIPE, text=True).stdout
+    return [dict(json.loads(line), robot=arm.name) for line in output.splitlines()]
+
+
+def judge(case):
+    """Adds the medians, the fastest peer, our ratio to it, and the largest error."""
+    peers = case["peers"]
+    case["ns"] = {name: statistics.median(peer["ns"]) for name, peer in peers.items()}
+    case["fastest"] = fastest = min((name for name in peers if name != OURS), key=case["ns"].get)
+    case["ratio"] = statistics.median(ours / theirs for ours, theirs in zip(peers[OURS]["ns"], peers[fastest]["ns"]))
+    case["error"] = max(peer["error"] for peer in peers.values() if "error" in peer)
+    case["counts"] = case["ns"][fastest] >= SHORTEST_NS
+    return case
+
+
+def rows(cases, names):
+    yield ["function", *(f"{name}, ns" for name in names), f"{OURS} / fastest", "largest error"]
+    for case in cases:
+        times = [f"{case['ns'][name]:.1f}" if name in case["ns"] else "" for name in names]
+        mark = "" if case["counts"] else " *"
+        yield [case["function"], *times, f"{case['ratio']:.2f}{mark}", f"{case['error']:.0e}"]
+
+
+def table(cases):
+    names = list(dict.fromkeys(name for case in cases for name in case["peers"]))
+    return list(rows(cases, names))
+
+
+def aligned(lines, markdown=False):
+    """The lines in columns, the first one to the left, the figures to the right."""
+    widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))]
+    pad = lambda line: [line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]
+    if not markdown:
+        return "\n".join("  ".join(pad(line)) for line in lines)
+    rule = ["-" * widths[0], *("-" * (width - 1) + ":" for width in widths[1:])]
+    head, *rest = (pad(line) for line in lines)
+    return "\n".join("| " + " | ".join(line) + " |" for line in (head, rule, *rest))
+
+
+def summary(cases):
+    counted = [case for case in cases if case["counts"]]
+    if not counted:
+        return f"no case whose fastest peer needs {SHORTEST_NS} ns or more"
+    mean = statistics.geometric_mean(case["ratio"] for case in counted)
+    worst = max(counted, key=lambda case: case["ratio"])
+    return (f"{OURS} / fastest peer: geometric mean {mean:.3f} ({1 / mean:.2f} times as fast), "
+            f"worst {worst['ratio']:.2f} ({worst['robot']} {worst['function']}, {worst['fastest']}), {len(counted)} of {len(cases)} cases")
+
+
+def version(command):
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0]
+
+
+def machine():
+    import casadi
+    import pinocchio
+
+    try:
+        lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+        processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
+    except (OSError, StopIteration):
+        processor = platform.machine()
+    tools = [version([os.environ.get(*C), "--version"]), version(["rustc", "--version"])]
+    return ", ".join([processor, *tools, f"Pinocchio {pinocchio.__version__}", f"CasADi {casadi.__version__}"])
+
+
+def markdown(cases, rounds):
+    text = [f"{machine()}.", f"Median nanoseconds of a call over {rounds} rounds; the ratio is the median of those of each round.", ""]
+    for robot in dict.fromkeys(case["robot"] for case in cases):
+        text += [f"### {robot}", "", aligned(table([case for case in cases if case["robot"] == robot]), markdown=True), ""]
+    text += [f"\\* does not count: the fastest peer needs less than {SHORTEST_NS} ns.", ""] if not all(c["counts"] for c in cases) else []
+    return "\n".join([*text, summary(cases), ""])
+
+
+def main():
+    chosen = options()
+    enter_environment(chosen.venv)
+    import model
+
+    try:
+        arms = {robot: model.read_arm(PROJECT / "robots" / f"{robot}.yaml") for robot in chosen.robots}
+    except (model.Unsuitable, OSError) as reason:
+        sys.exit(f"only arms of links alone can be compared: {reason}")
+    libraries = {"pinocchio": pinocchio_library(chosen.eigen), OURS: emitted_library(chosen.armgen, chosen.robots)}
+    bench = compiled(BUILD / "bench", HERE / "bench.cpp", CXX, ["-std=c++17", "-O2"], ["-ldl"])
+    cases = []
+    for robot, arm in arms.items():
+        measured = race(bench, arm, dict(libraries, casadi=casadi_library(arm)), chosen.rounds)
+        cases += [judge(case) for case in measured]
+        print(f"{robot}\n{aligned(table(cases[-len(measured):]))}\n", flush=True)
+    wrong = [case for case in cases if not case["error"] <= TOLERANCE]
+    if chosen.out:
+        chosen.out.write_text(markdown(cases, chosen.rounds))
+    for case in wrong:
+        errors = ", ".join(f"{name} {peer['error']:.1e}" for name, peer in case["peers"].items() if "error" in peer)
+        print(f"WRONG VALUES: {case['robot']} {case['function']}: {errors}, at most {TOLERANCE:.0e} allowed")
+    print(summary(cases))
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()
