@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use serde_derive::{Deserialize, Serialize};
 
+use crate::bounds::two_digits;
 use crate::claims::Claims;
 use crate::report::{Exact, Report, Verdict};
 
@@ -19,6 +20,8 @@ pub struct Certificate {
     pub robot: String,
     /// Options of the generation that can be read from the text.
     pub options: BTreeMap<String, String>,
+    /// The box that error bounds are stated over: lowest and highest value of each argument's entries.
+    pub rounding_box: BTreeMap<String, Vec<(f64, f64)>>,
     /// The description.
     pub input: Text,
     /// The module.
@@ -55,6 +58,11 @@ pub struct FunctionEntry {
     pub exact_points: usize,
     /// Upper bound of the odds that a wrong function passes: `2^-200`.
     pub odds_of_a_miss: String,
+    /// How far rounding can take any entry from the exact one, anywhere in the box.
+    pub error_bound: String,
+    /// The bound holds where no divisor is smaller than this, if the function divides.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub smallest_divisor: Option<String>,
     /// Literals in the order of the text, each with its exact value.
     pub literals: Vec<(String, String)>,
 }
@@ -97,6 +105,8 @@ impl Certificate {
             points: f.points,
             exact_points: f.exact_points,
             odds_of_a_miss: if f.verdict == Verdict::Equal { format!("2^{:.0}", f.log2_odds.ceil()) } else { String::new() },
+            error_bound: f.bound.as_ref().map_or(String::new(), |bound| two_digits(bound.largest())),
+            smallest_divisor: f.bound.as_ref().and_then(|bound| Some(format!("{:.1e}", bound.smallest_divisor?))),
             literals: literals(&f.literals),
         });
         let constants = report.constants.iter().map(|c| ConstantEntry {
@@ -122,6 +132,18 @@ impl Certificate {
                 .filter(|(_, value)| !value.is_empty())
                 .map(|(name, value)| (name.to_string(), value.clone()))
                 .collect(),
+            rounding_box: [
+                ("q", &report.domain.q),
+                ("dq", &report.domain.dq),
+                ("ddq", &report.domain.ddq),
+                ("dqr", &report.domain.dqr),
+                ("ddqr", &report.domain.ddqr),
+                ("tau", &report.domain.tau),
+                ("pi", &report.domain.pi),
+            ]
+            .into_iter()
+            .map(|(name, entries)| (name.to_string(), entries.clone()))
+            .collect(),
             input: Text { sha256: report.input.clone() },
             output: Text { sha256: report.output.clone() },
             verified: report.passed(),

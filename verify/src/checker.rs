@@ -13,7 +13,7 @@ use crate::claims::{Claims, Resolved};
 use crate::contract::{Promise, UNJUDGED};
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
-use crate::equations::parameters::Vector;
+use crate::equations::parameters::{Standard, Vector};
 use crate::equations::state::State;
 use crate::formula::{Atoms, Formula};
 use crate::program::Program;
@@ -93,6 +93,7 @@ pub struct Checker {
     exact: Vec<Point<Tower>>,
     roots: usize,
     circles: usize,
+    base_columns: Option<Vec<Standard>>,
 }
 
 /// Collects the constants of a description: an arithmetic whose numbers are of no interest.
@@ -120,14 +121,17 @@ fn constants_of(manipulator: &Manipulator) -> Vec<Formula> {
 }
 
 impl Checker {
-    /// Random points for an arm whose parameter vector is `vector`; `extras` for modules with functions beyond the required ones.
+    /// Random points for an arm whose parameter vector is `vector`; `extras` for modules with functions beyond the required ones,
+    /// `base_columns` for those with a `base_regressor`.
     pub fn new(
         manipulator: Manipulator,
         vector: Vector,
         claims: Claims,
         effort: Effort,
         extras: bool,
+        base_columns: Option<Vec<Standard>>,
     ) -> Result<Checker, String> {
+        let wanted = |base: BaseParameters| Wanted { extras, base, base_columns: base_columns.as_deref() };
         let constants = constants_of(&manipulator);
         let atoms = Atoms::of(constants.iter().chain(claims.formulas()));
         let mut stream = Stream::new(effort.seed);
@@ -135,16 +139,16 @@ impl Checker {
         for _ in 0..effort.points {
             let mut field =
                 Prime::new(&mut stream, &atoms).ok_or("the constants have too many square roots for a prime field")?;
-            let reference = Reference::new(&mut field, &manipulator, &vector, Wanted { extras, base: BaseParameters::Solved })?;
+            let reference = Reference::new(&mut field, &manipulator, &vector, wanted(BaseParameters::Solved))?;
             points.push(Point { arithmetic: field, reference, constants: RefCell::default() });
         }
         for _ in 0..effort.exact_points {
             let Some(mut tower) = Tower::new(&mut stream, &atoms) else { break };
-            let reference = Reference::new(&mut tower, &manipulator, &vector, Wanted { extras, base: BaseParameters::LeftOut })?;
+            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::LeftOut))?;
             exact.push(Point { arithmetic: tower, reference, constants: RefCell::default() });
         }
         let circles = manipulator.joints.len() + atoms.angles.len();
-        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles })
+        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles, base_columns })
     }
 
     /// The arm.
@@ -191,7 +195,7 @@ impl Checker {
             && self.exact.iter().all(|p| p.reference.two_derivations_agree)
     }
 
-    /// All functions of a module, those that it lacks last.
+    /// All functions of a module.
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
         let mut reports: Vec<FunctionReport> = module
             .functions
@@ -204,11 +208,6 @@ impl Checker {
                 if let Some(program) = module.program(&report.name) {
                     report.log2_odds = odds.of(program, report) * self.points.len() as f64;
                 }
-            }
-        }
-        for name in Promise::required() {
-            if !module.functions.iter().any(|(other, _)| *other == name) {
-                reports.push(refused(&name, "the module does not have it".into()));
             }
         }
         reports
@@ -229,7 +228,8 @@ impl Checker {
         }
         let program = &function.program;
         let (n, p, m) = (self.manipulator.joints.len(), self.parameters(), self.manipulator.task.len());
-        let places = promise.shape.places(n, p, m);
+        let b = self.base_columns.as_ref().map_or(0, Vec::len);
+        let places = promise.shape.places(n, p, b, m);
         if program.outputs.iter().map(|o| &o.place).ne(&places) {
             return refused(name, format!("its result does not have the {} entries that it should", places.len()));
         }
@@ -258,6 +258,7 @@ impl Checker {
             exact_points,
             log2_odds: 0.0,
             literals: literals.map(|(l, value)| Exact { literal: l.text.clone(), value: value.clone() }).collect(),
+            bound: None,
         }
     }
 
@@ -311,7 +312,7 @@ impl Odds {
     fn new(checker: &Checker, reports: &[FunctionReport]) -> Option<Odds> {
         let literals = reports.iter().flat_map(|r| &r.literals).map(|exact| &exact.value);
         let mut degrees = Degrees::new(constants_of(&checker.manipulator).iter().chain(literals));
-        let wanted = Wanted { extras: true, base: BaseParameters::Free };
+        let wanted = Wanted { extras: true, base: BaseParameters::Free, base_columns: checker.base_columns.as_deref() };
         let reference = Reference::new(&mut degrees, &checker.manipulator, &checker.vector, wanted).ok()?;
         Some(Odds { degrees, reference, circles: checker.circles, roots: checker.roots })
     }
@@ -335,7 +336,7 @@ impl Odds {
 
 fn refused(name: &str, why: String) -> FunctionReport {
     let verdict = Verdict::Refused(why);
-    FunctionReport { name: name.into(), verdict, points: 0, exact_points: 0, log2_odds: 0.0, literals: Vec::new() }
+    FunctionReport { name: name.into(), verdict, points: 0, exact_points: 0, log2_odds: 0.0, literals: Vec::new(), bound: None }
 }
 
 /// An index that its argument does not have: the reader knows arguments by name only.

@@ -66,18 +66,41 @@ fn numbers(constant: &Constant, expected: &Expected, into: &mut Vec<Exact>) {
     }
 }
 
+/// Names that a constant of the module lists; `None` if there is no such constant.
+pub fn names(module: &Module, constant: &str) -> Option<Vec<String>> {
+    let (_, Constant::Array(names)) = module.constants.get(constant)? else { return Some(Vec::new()) };
+    let text = |name: &Constant| match name {
+        Constant::Text(name) => name.clone(),
+        _ => String::new(),
+    };
+    Some(names.iter().map(text).collect())
+}
+
 /// Names of the parameters as the module lists them.
 pub fn parameter_names(module: &Module) -> Vec<String> {
-    match module.constants.get("PARAMETER_NAMES") {
-        Some((_, Constant::Array(names))) => names
-            .iter()
-            .map(|name| match name {
-                Constant::Text(name) => name.clone(),
-                _ => String::new(),
-            })
-            .collect(),
-        _ => Vec::new(),
+    names(module, "PARAMETER_NAMES").unwrap_or_default()
+}
+
+/// The exact values of so many base parameters as claimed; the decimals that stand there where nothing is claimed.
+fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
+    let claimed = claims.of(constant);
+    if claimed.len() == length {
+        return Some(claimed.to_vec());
     }
+    let (_, Constant::Array(entries)) = module.constants.get(constant)? else { return None };
+    let literal = |entry: &Constant| match entry {
+        Constant::Number(negative, Literal { text, .. }) => {
+            let size = crate::formula::decimal(text).ok()?;
+            Some(if *negative { crate::arithmetic::Element::negated(&size) } else { size })
+        }
+        _ => None,
+    };
+    entries.iter().map(literal).collect()
+}
+
+/// The nominal base parameters of a module with a `base_regressor`, as claimed: with them it must give the torques.
+pub fn nominal_base_parameters(claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
+    claimed("NOMINAL_BASE_PARAMETERS", names(module, "BASE_PARAMETER_NAMES")?.len(), claims, module)
 }
 
 /// The exact nominal parameters: from the description, or with base parameters as claimed (they are compared with the description's at the
@@ -90,25 +113,16 @@ pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &C
             let arm = Arm::new(&Plain, manipulator, &names)?;
             Some(all.iter().map(|parameter| parameter.value(&arm)).collect())
         }
-        Vector::Base(base, _) => {
-            let claimed = claims.of("NOMINAL_PARAMETERS");
-            if claimed.len() == base.len() {
-                return Some(claimed.to_vec());
-            }
-            let (_, Constant::Array(entries)) = module.constants.get("NOMINAL_PARAMETERS")? else { return None };
-            let literal = |entry: &Constant| match entry {
-                Constant::Number(negative, Literal { text, .. }) => {
-                    let size = crate::formula::decimal(text).ok()?;
-                    Some(if *negative { crate::arithmetic::Element::negated(&size) } else { size })
-                }
-                _ => None,
-            };
-            entries.iter().map(literal).collect()
-        }
+        Vector::Base(base, _) => claimed("NOMINAL_PARAMETERS", base.len(), claims, module),
     }
 }
 
-fn expected(checker: &Checker, nominal: &[Formula], names: &[String]) -> Vec<(&'static str, &'static str, Expected)> {
+fn expected(
+    checker: &Checker,
+    module: &Module,
+    nominal: &[Formula],
+    names: &[String],
+) -> Vec<(&'static str, &'static str, Expected)> {
     let manipulator = checker.manipulator();
     let joints = &manipulator.joints;
     let array = |entries: Vec<Expected>| Expected::Array(entries);
@@ -124,7 +138,7 @@ fn expected(checker: &Checker, nominal: &[Formula], names: &[String]) -> Vec<(&'
     let velocity = joints.iter().map(|j| bound(j.limits.velocity.as_ref(), false));
     let effort = joints.iter().map(|j| bound(j.limits.effort.as_ref(), false));
     let parameter_names = checker.vector().names(manipulator).unwrap_or_else(|| names.to_vec());
-    vec![
+    let mut all = vec![
         ("NAME", "&str", Expected::Text(manipulator.name.clone())),
         ("DOF", "usize", Expected::Integer(joints.len() as u64)),
         ("JOINT_NAMES", "[&str;DOF]", texts(joints.iter().map(|j| j.name.clone()).collect())),
@@ -141,13 +155,21 @@ fn expected(checker: &Checker, nominal: &[Formula], names: &[String]) -> Vec<(&'
         ("PARAMETERS", "usize", Expected::Integer(parameter_names.len() as u64)),
         ("PARAMETER_NAMES", "[&str;PARAMETERS]", texts(parameter_names)),
         ("NOMINAL_PARAMETERS", "[Real;PARAMETERS]", array(nominal.iter().cloned().map(Expected::Number).collect())),
-    ]
+    ];
+    if let Some(names) = self::names(module, "BASE_PARAMETER_NAMES") {
+        let nominal = nominal_base_parameters(checker.claims(), module).unwrap_or_default();
+        all.push(("BASE_PARAMETERS", "usize", Expected::Integer(names.len() as u64)));
+        all.push(("BASE_PARAMETER_NAMES", "[&str;BASE_PARAMETERS]", texts(names)));
+        let nominal = nominal.into_iter().map(Expected::Number).collect();
+        all.push(("NOMINAL_BASE_PARAMETERS", "[Real;BASE_PARAMETERS]", array(nominal)));
+    }
+    all
 }
 
 /// All constants of a module.
 pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<ConstantReport> {
     let names = parameter_names(module);
-    let expected = expected(checker, nominal, &names);
+    let expected = expected(checker, module, nominal, &names);
     let mut reports = Vec::new();
     for (name, ty, expected) in &expected {
         let mut literals = Vec::new();

@@ -2,7 +2,7 @@
 
 use crate::program::Argument;
 
-/// Shape of a result, in terms of the n joints, the p parameters and the m rows of the task.
+/// Shape of a result, in terms of the n joints, the p parameters, the b base parameters and the m rows of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A number.
@@ -19,6 +19,8 @@ pub enum Shape {
     Square,
     /// n x p.
     Regressor,
+    /// n x b, of the base parameters.
+    BaseRegressor,
     /// n x n, n x n, n.
     EquationsOfMotion,
     /// m x m.
@@ -53,7 +55,7 @@ const fn extra(name: &'static str, arguments: &'static [&'static str], shape: Sh
 }
 
 /// All functions that the checker knows.
-pub const PROMISES: [Promise; 20] = [
+pub const PROMISES: [Promise; 21] = [
     promise("direct_kinematics", &["q"], Shape::Frame, false),
     promise("link_frames", &["q"], Shape::Frames, false),
     promise("geometric_jacobian", &["q"], Shape::Jacobian, false),
@@ -71,6 +73,7 @@ pub const PROMISES: [Promise; 20] = [
     promise("potential_energy", &["q"], Shape::Scalar, true),
     extra("momentum", &["q", "dq"], Shape::Vector),
     extra("coriolis_transpose_times", &["q", "dq"], Shape::Vector),
+    extra("base_regressor", &["q", "dq", "ddq"], Shape::BaseRegressor),
     extra("operational_inertia", &["q"], Shape::Task),
     extra("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Shape::TwoSquares),
     extra("forward_dynamics_derivatives", &["q", "dq", "tau"], Shape::ThreeSquares),
@@ -90,6 +93,7 @@ impl Shape {
             Shape::Jacobian => "[[Real;DOF];6]",
             Shape::Square => "[[Real;DOF];DOF]",
             Shape::Regressor => "[[Real;PARAMETERS];DOF]",
+            Shape::BaseRegressor => "[[Real;BASE_PARAMETERS];DOF]",
             Shape::EquationsOfMotion => "EquationsOfMotion",
             Shape::Task => "[[Real;TASK_ROWS];TASK_ROWS]",
             Shape::TwoSquares => "([[Real;DOF];DOF],[[Real;DOF];DOF])",
@@ -98,7 +102,7 @@ impl Shape {
     }
 
     /// Places of the entries, in order.
-    pub fn places(self, n: usize, p: usize, m: usize) -> Vec<String> {
+    pub fn places(self, n: usize, p: usize, b: usize, m: usize) -> Vec<String> {
         let matrix = |name: &str, rows: usize, columns: usize| -> Vec<String> {
             (0..rows).flat_map(|i| (0..columns).map(move |j| format!("{name}[{i}][{j}]"))).collect()
         };
@@ -111,6 +115,7 @@ impl Shape {
             Shape::Jacobian => matrix("", 6, n),
             Shape::Square => matrix("", n, n),
             Shape::Regressor => matrix("", n, p),
+            Shape::BaseRegressor => matrix("", n, b),
             Shape::EquationsOfMotion => [matrix(".inertia", n, n), matrix(".coriolis", n, n), vector(".gravity")].concat(),
             Shape::Task => matrix("", m, m),
             Shape::TwoSquares => [matrix(".0", n, n), matrix(".1", n, n)].concat(),

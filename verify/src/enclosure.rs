@@ -140,16 +140,17 @@ fn arctangent(n: u32, bits: usize) -> Interval {
 
 /// sin (first = 1) or cos (first = 0) of an angle below 256 rad, by the series at its lower end, widened by its width (slopes are at most 1).
 fn series(angle: &Interval, first: u32, bits: usize) -> Option<Interval> {
-    const GUARD: usize = 800;
-    if angle.low.clone().abs() >> bits >= IBig::from(256) {
+    let size = angle.low.clone().abs() >> bits;
+    if size >= IBig::from(256) {
         return None;
     }
-    let work = bits + GUARD;
-    let x = angle.low.clone() << GUARD;
+    // Terms first grow, up to e^x < 2^(1.5 x), and so do the errors carried along.
+    let guard = 24 + 3 * (usize::try_from(size).unwrap_or(256) + 1);
+    let work = bits + guard;
+    let x = angle.low.clone() << guard;
     let square: IBig = (&x * &x) >> work;
     let mut term = if first == 1 { x } else { IBig::ONE << work };
     let (mut sum, mut k, mut steps) = (IBig::ZERO, first, 0u32);
-    // Terms first grow up to e^256 < 2^370 and so do the errors carried along; the guard bits cover them.
     while !term.is_zero() && term != IBig::NEG_ONE {
         sum += &term;
         term = -((term * &square) >> work) / IBig::from((k + 1) * (k + 2));
@@ -158,7 +159,7 @@ fn series(angle: &Interval, first: u32, bits: usize) -> Option<Interval> {
     }
     let width = &angle.high - &angle.low + IBig::from(2);
     debug_assert!(steps < 1 << 16);
-    let value = sum >> GUARD;
+    let value = sum >> guard;
     Some(Interval { low: &value - &width, high: value + width })
 }
 

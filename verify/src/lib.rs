@@ -21,16 +21,20 @@
 //! # }
 //! ```
 //!
-//! What is not covered: that the compiler and libm do what they promise, the size of rounding errors, and documentation comments.
+//! What is not covered: that the compiler and libm do what they promise, and documentation comments. How far rounding takes the functions
+//! from the equations is bounded a priori ([`bounds`](mod@bounds)) and at a state ([`companion`](mod@companion)), and measured ([`errors`]).
 
 pub mod arithmetic;
+pub mod bounds;
 pub mod certificate;
 pub mod checker;
 pub mod claims;
+pub mod companion;
 pub mod constants;
 pub mod contract;
 pub mod enclosure;
 pub mod equations;
+pub mod errors;
 pub mod float;
 pub mod formula;
 pub mod identities;
@@ -51,7 +55,7 @@ use checker::{Checker, Effort};
 use claims::Claims;
 use contract::Promise;
 use enclosure::Float;
-use equations::parameters::Vector;
+use equations::parameters::{base_parameters, Vector};
 use formula::Formula;
 use reader::Module;
 use report::{Report, Verdict};
@@ -79,7 +83,11 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
     let module = Module::read(text)?;
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
-    let checker = Checker::new(manipulator, vector, claims, effort, extras)?;
+    let base = match constants::names(&module, "BASE_PARAMETER_NAMES") {
+        Some(names) => Some(base_parameters(&manipulator, &names)?.into_iter().map(|(parameter, _)| parameter).collect()),
+        None => None,
+    };
+    let checker = Checker::new(manipulator, vector, claims, effort, extras, base)?;
     Ok(Prepared { module, checker })
 }
 
@@ -151,6 +159,22 @@ pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, Str
     test_kit::test_kit(&manipulator, &Module::read(text)?, import)
 }
 
+/// Puts the error bounds of all functions into the documentation of what was generated: see [`bounds`](mod@bounds).
+pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
+    let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
+    let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
+    let module = Module::read(&generated.module)?;
+    let bounds = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));
+    generated.module = bounds::document(&generated.module, &bounds);
+    Ok(())
+}
+
+/// The companion of what was generated, with a running error bound for each function: see [`companion`](mod@companion). `import` brings in the
+/// module's types: `use super::robot::*;`.
+pub fn companion(generated: &Generated, import: &str) -> Result<String, String> {
+    companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants), import)
+}
+
 fn fill(report: &mut Report, prepared: &Prepared) {
     let Prepared { module, checker } = prepared;
     report.scalar = match module.real {
@@ -162,6 +186,13 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     let nominal: Vec<Formula> = nominal.unwrap_or_default();
     report.constants = constants::check(checker, module, &nominal);
     report.functions = checker.functions(module);
+    report.domain = bounds::domain_of(checker.manipulator(), module);
+    for function in report.functions.iter_mut().filter(|f| f.verdict == Verdict::Equal) {
+        let Some(program) = module.program(&function.name) else { continue };
+        let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
+        let errors = bounds::literal_errors(program, &values, module.real);
+        function.bound = Some(bounds::a_priori(program, &errors, &report.domain, module.real));
+    }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
 }

@@ -143,11 +143,13 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
 
 /// Which of the equations a reference is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
+pub struct Wanted<'a> {
     /// The functions that only some modules have.
     pub extras: bool,
     /// How the functions at run-time base parameters are had.
     pub base: BaseParameters,
+    /// Columns of `base_regressor`, if the module has one.
+    pub base_columns: Option<&'a [Standard]>,
 }
 
 /// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations.
@@ -167,7 +169,7 @@ impl<E: Element> Reference<E> {
         arithmetic: &mut K,
         manipulator: &Manipulator,
         vector: &Vector,
-        wanted: Wanted,
+        wanted: Wanted<'_>,
     ) -> Result<Reference<E>, String> {
         let state = State::draw(arithmetic, manipulator.joints.len());
         Reference::at(arithmetic, manipulator, vector, state, wanted)
@@ -179,7 +181,7 @@ impl<E: Element> Reference<E> {
         manipulator: &Manipulator,
         vector: &Vector,
         mut state: State<E>,
-        wanted: Wanted,
+        wanted: Wanted<'_>,
     ) -> Result<Reference<E>, String> {
         let divided = || "a constant of the description divides by zero here".to_string();
         let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
@@ -192,6 +194,13 @@ impl<E: Element> Reference<E> {
         if wanted.extras {
             let task: Vec<usize> = manipulator.task.iter().map(|row| row.index()).collect();
             extras(&arm, &state, &task, &mut values).ok_or_else(singular)?;
+        }
+
+        if let Some(kept) = wanted.base_columns {
+            let moving = State { dqr: state.dq.clone(), ddqr: state.ddq.clone(), ..state.clone() };
+            let columns = standard_columns(&arm, &moving, kept, LinkFrames::Joint);
+            let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
+            values.insert("base_regressor".into(), y);
         }
 
         let (mut elsewhere, mut nominal_base) = (None, None);

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::bounds::{Bound, Domain};
+use crate::contract::Promise;
 use crate::formula::Formula;
 
 /// What is said of a function or a constant.
@@ -44,6 +46,8 @@ pub struct FunctionReport {
     pub log2_odds: f64,
     /// Its literals in the order of the text.
     pub literals: Vec<Exact>,
+    /// How far rounding can take its entries from the exact ones over the box, where it equals the equations.
+    pub bound: Option<Bound>,
 }
 
 /// What is said of a constant.
@@ -85,10 +89,12 @@ pub struct Report {
     pub faults: Vec<String>,
     /// Constants.
     pub constants: Vec<ConstantReport>,
-    /// Functions in the order of the text, missing ones last.
+    /// Functions in the order of the text.
     pub functions: Vec<FunctionReport>,
     /// Identities.
     pub identities: Vec<IdentityReport>,
+    /// The box that error bounds are stated over.
+    pub domain: Domain,
 }
 
 impl Report {
@@ -104,6 +110,7 @@ impl Report {
             constants: Vec::new(),
             functions: Vec::new(),
             identities: Vec::new(),
+            domain: Domain::default(),
         }
     }
 
@@ -175,6 +182,11 @@ impl fmt::Display for Report {
                 Ok(false) => writeln!(f, "DOES NOT HOLD: {}", report.name)?,
                 Err(why) => writeln!(f, "NOT CHECKED: {}: {why}", report.name)?,
             }
+        }
+        let absent = |name: &String| !self.functions.is_empty() && self.functions.iter().all(|f| f.name != *name);
+        let absent: Vec<String> = Promise::required().into_iter().filter(absent).collect();
+        if !absent.is_empty() {
+            writeln!(f, "not in the module: {}", absent.join(", "))?;
         }
         write!(f, "{}", if self.passed() { "verified" } else { "NOT verified" })
     }

@@ -12,7 +12,7 @@ use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Arithmetic, Element, Stream};
 use crate::contract::{Promise, PROMISES};
 use crate::enclosure::Float;
-use crate::equations::parameters::Vector;
+use crate::equations::parameters::{base_parameters, Standard, Vector};
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
@@ -91,6 +91,10 @@ fn list(values: &[f64], real: Float) -> String {
 /// The text of the test file. `import` brings the module in as `robot`: `use my_crate::robot;`, or
 /// `#[path = "../src/robot.rs"] mod robot;`.
 pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Result<String, String> {
+    let missing = Promise::required().into_iter().find(|name| module.program(name).is_none());
+    if let Some(name) = missing {
+        return Err(format!("a test file is for all functions, and the module has no `{name}`"));
+    }
     let vector = Vector::of(manipulator, &crate::constants::parameter_names(module))?;
     let (n, p) = (manipulator.joints.len(), crate::constants::parameter_names(module).len());
     let mut fine = Fine(Stream::new(1));
@@ -102,6 +106,11 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
         env!("CARGO_PKG_VERSION")
     );
     let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
+    let base = crate::constants::names(module, "BASE_PARAMETER_NAMES");
+    let columns: Option<Vec<Standard>> = match base {
+        Some(names) => Some(base_parameters(manipulator, &names)?.into_iter().map(|(parameter, _)| parameter).collect()),
+        None => None,
+    };
     let extras = PROMISES.iter().any(|p| !p.required && present(p.name));
     let mut states = String::new();
     let mut values = String::new();
@@ -120,7 +129,7 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
             write(&arguments.pi)
         );
         let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
-        let wanted = Wanted { extras, base: BaseParameters::LeftOut };
+        let wanted = Wanted { extras, base: BaseParameters::LeftOut, base_columns: columns.as_deref() };
         let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
         for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
             let Some((promise, with)) = Promise::of(name) else { continue };

@@ -20,7 +20,7 @@ use armgen_verify::contract::{Promise, UNJUDGED};
 use armgen_verify::enclosure::Float;
 use armgen_verify::float::Arguments;
 use armgen_verify::program::Program;
-use armgen_verify::reader::Module;
+use armgen_verify::reader::{Constant, Module};
 use armgen_verify::report::Verdict;
 use armgen_verify::{constants, prepare};
 
@@ -47,6 +47,15 @@ fn changed_entries(a: &Program, b: &Program, real: Float, states: &[Arguments<f6
         }
     }
     a.outputs.iter().zip(changed).filter(|(_, changed)| *changed).map(|(output, _)| output.place.clone()).collect()
+}
+
+/// Whether two constants have the same value, however it is written.
+fn same_bits(a: &Constant, b: &Constant) -> bool {
+    match (a, b) {
+        (Constant::Array(a), Constant::Array(b)) => a.iter().zip(b).all(|(a, b)| same_bits(a, b)),
+        (Constant::Number(p, a), Constant::Number(q, b)) => p == q && a.value == b.value,
+        (a, b) => a == b,
+    }
 }
 
 /// Whether two programs agree to 40 digits at some states: what tells them apart then is rounding alone.
@@ -98,7 +107,7 @@ fn check(name: &str, scalar: Scalar, wanted: usize) {
         let changed = Module::read(&text).expect("a changed module still is one");
         let is_constant = module.constants.contains_key(&change.name);
         let verdict = if is_constant {
-            if changed.constants == module.constants {
+            if same_bits(&changed.constants[&change.name].1, &module.constants[&change.name].1) {
                 idle += 1;
                 continue;
             }

@@ -178,18 +178,7 @@ impl Vector {
         match &manipulator.regressor {
             RegressorChoice::Names(ids) => Ok(Vector::Names(ids.iter().map(|id| id.0 as usize).collect())),
             RegressorChoice::Standard => Ok(Vector::Standard(Standard::all(manipulator))),
-            RegressorChoice::Base => {
-                let all = Standard::all(manipulator);
-                let base: Result<Vec<(Standard, bool)>, String> = names
-                    .iter()
-                    .map(|name| {
-                        let find = |name: &str| all.iter().copied().find(|p| p.name() == name);
-                        let carrying = || Some((find(name.strip_suffix('R')?)?, true));
-                        find(name).map(|p| (p, false)).or_else(carrying).ok_or(format!("`{name}` is no base parameter's name"))
-                    })
-                    .collect();
-                Ok(Vector::Base(base?, all))
-            }
+            RegressorChoice::Base => Ok(Vector::Base(base_parameters(manipulator, names)?, Standard::all(manipulator))),
         }
     }
 
@@ -201,6 +190,17 @@ impl Vector {
             Vector::Base(..) => None,
         }
     }
+}
+
+/// Base parameters by their names, each with whether it carries others.
+pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Vec<(Standard, bool)>, String> {
+    let all = Standard::all(manipulator);
+    let find = |name: &str| all.iter().copied().find(|p| p.name() == name);
+    let base = |name: &String| {
+        let carrying = || Some((find(name.strip_suffix('R')?)?, true));
+        find(name).map(|p| (p, false)).or_else(carrying).ok_or(format!("`{name}` is no base parameter's name"))
+    };
+    names.iter().map(base).collect()
 }
 
 /// The matrix M of pi_base = M phi_standard, row by row, and whether the base columns are independent and span all others.

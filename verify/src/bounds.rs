@@ -1,0 +1,373 @@
+//! A-priori error bounds: how far rounding can take the entries of a function from the exact ones, anywhere in a box of arguments.
+//!
+//! Every step has an interval that its exact value cannot leave and a bound of its error; both follow from those of its operands, by interval
+//! arithmetic and by the rules of [`crate::companion`] with the largest sizes in place of the values:
+//!
+//! ```text
+//! |fl(x + y) - (x* + y*)| ≤ e_x + e_y + u (|x + y|max + e_x + e_y)          and so on
+//! ```
+//!
+//! Divisors are pivots of B, positive for every arm; how small they can become intervals do not show. A bound for a function that divides is
+//! therefore one for states where every divisor is at least half of the smallest among some thousand states of the box, and says so.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::manipulator::{JointKind, Manipulator};
+
+use crate::arithmetic::Stream;
+use crate::claims::Claims;
+use crate::enclosure::Float;
+use crate::equations::arm::formula;
+use crate::float::Arguments;
+use crate::formula::{Formula, Rational};
+use crate::program::{Argument, Literal, Program, Step};
+use crate::reader::{Constant, Module};
+
+/// Whether a float is a power of two whose products neither round nor leave the normal range for values of any robot.
+pub fn is_power_of_two(value: f64) -> bool {
+    let mantissa = value.to_bits() & ((1 << 52) - 1);
+    value != 0.0 && mantissa == 0 && (1e-6..1e6).contains(&value.abs())
+}
+
+/// How far the literals of a program are from the exact values they stand for: 0 where the float is exact.
+pub fn literal_errors(program: &Program, values: &[Formula], real: Float) -> Vec<f64> {
+    let error = |(literal, exact): (&Literal, &Formula)| {
+        let same = exact.as_rational().is_some_and(|e| Rational::try_from(literal.value).is_ok_and(|f| f == *e));
+        if same {
+            0.0
+        } else {
+            real.unit() * literal.value.abs()
+        }
+    };
+    program.literals.iter().zip(values).map(error).collect()
+}
+
+/// Lowest and highest value of each argument's entries.
+pub type Domain = Arguments<(f64, f64)>;
+
+/// A bound over a domain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// By entry; infinite where there is none.
+    pub entries: Vec<f64>,
+    /// The bound holds where no divisor is smaller than this, if there are divisors.
+    pub smallest_divisor: Option<f64>,
+}
+
+impl Bound {
+    /// The largest of all entries.
+    pub fn largest(&self) -> f64 {
+        self.entries.iter().fold(0.0, |a, &b| if b > a || b.is_nan() { b } else { a })
+    }
+}
+
+/// The box for an arm: position and velocity limits and efforts where the description gives them; else a full turn or a metre to either
+/// side, 4 rad/s or 1 m/s, 200 N m or N. Accelerations up to 10, references like what they are references of, parameters from half to twice the nominal.
+pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
+    let float = |n: &armgen_codegen::exact::Number| Float::F64.nearest(&formula(n));
+    let mut domain = Domain::default();
+    for joint in &manipulator.joints {
+        let revolute = joint.kind == JointKind::Revolute;
+        let free = if revolute { std::f64::consts::PI } else { 1.0 };
+        let limits = joint.limits.position.as_ref().and_then(|[low, high]| Some((float(low)?, float(high)?)));
+        domain.q.push(limits.unwrap_or((-free, free)));
+        let symmetric = |limit: Option<f64>, otherwise: f64| {
+            let size = limit.unwrap_or(otherwise);
+            (-size, size)
+        };
+        let rate = symmetric(joint.limits.velocity.as_ref().and_then(float), if revolute { 4.0 } else { 1.0 });
+        domain.dq.push(rate);
+        domain.dqr.push(rate);
+        domain.ddq.push((-10.0, 10.0));
+        domain.ddqr.push((-10.0, 10.0));
+        domain.tau.push(symmetric(joint.limits.effort.as_ref().and_then(float), 200.0));
+    }
+    let around = |&value: &f64| {
+        let ends = (value / 2.0, value * 2.0);
+        if value < 0.0 {
+            (ends.1, ends.0)
+        } else {
+            ends
+        }
+    };
+    domain.pi = nominal.iter().map(around).collect();
+    domain
+}
+
+/// A random point of a domain, each entry rounded to the scalar.
+pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
+    let mut uniform = |&(low, high): &(f64, f64)| {
+        let value = low + (high - low) * ((stream.bits() >> 11) as f64 / (1u64 << 53) as f64);
+        let value = match real {
+            Float::F64 => value,
+            Float::F32 => f64::from(value as f32),
+        };
+        value.clamp(low, high)
+    };
+    let mut all = |v: &[(f64, f64)]| v.iter().map(&mut uniform).collect();
+    Arguments {
+        q: all(&domain.q),
+        dq: all(&domain.dq),
+        ddq: all(&domain.ddq),
+        dqr: all(&domain.dqr),
+        ddqr: all(&domain.ddqr),
+        tau: all(&domain.tau),
+        pi: all(&domain.pi),
+    }
+}
+
+/// An interval around the exact value, and how far the computed one can be from it.
+#[derive(Clone, Copy, Debug)]
+struct Range {
+    low: f64,
+    high: f64,
+    error: f64,
+}
+
+/// A little more, for the roundings of the bounds themselves.
+const OUTWARD: f64 = 1.0 + 1e-14;
+
+impl Range {
+    fn exact(low: f64, high: f64) -> Range {
+        Range { low, high, error: 0.0 }
+    }
+
+    fn of(ends: &[f64], error: f64) -> Range {
+        let low = ends.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let high = ends.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+        let widen = |x: f64, sign: f64| x + sign * (x.abs() * 1e-15 + f64::MIN_POSITIVE);
+        Range { low: widen(low, -1.0), high: widen(high, 1.0), error: error * OUTWARD }
+    }
+
+    fn size(&self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+}
+
+/// The range of sine (or cosine, a quarter turn on) over an interval.
+fn wave(low: f64, high: f64, shift: f64) -> (f64, f64) {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let (a, b) = (low + shift, high + shift);
+    // Whether a quarter turn plus k turns lies in the interval, with some slack.
+    let contains = |peak: f64| ((a - peak - 1e-9) / (2.0 * PI)).ceil() * 2.0 * PI + peak <= b + 1e-9;
+    let ends = [a.sin(), b.sin()];
+    let low = if contains(-FRAC_PI_2) { -1.0 } else { ends[0].min(ends[1]) - 1e-9 };
+    let high = if contains(FRAC_PI_2) { 1.0 } else { ends[0].max(ends[1]) + 1e-9 };
+    (low.max(-1.0), high.min(1.0))
+}
+
+const STATES_FOR_DIVISORS: usize = 4096;
+
+/// Half of the smallest divisor among random states of the box.
+fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f64> {
+    let divisors: Vec<usize> = program
+        .steps
+        .iter()
+        .filter_map(|step| match step {
+            Step::Divide(_, divisor) => Some(*divisor),
+            _ => None,
+        })
+        .collect();
+    if divisors.is_empty() {
+        return None;
+    }
+    let literals: Vec<f64> = program.literals.iter().map(|l| l.value).collect();
+    let mut stream = Stream::new(20_240_301);
+    let mut smallest = f64::INFINITY;
+    for _ in 0..STATES_FOR_DIVISORS {
+        let values = program.values(&draw(domain, &mut stream, real), &literals);
+        for &divisor in &divisors {
+            smallest = smallest.min(values[divisor].map_or(0.0, f64::abs));
+        }
+    }
+    Some(smallest / 2.0)
+}
+
+/// The bound of a program over a domain; `errors` are those of its literals.
+pub fn a_priori(program: &Program, errors: &[f64], domain: &Domain, real: Float) -> Bound {
+    let u = real.unit();
+    let tiny = match real {
+        Float::F64 => f64::MIN_POSITIVE,
+        Float::F32 => f64::from(f32::MIN_POSITIVE),
+    };
+    let smallest = smallest_divisor(program, domain, real);
+    let angle = |angle: &[(usize, i64)], shift: f64| {
+        let (mut low, mut high) = (0.0, 0.0);
+        for &(joint, factor) in angle {
+            let (a, b) = (domain.q[joint].0 * factor as f64, domain.q[joint].1 * factor as f64);
+            (low, high) = (low + a.min(b), high + a.max(b));
+        }
+        let slack = if angle.len() > 1 || angle.iter().any(|(_, k)| k.abs() != 1) {
+            angle.len() as f64 * 2.0 * u * low.abs().max(high.abs())
+        } else {
+            0.0
+        };
+        let (low, high) = wave(low, high, shift);
+        Range::of(&[low, high], 2.0 * u * low.abs().max(high.abs()) + slack + tiny)
+    };
+    let mut ranges: Vec<Range> = Vec::with_capacity(program.steps.len());
+    for (i, step) in program.steps.iter().enumerate() {
+        let of = |i: &usize| ranges[*i];
+        let power_of_two = |i: &usize| matches!(program.steps[*i], Step::Literal(l) if errors[l] == 0.0 && is_power_of_two(program.literals[l].value));
+        // The rounding of this step, whose operands bring in `carried`.
+        let rounded = |ends: &[f64], carried: f64, times: f64| {
+            let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            Range::of(ends, carried + times * u * (size + carried))
+        };
+        let range = match step {
+            Step::Input(argument, index) => {
+                let (low, high) = domain.of(*argument)[*index];
+                Range::exact(low, high)
+            }
+            Step::Literal(index) => {
+                let value = program.literals[*index].value;
+                let error = errors[*index];
+                Range { low: value - error, high: value + error, error }
+            }
+            Step::Sine(combination) => angle(combination, 0.0),
+            Step::Cosine(combination) => angle(combination, std::f64::consts::FRAC_PI_2),
+            Step::Sign(joint) => {
+                let (low, high) = domain.of(Argument::Dq)[*joint];
+                Range::exact(low.signum().min(0.0), high.signum().max(0.0))
+            }
+            Step::Negate(a) => {
+                let a = of(a);
+                Range { low: -a.high, high: -a.low, ..a }
+            }
+            Step::Add(a, b) => {
+                let (a, b) = (of(a), of(b));
+                rounded(&[a.low + b.low, a.high + b.high], a.error + b.error, 1.0)
+            }
+            Step::Subtract(a, b) => {
+                let (a, b) = (of(a), of(b));
+                rounded(&[a.low - b.high, a.high - b.low], a.error + b.error, 1.0)
+            }
+            Step::Multiply(x, y) => {
+                let (a, b) = (of(x), of(y));
+                let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
+                let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
+                if x == y && a.low < 0.0 && a.high > 0.0 {
+                    ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
+                }
+                if power_of_two(x) || power_of_two(y) {
+                    Range::of(&ends, carried)
+                } else {
+                    rounded(&ends, carried + tiny, 1.0)
+                }
+            }
+            Step::Divide(x, y) => {
+                let (a, mut b) = (of(x), of(y));
+                let least = smallest.unwrap_or(0.0);
+                // All divisors are positive or all negative: pivots of B keep their sign.
+                if b.high >= -b.low {
+                    b.low = b.low.max(least);
+                } else {
+                    b.high = b.high.min(-least);
+                }
+                let left = b.low.abs().min(b.high.abs()) - b.error;
+                if left > 0.0 && b.low.signum() == b.high.signum() {
+                    let ends = [a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high];
+                    let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+                    rounded(&ends, (a.error + size * b.error) / left + tiny, 1.0)
+                } else {
+                    Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY }
+                }
+            }
+        };
+        debug_assert_eq!(ranges.len(), i);
+        ranges.push(range);
+    }
+    let error = |step: usize| {
+        let error = ranges[step].error;
+        if error.is_nan() {
+            f64::INFINITY
+        } else {
+            error
+        }
+    };
+    Bound { entries: program.outputs.iter().map(|o| error(o.step)).collect(), smallest_divisor: smallest }
+}
+
+/// The nominal parameters as the module holds them.
+fn nominal(module: &Module) -> Vec<f64> {
+    let Some((_, Constant::Array(entries))) = module.constants.get("NOMINAL_PARAMETERS") else { return Vec::new() };
+    let number = |entry: &Constant| match entry {
+        Constant::Number(true, literal) => -literal.value,
+        Constant::Number(false, literal) => literal.value,
+        _ => 0.0,
+    };
+    entries.iter().map(number).collect()
+}
+
+/// The box of a module's arm.
+pub fn domain_of(manipulator: &Manipulator, module: &Module) -> Domain {
+    domain(manipulator, &nominal(module))
+}
+
+/// The bounds of all functions that can be read, by name.
+pub fn of(manipulator: &Manipulator, module: &Module, claims: &Claims) -> BTreeMap<String, Bound> {
+    let domain = domain_of(manipulator, module);
+    let mut bounds = BTreeMap::new();
+    for (name, function) in &module.functions {
+        let Ok(function) = function else { continue };
+        let values = claims.resolve(name, &function.program.literals, module.real).values;
+        let errors = literal_errors(&function.program, &values, module.real);
+        bounds.insert(name.clone(), a_priori(&function.program, &errors, &domain, module.real));
+    }
+    bounds
+}
+
+/// A bound with two digits, rounded up.
+pub fn two_digits(bound: f64) -> String {
+    if bound == 0.0 || !bound.is_finite() {
+        return format!("{bound}");
+    }
+    let mut text = format!("{bound:.1e}");
+    if text.parse::<f64>().is_ok_and(|rounded| rounded < bound) {
+        text = format!("{:.1e}", bound * 1.05);
+    }
+    text
+}
+
+/// The box in words, for the head of a module; the numbers are those of [`domain`].
+pub const BOX: &str = "// Box of the rounding errors: q within POSITION_LIMITS (where these are infinite: pi rad or 1 m to either side), dq and dqr within\n\
+    // VELOCITY_LIMITS (4 rad/s, 1 m/s), ddq and ddqr up to 10 rad/s^2 or m/s^2, tau within EFFORT_LIMITS (200 N m, 200 N), pi from half to twice\n\
+    // NOMINAL_PARAMETERS; arguments exact, sines and cosines within one unit in the last place.\n";
+
+/// What the documentation of a function says of its bound.
+fn sentence(bound: &Bound) -> String {
+    let size = bound.largest();
+    if size == 0.0 {
+        return "Rounding error: none.".into();
+    }
+    if !size.is_finite() {
+        return "Rounding error: no bound over the whole box of the head of this file.".into();
+    }
+    let size = two_digits(size);
+    match bound.smallest_divisor {
+        None => format!("Rounding error: at most {size} in any entry, over the box in the head of this file."),
+        Some(least) => format!(
+            "Rounding error: at most {size} in any entry, over the box in the head of this file, where no divisor is below {least:.1e}."
+        ),
+    }
+}
+
+/// The text of a module with the bounds in its documentation.
+pub fn document(text: &str, bounds: &BTreeMap<String, Bound>) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let mut head = true;
+    for line in text.lines() {
+        if head && line.is_empty() {
+            head = false;
+            lines.push(format!("//\n{}", BOX.trim_end()));
+        }
+        let name = line.strip_prefix("pub fn ").and_then(|rest| rest.split('(').next());
+        if let Some(bound) = name.and_then(|name| bounds.get(name)) {
+            let attributes = lines.iter().rev().take_while(|line| line.starts_with("#[")).count();
+            let at = lines.len() - attributes;
+            lines.insert(at, format!("///\n/// {}", sentence(bound)));
+        }
+        lines.push(line.to_string());
+    }
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,284 @@
+//! A companion module: for every function of a module one that returns the running error bound of its entries at a state.
+//!
+//! For z = fl(x ∘ y) = (x ∘ y)(1 + δ), |δ| ≤ u, with |x - x*| ≤ e_x and |y - y*| ≤ e_y (Higham, 2002, Sect. 3.3):
+//!
+//! ```text
+//! sum, difference   e_z = e_x + e_y + u |z|
+//! product           e_z = |x| e_y + |y| e_x + e_x e_y + u |z|
+//! quotient          e_z = (e_x + |x/y| e_y) / (|y| - e_y) + u |z|
+//! sine, cosine      e = 2 u |s|: one unit in the last place
+//! literal           e = u |c|, 0 where the float is the exact value
+//! ```
+//!
+//! Functions that divide, and long ones of few entries, are bounded by sensitivities, as the text says that is taken in: `companion/template.rs`. The companion holds the
+//! steps of each function as a table and runs through it. The checker runs the same text on the same tables: what is measured is what is
+//! emitted.
+
+use std::fmt::Write;
+
+use crate::bounds::{is_power_of_two, literal_errors};
+use crate::claims::Claims;
+use crate::contract::{Promise, Shape};
+use crate::enclosure::Float;
+use crate::float::Arguments;
+use crate::program::{Argument, Program, Step};
+use crate::reader::{Constant, Module};
+
+/// The text taken in, as a module of this crate in each scalar: the same lines that companions have.
+macro_rules! face {
+    ($name:ident, $real:ty, $sincos:path) => {
+        #[allow(missing_docs, unreachable_pub, dead_code)]
+        mod $name {
+            type Real = $real;
+            fn sin_cos(x: Real) -> (Real, Real) {
+                $sincos(x)
+            }
+            include!("companion/template.rs");
+
+            use crate::float::Arguments;
+
+            /// A program as a table of any length.
+            pub(super) fn run(steps: &[super::Row], entries: &[u32], sensitive: bool, given: &Arguments<f64>) -> Vec<(f64, f64)> {
+                let single = given.map(|x| x as Real);
+                let given = Given {
+                    pi: &single.pi,
+                    q: &single.q,
+                    dq: &single.dq,
+                    ddq: &single.ddq,
+                    dqr: &single.dqr,
+                    ddqr: &single.ddqr,
+                    tau: &single.tau,
+                };
+                let steps: Vec<Step> = steps.iter().map(step).collect();
+                let mut values = vec![NOTHING; steps.len()];
+                forward(&steps, &given, &mut values);
+                let mut scratch = vec![NOTHING; if sensitive { steps.len() } else { 0 }];
+                let mut bounds = vec![0.0; entries.len()];
+                all_bounds(&steps, entries, &values, &mut scratch, &mut bounds);
+                entries.iter().zip(bounds).map(|(&e, bound)| (f64::from(values[e as usize].value), f64::from(bound))).collect()
+            }
+
+            fn name(argument: crate::program::Argument) -> Name {
+                use crate::program::Argument;
+                match argument {
+                    Argument::Pi => Name::Pi,
+                    Argument::Q => Name::Q,
+                    Argument::Dq => Name::Dq,
+                    Argument::Ddq => Name::Ddq,
+                    Argument::Dqr => Name::Dqr,
+                    Argument::Ddqr => Name::Ddqr,
+                    Argument::Tau => Name::Tau,
+                }
+            }
+
+            fn step(row: &super::Row) -> Step {
+                use super::Row;
+                match *row {
+                    Row::In(argument, index) => Step::In(name(argument), index),
+                    Row::Lit(value, error) => Step::Lit(value as Real, error as Real),
+                    Row::Sin(joint) => Step::Sin(joint),
+                    Row::Cos(joint) => Step::Cos(joint),
+                    Row::Sign(joint) => Step::Sign(joint),
+                    Row::Neg(a) => Step::Neg(a),
+                    Row::Add(a, b) => Step::Add(a, b),
+                    Row::Sub(a, b) => Step::Sub(a, b),
+                    Row::Mul(a, b) => Step::Mul(a, b),
+                    Row::Scale(a, b) => Step::Scale(a, b),
+                    Row::Div(a, b) => Step::Div(a, b),
+                }
+            }
+        }
+    };
+}
+
+face!(double, f64, libm::sincos);
+face!(single, f32, libm::sincosf);
+
+/// A step of a table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Row {
+    In(Argument, u32),
+    Lit(f64, f64),
+    Sin(u32),
+    Cos(u32),
+    Sign(u32),
+    Neg(u32),
+    Add(u32, u32),
+    Sub(u32, u32),
+    Mul(u32, u32),
+    Scale(u32, u32),
+    Div(u32, u32),
+}
+
+/// The table of a function: its steps and which of them are its entries.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    rows: Vec<Row>,
+    entries: Vec<u32>,
+    sensitive: bool,
+    real: Float,
+}
+
+/// Functions of more steps than this are long, those of more entries have many: each entry takes a run backwards.
+const LONG: usize = 500;
+const MANY: usize = 64;
+
+impl Table {
+    /// The table of a program whose literals are off by `errors`.
+    pub fn of(program: &Program, errors: &[f64], real: Float) -> Result<Table, String> {
+        let joint = |angle: &[(usize, i64)]| match angle {
+            [(joint, 1)] => Ok(*joint as u32),
+            _ => Err(format!("`{}` takes the sine of a sum of angles: no error bound", program.name)),
+        };
+        let exact_power = |step: usize| match program.steps[step] {
+            Step::Literal(l) => errors[l] == 0.0 && is_power_of_two(program.literals[l].value),
+            _ => false,
+        };
+        let row = |step: &Step| -> Result<Row, String> {
+            let number = |step: &usize| *step as u32;
+            Ok(match step {
+                Step::Input(argument, index) => Row::In(*argument, *index as u32),
+                Step::Literal(l) => Row::Lit(program.literals[*l].value, errors[*l]),
+                Step::Sine(angle) => Row::Sin(joint(angle)?),
+                Step::Cosine(angle) => Row::Cos(joint(angle)?),
+                Step::Sign(joint) => Row::Sign(*joint as u32),
+                Step::Negate(a) => Row::Neg(number(a)),
+                Step::Add(a, b) => Row::Add(number(a), number(b)),
+                Step::Subtract(a, b) => Row::Sub(number(a), number(b)),
+                Step::Multiply(a, b) if exact_power(*a) || exact_power(*b) => Row::Scale(number(a), number(b)),
+                Step::Multiply(a, b) => Row::Mul(number(a), number(b)),
+                Step::Divide(a, b) => Row::Div(number(a), number(b)),
+            })
+        };
+        let rows = program.steps.iter().map(row).collect::<Result<Vec<Row>, String>>()?;
+        let entries = program.outputs.iter().map(|output| output.step as u32).collect();
+        let divides = program.steps.iter().any(|step| matches!(step, Step::Divide(..)));
+        let sensitive = divides || program.steps.len() > LONG && program.outputs.len() <= MANY;
+        Ok(Table { rows, entries, sensitive, real })
+    }
+
+    /// Value and running error bound of each entry, in the module's scalar; the arguments are rounded to it first.
+    pub fn run(&self, arguments: &Arguments<f64>) -> Vec<(f64, f64)> {
+        match self.real {
+            Float::F64 => double::run(&self.rows, &self.entries, self.sensitive, arguments),
+            Float::F32 => single::run(&self.rows, &self.entries, self.sensitive, arguments),
+        }
+    }
+}
+
+/// The text of the companion. `import` brings in `Real`, `DOF`, `PARAMETERS`, `TASK_ROWS` and `EquationsOfMotion`: `use super::robot::*;`.
+pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<String, String> {
+    let sincos = match module.real {
+        Float::F64 => "libm::sincos",
+        Float::F32 => "libm::sincosf",
+    };
+    let mut text = format!(
+        "// @generated by armgen {}. Do not edit.\n//\n// Running error bounds of the functions of a robot: how far rounding can have taken each entry \
+         from the exact\n// value, in the units of the entry, at the arguments given (taken as exact). Sines and cosines are taken to be right to one\n// unit \
+         in the last place. Infinite where a divisor cannot be told from 0. For tests and analysis: a bound costs many times\n// the function, and its \
+         tables lie on the stack.\n\n{import}\n\nuse Name::*;\nuse Step::*;\n\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    for (name, function) in &module.functions {
+        let program = &function.as_ref().map_err(|e| format!("`{name}`: {e}"))?.program;
+        let (promise, with) = Promise::of(name).ok_or(format!("`{name}` is not known"))?;
+        let values = claims.resolve(name, &program.literals, module.real).values;
+        let table = Table::of(program, &literal_errors(program, &values, module.real), module.real)?;
+        write_function(&mut text, program, &table, promise, with, module);
+    }
+    let _ =
+        write!(text, "/// Sine and cosine of an angle in rad.\nfn sin_cos(x: Real) -> (Real, Real) {{\n    {sincos}(x)\n}}\n\n");
+    text += include_str!("companion/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
+    Ok(text)
+}
+
+fn argument(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Pi => "pi",
+        Argument::Q => "q",
+        Argument::Dq => "dq",
+        Argument::Ddq => "ddq",
+        Argument::Dqr => "dqr",
+        Argument::Ddqr => "ddqr",
+        Argument::Tau => "tau",
+    }
+}
+
+fn row_text(row: &Row, real: Float) -> String {
+    let number = |value: f64| match real {
+        Float::F64 => format!("{value:?}"),
+        Float::F32 => format!("{:?}", value as f32),
+    };
+    match *row {
+        Row::Lit(value, error) => format!("Lit({}, {})", number(value), number(error)),
+        other => format!("{other:?}"),
+    }
+}
+
+fn write_function(text: &mut String, program: &Program, table: &Table, promise: &Promise, with: bool, module: &Module) {
+    let mut arguments: Vec<String> = promise.arguments.iter().map(|a| format!("{a}: &[Real; DOF]")).collect();
+    if with {
+        arguments.insert(0, "pi: &[Real; PARAMETERS]".into());
+    }
+    let given: Vec<&str> = program.arguments.iter().map(|a| argument(*a)).collect();
+    let n = match module.constants.get("DOF") {
+        Some((_, Constant::Integer(n))) => *n as usize,
+        _ => 1,
+    };
+    let rows: Vec<String> = table.rows.iter().map(|row| row_text(row, module.real)).collect();
+    let entries: Vec<String> = table.entries.iter().map(ToString::to_string).collect();
+    let results: Vec<String> = (0..entries.len()).map(|i| format!("e[{i}]")).collect();
+    let name = &program.name;
+    let _ = write!(
+        text,
+        "/// Running error bound of `{name}`, entry by entry.\n#[allow(clippy::all, dead_code)]\n#[rustfmt::skip]\npub fn {name}_error_bound({}) -> {} {{\n    static \
+         STEPS: [Step; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
+        arguments.join(", "),
+        promise.shape.rust().replace(';', "; ").replace(',', ", "),
+        rows.len(),
+        rows.join(", "),
+        entries.len(),
+        entries.join(", "),
+        if table.sensitive { rows.len() } else { 0 },
+        given.join(", "),
+        nested(promise.shape, &results, n),
+    );
+}
+
+fn row(entries: &[String]) -> String {
+    format!("[{}]", entries.join(", "))
+}
+
+fn matrix(entries: &[String], columns: usize) -> String {
+    if columns == 0 {
+        return row(&[]);
+    }
+    row(&entries.chunks(columns).map(row).collect::<Vec<_>>())
+}
+
+fn nested(shape: Shape, entries: &[String], n: usize) -> String {
+    let square = n * n;
+    match shape {
+        Shape::Scalar => entries[0].clone(),
+        Shape::Vector => row(entries),
+        Shape::Frame => matrix(entries, 4),
+        Shape::Frames => row(&entries.chunks(16).map(|frame| matrix(frame, 4)).collect::<Vec<_>>()),
+        Shape::Jacobian | Shape::Square => matrix(entries, n),
+        Shape::Regressor | Shape::BaseRegressor if entries.is_empty() => format!("{{ let _ = e; [[]; {n}] }}"),
+        Shape::Regressor | Shape::BaseRegressor => matrix(entries, entries.len() / n),
+        Shape::EquationsOfMotion => format!(
+            "EquationsOfMotion {{ inertia: {}, coriolis: {}, gravity: {} }}",
+            matrix(&entries[..square], n),
+            matrix(&entries[square..2 * square], n),
+            row(&entries[2 * square..])
+        ),
+        Shape::Task => matrix(entries, (entries.len() as f64).sqrt() as usize),
+        Shape::TwoSquares => format!("({}, {})", matrix(&entries[..square], n), matrix(&entries[square..], n)),
+        Shape::ThreeSquares => format!(
+            "({}, {}, {})",
+            matrix(&entries[..square], n),
+            matrix(&entries[square..2 * square], n),
+            matrix(&entries[2 * square..], n)
+        ),
+    }
+}

@@ -1,0 +1,234 @@
+// What is the same in every companion: everything after the line BEGIN is taken in as it stands. `Real`, `sin_cos` and the tables stand around it.
+// BEGIN
+/// A step of a function; operands are the numbers of earlier steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(dead_code)]
+enum Step {
+    /// Entry of an argument, by its name and its index.
+    In(Name, u32),
+    /// Number of the text, and how far it can be from the exact value that it stands for.
+    Lit(Real, Real),
+    /// Sine of a joint variable.
+    Sin(u32),
+    /// Cosine of a joint variable.
+    Cos(u32),
+    /// Sign of a joint rate.
+    Sign(u32),
+    /// -a
+    Neg(u32),
+    /// a + b
+    Add(u32, u32),
+    /// a - b
+    Sub(u32, u32),
+    /// a b
+    Mul(u32, u32),
+    /// a b where a or b is an exact power of two: no rounding
+    Scale(u32, u32),
+    /// a / b
+    Div(u32, u32),
+}
+
+/// Name of an argument.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(dead_code)]
+enum Name {
+    Pi,
+    Q,
+    Dq,
+    Ddq,
+    Dqr,
+    Ddqr,
+    Tau,
+}
+
+/// Arguments, empty where a function has none of that name.
+#[derive(Clone, Copy, Debug)]
+struct Given<'a> {
+    pi: &'a [Real],
+    q: &'a [Real],
+    dq: &'a [Real],
+    ddq: &'a [Real],
+    dqr: &'a [Real],
+    ddqr: &'a [Real],
+    tau: &'a [Real],
+}
+
+const NONE: Given<'static> = Given { pi: &[], q: &[], dq: &[], ddq: &[], dqr: &[], ddqr: &[], tau: &[] };
+
+/// Half of the distance from 1 to the next number.
+const UNIT: Real = Real::EPSILON / 2.0;
+
+/// The smallest normal number: more than what underflow takes away.
+const TINY: Real = Real::MIN_POSITIVE;
+
+/// A value as the function computes it, and how far it can be from the exact one.
+#[derive(Clone, Copy, Debug)]
+struct Bounded {
+    value: Real,
+    error: Real,
+}
+
+const NOTHING: Bounded = Bounded { value: 0.0, error: 0.0 };
+
+fn plus(a: Bounded, b: Bounded) -> Bounded {
+    let value = a.value + b.value;
+    Bounded { value, error: a.error + b.error + UNIT * value.abs() }
+}
+
+fn scale(a: Bounded, b: Bounded) -> Bounded {
+    let error = a.value.abs() * b.error + b.value.abs() * a.error + a.error * b.error;
+    Bounded { value: a.value * b.value, error }
+}
+
+fn times(a: Bounded, b: Bounded) -> Bounded {
+    let product = scale(a, b);
+    Bounded { error: product.error + (UNIT * product.value.abs() + TINY), ..product }
+}
+
+fn over(a: Bounded, b: Bounded) -> Bounded {
+    let value = a.value / b.value;
+    // A hundredth more than the error, for the roundings of the error itself.
+    let least = b.value.abs() - 1.01 * b.error;
+    if least > 0.0 {
+        Bounded { value, error: (a.error + value.abs() * b.error) / least + (2.0 * UNIT * value.abs() + TINY) }
+    } else {
+        // A divisor that may be 0.
+        Bounded { value, error: Real::INFINITY }
+    }
+}
+
+fn negated(a: Bounded) -> Bounded {
+    Bounded { value: -a.value, ..a }
+}
+
+/// One unit in the last place.
+fn wave(value: Real) -> Bounded {
+    Bounded { value, error: 2.0 * UNIT * value.abs() + TINY }
+}
+
+/// Values of all steps with their running error bounds (Higham, Accuracy and Stability of Numerical Algorithms, 2002, Sect. 3.3).
+fn forward(steps: &[Step], given: &Given<'_>, values: &mut [Bounded]) {
+    for (i, step) in steps.iter().enumerate() {
+        let of = |step: u32| values[step as usize];
+        values[i] = match *step {
+            Step::In(name, index) => {
+                let argument = match name {
+                    Name::Pi => given.pi,
+                    Name::Q => given.q,
+                    Name::Dq => given.dq,
+                    Name::Ddq => given.ddq,
+                    Name::Dqr => given.dqr,
+                    Name::Ddqr => given.ddqr,
+                    Name::Tau => given.tau,
+                };
+                Bounded { value: argument[index as usize], error: 0.0 }
+            }
+            Step::Lit(value, error) => Bounded { value, error },
+            Step::Sin(joint) => wave(sin_cos(given.q[joint as usize]).0),
+            Step::Cos(joint) => wave(sin_cos(given.q[joint as usize]).1),
+            Step::Sign(joint) => {
+                let rate = given.dq[joint as usize];
+                let value = if rate > 0.0 {
+                    1.0
+                } else if rate < 0.0 {
+                    -1.0
+                } else {
+                    rate
+                };
+                Bounded { value, error: 0.0 }
+            }
+            Step::Neg(a) => negated(of(a)),
+            Step::Add(a, b) => plus(of(a), of(b)),
+            Step::Sub(a, b) => plus(of(a), negated(of(b))),
+            Step::Mul(a, b) => times(of(a), of(b)),
+            Step::Scale(a, b) => {
+                let (a, b) = (of(a), of(b));
+                let product = scale(a, b);
+                let lost = if product.value.abs() < TINY && a.value != 0.0 && b.value != 0.0 { TINY } else { 0.0 };
+                Bounded { error: product.error + lost, ..product }
+            }
+            Step::Div(a, b) => over(of(a), of(b)),
+        };
+    }
+}
+
+/// What the last rounding of a step can be.
+fn rounding(step: &Step, value: &Bounded) -> Real {
+    match step {
+        Step::In(..) | Step::Sign(_) | Step::Neg(_) => 0.0,
+        Step::Scale(..) if value.value.abs() < TINY => TINY,
+        Step::Scale(..) => 0.0,
+        Step::Lit(..) | Step::Sin(_) | Step::Cos(_) => value.error,
+        Step::Add(..) | Step::Sub(..) => UNIT * value.value.abs(),
+        Step::Mul(..) => UNIT * value.value.abs() + TINY,
+        Step::Div(..) => 2.0 * UNIT * value.value.abs() + TINY,
+    }
+}
+
+/// The bound of one entry by sensitivities: the sum of |d entry / d step| times the rounding of the step.
+///
+/// By the mean value theorem an entry is wrong by the sum of a_k delta_k, delta_k the rounding of step k and a_k its sensitivity at values between
+/// the exact and the computed ones. These lie within the running bounds, so that sensitivities with running bounds of their own enclose the
+/// a_k. In long functions, and where a function divides, errors take many ways to an entry and cancel; running bounds
+/// alone add up their sizes.
+fn backward(steps: &[Step], values: &[Bounded], sensitivities: &mut [Bounded], entry: u32) -> Real {
+    sensitivities.fill(NOTHING);
+    sensitivities[entry as usize].value = 1.0;
+    let mut bound = 0.0;
+    for i in (0..=entry as usize).rev() {
+        let own = sensitivities[i];
+        if own.value == 0.0 && own.error == 0.0 {
+            continue;
+        }
+        bound += (own.value.abs() + own.error) * rounding(&steps[i], &values[i]);
+        let mut add = |to: u32, part: Bounded| {
+            let old = sensitivities[to as usize];
+            sensitivities[to as usize] = if old.value == 0.0 && old.error == 0.0 { part } else { plus(old, part) };
+        };
+        match steps[i] {
+            Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) => {}
+            Step::Neg(a) => add(a, negated(own)),
+            Step::Add(a, b) => {
+                add(a, own);
+                add(b, own);
+            }
+            Step::Sub(a, b) => {
+                add(a, own);
+                add(b, negated(own));
+            }
+            Step::Mul(a, b) | Step::Scale(a, b) => {
+                add(a, times(own, values[b as usize]));
+                add(b, times(own, values[a as usize]));
+            }
+            Step::Div(a, b) => {
+                let part = over(own, values[b as usize]);
+                add(a, part);
+                add(b, negated(times(part, values[i])));
+            }
+        }
+    }
+    bound
+}
+
+/// Bounds of all entries: by sensitivities where there is room for them, else running ones.
+fn all_bounds(steps: &[Step], entries: &[u32], values: &[Bounded], scratch: &mut [Bounded], bounds: &mut [Real]) {
+    let sensitive = !scratch.is_empty();
+    for (bound, &entry) in bounds.iter_mut().zip(entries) {
+        let running = if sensitive { backward(steps, values, scratch, entry) } else { values[entry as usize].error };
+        // The bound is a sum of products of numbers that are not negative, each operation right to a relative UNIT.
+        let inflated = running * (1.0 + 32.0 * steps.len() as Real * UNIT);
+        *bound = if inflated < Real::INFINITY { inflated } else { Real::INFINITY };
+    }
+}
+
+/// The bounds of a function given by its table; `SCRATCH` is `STEPS` for bounds by sensitivities, else 0.
+fn bounds<const STEPS: usize, const ENTRIES: usize, const SCRATCH: usize>(
+    steps: &[Step; STEPS],
+    entries: &[u32; ENTRIES],
+    given: &Given<'_>,
+) -> [Real; ENTRIES] {
+    let (mut values, mut scratch, mut bounds) = ([NOTHING; STEPS], [NOTHING; SCRATCH], [0.0; ENTRIES]);
+    forward(steps, given, &mut values);
+    all_bounds(steps, entries, &values, &mut scratch, &mut bounds);
+    bounds
+}

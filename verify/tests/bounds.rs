@@ -1,0 +1,147 @@
+//! Error bounds: never exceeded, not far from the errors that occur, told apart from a fault, and the same in the companion that is emitted.
+
+mod common;
+
+use std::path::Path;
+use std::process::Command;
+
+use armgen_codegen::manipulator::{self, Manipulator};
+use armgen_codegen::program::Scalar;
+use armgen_verify::arithmetic::Stream;
+use armgen_verify::bounds::{document, domain_of, draw, literal_errors, of, two_digits};
+use armgen_verify::claims::Claims;
+use armgen_verify::companion::{companion, Table};
+use armgen_verify::errors::{measure, Seen, Subject};
+use armgen_verify::reader::Module;
+
+/// A robot of the project: its text, module, claims and description.
+fn robot(name: &str, scalar: Scalar) -> (String, Module, Claims, Manipulator) {
+    let source = common::source(name);
+    let generated = common::generate(&source, scalar);
+    let module = Module::read(&generated.module).expect("a module");
+    let (manipulator, _) = manipulator::read_for(&source, scalar).0.expect("a valid description");
+    (generated.module, module, Claims::from_numbers(&generated.constants), manipulator)
+}
+
+#[track_caller]
+fn check(name: &str, scalar: Scalar, states: u64) {
+    let (_, module, claims, manipulator) = robot(name, scalar);
+    let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
+    for seen in measure(&manipulator, &module, &subjects, states, 11) {
+        assert_eq!((seen.beyond_running, seen.beyond_a_priori), (0, 0), "{name} {scalar:?}: {seen:?}");
+        assert!(seen.running.is_finite() && seen.running <= 1e-3 * seen.value.max(1e-30), "{name} {scalar:?}: {seen:?}");
+        // As few states as these do not come across the worst error: the bound of 100 is for a million.
+        assert!(seen.ratio().is_none_or(|ratio| ratio < 400.0), "{name} {scalar:?}: {seen:?}");
+    }
+}
+
+#[test]
+fn bounds_hold_and_are_near() {
+    for name in ["scara", "everything", "modified_prismatic", "base_set", "panda7"] {
+        check(name, Scalar::F64, 40);
+    }
+    for name in ["scara4", "single_joint", "general_angles"] {
+        check(name, Scalar::F32, 40);
+    }
+}
+
+/// A function whose numbers are wrong by some units in the last place exceeds the bounds of the right one.
+#[test]
+fn a_planted_fault_is_seen() {
+    let (_, module, claims, manipulator) = robot("scara", Scalar::F64);
+    let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
+    let names = ["inertia_matrix", "gravity", "inverse_dynamics", "forward_dynamics", "regressor"];
+    let planted: Vec<Subject> = subjects
+        .into_iter()
+        .filter(|subject| names.contains(&subject.program.name.as_str()))
+        .map(|subject| {
+            let mut program = subject.program.clone();
+            program.literals.iter_mut().for_each(|literal| literal.value *= 1.0 + 400.0 * f64::EPSILON);
+            subject.with_program(program)
+        })
+        .collect();
+    assert_eq!(planted.len(), names.len());
+    for seen in measure(&manipulator, &module, &planted, 50, 3) {
+        assert!(seen.beyond_running > 0, "{seen:?}");
+    }
+}
+
+#[test]
+fn bounds_are_rounded_up_and_stand_in_the_documentation() {
+    for bound in [1.04e-13, 1.05e-13, 9.99e-20, 3.0, 1e-300] {
+        let text: f64 = two_digits(bound).parse().expect("a number");
+        assert!(text >= bound && text <= bound * 1.1, "{bound} {text}");
+    }
+    let (text, module, claims, manipulator) = robot("scara", Scalar::F64);
+    let bounds = of(&manipulator, &module, &claims);
+    let documented = document(&text, &bounds);
+    let stated = documented.lines().filter(|line| line.starts_with("/// Rounding error: ")).count();
+    assert_eq!(stated, module.functions.len());
+    let head: Vec<&str> = documented.lines().take_while(|line| line.starts_with("//")).collect();
+    assert!(head.iter().any(|line| line.starts_with("// Box of the rounding errors: ")), "{head:#?}");
+    // Comments alone have changed.
+    let again = Module::read(&documented).expect("a module");
+    assert_eq!(format!("{again:?}"), format!("{module:?}"));
+}
+
+/// The companion, compiled beside its module, returns what the checker computes with.
+#[test]
+fn the_companion_returns_the_same_bounds() {
+    for (name, scalar) in [("everything", Scalar::F64), ("scara", Scalar::F32)] {
+        let (text, module, claims, manipulator) = robot(name, scalar);
+        let companion = companion(&module, &claims, "use super::robot::*;").expect("a companion");
+        let arguments = draw(&domain_of(&manipulator, &module), &mut Stream::new(5), module.real);
+        let mut calls = String::new();
+        let mut expected = Vec::new();
+        for (function, read) in &module.functions {
+            let program = &read.as_ref().expect("a function").program;
+            let list: Vec<String> =
+                program.arguments.iter().map(|&a| format!("&{:?}", arguments.of(a)).replace("&[]", "&[0.0; 0]")).collect();
+            calls += &format!("    show(&format!(\"{{:?}}\", robot_bounds::{function}_error_bound({})));\n", list.join(", "));
+            let values = claims.resolve(function, &program.literals, module.real).values;
+            let table = Table::of(program, &literal_errors(program, &values, module.real), module.real).expect("a table");
+            expected.extend(table.run(&arguments).into_iter().map(|(_, bound)| bound));
+        }
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("companion").join(name);
+        std::fs::create_dir_all(folder.join("src")).expect("a folder");
+        let write = |file: &str, text: &str| std::fs::write(folder.join(file), text).expect("written");
+        write(
+            "Cargo.toml",
+            "[package]\nname = \"companion\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n",
+        );
+        write("src/robot.rs", &text);
+        write("src/robot_bounds.rs", &companion);
+        write(
+            "src/main.rs",
+            &format!(
+                "mod robot;\nmod robot_bounds;\nfn show(text: &str) {{\n    let words = text.split(|c: char| !(c.is_ascii_digit() || \"+-.einf\".contains(c)));\n    \
+                 for word in words.filter(|w| w.parse::<robot::Real>().is_ok()) {{\n        println!(\"{{word}}\");\n    }}\n}}\nfn main() {{\n{calls}}}\n"
+            ),
+        );
+        let output = Command::new(env!("CARGO"))
+            .args(["run", "--offline", "--quiet"])
+            .current_dir(&folder)
+            .env("CARGO_TARGET_DIR", folder.join("target"))
+            .env("RUSTFLAGS", "-D warnings")
+            .output()
+            .expect("cargo runs");
+        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let found: Vec<f64> = printed.lines().map(|word| word.parse().expect("a number")).collect();
+        let single = |x: &f64| if scalar == Scalar::F32 { f64::from(*x as f32) } else { *x };
+        let (found, expected): (Vec<f64>, Vec<f64>) = (found.iter().map(single).collect(), expected.iter().map(single).collect());
+        assert_eq!(found, expected, "{name}");
+        assert!(expected.iter().any(|bound| *bound > 0.0));
+    }
+}
+
+/// Sizes that are joined are the larger ones, counts are added.
+#[test]
+fn what_is_seen_in_parts_is_seen_of_the_whole() {
+    let (_, module, claims, manipulator) = robot("scara4", Scalar::F64);
+    let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
+    let (mut first, second) = (measure(&manipulator, &module, &subjects, 5, 1), measure(&manipulator, &module, &subjects, 7, 2));
+    first.iter_mut().zip(&second).for_each(|(a, b)| a.join(b));
+    assert!(first.iter().all(|seen: &Seen| seen.states == 12));
+    assert!(first.iter().zip(&second).all(|(a, b)| a.error >= b.error && a.running >= b.running));
+}
