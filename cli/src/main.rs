@@ -105,6 +105,7 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --scalar f32 > robot_f32.rs
   armgen generate robot.yaml --trig fast > robot.rs       for machines with wide vectors
   armgen generate robot.yaml --out robot.rs --verify      with a certificate, robot.cert.json
+  armgen generate robot.yaml --out robot.rs --bounds      with robot_bounds.rs, running error bounds
   armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
   armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
   armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
@@ -145,7 +146,8 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
 The text of the module is read back by a checker of its own, which derives the equations from the
 description the textbook's way and compares both, exactly, at random points of prime fields and at
 a rational one. If a certificate, robot.cert.json, stands beside robot.rs, it must be of these two
-texts. Documentation comments, the compiler and the sines of the library are not judged.
+texts. Not judged are documentation comments, the compiler, and the sines and cosines themselves:
+for those see docs/sine-and-cosine.md.
 Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is named),
 2 a file cannot be opened or is not UTF-8.")]
     Verify {

@@ -291,7 +291,7 @@ fn verify_tells_what_it_cannot_read() {
 
 #[test]
 fn what_stands_beside_a_module_needs_one() {
-    for flag in ["--verify", "--tests", "--runtime", "--c-abi"] {
+    for flag in ["--verify", "--tests", "--bounds", "--runtime", "--c-abi"] {
         let output = check(&["generate", &file("robots/scara.yaml"), flag], 2);
         assert!(err(&output).contains(&format!("{flag} writes beside the module")), "{}", err(&output));
         assert_eq!(out(&output), "");
@@ -320,6 +320,26 @@ fn the_test_file_runs_beside_its_module() {
     fs::write(&module, format!("{}{}", &right[..at], right[at..].replacen("98.1", "98.2", 1))).expect("a file");
     let output = run();
     assert!(!output.status.success() && out(&output).contains("gravity at state 0"), "{}{}", out(&output), err(&output));
+}
+
+#[test]
+fn error_bounds_stand_in_the_documentation_and_in_a_companion() {
+    let folder = folder("bounds");
+    let module = folder.join("arm.rs");
+    let path = module.to_str().expect("UTF-8");
+    check(&["generate", &file("robots/scara.yaml"), "--out", path, "--bounds", "--verify"], 0);
+    let text = fs::read_to_string(&module).expect("the module");
+    assert_eq!(text.matches("/// Rounding error: ").count(), 24, "{text}");
+    assert!(text.contains("// Box of the rounding errors: "), "{text}");
+    let companion = fs::read_to_string(folder.join("arm_bounds.rs")).expect("the companion");
+    assert!(companion.contains("use super::arm::*;") && companion.contains("pub fn gravity_error_bound("), "{companion}");
+    let certificate: Value =
+        serde_json::from_slice(&fs::read(folder.join("arm.cert.json")).expect("the certificate")).expect("JSON");
+    let gravity = certificate["functions"].as_array().expect("a list").iter().find(|f| f["name"] == "gravity").expect("gravity");
+    let bound: f64 = gravity["error_bound"].as_str().expect("a text").parse().expect("a number");
+    assert!(bound > 0.0 && bound < 1e-12, "{bound}");
+    assert_eq!(certificate["rounding_box"]["q"].as_array().expect("a list").len(), 4);
+    check(&["verify", &file("robots/scara.yaml"), path], 0);
 }
 
 #[test]

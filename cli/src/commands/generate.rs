@@ -20,6 +20,9 @@ pub(crate) struct Beside {
     /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine
     #[arg(long, conflicts_with_all = ["batch", "functions"])]
     tests: bool,
+    /// Write a companion beside it, robot_bounds.rs: how far rounding can have taken each function's entries at a state
+    #[arg(long, conflicts_with = "batch")]
+    bounds: bool,
     /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is
     #[arg(long)]
     runtime: bool,
@@ -31,7 +34,13 @@ pub(crate) struct Beside {
 impl Beside {
     /// The options that need a file to stand beside.
     fn flags(&self) -> Vec<&'static str> {
-        let all = [(self.verify, "--verify"), (self.tests, "--tests"), (self.runtime, "--runtime"), (self.c_abi, "--c-abi")];
+        let all = [
+            (self.verify, "--verify"),
+            (self.tests, "--tests"),
+            (self.bounds, "--bounds"),
+            (self.runtime, "--runtime"),
+            (self.c_abi, "--c-abi"),
+        ];
         all.iter().filter(|(wanted, _)| *wanted).map(|(_, flag)| *flag).collect()
     }
 }
@@ -70,12 +79,18 @@ pub(crate) fn run(
     let without = without.into_iter().collect();
     let options = Options { scalar, trig, without, batch: batch.map(usize::from), functions };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
-    let Some(generated) = generated else {
+    let Some(mut generated) = generated else {
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
         return FAULTY;
     };
     if !input::all_there(source.name(), &generated.absent, functions) {
         return FAULTY;
+    }
+    // The bounds are those of one state at a time.
+    if batch.is_none() {
+        if let Err(reason) = armgen_verify::document_bounds(&source, &mut generated) {
+            terminal::warning(&format!("the documentation states no error bounds: {reason}"));
+        }
     }
     let Some(out) = out else { return terminal::print(&generated.module) };
     if same_file(file, out) {
@@ -146,6 +161,10 @@ fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> 
         let import = format!("#[path = {name:?}]\nmod robot;");
         let tests = watched("computing reference values", || armgen_verify::test_kit(source, &generated.module, &import))?;
         files.push((out.with_file_name(format!("{stem}_test.rs")), tests));
+    }
+    if beside.bounds {
+        let companion = armgen_verify::companion(&generated, &format!("use super::{stem}::*;"))?;
+        files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));
     }
     if beside.runtime {
         files.push((out.with_file_name(format!("{stem}_runtime.rs")), generated.runtime));
