@@ -1,4 +1,4 @@
-//! Rounding errors of some robots against 256-bit evaluation, beside both bounds, as tables in Markdown; exit code 1 if a bound is exceeded:
+//! Rounding errors of some robots, the worst against 256 bits, beside both bounds, as tables in Markdown; exit code 1 if a bound is exceeded:
 //! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 f64 robots/*.yaml`.
 
 use std::process::ExitCode;
@@ -8,11 +8,12 @@ use armgen_codegen::program::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::bounds::two_digits;
 use armgen_verify::claims::Claims;
-use armgen_verify::errors::{measure, Seen, Subject};
+use armgen_verify::companion::LANES;
+use armgen_verify::errors::{Run, Seen, Subject};
 use armgen_verify::reader::Module;
 
-/// States after which the log tells how far it is.
-const BATCH: u64 = 5_000;
+/// Batches after which the log tells how far it is.
+const PART: u64 = 1_250;
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
@@ -48,32 +49,42 @@ fn table(path: &str, scalar: Scalar, states: u64) -> Result<bool, String> {
     let module = Module::read(&generated.module)?;
     let subjects = Subject::all(&manipulator, &module, &Claims::from_numbers(&generated.constants))?;
     let workers = std::thread::available_parallelism().map_or(1, usize::from) as u64;
-    let mut seen: Vec<Seen> = measure(&manipulator, &module, &subjects, 0, 0);
-    let mut done = 0;
-    while done < states {
-        let batch = BATCH.min(states - done).div_ceil(workers);
-        let parts: Vec<Vec<Seen>> = std::thread::scope(|scope| {
-            let work = |worker: u64| {
-                let (manipulator, module, subjects) = (&manipulator, &module, &subjects);
-                scope.spawn(move || measure(manipulator, module, subjects, batch, done * 64 + worker + 1))
-            };
-            let running: Vec<_> = (0..workers).map(work).collect();
-            running.into_iter().map(|worker| worker.join().expect("a worker that ends")).collect()
-        });
-        for part in parts {
+    let batches = states.div_ceil(workers * LANES as u64);
+    let work = |worker: u64| -> Result<Vec<Seen>, String> {
+        let mut run = Run::new(&manipulator, &module, subjects.clone(), worker + 1);
+        let mut done = 0;
+        while done < batches {
+            let now = PART.min(batches - done);
+            run.go_on(now)?;
+            done += now;
+            let seen = run.seen.first().map_or(0, |seen| seen.states);
+            eprintln!("{}, worker {worker}: {seen} of {} states", manipulator.name, batches * LANES as u64);
+        }
+        Ok(run.seen)
+    };
+    let parts: Vec<Result<Vec<Seen>, String>> = std::thread::scope(|scope| {
+        let running: Vec<_> = (0..workers).map(|worker| scope.spawn(move || work(worker))).collect();
+        running.into_iter().map(|worker| worker.join().expect("a worker that ends")).collect()
+    });
+    let mut seen: Vec<Seen> = Vec::new();
+    for part in parts {
+        let part = part?;
+        if seen.is_empty() {
+            seen = part;
+        } else {
             seen.iter_mut().zip(&part).for_each(|(all, part)| all.join(part));
         }
-        done += batch * workers;
-        eprintln!("{}: {done} of {states} states", manipulator.name);
     }
+    let done = batches * workers * LANES as u64;
     let word = format!("{scalar:?}").to_lowercase();
     println!("## {}, {word}, {done} states\n", manipulator.name);
-    println!("| function | largest value | worst error | largest running bound | times the error | a-priori bound |");
-    println!("|---|---|---|---|---|---|");
+    println!("| function | largest value | worst error | largest running bound | times the error | a-priori bound | singular |");
+    println!("|---|---|---|---|---|---|---|");
     for s in &seen {
         let ratio = s.ratio().map_or("exact".into(), |ratio| format!("{ratio:.1}"));
         let (error, running) = (format!("{:.1e}", s.error), two_digits(s.running));
-        println!("| `{}` | {:.1e} | {error} | {running} | {ratio} | {} |", s.name, s.value, two_digits(s.a_priori));
+        let a_priori = two_digits(s.a_priori);
+        println!("| `{}` | {:.1e} | {error} | {running} | {ratio} | {a_priori} | {} |", s.name, s.value, s.singular);
     }
     let beyond: u64 = seen.iter().map(|s| s.beyond_running + s.beyond_a_priori).sum();
     let outside: u64 = seen.iter().map(|s| s.outside).sum();

@@ -6,6 +6,7 @@
 //! | [`tower`] | fractions, with the square roots that the robot needs adjoined | equal at that point, beyond doubt |
 //! | [`dual`] | pairs value + derivative over either | derivatives along a direction |
 //! | [`wide`] | floats of 256 bits | nothing: they measure rounding errors, and prove none |
+//! | [`twofold`] | pairs of floats in lanes, 106 bits | nothing: the same, for millions of states |
 //! | [`degree`] | degree and height of the polynomial that a value is | how unlikely a false equality is |
 //!
 //! Angles are random points of the circle: (s, c) = (2t, 1 - t²)/(1 + t²). Pi, and sine and cosine of angles that have no roots, take
@@ -15,6 +16,7 @@ pub mod degree;
 pub mod dual;
 pub mod prime;
 pub mod tower;
+pub mod twofold;
 pub mod wide;
 
 use std::fmt::Debug;

@@ -62,7 +62,7 @@ impl Bound {
 }
 
 /// The box for an arm: position and velocity limits and efforts where the description gives them; else a full turn or a metre to either
-/// side, 4 rad/s or 1 m/s, 200 N m or N. Accelerations up to 10, references like what they are references of, parameters from half to twice the nominal.
+/// side, 4 rad/s or 1 m/s, 200 N m or N. Accelerations up to 10, references like what they are references of, parameters within a fifth of the nominal.
 pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
     let float = |n: &armgen_codegen::exact::Number| Float::F64.nearest(&formula(n));
     let mut domain = Domain::default();
@@ -83,7 +83,7 @@ pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
         domain.tau.push(symmetric(joint.limits.effort.as_ref().and_then(float), 200.0));
     }
     let around = |&value: &f64| {
-        let ends = (value / 2.0, value * 2.0);
+        let ends = (value * 0.8, value * 1.2);
         if value < 0.0 {
             (ends.1, ends.0)
         } else {
@@ -331,7 +331,7 @@ pub fn two_digits(bound: f64) -> String {
 
 /// The box in words, for the head of a module; the numbers are those of [`domain`].
 pub const BOX: &str = "// Box of the rounding errors: q within POSITION_LIMITS (where these are infinite: pi rad or 1 m to either side), dq and dqr within\n\
-    // VELOCITY_LIMITS (4 rad/s, 1 m/s), ddq and ddqr up to 10 rad/s^2 or m/s^2, tau within EFFORT_LIMITS (200 N m, 200 N), pi from half to twice\n\
+    // VELOCITY_LIMITS (4 rad/s, 1 m/s), ddq and ddqr up to 10 rad/s^2 or m/s^2, tau within EFFORT_LIMITS (200 N m, 200 N), pi within a fifth of\n\
     // NOMINAL_PARAMETERS; arguments exact, sines and cosines within one unit in the last place.\n";
 
 /// What the documentation of a function says of its bound.

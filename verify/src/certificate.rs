@@ -20,8 +20,8 @@ pub struct Certificate {
     pub robot: String,
     /// Options of the generation that can be read from the text.
     pub options: BTreeMap<String, String>,
-    /// The box that error bounds are stated over: lowest and highest value of each argument's entries.
-    pub rounding_box: BTreeMap<String, Vec<(f64, f64)>>,
+    /// The box that error bounds are stated over: lowest and highest value of each argument's entries, as decimals that are these floats.
+    pub rounding_box: BTreeMap<String, Vec<(String, String)>>,
     /// The description.
     pub input: Text,
     /// The module.
@@ -142,7 +142,9 @@ impl Certificate {
                 ("pi", &report.domain.pi),
             ]
             .into_iter()
-            .map(|(name, entries)| (name.to_string(), entries.clone()))
+            .map(|(name, entries)| {
+                (name.to_string(), entries.iter().map(|(low, high)| (low.to_string(), high.to_string())).collect())
+            })
             .collect(),
             input: Text { sha256: report.input.clone() },
             output: Text { sha256: report.output.clone() },

@@ -10,7 +10,7 @@ use crate::arithmetic::prime::Prime;
 use crate::arithmetic::tower::Tower;
 use crate::arithmetic::{Arithmetic, Element, Stream};
 use crate::claims::{Claims, Resolved};
-use crate::contract::{Promise, UNJUDGED};
+use crate::contract::Promise;
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::{Standard, Vector};
@@ -93,7 +93,7 @@ pub struct Checker {
     exact: Vec<Point<Tower>>,
     roots: usize,
     circles: usize,
-    base_columns: Option<Vec<Standard>>,
+    base: Option<Vec<(Standard, bool)>>,
 }
 
 /// Collects the constants of a description: an arithmetic whose numbers are of no interest.
@@ -122,14 +122,14 @@ fn constants_of(manipulator: &Manipulator) -> Vec<Formula> {
 
 impl Checker {
     /// Random points for an arm whose parameter vector is `vector`; `extras` for modules with functions beyond the required ones,
-    /// `base_columns` for those with a `base_regressor`.
+    /// `base` for those with a `base_regressor`: its columns, and whether each carries others.
     pub fn new(
         manipulator: Manipulator,
         vector: Vector,
         claims: Claims,
         effort: Effort,
         extras: bool,
-        base_columns: Option<Vec<Standard>>,
+        base_columns: Option<Vec<(Standard, bool)>>,
     ) -> Result<Checker, String> {
         let wanted = |base: BaseParameters| Wanted { extras, base, base_columns: base_columns.as_deref() };
         let constants = constants_of(&manipulator);
@@ -148,7 +148,7 @@ impl Checker {
             exact.push(Point { arithmetic: tower, reference, constants: RefCell::default() });
         }
         let circles = manipulator.joints.len() + atoms.angles.len();
-        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles, base_columns })
+        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles, base: base_columns })
     }
 
     /// The arm.
@@ -195,19 +195,20 @@ impl Checker {
             && self.exact.iter().all(|p| p.reference.two_derivations_agree)
     }
 
-    /// All functions of a module.
+    /// All functions of a module, those that it lacks last.
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
-        let mut reports: Vec<FunctionReport> = module
-            .functions
-            .iter()
-            .filter(|(name, _)| !UNJUDGED.contains(&name.as_str()))
-            .map(|(name, function)| self.function(name, function, module.real))
-            .collect();
+        let mut reports: Vec<FunctionReport> =
+            module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
         if let Some(odds) = Odds::new(self, &reports) {
             for report in reports.iter_mut().filter(|report| report.verdict == Verdict::Equal) {
                 if let Some(program) = module.program(&report.name) {
                     report.log2_odds = odds.of(program, report) * self.points.len() as f64;
                 }
+            }
+        }
+        for name in Promise::required() {
+            if !module.functions.iter().any(|(other, _)| *other == name) {
+                reports.push(refused(&name, "the module does not have it".into()));
             }
         }
         reports
@@ -228,7 +229,7 @@ impl Checker {
         }
         let program = &function.program;
         let (n, p, m) = (self.manipulator.joints.len(), self.parameters(), self.manipulator.task.len());
-        let b = self.base_columns.as_ref().map_or(0, Vec::len);
+        let b = self.base.as_ref().map_or(0, Vec::len);
         let places = promise.shape.places(n, p, b, m);
         if program.outputs.iter().map(|o| &o.place).ne(&places) {
             return refused(name, format!("its result does not have the {} entries that it should", places.len()));
@@ -312,7 +313,7 @@ impl Odds {
     fn new(checker: &Checker, reports: &[FunctionReport]) -> Option<Odds> {
         let literals = reports.iter().flat_map(|r| &r.literals).map(|exact| &exact.value);
         let mut degrees = Degrees::new(constants_of(&checker.manipulator).iter().chain(literals));
-        let wanted = Wanted { extras: true, base: BaseParameters::Free, base_columns: checker.base_columns.as_deref() };
+        let wanted = Wanted { extras: true, base: BaseParameters::Free, base_columns: checker.base.as_deref() };
         let reference = Reference::new(&mut degrees, &checker.manipulator, &checker.vector, wanted).ok()?;
         Some(Odds { degrees, reference, circles: checker.circles, roots: checker.roots })
     }

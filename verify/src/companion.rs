@@ -34,7 +34,9 @@ macro_rules! face {
                 $sincos(x)
             }
             include!("companion/template.rs");
+            include!("companion/lanes.rs");
 
+            use super::LANES;
             use crate::float::Arguments;
 
             /// A program as a table of any length.
@@ -93,6 +95,9 @@ macro_rules! face {
 
 face!(double, f64, libm::sincos);
 face!(single, f32, libm::sincosf);
+
+/// States that run side by side where many are measured.
+pub const LANES: usize = 8;
 
 /// A step of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,11 +162,76 @@ impl Table {
         Ok(Table { rows, entries, sensitive, real })
     }
 
+    /// Ready to run in lanes.
+    pub fn lanes(&self) -> LaneTable {
+        match self.real {
+            Float::F64 => LaneTable(Sorts::Double(double::Lanes::new(&self.rows, &self.entries, self.sensitive))),
+            Float::F32 => LaneTable(Sorts::Single(single::Lanes::new(&self.rows, &self.entries, self.sensitive))),
+        }
+    }
+
     /// Value and running error bound of each entry, in the module's scalar; the arguments are rounded to it first.
     pub fn run(&self, arguments: &Arguments<f64>) -> Vec<(f64, f64)> {
         match self.real {
             Float::F64 => double::run(&self.rows, &self.entries, self.sensitive, arguments),
             Float::F32 => single::run(&self.rows, &self.entries, self.sensitive, arguments),
+        }
+    }
+}
+
+/// Arguments in lanes.
+#[derive(Debug)]
+pub struct LaneArguments(Sides);
+
+#[derive(Debug)]
+enum Sides {
+    Double(double::Side),
+    Single(single::Side),
+}
+
+impl LaneArguments {
+    /// The states in the scalar of a module; they are rounded to it first.
+    pub fn new(states: &[Arguments<f64>; LANES], real: Float) -> LaneArguments {
+        LaneArguments(match real {
+            Float::F64 => Sides::Double(double::Side::new(states)),
+            Float::F32 => Sides::Single(single::Side::new(states)),
+        })
+    }
+}
+
+/// The table of a function that runs at many states side by side.
+#[derive(Clone, Debug)]
+pub struct LaneTable(Sorts);
+
+#[derive(Clone, Debug)]
+enum Sorts {
+    Double(double::Lanes),
+    Single(single::Lanes),
+}
+
+impl LaneTable {
+    /// Runs the function, at arguments of its scalar.
+    pub fn run(&mut self, arguments: &LaneArguments) {
+        match (&mut self.0, &arguments.0) {
+            (Sorts::Double(lanes), Sides::Double(side)) => lanes.forward(side),
+            (Sorts::Single(lanes), Sides::Single(side)) => lanes.forward(side),
+            _ => unreachable!("arguments of the other scalar"),
+        }
+    }
+
+    /// Value and running error of a step.
+    pub fn step(&self, step: usize) -> ([f64; LANES], [f64; LANES]) {
+        match &self.0 {
+            Sorts::Double(lanes) => lanes.step(step),
+            Sorts::Single(lanes) => lanes.step(step),
+        }
+    }
+
+    /// The bound of the step that an entry is.
+    pub fn bound(&mut self, entry: usize) -> [f64; LANES] {
+        match &mut self.0 {
+            Sorts::Double(lanes) => lanes.bound(entry as u32),
+            Sorts::Single(lanes) => lanes.bound(entry as u32),
         }
     }
 }

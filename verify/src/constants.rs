@@ -2,9 +2,9 @@
 
 use armgen_codegen::manipulator::{JointKind, Manipulator};
 
-use crate::checker::Checker;
+use crate::arithmetic::prime::{Prime, Residue};
+use crate::checker::{Checker, Point};
 use crate::claims::Claims;
-use crate::contract::UNJUDGED;
 use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::Vector;
@@ -186,13 +186,17 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
         };
         reports.push(ConstantReport { name: (*name).into(), verdict, literals });
     }
-    if let Some(report) = reports.iter_mut().find(|r| r.name == "NOMINAL_PARAMETERS" && r.verdict == Verdict::Equal) {
-        if let Some(entry) = wrong_base_parameter(checker, nominal) {
+    let mut judge = |name: &str, nominal: &[Formula], right: &dyn Fn(&Point<Prime>) -> Option<Vec<Residue>>| {
+        let Some(report) = reports.iter_mut().find(|r| r.name == name && r.verdict == Verdict::Equal) else { return };
+        if let Some(entry) = wrong_base_parameter(checker, nominal, right) {
             let why = format!("is not the combination of standard parameters that its name stands for: {}", nominal[entry]);
             report.verdict = Verdict::Different { entry: format!("[{entry}]"), why };
         }
-    }
-    let known = |name: &str| expected.iter().any(|(known, ..)| *known == name) || UNJUDGED.contains(&name);
+    };
+    judge("NOMINAL_PARAMETERS", nominal, &|point| point.reference.nominal_base.clone());
+    let nominal_base = nominal_base_parameters(checker.claims(), module).unwrap_or_default();
+    judge("NOMINAL_BASE_PARAMETERS", &nominal_base, &|point| point.reference.base_regressor_nominal.clone());
+    let known = |name: &str| expected.iter().any(|(known, ..)| *known == name);
     for name in module.constants.keys().filter(|name| !known(name)) {
         let why = "not a constant that the checker knows".to_string();
         reports.push(ConstantReport { name: name.clone(), verdict: Verdict::Refused(why), literals: Vec::new() });
@@ -201,10 +205,14 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
 }
 
 /// With base parameters: the first whose claimed exact value is not what the standard parameters of the description add up to.
-fn wrong_base_parameter(checker: &Checker, nominal: &[Formula]) -> Option<usize> {
+fn wrong_base_parameter(
+    checker: &Checker,
+    nominal: &[Formula],
+    right: &dyn Fn(&Point<Prime>) -> Option<Vec<Residue>>,
+) -> Option<usize> {
     checker.points().iter().find_map(|point| {
-        let right = point.reference.nominal_base.as_ref()?;
+        let right = right(point)?;
         let Some(claimed) = point.literals(nominal) else { return Some(0) };
-        claimed.iter().zip(right).position(|(a, b)| a != b)
+        claimed.iter().zip(&right).position(|(a, b)| a != b)
     })
 }

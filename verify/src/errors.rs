@@ -1,17 +1,21 @@
-//! Rounding errors as they occur: the functions of a module in its own scalar against 256 bits, at random states of the box, beside what the
-//! two bounds say.
+//! Rounding errors as they occur: the functions of a module in its own scalar against far finer evaluation, at random states of the box,
+//! beside what the two bounds say.
+//!
+//! All states run in lanes, the reference with 106 bits ([`twofold`]); a state whose error comes near to a bound, or is the worst so far, is
+//! evaluated again with 256 bits ([`Wide`]), and what is shown comes from there.
 
 use armgen_codegen::manipulator::Manipulator;
 
+use crate::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Element, Stream};
 use crate::bounds::{a_priori, domain_of, draw, literal_errors, Bound, Domain};
 use crate::claims::Claims;
-use crate::companion::Table;
+use crate::companion::{LaneArguments, LaneTable, Table, LANES};
 use crate::enclosure::Float;
 use crate::float::Arguments;
 use crate::program::{Program, Step};
-use crate::reader::Module;
+use crate::reader::{Function, Module};
 
 /// What was seen of a function; sizes are those of the largest entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +38,9 @@ pub struct Seen {
     pub beyond_a_priori: u64,
     /// States that the a-priori bound does not speak of: a divisor is smaller than it says.
     pub outside: u64,
+    /// States at which a divisor may be off by more than √u of itself, half of its digits, as at the singular configurations of
+    /// `operational_inertia`: no size above is taken from them; the bounds must hold all the same.
+    pub singular: u64,
 }
 
 impl Seen {
@@ -51,19 +58,21 @@ impl Seen {
         self.beyond_running += other.beyond_running;
         self.beyond_a_priori += other.beyond_a_priori;
         self.outside += other.outside;
+        self.singular += other.singular;
     }
 }
 
-/// What the evaluation with 256 bits may itself be wrong by, in units of values: more than its sines at 0 are.
-const REFERENCE: f64 = 1e-60;
-
 /// A function ready to be measured.
+#[derive(Clone, Debug)]
 pub struct Subject {
     /// The program that runs.
     pub program: Program,
     exact: Vec<Wide>,
-    table: Table,
+    pairs: Vec<Pair>,
+    table: LaneTable,
     bound: Bound,
+    /// The steps that are entries, each once, with the largest a-priori bound that holds for it.
+    entries: Vec<(usize, f64)>,
     divisors: Vec<usize>,
 }
 
@@ -71,27 +80,33 @@ impl Subject {
     /// The functions of a module, with the exact values of their literals.
     pub fn all(manipulator: &Manipulator, module: &Module, claims: &Claims) -> Result<Vec<Subject>, String> {
         let domain = domain_of(manipulator, module);
-        let of = |(name, function): &(String, Result<crate::reader::Function, String>)| {
+        let of = |(name, function): &(String, Result<Function, String>)| {
             let program = function.as_ref().map_err(|e| format!("`{name}`: {e}"))?.program.clone();
             let values = claims.resolve(name, &program.literals, module.real).values;
             let errors = literal_errors(&program, &values, module.real);
             let exact: Option<Vec<Wide>> = values.iter().map(Wide::from_formula).collect();
             let exact = exact.ok_or(format!("`{name}`: a literal out of reach"))?;
-            let table = Table::of(&program, &errors, module.real)?;
+            let table = Table::of(&program, &errors, module.real)?.lanes();
             let bound = a_priori(&program, &errors, &domain, module.real);
             let divisor = |step: &Step| match step {
                 Step::Divide(_, divisor) => Some(*divisor),
                 _ => None,
             };
             let divisors = program.steps.iter().filter_map(divisor).collect();
-            Ok(Subject { program, exact, table, bound, divisors })
+            let mut entries: Vec<(usize, f64)> =
+                program.outputs.iter().map(|o| o.step).zip(bound.entries.iter().copied()).collect();
+            entries.sort_by_key(|entry| entry.0);
+            entries.dedup_by_key(|entry| entry.0);
+            let pairs = exact.iter().map(twofold::pair).collect();
+            Ok(Subject { program, exact, pairs, table, bound, entries, divisors })
         };
         module.functions.iter().map(of).collect()
     }
 
-    /// The same with another program in place of the one that the bounds are of.
-    pub fn with_program(self, program: Program) -> Subject {
-        Subject { program, ..self }
+    /// The same with other values of the literals for the reference: as if the text had other literals than it should.
+    pub fn with_literals(self, exact: impl Fn(&Wide) -> Wide) -> Subject {
+        let exact: Vec<Wide> = self.exact.iter().map(exact).collect();
+        Subject { pairs: exact.iter().map(twofold::pair).collect(), exact, ..self }
     }
 
     fn nothing(&self) -> Seen {
@@ -105,38 +120,85 @@ impl Subject {
             beyond_running: 0,
             beyond_a_priori: 0,
             outside: 0,
+            singular: 0,
         }
     }
 
-    fn look(&self, arguments: &Arguments<f64>, wide: &WideArguments, real: Float, seen: &mut Seen) {
-        let values = self.program.values(wide, &self.exact);
-        let found = self.program.run_float(arguments, real);
-        let running = self.table.run(arguments);
-        let (mut beyond, mut beyond_a_priori) = (false, false);
-        let entries = self.program.outputs.iter().zip(found.iter().zip(&running)).zip(&self.bound.entries);
-        for ((output, (&found, &(_, running))), &a_priori) in entries {
-            let error = match &values[output.step] {
-                Some(exact) => exact.minus(&Wide::from_f64(found)).to_f64().abs(),
-                None => f64::INFINITY,
-            };
-            seen.value = seen.value.max(found.abs());
-            seen.error = seen.error.max(error);
-            seen.running = seen.running.max(running);
-            // Not `error > running`: what is not a number is beyond as well.
-            let own = REFERENCE * (1.0 + found.abs());
-            beyond |= !(error <= running + own);
-            beyond_a_priori |= !(error <= a_priori + own);
+    fn look(&mut self, side: &Batch, real: Float, scratch: &mut Vec<Twofold>, seen: &mut Seen) -> Option<()> {
+        self.table.run(&side.own);
+        twofold::values(&self.program, &self.pairs, &side.fine, scratch)?;
+        let digits = real.unit().sqrt();
+        let (mut singular, mut outside) = ([false; LANES], [false; LANES]);
+        for &divisor in &self.divisors {
+            let (value, error) = self.table.step(divisor);
+            for lane in 0..LANES {
+                singular[lane] |= exceeds(error[lane], digits * value[lane].abs());
+                outside[lane] |= self.bound.smallest_divisor.is_some_and(|least| exceeds(least, value[lane].abs() - error[lane]));
+            }
         }
-        seen.states += 1;
+        // By lane: whether a bound may have been exceeded, and the largest error.
+        let (mut near, mut worst) = ([false; LANES], [0.0f64; LANES]);
+        for &(entry, a_priori) in &self.entries {
+            let (found, _) = self.table.step(entry);
+            let running = self.table.bound(entry);
+            let exact = &scratch[entry];
+            for lane in 0..LANES {
+                let error = ((found[lane] - exact.high[lane]) - exact.low[lane]).abs();
+                let beyond = |bound: f64| bound < f64::INFINITY && exceeds(error, bound * (1.0 - 1e-9));
+                near[lane] |= beyond(running[lane]) || !outside[lane] && beyond(a_priori);
+                if !singular[lane] {
+                    worst[lane] = worst[lane].max(error);
+                    seen.value = seen.value.max(found[lane].abs());
+                    seen.running = seen.running.max(running[lane]);
+                }
+            }
+        }
+        for lane in 0..LANES {
+            seen.states += 1;
+            seen.outside += u64::from(outside[lane]);
+            seen.singular += u64::from(singular[lane]);
+            if near[lane] || worst[lane] > seen.error {
+                self.look_again(side, lane, singular[lane], outside[lane], seen)?;
+            }
+        }
+        Some(())
+    }
+
+    /// The state of a lane with 256 bits.
+    fn look_again(&mut self, side: &Batch, lane: usize, singular: bool, outside: bool, seen: &mut Seen) -> Option<()> {
+        let values = self.program.values(&WideArguments::new(&side.states[lane])?, &self.exact);
+        let (mut beyond, mut beyond_a_priori) = (false, false);
+        for &(entry, a_priori) in &self.entries {
+            let (found, running) = (self.table.step(entry).0[lane], self.table.bound(entry)[lane]);
+            let error = match &values[entry] {
+                Some(exact) if found.is_finite() => exact.minus(&Wide::from_f64(found)).to_f64().abs(),
+                _ => f64::INFINITY,
+            };
+            beyond |= error > running;
+            beyond_a_priori |= !outside && error > a_priori;
+            if !singular {
+                seen.error = seen.error.max(error);
+            }
+        }
         seen.beyond_running += u64::from(beyond);
-        let least = |&divisor: &usize| values[divisor].as_ref().map_or(0.0, |d| d.to_f64().abs());
-        let inside = self.bound.smallest_divisor.is_none_or(|smallest| self.divisors.iter().map(least).all(|d| d >= smallest));
-        seen.outside += u64::from(!inside);
-        seen.beyond_a_priori += u64::from(inside && beyond_a_priori);
+        seen.beyond_a_priori += u64::from(beyond_a_priori);
+        Some(())
     }
 }
 
-/// A state of the box; one in 16 lies on its corners and in its middle.
+/// Whether a is larger than b, or one of the two is not a number.
+fn exceeds(a: f64, b: f64) -> bool {
+    a > b || a.is_nan() || b.is_nan()
+}
+
+/// States in lanes, in the scalar of the module and with 106 bits.
+struct Batch {
+    states: [Arguments<f64>; LANES],
+    own: LaneArguments,
+    fine: TwofoldArguments,
+}
+
+/// A state of the box; one in 16 has about half of its entries at 0.
 fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     let drawn = draw(domain, stream, real);
     if stream.below(16) > 0 {
@@ -154,17 +216,42 @@ fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     }
 }
 
-/// What is seen of each function at so many states.
-pub fn measure(manipulator: &Manipulator, module: &Module, subjects: &[Subject], states: u64, seed: u64) -> Vec<Seen> {
-    let domain = domain_of(manipulator, module);
-    let mut stream = Stream::new(seed);
-    let mut seen: Vec<Seen> = subjects.iter().map(Subject::nothing).collect();
-    for _ in 0..states {
-        let arguments = state(&domain, &mut stream, module.real);
-        let Some(wide) = WideArguments::new(&arguments) else { continue };
-        for (subject, seen) in subjects.iter().zip(&mut seen) {
-            subject.look(&arguments, &wide, module.real, seen);
+/// A run over states of a stream of its own.
+pub struct Run {
+    subjects: Vec<Subject>,
+    domain: Domain,
+    real: Float,
+    circle: Circle,
+    stream: Stream,
+    scratch: Vec<Twofold>,
+    /// What has been seen of each function.
+    pub seen: Vec<Seen>,
+}
+
+impl Run {
+    /// A run that has seen nothing yet.
+    pub fn new(manipulator: &Manipulator, module: &Module, subjects: Vec<Subject>, seed: u64) -> Run {
+        Run {
+            seen: subjects.iter().map(Subject::nothing).collect(),
+            subjects,
+            domain: domain_of(manipulator, module),
+            real: module.real,
+            circle: Circle::new(),
+            stream: Stream::new(seed),
+            scratch: Vec::new(),
         }
     }
-    seen
+
+    /// Goes on over so many batches of [`LANES`] states.
+    pub fn go_on(&mut self, batches: u64) -> Result<(), String> {
+        for _ in 0..batches {
+            let states: [Arguments<f64>; LANES] = std::array::from_fn(|_| state(&self.domain, &mut self.stream, self.real));
+            let fine = TwofoldArguments::new(&self.circle, &states).ok_or("a joint variable out of reach")?;
+            let batch = Batch { own: LaneArguments::new(&states, self.real), fine, states };
+            for (subject, seen) in self.subjects.iter_mut().zip(&mut self.seen) {
+                subject.look(&batch, self.real, &mut self.scratch, seen).ok_or("an angle out of reach")?;
+            }
+        }
+        Ok(())
+    }
 }

@@ -36,6 +36,23 @@ impl<T: Copy> Arguments<T> {
         }
     }
 
+    /// The same entry of all states side by side.
+    pub fn gather<U, const N: usize>(states: &[Arguments<T>; N], side: impl Fn([T; N]) -> U + Copy) -> Arguments<U> {
+        let all = |argument: Argument| {
+            let length = states.first().map_or(0, |state| state.of(argument).len());
+            (0..length).map(|i| side(std::array::from_fn(|k| states[k].of(argument)[i]))).collect()
+        };
+        Arguments {
+            pi: all(Argument::Pi),
+            q: all(Argument::Q),
+            dq: all(Argument::Dq),
+            ddq: all(Argument::Ddq),
+            dqr: all(Argument::Dqr),
+            ddqr: all(Argument::Ddqr),
+            tau: all(Argument::Tau),
+        }
+    }
+
     /// The same in other numbers.
     pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Arguments<U> {
         let of = |v: &[T]| v.iter().map(|x| f(*x)).collect();

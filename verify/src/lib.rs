@@ -84,7 +84,7 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
     let base = match constants::names(&module, "BASE_PARAMETER_NAMES") {
-        Some(names) => Some(base_parameters(&manipulator, &names)?.into_iter().map(|(parameter, _)| parameter).collect()),
+        Some(names) => Some(base_parameters(&manipulator, &names)?),
         None => None,
     };
     let checker = Checker::new(manipulator, vector, claims, effort, extras, base)?;

@@ -30,6 +30,8 @@ pub struct Reference<E> {
     pub elsewhere: Option<(State<E>, E)>,
     /// The nominal parameter vector where it follows from the standard one.
     pub nominal_base: Option<Vec<E>>,
+    /// The base parameters with which the columns of `base_regressor` give the torques; there are no others.
+    pub base_regressor_nominal: Option<Vec<E>>,
     /// Whether Lagrange's and Newton and Euler's torques agree.
     pub two_derivations_agree: bool,
 }
@@ -148,8 +150,8 @@ pub struct Wanted<'a> {
     pub extras: bool,
     /// How the functions at run-time base parameters are had.
     pub base: BaseParameters,
-    /// Columns of `base_regressor`, if the module has one.
-    pub base_columns: Option<&'a [Standard]>,
+    /// Columns of `base_regressor`, if the module has one, and whether each carries others.
+    pub base_columns: Option<&'a [(Standard, bool)]>,
 }
 
 /// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations.
@@ -196,11 +198,19 @@ impl<E: Element> Reference<E> {
             extras(&arm, &state, &task, &mut values).ok_or_else(singular)?;
         }
 
-        if let Some(kept) = wanted.base_columns {
+        let mut base_regressor_nominal = None;
+        if let Some(base) = wanted.base_columns {
+            let kept: Vec<Standard> = base.iter().map(|(parameter, _)| *parameter).collect();
             let moving = State { dqr: state.dq.clone(), ddqr: state.ddq.clone(), ..state.clone() };
-            let columns = standard_columns(&arm, &moving, kept, LinkFrames::Joint);
+            let columns = standard_columns(&arm, &moving, &kept, LinkFrames::Joint);
             let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
             values.insert("base_regressor".into(), y);
+            if wanted.base == BaseParameters::Solved {
+                let all = Standard::all(manipulator);
+                let (map, nominal) = base_map(arithmetic, &arm, &kept, &all)?;
+                check_names(&map, base, &all, &arm)?;
+                base_regressor_nominal = Some(nominal);
+            }
         }
 
         let (mut elsewhere, mut nominal_base) = (None, None);
@@ -240,7 +250,7 @@ impl<E: Element> Reference<E> {
                 if wanted.base != BaseParameters::LeftOut {
                     let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
                     state.pi = if wanted.base == BaseParameters::Solved {
-                        let map = base_map(arithmetic, &arm, &kept, all)?;
+                        let (map, _) = base_map(arithmetic, &arm, &kept, all)?;
                         check_names(&map, base, all, &arm)?;
                         let nominal: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
                         nominal_base = Some(times_vector(&map, &nominal));
@@ -264,7 +274,7 @@ impl<E: Element> Reference<E> {
         if let Some(arm) = run_time {
             agree &= quantities(&arm, &state, &mut values, "_with").ok_or_else(singular)?;
         }
-        Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree })
+        Ok(Reference { state, values, elsewhere, nominal_base, base_regressor_nominal, two_derivations_agree: agree })
     }
 }
 

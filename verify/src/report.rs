@@ -3,7 +3,6 @@
 use std::fmt;
 
 use crate::bounds::{Bound, Domain};
-use crate::contract::Promise;
 use crate::formula::Formula;
 
 /// What is said of a function or a constant.
@@ -89,7 +88,7 @@ pub struct Report {
     pub faults: Vec<String>,
     /// Constants.
     pub constants: Vec<ConstantReport>,
-    /// Functions in the order of the text.
+    /// Functions in the order of the text, missing ones last.
     pub functions: Vec<FunctionReport>,
     /// Identities.
     pub identities: Vec<IdentityReport>,
@@ -182,11 +181,6 @@ impl fmt::Display for Report {
                 Ok(false) => writeln!(f, "DOES NOT HOLD: {}", report.name)?,
                 Err(why) => writeln!(f, "NOT CHECKED: {}: {why}", report.name)?,
             }
-        }
-        let absent = |name: &String| !self.functions.is_empty() && self.functions.iter().all(|f| f.name != *name);
-        let absent: Vec<String> = Promise::required().into_iter().filter(absent).collect();
-        if !absent.is_empty() {
-            writeln!(f, "not in the module: {}", absent.join(", "))?;
         }
         write!(f, "{}", if self.passed() { "verified" } else { "NOT verified" })
     }

@@ -12,7 +12,7 @@ use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Arithmetic, Element, Stream};
 use crate::contract::{Promise, PROMISES};
 use crate::enclosure::Float;
-use crate::equations::parameters::{base_parameters, Standard, Vector};
+use crate::equations::parameters::{base_parameters, Vector};
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
@@ -107,8 +107,8 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
     );
     let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
     let base = crate::constants::names(module, "BASE_PARAMETER_NAMES");
-    let columns: Option<Vec<Standard>> = match base {
-        Some(names) => Some(base_parameters(manipulator, &names)?.into_iter().map(|(parameter, _)| parameter).collect()),
+    let columns = match base {
+        Some(names) => Some(base_parameters(manipulator, &names)?),
         None => None,
     };
     let extras = PROMISES.iter().any(|p| !p.required && present(p.name));

@@ -7,11 +7,12 @@ use std::process::Command;
 
 use armgen_codegen::manipulator::{self, Manipulator};
 use armgen_codegen::program::Scalar;
-use armgen_verify::arithmetic::Stream;
+use armgen_verify::arithmetic::wide::Wide;
+use armgen_verify::arithmetic::{Element, Stream};
 use armgen_verify::bounds::{document, domain_of, draw, literal_errors, of, two_digits};
 use armgen_verify::claims::Claims;
-use armgen_verify::companion::{companion, Table};
-use armgen_verify::errors::{measure, Seen, Subject};
+use armgen_verify::companion::{companion, LaneArguments, Table, LANES};
+use armgen_verify::errors::{Run, Seen, Subject};
 use armgen_verify::reader::Module;
 
 /// A robot of the project: its text, module, claims and description.
@@ -23,11 +24,17 @@ fn robot(name: &str, scalar: Scalar) -> (String, Module, Claims, Manipulator) {
     (generated.module, module, Claims::from_numbers(&generated.constants), manipulator)
 }
 
+fn measure(manipulator: &Manipulator, module: &Module, subjects: Vec<Subject>, batches: u64, seed: u64) -> Vec<Seen> {
+    let mut run = Run::new(manipulator, module, subjects, seed);
+    run.go_on(batches).expect("states in reach");
+    run.seen
+}
+
 #[track_caller]
 fn check(name: &str, scalar: Scalar, states: u64) {
     let (_, module, claims, manipulator) = robot(name, scalar);
     let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
-    for seen in measure(&manipulator, &module, &subjects, states, 11) {
+    for seen in measure(&manipulator, &module, subjects, states.div_ceil(LANES as u64), 11) {
         assert_eq!((seen.beyond_running, seen.beyond_a_priori), (0, 0), "{name} {scalar:?}: {seen:?}");
         assert!(seen.running.is_finite() && seen.running <= 1e-3 * seen.value.max(1e-30), "{name} {scalar:?}: {seen:?}");
         // As few states as these do not come across the worst error: the bound of 100 is for a million.
@@ -51,17 +58,14 @@ fn a_planted_fault_is_seen() {
     let (_, module, claims, manipulator) = robot("scara", Scalar::F64);
     let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
     let names = ["inertia_matrix", "gravity", "inverse_dynamics", "forward_dynamics", "regressor"];
+    let off = Wide::from_f64(1.0 + 400.0 * f64::EPSILON);
     let planted: Vec<Subject> = subjects
         .into_iter()
         .filter(|subject| names.contains(&subject.program.name.as_str()))
-        .map(|subject| {
-            let mut program = subject.program.clone();
-            program.literals.iter_mut().for_each(|literal| literal.value *= 1.0 + 400.0 * f64::EPSILON);
-            subject.with_program(program)
-        })
+        .map(|subject| subject.with_literals(|exact| exact.times(&off)))
         .collect();
     assert_eq!(planted.len(), names.len());
-    for seen in measure(&manipulator, &module, &planted, 50, 3) {
+    for seen in measure(&manipulator, &module, planted, 7, 3) {
         assert!(seen.beyond_running > 0, "{seen:?}");
     }
 }
@@ -140,8 +144,38 @@ fn the_companion_returns_the_same_bounds() {
 fn what_is_seen_in_parts_is_seen_of_the_whole() {
     let (_, module, claims, manipulator) = robot("scara4", Scalar::F64);
     let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
-    let (mut first, second) = (measure(&manipulator, &module, &subjects, 5, 1), measure(&manipulator, &module, &subjects, 7, 2));
+    let (mut first, second) =
+        (measure(&manipulator, &module, subjects.clone(), 1, 1), measure(&manipulator, &module, subjects, 2, 2));
     first.iter_mut().zip(&second).for_each(|(a, b)| a.join(b));
-    assert!(first.iter().all(|seen: &Seen| seen.states == 12));
+    assert!(first.iter().all(|seen: &Seen| seen.states == 24));
     assert!(first.iter().zip(&second).all(|(a, b)| a.error >= b.error && a.running >= b.running));
+}
+
+/// Side by side and one by one the same bits.
+#[test]
+fn lanes_return_the_bounds_of_the_companion() {
+    for (name, scalar) in [("scara", Scalar::F64), ("everything", Scalar::F64), ("everything", Scalar::F32)] {
+        let (_, module, claims, manipulator) = robot(name, scalar);
+        let (domain, mut stream) = (domain_of(&manipulator, &module), Stream::new(8));
+        let mut states: [_; LANES] = std::array::from_fn(|_| draw(&domain, &mut stream, module.real));
+        // Where sensitivities are 0, and divisors.
+        states[3].q.fill(0.0);
+        states[5].dq.fill(0.0);
+        let side = LaneArguments::new(&states, module.real);
+        for (function, read) in &module.functions {
+            let program = &read.as_ref().expect("a function").program;
+            let values = claims.resolve(function, &program.literals, module.real).values;
+            let table = Table::of(program, &literal_errors(program, &values, module.real), module.real).expect("a table");
+            let mut lanes = table.lanes();
+            lanes.run(&side);
+            for (lane, state) in states.iter().enumerate() {
+                let single = program.run_float(state, module.real);
+                for ((output, (value, bound)), single) in program.outputs.iter().zip(table.run(state)).zip(single) {
+                    let found = (lanes.step(output.step).0[lane].to_bits(), lanes.bound(output.step)[lane].to_bits());
+                    let same = value.is_nan() || found.0 == value.to_bits() && found.0 == single.to_bits();
+                    assert!(same && found.1 == bound.to_bits(), "{name} {function}{output} lane {lane}");
+                }
+            }
+        }
+    }
 }

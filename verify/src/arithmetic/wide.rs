@@ -211,7 +211,12 @@ impl WideArguments {
             .q
             .iter()
             .map(|&q| {
-                let (sine, cosine, bits) = sine_cosine_of(&Rational::try_from(q).ok()?, 320)?;
+                if q == 0.0 {
+                    return Some((ZERO, Wide::from_f64(1.0)));
+                }
+                // The sine of a small angle as finely as others, relative to its size.
+                let fine = 320 + (-q.abs().log2()).clamp(0.0, 1100.0) as usize;
+                let (sine, cosine, bits) = sine_cosine_of(&Rational::try_from(q).ok()?, fine)?;
                 let of = |n: &IBig| Wide::from_integer(n, -(bits as i64));
                 Some((of(&sine), of(&cosine)))
             })

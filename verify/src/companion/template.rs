@@ -85,6 +85,13 @@ fn times(a: Bounded, b: Bounded) -> Bounded {
     Bounded { error: product.error + (UNIT * product.value.abs() + TINY), ..product }
 }
 
+/// A product that no rounding takes part in, unless it leaves the normal numbers.
+fn scaled(a: Bounded, b: Bounded) -> Bounded {
+    let product = scale(a, b);
+    let lost = if product.value.abs() < TINY && a.value != 0.0 && b.value != 0.0 { TINY } else { 0.0 };
+    Bounded { error: product.error + lost, ..product }
+}
+
 fn over(a: Bounded, b: Bounded) -> Bounded {
     let value = a.value / b.value;
     // A hundredth more than the error, for the roundings of the error itself.
@@ -104,6 +111,18 @@ fn negated(a: Bounded) -> Bounded {
 /// One unit in the last place.
 fn wave(value: Real) -> Bounded {
     Bounded { value, error: 2.0 * UNIT * value.abs() + TINY }
+}
+
+/// The sign of a rate; what is no number stays what it is.
+fn sign(rate: Real) -> Bounded {
+    let value = if rate > 0.0 {
+        1.0
+    } else if rate < 0.0 {
+        -1.0
+    } else {
+        rate
+    };
+    Bounded { value, error: 0.0 }
 }
 
 /// Values of all steps with their running error bounds (Higham, Accuracy and Stability of Numerical Algorithms, 2002, Sect. 3.3).
@@ -126,27 +145,12 @@ fn forward(steps: &[Step], given: &Given<'_>, values: &mut [Bounded]) {
             Step::Lit(value, error) => Bounded { value, error },
             Step::Sin(joint) => wave(sin_cos(given.q[joint as usize]).0),
             Step::Cos(joint) => wave(sin_cos(given.q[joint as usize]).1),
-            Step::Sign(joint) => {
-                let rate = given.dq[joint as usize];
-                let value = if rate > 0.0 {
-                    1.0
-                } else if rate < 0.0 {
-                    -1.0
-                } else {
-                    rate
-                };
-                Bounded { value, error: 0.0 }
-            }
+            Step::Sign(joint) => sign(given.dq[joint as usize]),
             Step::Neg(a) => negated(of(a)),
             Step::Add(a, b) => plus(of(a), of(b)),
             Step::Sub(a, b) => plus(of(a), negated(of(b))),
             Step::Mul(a, b) => times(of(a), of(b)),
-            Step::Scale(a, b) => {
-                let (a, b) = (of(a), of(b));
-                let product = scale(a, b);
-                let lost = if product.value.abs() < TINY && a.value != 0.0 && b.value != 0.0 { TINY } else { 0.0 };
-                Bounded { error: product.error + lost, ..product }
-            }
+            Step::Scale(a, b) => scaled(of(a), of(b)),
             Step::Div(a, b) => over(of(a), of(b)),
         };
     }
@@ -210,14 +214,22 @@ fn backward(steps: &[Step], values: &[Bounded], sensitivities: &mut [Bounded], e
     bound
 }
 
+/// A bound made larger by the roundings of itself: a sum of products of numbers that are not negative, each operation right to a relative UNIT.
+fn finished(bound: Real, steps: usize) -> Real {
+    let inflated = bound * (1.0 + 32.0 * steps as Real * UNIT);
+    if inflated < Real::INFINITY {
+        inflated
+    } else {
+        Real::INFINITY
+    }
+}
+
 /// Bounds of all entries: by sensitivities where there is room for them, else running ones.
 fn all_bounds(steps: &[Step], entries: &[u32], values: &[Bounded], scratch: &mut [Bounded], bounds: &mut [Real]) {
     let sensitive = !scratch.is_empty();
     for (bound, &entry) in bounds.iter_mut().zip(entries) {
         let running = if sensitive { backward(steps, values, scratch, entry) } else { values[entry as usize].error };
-        // The bound is a sum of products of numbers that are not negative, each operation right to a relative UNIT.
-        let inflated = running * (1.0 + 32.0 * steps.len() as Real * UNIT);
-        *bound = if inflated < Real::INFINITY { inflated } else { Real::INFINITY };
+        *bound = finished(running, steps.len());
     }
 }
 

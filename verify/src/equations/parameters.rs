@@ -203,20 +203,22 @@ pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Ve
     names.iter().map(base).collect()
 }
 
-/// The matrix M of pi_base = M phi_standard, row by row, and whether the base columns are independent and span all others.
+/// The matrix M of pi_base = M phi_standard, row by row, and the vector with which the base columns give the whole torques of the arm, masses of
+/// rotors included; an error if the base columns are not independent or do not span all others.
 pub fn base_map<K: Arithmetic>(
     arithmetic: &mut K,
     arm: &Arm<K::Element>,
     base: &[Standard],
     all: &[Standard],
-) -> Result<Vec<Vec<K::Element>>, String> {
+) -> Result<(Vec<Vec<K::Element>>, Vec<K::Element>), String> {
     let n = arm.dof();
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
         let state = State::draw(arithmetic, n);
         let y = standard_columns(arm, &state, base, LinkFrames::Joint);
-        let full = standard_columns(arm, &state, all, LinkFrames::Described);
+        let mut full = standard_columns(arm, &state, all, LinkFrames::Described);
+        full.push(reference_torques(arm, &state));
         for row in 0..n {
             left.push(y.iter().map(|column| column[row].clone()).collect::<Vec<_>>());
             right.push(full.iter().map(|column| column[row].clone()).collect::<Vec<_>>());
@@ -244,7 +246,7 @@ pub fn base_map<K: Arithmetic>(
     }
     let a: Vec<Vec<K::Element>> = chosen.iter().map(|&i| left[i].clone()).collect();
     let r: Vec<Vec<K::Element>> = chosen.iter().map(|&i| right[i].clone()).collect();
-    let map = solve(&a, &r).ok_or("a regular system without a solution")?;
+    let mut map = solve(&a, &r).ok_or("a regular system without a solution")?;
     for (y, full) in left.iter().zip(&right) {
         for (column, entry) in full.iter().enumerate() {
             let mut sum = arm.zero.clone();
@@ -252,9 +254,11 @@ pub fn base_map<K: Arithmetic>(
                 sum = sum.plus(&y.times(&map[k][column]));
             }
             if sum != *entry {
-                return Err(format!("the base parameters do not carry the effect of `{}`", all[column].name()));
+                let whose = all.get(column).map_or("the masses of rotors".into(), |parameter| format!("`{}`", parameter.name()));
+                return Err(format!("the base parameters do not carry the effect of {whose}"));
             }
         }
     }
-    Ok(map)
+    let torques = map.iter_mut().map(|row| row.pop().expect("the column of the torques")).collect();
+    Ok((map, torques))
 }
