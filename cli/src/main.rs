@@ -29,7 +29,7 @@ use clap::builder::styling::{AnsiColor, Styles};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
-use commands::generate::Beside;
+use commands::generate::{Beside, Choices};
 
 /// Exit code: the file is valid, or the task was done.
 const DONE: u8 = 0;
@@ -119,22 +119,8 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         /// File to write; standard output if not given
         #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
         out: Option<PathBuf>,
-        /// The floating-point type of the module
-        #[arg(long, value_enum, default_value_t = ScalarName::F64)]
-        scalar: ScalarName,
-        /// Where the sines and cosines come from
-        #[arg(long, value_enum, default_value_t = TrigName::Libm)]
-        trig: TrigName,
-        /// Passes to leave out, of those that make the functions cheaper (docs/passes.md)
-        #[arg(long, value_name = "PASS", value_delimiter = ',', value_parser = pass_parser(), hide_possible_values = true)]
-        without: Vec<Pass>,
-        /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32; the checker reads
-        /// functions for one state only, of which each of these gives the bits
-        #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
-        batch: Option<u16>,
-        /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them)
-        #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-        functions: Vec<String>,
+        #[command(flatten)]
+        choices: Choices,
         #[command(flatten)]
         beside: Beside,
     },
@@ -255,9 +241,7 @@ fn main() -> ExitCode {
     let code = match arguments.command {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
-        Command::Generate { file, out, scalar, trig, without, batch, functions, beside } => {
-            commands::generate::run(&file, out.as_deref(), scalar, trig, without, batch, &functions, &beside)
-        }
+        Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
         Command::Verify { description, module } => commands::verify::run(&description, &module),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
         Command::Run { files, out } => commands::run::run(&files, &out),

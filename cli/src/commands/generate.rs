@@ -11,6 +11,27 @@ use armgen_verify::certificate::Certificate;
 use super::verify::{certificate_beside, watched};
 use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
+/// What the module is to be.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Choices {
+    /// The floating-point type of the module
+    #[arg(long, value_enum, default_value_t = ScalarName::F64)]
+    scalar: ScalarName,
+    /// Where the sines and cosines come from
+    #[arg(long, value_enum, default_value_t = TrigName::Libm)]
+    trig: TrigName,
+    /// Passes to leave out, of those that make the functions cheaper (docs/passes.md)
+    #[arg(long, value_name = "PASS", value_delimiter = ',', value_parser = crate::pass_parser(), hide_possible_values = true)]
+    without: Vec<Pass>,
+    /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32; the checker reads
+    /// functions for one state only, of which each of these gives the bits
+    #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    batch: Option<u16>,
+    /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them)
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    functions: Vec<String>,
+}
+
 /// Files beside the module.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Beside {
@@ -45,22 +66,13 @@ impl Beside {
     }
 }
 
-pub(crate) fn run(
-    file: &Path,
-    out: Option<&Path>,
-    scalar: ScalarName,
-    trig: TrigName,
-    without: Vec<Pass>,
-    batch: Option<u16>,
-    functions: &[String],
-    beside: &Beside,
-) -> u8 {
-    let Some(functions) = input::selection(functions) else { return FAULTY };
-    let scalar = match scalar {
+pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &Beside) -> u8 {
+    let Some(functions) = input::selection(&choices.functions) else { return FAULTY };
+    let scalar = match choices.scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
     };
-    let trig = match trig {
+    let trig = match choices.trig {
         TrigName::Libm => Trig::Libm,
         TrigName::Std => Trig::Std,
         TrigName::Fast => Trig::Fast,
@@ -76,8 +88,8 @@ pub(crate) fn run(
     if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
         return code;
     }
-    let without = without.into_iter().collect();
-    let options = Options { scalar, trig, without, batch: batch.map(usize::from), functions };
+    let without = choices.without.iter().copied().collect();
+    let options = Options { scalar, trig, without, batch: choices.batch.map(usize::from), functions };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
     let Some(mut generated) = generated else {
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
@@ -87,7 +99,7 @@ pub(crate) fn run(
         return FAULTY;
     }
     // The bounds are those of one state at a time.
-    if batch.is_none() {
+    if choices.batch.is_none() {
         if let Err(reason) = armgen_verify::document_bounds(&source, &mut generated) {
             terminal::warning(&format!("the documentation states no error bounds: {reason}"));
         }
