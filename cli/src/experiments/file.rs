@@ -23,6 +23,13 @@ use super::motion::{self, Motion};
 use super::reader::{Allowed, Fields, Reader, ROWS};
 use super::{clik, control, manipulability, motion_check};
 
+/// Samples of a run: a minute at 30 kHz.
+const MAX_SAMPLES: u128 = 2_000_000;
+/// Integration steps of a run: some seconds of work each million.
+const MAX_STEPS: u128 = 20_000_000;
+/// Postures of a grid.
+const MAX_POSTURES: usize = 10_000;
+
 /// Joint variables of the robot that this program was built with.
 pub(crate) type Joints = SVector<f64, DOF>;
 
@@ -378,7 +385,14 @@ impl Reader {
                 let len = self.items(node, at, name, "write the values in brackets")?.len();
                 self.list(node, at, name, len, "values of a joint", Allowed::Any)
             };
-            Some([values("first")?, values("second")?])
+            let (first, second) = (values("first")?, values("second")?);
+            if first.len() * second.len() > MAX_POSTURES {
+                let help = format!("at most {MAX_POSTURES} combinations of both");
+                let label = format!("{} combinations", first.len() * second.len());
+                self.faults.add("out-of-range", at, "the grid has too many postures", label, help);
+                return None;
+            }
+            Some([first, second])
         });
         Some(Postures { list, plane, grid })
     }
@@ -400,7 +414,7 @@ impl Reader {
             Ok(motion) => {
                 let duration = duration.unwrap_or(motion.trajectory.duration());
                 let period = period?;
-                if duration.as_nanos() / period.as_nanos() > 2_000_000 {
+                if duration.as_nanos() / period.as_nanos() > MAX_SAMPLES {
                     let help = "at most two million samples";
                     self.faults.add("out-of-range", fields.place("sampling"), "the run has too many samples", "too short", help);
                     return None;
@@ -520,6 +534,19 @@ impl Reader {
                 if yes == Some(true) {
                     continuous = Some(substeps);
                 }
+            }
+        }
+        if let Some(Sampling { period, duration, .. }) = &sampling {
+            if duration.as_nanos() / period.as_nanos() * u128::from(substeps) > MAX_STEPS {
+                let help = "at most twenty million steps in all: fewer `substeps`, a longer `sampling`, a shorter `duration`";
+                self.faults.add(
+                    "out-of-range",
+                    fields.place("simulation"),
+                    "the run has too many integration steps",
+                    "too many",
+                    help,
+                );
+                return None;
             }
         }
         let period = sampling.as_ref().map(|sampling| sampling.period.as_secs_f64());

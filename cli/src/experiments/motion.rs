@@ -1,5 +1,6 @@
 //! Path files: where the end effector goes, how it turns, under which time laws.
 
+use std::io::Read;
 use std::path::Path as FilePath;
 use std::time::Duration;
 
@@ -40,10 +41,15 @@ const XYZ: &str = "x, y, z in m";
 /// Reads and plans the motion of the file; what is wrong in it is rendered already.
 pub(crate) fn read(path: &FilePath) -> Result<Motion, (Source, Reader)> {
     let name = path.display().to_string();
-    let mut reader = Reader::default();
-    let source = match std::fs::read_to_string(path) {
+    // One character more than is taken: the reader says what a file may hold, and one without an end is not waited for.
+    let text = std::fs::File::open(path).and_then(|file| {
+        let mut text = String::new();
+        file.take(yaml::MAX_TEXT as u64 + 1).read_to_string(&mut text).map(|_| text)
+    });
+    let source = match text {
         Ok(text) => Source::new(name, text),
         Err(error) => {
+            let mut reader = Reader::default();
             reader.faults.add(
                 "unreadable",
                 Span::new(0, 0),
@@ -54,6 +60,12 @@ pub(crate) fn read(path: &FilePath) -> Result<Motion, (Source, Reader)> {
             return Err((Source::new(name, ""), reader));
         }
     };
+    parse(source)
+}
+
+/// Reads and plans a motion from its text.
+pub(crate) fn parse(source: Source) -> Result<Motion, (Source, Reader)> {
+    let mut reader = Reader::default();
     let mut diagnostics = Diagnostics::new();
     let root = yaml::read(&source, &mut diagnostics);
     reader.faults.extend(&diagnostics);

@@ -12,7 +12,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::source::{Source, Span, Spanned};
 
 /// No description needs more text than this, in bytes.
-const MAX_TEXT: usize = 256 * 1024;
+pub const MAX_TEXT: usize = 256 * 1024;
 /// No description nests deeper.
 const MAX_DEPTH: usize = 24;
 /// Nodes after the copying of aliases.
