@@ -198,7 +198,9 @@ pub fn a_priori(program: &Program, errors: &[f64], domain: &Domain, real: Float)
             (low, high) = (low + a.min(b), high + a.max(b));
         }
         let slack = if angle.len() > 1 || angle.iter().any(|(_, k)| k.abs() != 1) {
-            angle.len() as f64 * 2.0 * u * low.abs().max(high.abs())
+            let size =
+                |&(joint, factor): &(usize, i64)| domain.q[joint].0.abs().max(domain.q[joint].1.abs()) * factor.abs() as f64;
+            angle.len() as f64 * u * angle.iter().map(size).sum::<f64>()
         } else {
             0.0
         };

@@ -6,7 +6,7 @@
 //! sum, difference   e_z = e_x + e_y + u |z|
 //! product           e_z = |x| e_y + |y| e_x + e_x e_y + u |z|
 //! quotient          e_z = (e_x + |x/y| e_y) / (|y| - e_y) + u |z|
-//! sine, cosine      e = 2 u |s|: one unit in the last place
+//! sine, cosine      e = 2 u |s|: one unit in the last place; of a sum of k angles besides k u (|q_1| + ... + |q_k|)
 //! literal           e = u |c|, 0 where the float is the exact value
 //! ```
 //!
@@ -40,7 +40,13 @@ macro_rules! face {
             use crate::float::Arguments;
 
             /// A program as a table of any length.
-            pub(super) fn run(steps: &[super::Row], entries: &[u32], sensitive: bool, given: &Arguments<f64>) -> Vec<(f64, f64)> {
+            pub(super) fn run(
+                steps: &[super::Row],
+                angles: &[super::Terms],
+                entries: &[u32],
+                sensitive: bool,
+                given: &Arguments<f64>,
+            ) -> Vec<(f64, f64)> {
                 let single = given.map(|x| x as Real);
                 let given = Given {
                     pi: &single.pi,
@@ -53,11 +59,16 @@ macro_rules! face {
                 };
                 let steps: Vec<Step> = steps.iter().map(step).collect();
                 let mut values = vec![NOTHING; steps.len()];
-                forward(&steps, &given, &mut values);
+                let angles = terms(angles);
+                forward(&steps, &angles, &given, &mut values);
                 let mut scratch = vec![NOTHING; if sensitive { steps.len() } else { 0 }];
                 let mut bounds = vec![0.0; entries.len()];
                 all_bounds(&steps, entries, &values, &mut scratch, &mut bounds);
                 entries.iter().zip(bounds).map(|(&e, bound)| (f64::from(values[e as usize].value), f64::from(bound))).collect()
+            }
+
+            fn terms(angles: &[super::Terms]) -> Vec<Vec<(u32, Real)>> {
+                angles.iter().map(|angle| angle.iter().map(|&(joint, factor)| (joint as u32, factor as Real)).collect()).collect()
             }
 
             fn name(argument: crate::program::Argument) -> Name {
@@ -115,10 +126,14 @@ enum Row {
     Div(u32, u32),
 }
 
+/// A sum of joint variables: each with its factor.
+type Terms = Vec<(usize, i64)>;
+
 /// The table of a function: its steps and which of them are its entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     rows: Vec<Row>,
+    angles: Vec<Terms>,
     entries: Vec<u32>,
     sensitive: bool,
     real: Float,
@@ -131,21 +146,25 @@ const MANY: usize = 64;
 impl Table {
     /// The table of a program whose literals are off by `errors`.
     pub fn of(program: &Program, errors: &[f64], real: Float) -> Result<Table, String> {
-        let joint = |angle: &[(usize, i64)]| match angle {
-            [(joint, 1)] => Ok(*joint as u32),
-            _ => Err(format!("`{}` takes the sine of a sum of angles: no error bound", program.name)),
+        let mut angles: Vec<Terms> = Vec::new();
+        let mut number_of = |angle: &Terms| {
+            let index = angles.iter().position(|known| known == angle).unwrap_or_else(|| {
+                angles.push(angle.clone());
+                angles.len() - 1
+            });
+            index as u32
         };
         let exact_power = |step: usize| match program.steps[step] {
             Step::Literal(l) => errors[l] == 0.0 && is_power_of_two(program.literals[l].value),
             _ => false,
         };
-        let row = |step: &Step| -> Result<Row, String> {
+        let mut row = |step: &Step| -> Result<Row, String> {
             let number = |step: &usize| *step as u32;
             Ok(match step {
                 Step::Input(argument, index) => Row::In(*argument, *index as u32),
                 Step::Literal(l) => Row::Lit(program.literals[*l].value, errors[*l]),
-                Step::Sine(angle) => Row::Sin(joint(angle)?),
-                Step::Cosine(angle) => Row::Cos(joint(angle)?),
+                Step::Sine(angle) => Row::Sin(number_of(angle)),
+                Step::Cosine(angle) => Row::Cos(number_of(angle)),
                 Step::Sign(joint) => Row::Sign(*joint as u32),
                 Step::Negate(a) => Row::Neg(number(a)),
                 Step::Add(a, b) => Row::Add(number(a), number(b)),
@@ -155,26 +174,26 @@ impl Table {
                 Step::Divide(a, b) => Row::Div(number(a), number(b)),
             })
         };
-        let rows = program.steps.iter().map(row).collect::<Result<Vec<Row>, String>>()?;
+        let rows = program.steps.iter().map(&mut row).collect::<Result<Vec<Row>, String>>()?;
         let entries = program.outputs.iter().map(|output| output.step as u32).collect();
         let divides = program.steps.iter().any(|step| matches!(step, Step::Divide(..)));
         let sensitive = divides || program.steps.len() > LONG && program.outputs.len() <= MANY;
-        Ok(Table { rows, entries, sensitive, real })
+        Ok(Table { rows, angles, entries, sensitive, real })
     }
 
     /// Ready to run in lanes.
     pub fn lanes(&self) -> LaneTable {
         match self.real {
-            Float::F64 => LaneTable(Sorts::Double(double::Lanes::new(&self.rows, &self.entries, self.sensitive))),
-            Float::F32 => LaneTable(Sorts::Single(single::Lanes::new(&self.rows, &self.entries, self.sensitive))),
+            Float::F64 => LaneTable(Sorts::Double(double::Lanes::new(&self.rows, &self.angles, &self.entries, self.sensitive))),
+            Float::F32 => LaneTable(Sorts::Single(single::Lanes::new(&self.rows, &self.angles, &self.entries, self.sensitive))),
         }
     }
 
     /// Value and running error bound of each entry, in the module's scalar; the arguments are rounded to it first.
     pub fn run(&self, arguments: &Arguments<f64>) -> Vec<(f64, f64)> {
         match self.real {
-            Float::F64 => double::run(&self.rows, &self.entries, self.sensitive, arguments),
-            Float::F32 => single::run(&self.rows, &self.entries, self.sensitive, arguments),
+            Float::F64 => double::run(&self.rows, &self.angles, &self.entries, self.sensitive, arguments),
+            Float::F32 => single::run(&self.rows, &self.angles, &self.entries, self.sensitive, arguments),
         }
     }
 }
@@ -295,6 +314,11 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
         Some((_, Constant::Integer(n))) => *n as usize,
         _ => 1,
     };
+    let angle = |angle: &Terms| {
+        let terms: Vec<String> = angle.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
+        format!("&[{}]", terms.join(", "))
+    };
+    let angles: Vec<String> = table.angles.iter().map(angle).collect();
     let rows: Vec<String> = table.rows.iter().map(|row| row_text(row, module.real)).collect();
     let entries: Vec<String> = table.entries.iter().map(ToString::to_string).collect();
     let results: Vec<String> = (0..entries.len()).map(|i| format!("e[{i}]")).collect();
@@ -302,11 +326,13 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
     let _ = write!(
         text,
         "/// Running error bound of `{name}`, entry by entry.\n#[allow(clippy::all, dead_code)]\n#[rustfmt::skip]\npub fn {name}_error_bound({}) -> {} {{\n    static \
-         STEPS: [Step; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
+         STEPS: [Step; {}] = [{}];\n    static ANGLES: [Angle; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ANGLES, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
         arguments.join(", "),
         promise.shape.rust().replace(';', "; ").replace(',', ", "),
         rows.len(),
         rows.join(", "),
+        angles.len(),
+        angles.join(", "),
         entries.len(),
         entries.join(", "),
         if table.sensitive { rows.len() } else { 0 },

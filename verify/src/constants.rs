@@ -5,6 +5,7 @@ use armgen_codegen::manipulator::{JointKind, Manipulator};
 use crate::arithmetic::prime::{Prime, Residue};
 use crate::checker::{Checker, Point};
 use crate::claims::Claims;
+use crate::contract::UNJUDGED;
 use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::Vector;
@@ -156,7 +157,7 @@ fn expected(
         ("PARAMETER_NAMES", "[&str;PARAMETERS]", texts(parameter_names)),
         ("NOMINAL_PARAMETERS", "[Real;PARAMETERS]", array(nominal.iter().cloned().map(Expected::Number).collect())),
     ];
-    if let Some(names) = self::names(module, "BASE_PARAMETER_NAMES") {
+    if let Some(names) = self::names(module, "BASE_PARAMETER_NAMES").filter(|_| !UNJUDGED.contains(&"BASE_PARAMETERS")) {
         let nominal = nominal_base_parameters(checker.claims(), module).unwrap_or_default();
         all.push(("BASE_PARAMETERS", "usize", Expected::Integer(names.len() as u64)));
         all.push(("BASE_PARAMETER_NAMES", "[&str;BASE_PARAMETERS]", texts(names)));
@@ -196,7 +197,7 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
     judge("NOMINAL_PARAMETERS", nominal, &|point| point.reference.nominal_base.clone());
     let nominal_base = nominal_base_parameters(checker.claims(), module).unwrap_or_default();
     judge("NOMINAL_BASE_PARAMETERS", &nominal_base, &|point| point.reference.base_regressor_nominal.clone());
-    let known = |name: &str| expected.iter().any(|(known, ..)| *known == name);
+    let known = |name: &str| expected.iter().any(|(known, ..)| *known == name) || UNJUDGED.contains(&name);
     for name in module.constants.keys().filter(|name| !known(name)) {
         let why = "not a constant that the checker knows".to_string();
         reports.push(ConstantReport { name: name.clone(), verdict: Verdict::Refused(why), literals: Vec::new() });

@@ -55,7 +55,7 @@ use checker::{Checker, Effort};
 use claims::Claims;
 use contract::Promise;
 use enclosure::Float;
-use equations::parameters::{base_parameters, Vector};
+use equations::parameters::Vector;
 use formula::Formula;
 use reader::Module;
 use report::{Report, Verdict};
@@ -83,11 +83,8 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
     let module = Module::read(text)?;
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
-    let base = match constants::names(&module, "BASE_PARAMETER_NAMES") {
-        Some(names) => Some(base_parameters(&manipulator, &names)?),
-        None => None,
-    };
-    let checker = Checker::new(manipulator, vector, claims, effort, extras, base)?;
+    // What is not judged yet is not derived.
+    let checker = Checker::new(manipulator, vector, claims, effort, extras, None)?;
     Ok(Prepared { module, checker })
 }
 

@@ -12,7 +12,7 @@ use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Arithmetic, Element, Stream};
 use crate::contract::{Promise, PROMISES};
 use crate::enclosure::Float;
-use crate::equations::parameters::{base_parameters, Vector};
+use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
@@ -106,11 +106,6 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
         env!("CARGO_PKG_VERSION")
     );
     let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
-    let base = crate::constants::names(module, "BASE_PARAMETER_NAMES");
-    let columns = match base {
-        Some(names) => Some(base_parameters(manipulator, &names)?),
-        None => None,
-    };
     let extras = PROMISES.iter().any(|p| !p.required && present(p.name));
     let mut states = String::new();
     let mut values = String::new();
@@ -129,7 +124,7 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
             write(&arguments.pi)
         );
         let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
-        let wanted = Wanted { extras, base: BaseParameters::LeftOut, base_columns: columns.as_deref() };
+        let wanted = Wanted { extras, base: BaseParameters::LeftOut, base_columns: None };
         let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
         for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
             let Some((promise, with)) = Promise::of(name) else { continue };

@@ -208,11 +208,24 @@ impl TwofoldArguments {
         Some(TwofoldArguments { arguments, waves })
     }
 
-    fn wave(&self, angle: &[(usize, i64)]) -> Option<&(Twofold, Twofold)> {
-        match angle {
-            [(joint, 1)] => self.waves.get(*joint),
-            _ => None,
+    /// Sine and cosine of a sum of joint variables, by the addition theorem.
+    fn wave(&self, angle: &[(usize, i64)]) -> (Twofold, Twofold) {
+        let mut sum: Option<(Twofold, Twofold)> = None;
+        for &(joint, factor) in angle {
+            let (s, c) = self.waves[joint];
+            let s = if factor < 0 { Twofold::of(|lane| negated(s.at(lane))) } else { s };
+            for _ in 0..factor.unsigned_abs() {
+                let next = |(sine, cosine): (Twofold, Twofold)| {
+                    let both = |a: Twofold, b: Twofold, d: Twofold, e: Twofold| {
+                        Twofold::of(|lane| plus(times(a.at(lane), b.at(lane)), times(d.at(lane), e.at(lane))))
+                    };
+                    let minus = Twofold::of(|lane| negated(s.at(lane)));
+                    (both(sine, c, cosine, s), both(cosine, c, sine, minus))
+                };
+                sum = Some(sum.map_or((s, c), next));
+            }
         }
+        sum.unwrap_or((Twofold::ZERO, Twofold::of(|_| (1.0, 0.0))))
     }
 }
 
@@ -225,8 +238,8 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
         let value = match step {
             Step::Input(argument, index) => exact(arguments.arguments.of(*argument)[*index]),
             Step::Literal(index) => Twofold::of(|_| literals[*index]),
-            Step::Sine(angle) => arguments.wave(angle)?.0,
-            Step::Cosine(angle) => arguments.wave(angle)?.1,
+            Step::Sine(angle) => arguments.wave(angle).0,
+            Step::Cosine(angle) => arguments.wave(angle).1,
             Step::Sign(joint) => {
                 exact(arguments.arguments.of(Argument::Dq)[*joint].map(|x| if x == 0.0 { 0.0 } else { x.signum() }))
             }

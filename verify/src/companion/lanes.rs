@@ -27,21 +27,15 @@ impl Many {
     }
 }
 
-/// Arguments in lanes, with the sines and cosines of the joint variables.
+/// Arguments in lanes.
 #[derive(Debug)]
 pub(super) struct Side {
     arguments: Arguments<[Real; LANES]>,
-    waves: Vec<[[Real; LANES]; 2]>,
 }
 
 impl Side {
     pub(super) fn new(states: &[Arguments<f64>; LANES]) -> Side {
-        let arguments = Arguments::gather(states, |states| states.map(|x| x as Real));
-        let wave = |q: &[Real; LANES]| {
-            let waves = q.map(sin_cos);
-            [waves.map(|wave| wave.0), waves.map(|wave| wave.1)]
-        };
-        Side { waves: arguments.q.iter().map(wave).collect(), arguments }
+        Side { arguments: Arguments::gather(states, |states| states.map(|x| x as Real)) }
     }
 }
 
@@ -50,6 +44,7 @@ impl Side {
 pub(super) struct Lanes {
     steps: Vec<Step>,
     inputs: Vec<Option<crate::program::Argument>>,
+    angles: Vec<Vec<(u32, Real)>>,
     values: Vec<Many>,
     roundings: Vec<[Real; LANES]>,
     sensitivities: Vec<Many>,
@@ -58,7 +53,7 @@ pub(super) struct Lanes {
 }
 
 impl Lanes {
-    pub(super) fn new(rows: &[super::Row], entries: &[u32], sensitive: bool) -> Lanes {
+    pub(super) fn new(rows: &[super::Row], angles: &[super::Terms], entries: &[u32], sensitive: bool) -> Lanes {
         let steps: Vec<Step> = rows.iter().map(step).collect();
         let input = |row: &super::Row| match row {
             super::Row::In(argument, _) => Some(*argument),
@@ -85,6 +80,7 @@ impl Lanes {
         let many = || vec![Many::NOTHING; steps.len()];
         Lanes {
             inputs: rows.iter().map(input).collect(),
+            angles: terms(angles),
             values: many(),
             roundings: vec![[0.0; LANES]; steps.len()],
             sensitivities: many(),
@@ -104,8 +100,14 @@ impl Lanes {
                     Many { value: argument[index as usize], error: [0.0; LANES] }
                 }
                 Step::Lit(value, error) => Many { value: [value; LANES], error: [error; LANES] },
-                Step::Sin(joint) => Many::of(|lane| wave(side.waves[joint as usize][0][lane])),
-                Step::Cos(joint) => Many::of(|lane| wave(side.waves[joint as usize][1][lane])),
+                Step::Sin(index) | Step::Cos(index) => {
+                    let sum = |lane: usize| angle(&self.angles[index as usize], |joint| side.arguments.q[joint][lane]);
+                    Many::of(|lane| {
+                        let angle = sum(lane);
+                        let (sine, cosine) = sin_cos(angle.value);
+                        wave(if matches!(step, Step::Sin(_)) { sine } else { cosine }, angle.error)
+                    })
+                }
                 Step::Sign(joint) => Many::of(|lane| sign(side.arguments.dq[joint as usize][lane])),
                 Step::Neg(a) => Many::of(|lane| negated(values[a as usize].at(lane))),
                 Step::Add(a, b) => {

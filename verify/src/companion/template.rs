@@ -8,9 +8,9 @@ enum Step {
     In(Name, u32),
     /// Number of the text, and how far it can be from the exact value that it stands for.
     Lit(Real, Real),
-    /// Sine of a joint variable.
+    /// Sine of an angle of the list.
     Sin(u32),
-    /// Cosine of a joint variable.
+    /// Cosine of an angle of the list.
     Cos(u32),
     /// Sign of a joint rate.
     Sign(u32),
@@ -27,6 +27,9 @@ enum Step {
     /// a / b
     Div(u32, u32),
 }
+
+/// A sum of joint variables, each with its factor.
+type Angle = &'static [(u32, Real)];
 
 /// Name of an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,9 +111,22 @@ fn negated(a: Bounded) -> Bounded {
     Bounded { value: -a.value, ..a }
 }
 
-/// One unit in the last place.
-fn wave(value: Real) -> Bounded {
-    Bounded { value, error: 2.0 * UNIT * value.abs() + TINY }
+/// One unit in the last place, at an angle that is off by `angle`.
+fn wave(value: Real, angle: Real) -> Bounded {
+    Bounded { value, error: 2.0 * UNIT * value.abs() + TINY + angle }
+}
+
+/// The angle that a sum of joint variables comes out as, and how far that is from the sum: every term is rounded at most once, and so is
+/// every sum but the first.
+fn angle(terms: &[(u32, Real)], q: impl Fn(usize) -> Real) -> Bounded {
+    let (mut value, mut size) = (0.0, 0.0);
+    for &(joint, factor) in terms {
+        let term = factor * q(joint as usize);
+        value += term;
+        size += term.abs();
+    }
+    let single = matches!(terms, [(_, factor)] if factor.abs() == 1.0);
+    Bounded { value, error: if single { 0.0 } else { terms.len() as Real * UNIT * size } }
 }
 
 /// The sign of a rate; what is no number stays what it is.
@@ -126,7 +142,7 @@ fn sign(rate: Real) -> Bounded {
 }
 
 /// Values of all steps with their running error bounds (Higham, Accuracy and Stability of Numerical Algorithms, 2002, Sect. 3.3).
-fn forward(steps: &[Step], given: &Given<'_>, values: &mut [Bounded]) {
+fn forward<A: AsRef<[(u32, Real)]>>(steps: &[Step], angles: &[A], given: &Given<'_>, values: &mut [Bounded]) {
     for (i, step) in steps.iter().enumerate() {
         let of = |step: u32| values[step as usize];
         values[i] = match *step {
@@ -143,8 +159,11 @@ fn forward(steps: &[Step], given: &Given<'_>, values: &mut [Bounded]) {
                 Bounded { value: argument[index as usize], error: 0.0 }
             }
             Step::Lit(value, error) => Bounded { value, error },
-            Step::Sin(joint) => wave(sin_cos(given.q[joint as usize]).0),
-            Step::Cos(joint) => wave(sin_cos(given.q[joint as usize]).1),
+            Step::Sin(index) | Step::Cos(index) => {
+                let angle = angle(angles[index as usize].as_ref(), |joint| given.q[joint]);
+                let (sine, cosine) = sin_cos(angle.value);
+                wave(if matches!(step, Step::Sin(_)) { sine } else { cosine }, angle.error)
+            }
             Step::Sign(joint) => sign(given.dq[joint as usize]),
             Step::Neg(a) => negated(of(a)),
             Step::Add(a, b) => plus(of(a), of(b)),
@@ -236,11 +255,12 @@ fn all_bounds(steps: &[Step], entries: &[u32], values: &[Bounded], scratch: &mut
 /// The bounds of a function given by its table; `SCRATCH` is `STEPS` for bounds by sensitivities, else 0.
 fn bounds<const STEPS: usize, const ENTRIES: usize, const SCRATCH: usize>(
     steps: &[Step; STEPS],
+    angles: &[Angle],
     entries: &[u32; ENTRIES],
     given: &Given<'_>,
 ) -> [Real; ENTRIES] {
     let (mut values, mut scratch, mut bounds) = ([NOTHING; STEPS], [NOTHING; SCRATCH], [0.0; ENTRIES]);
-    forward(steps, given, &mut values);
+    forward(steps, angles, given, &mut values);
     all_bounds(steps, entries, &values, &mut scratch, &mut bounds);
     bounds
 }
