@@ -31,7 +31,7 @@ pub struct Options {
 const HOPELESS: usize = 2;
 
 /// How many nodes the search for the cheapest derivation of a quantity may form.
-const EFFORT: usize = 1_000_000;
+const EFFORT: usize = 500_000;
 
 /// The module of an arm.
 pub fn module(model: &Model, options: &Options) -> Module {

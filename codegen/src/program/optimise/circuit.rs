@@ -130,13 +130,15 @@ impl Circuit {
         }
     }
 
-    /// The gate of a value, with the sign that it is found by.
+    /// Whether a gate may have a value with this first half, or its negative; if not, none has.
     #[inline]
+    pub(super) fn may_hold(&self, first: Element) -> bool {
+        let bit = first.bits() as usize % MAYBE;
+        self.maybe[bit / 64] >> (bit % 64) & 1 == 1
+    }
+
+    /// The gate of a value, with the sign that it is found by.
     pub(super) fn find(&self, value: &Fingerprint) -> Option<Edge> {
-        let bit = value[0].bits() as usize % MAYBE;
-        if self.maybe[bit / 64] >> (bit % 64) & 1 == 0 {
-            return None;
-        }
         let (key, negated) = self.key(value);
         self.known.get(&key).map(|edge| edge.flipped(negated))
     }

@@ -42,11 +42,19 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
                 }
             };
             let of_a = circuit.values[a as usize];
-            let minus_a = of_a.map(|x| circuit.field.neg(x));
-            offer(circuit.find(&circuit.plus(&value, &minus_a)), &|b| Gate::Sum(vec![Edge::new(a, false), b]));
-            offer(circuit.find(&circuit.plus(&value, &of_a)), &|b| Gate::Sum(vec![Edge::new(a, true), b]));
-            let quotient = circuit.times(&value, &inverses[a as usize]);
-            offer(circuit.find(&quotient).filter(|b| !b.negated), &|b| Gate::Product(vec![a, b.gate]));
+            // Most values are not there, which their first halves tell.
+            if circuit.may_hold(circuit.field.sub(value[0], of_a[0])) {
+                let minus_a = of_a.map(|x| circuit.field.neg(x));
+                offer(circuit.find(&circuit.plus(&value, &minus_a)), &|b| Gate::Sum(vec![Edge::new(a, false), b]));
+            }
+            if circuit.may_hold(circuit.field.add(value[0], of_a[0])) {
+                offer(circuit.find(&circuit.plus(&value, &of_a)), &|b| Gate::Sum(vec![Edge::new(a, true), b]));
+            }
+            let inverse = &inverses[a as usize];
+            if circuit.may_hold(circuit.field.mul(value[0], inverse[0])) {
+                let quotient = circuit.times(&value, inverse);
+                offer(circuit.find(&quotient).filter(|b| !b.negated), &|b| Gate::Product(vec![a, b.gate]));
+            }
         }
         if let Some((_, replacement)) = best {
             circuit.gates[gate as usize] = replacement;
