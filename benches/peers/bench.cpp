@@ -178,12 +178,11 @@ struct Contestant {
   std::vector<double> ns;
 };
 
-// Calls that take about the time of a batch.
+// Calls that take about the time of a batch. By the fastest of many short runs: on a busy machine one long run is mostly other programs.
 long batch(const Function &function, void *f, const std::vector<Arguments> &arguments, const Results &results) {
-  long calls = STATES;
-  double ns = 0;
-  while ((ns = function.run(f, arguments, results, 0, calls)) < 20 * BATCH_NS && calls < 1L << 24) calls *= 2;
-  return std::max(1L, std::lround(calls * BATCH_NS / ns));
+  double ns = INFINITY;
+  for (int trial = 0; trial < 32; ++trial) ns = std::min(ns, function.run(f, arguments, results, 0, STATES));
+  return std::max(1L, std::lround(STATES * BATCH_NS / ns));
 }
 
 std::vector<Contestant> race(const Function &function, const std::vector<Peer> &peers, const States &states, int rounds) {
