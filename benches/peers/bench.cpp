@@ -155,6 +155,7 @@ double error(const Function &function, void *f, void *reference, const States &s
   std::vector<double> worst(sizes.size()), largest(sizes.size());
   for (int k = 0; k < STATES; ++k) {
     mine.spoil();
+    theirs.spoil();
     function.run(f, arguments, mine.results, k, 1);
     function.run(reference, arguments, theirs.results, k, 1);
     if (!mine.guards_stand()) return INFINITY;
