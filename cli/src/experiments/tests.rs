@@ -117,7 +117,7 @@ fn faulty_experiments_say_where_and_why() {
         refused(a, "sampling: 0.001", "sampling: 0", "not-positive", "7:11", "above zero"),
         refused(a, "sampling: 0.001", "sampling: 1e-9", "out-of-range", "7:1", "at most two million samples"),
         refused(a, "load:", "simulation: {substeps: 1000}\nload:", "out-of-range", "9:1", "at most twenty million steps"),
-        refused("manipulability.yaml", "second: [", &grid, "out-of-range", "8:1", "at most 10000 combinations"),
+        refused("manipulability.yaml", "second: [", &grid, "out-of-range", "9:1", "at most 10000 combinations"),
         refused(a, "paths/ghost.yaml", "paths/gost.yaml", "unreadable-path", "5:7", "relative to the experiment's file"),
         refused(a, "{quantity: radius,", "{quantity: radios,", "unknown-quantity", "17:16", "did you mean `radius`?"),
         refused(
