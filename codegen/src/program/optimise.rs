@@ -76,3 +76,66 @@ pub(super) fn optimise(
     }
     built
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ring::field::Field;
+    use crate::ring::Symbol;
+
+    fn pool() -> (Pool, [ExprId; 4]) {
+        let mut pool = Pool::new(Field::for_constants([]));
+        let rates = [0, 1, 2, 3].map(|i| pool.symbol(Symbol::Rate(i)));
+        (pool, rates)
+    }
+
+    #[track_caller]
+    fn check(pool: &Pool, entries: &[ExprId], parallel: &[Option<(u16, bool)>], operations: usize, without: Pass, more: usize) {
+        let count = |without| {
+            let (pool, entries) = optimise(pool, entries, parallel, without);
+            pool.operations(&entries, 1)
+        };
+        assert_eq!(count(Passes::NONE), operations);
+        assert_eq!(count([without].into_iter().collect()), more, "without {}", without.name());
+    }
+
+    #[test]
+    fn sums_of_angles_are_asked_for_where_they_take_the_place_of_single_ones() {
+        let (mut pool, [x, ..]) = pool();
+        let [s1, s2] = [0, 1].map(|i| pool.symbol(Symbol::Sine(i)));
+        let [c1, c2] = [0, 1].map(|i| pool.symbol(Symbol::Cosine(i)));
+        let (sine, cosine) = (pool.dot(&[s1, c1], &[c2, s2]), pool.dot(&[c1, s1], &[c2, -s2]));
+        let parallel = [None, Some((0, false))];
+        let scaled = pool.mul(x, sine);
+        check(&pool, &[s1, scaled, cosine], &parallel, 1, Pass::AngleSums, 7);
+        // A third pair of sine and cosine would cost more than the addition theorem.
+        check(&pool, &[s1, s2, scaled, cosine], &parallel, 7, Pass::AngleSums, 7);
+        // The other axis the other way: no sum, a difference.
+        let parallel = [None, Some((0, true))];
+        check(&pool, &[scaled, cosine], &parallel, 7, Pass::AngleSums, 7);
+        let difference = pool.dot(&[s2, c2], &[c1, -s1]);
+        check(&pool, &[difference], &parallel, 0, Pass::AngleSums, 3);
+    }
+
+    #[test]
+    fn sums_that_differ_by_a_constant_are_formed_from_each_other() {
+        let (mut pool, [x, y, z, w]) = pool();
+        let [one, two, three] = [1, 2, 3].map(|k| pool.integer(k));
+        let a = pool.sum([x, y, one]);
+        let (b, c) = (pool.add(a, two), pool.sub(a, three));
+        let products = [pool.mul(b, z), pool.mul(c, w)];
+        check(&pool, &products, &[], 5, Pass::Sums, 6);
+    }
+
+    #[test]
+    fn sums_whose_parts_cancel_are_written_out() {
+        let (mut pool, [x, y, z, w]) = pool();
+        let [one, two, five] = [1, 2, 5].map(|k| pool.integer(k));
+        let (t, u) = (pool.mul(x, y), pool.mul(y, z));
+        let a = pool.sum([t, u, u, one]);
+        let b = pool.sub(two, t);
+        let sum = pool.sum([w, a, b, five]);
+        let entries = [pool.mul(a, x), pool.mul(b, z), sum];
+        check(&pool, &entries, &[], 10, Pass::Sums, 11);
+    }
+}
