@@ -10,7 +10,6 @@ use armgen_codegen::exact::Number;
 
 use crate::arithmetic::Element;
 use crate::enclosure::Float;
-use crate::equations::arm::formula;
 use crate::formula::{decimal, Formula, Rational};
 use crate::program::Literal;
 
@@ -26,10 +25,12 @@ impl Claims {
         Claims::default()
     }
 
-    /// What a generator hands over.
+    /// What a generator hands over. A constant that is longer than a formula may be is left out: its literal stands for the decimal number
+    /// that it is, and the function does not equal the equations.
     pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
-        let by_name = constants.iter().map(|(name, numbers)| (name.clone(), numbers.iter().map(formula).collect())).collect();
-        Claims { by_name }
+        let read = |number: &Number| Formula::parse(&number.to_string()).ok();
+        let of = |(name, numbers): (&String, &Vec<Number>)| (name.clone(), numbers.iter().filter_map(read).collect());
+        Claims { by_name: constants.iter().map(of).collect() }
     }
 
     /// What a certificate lists.
