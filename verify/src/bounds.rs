@@ -1,7 +1,7 @@
 //! A-priori error bounds: how far rounding can take the entries of a function from the exact ones, anywhere in a box of arguments.
 //!
 //! Every step has an interval that its exact value cannot leave and a bound of its error; both follow from those of its operands, by interval
-//! arithmetic and by the rules of [`crate::companion`] with the largest sizes in place of the values:
+//! arithmetic and by the rules of [`mod@crate::companion`] with the largest sizes in place of the values:
 //!
 //! ```text
 //! |fl(x + y) - (x* + y*)| ≤ e_x + e_y + u (|x + y|max + e_x + e_y)          and so on
