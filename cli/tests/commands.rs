@@ -248,7 +248,7 @@ fn a_certificate_is_written_and_verified_again() {
         let (module, certificate) = (folder.join("robot.rs"), folder.join("robot.cert.json"));
         let path = module.to_str().expect("UTF-8");
         let output = check(&["generate", &yaml, "--scalar", scalar, "--out", path, "--verify"], 0);
-        assert!(err(&output).contains("29 functions and 12 constants equal the equations"), "{}", err(&output));
+        assert!(err(&output).contains("30 functions and 15 constants equal the equations"), "{}", err(&output));
         let written: Value = serde_json::from_slice(&fs::read(&certificate).expect("it is written")).expect("JSON");
         assert_eq!((&written["verified"], &written["options"]["scalar"]), (&true.into(), &scalar.into()));
         assert_eq!(written["options"]["trig"], "libm");

@@ -9,17 +9,23 @@ use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
 use crate::arithmetic::prime::Prime;
 use crate::arithmetic::tower::Tower;
 use crate::arithmetic::{Arithmetic, Element, Stream};
+use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::claims::{Claims, Resolved};
-use crate::contract::{Promise, UNJUDGED};
+use crate::contract::Promise;
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
-use crate::equations::parameters::{Standard, Vector};
+use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::{Atoms, Formula};
 use crate::program::Program;
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
 use crate::report::{Exact, FunctionReport, Verdict};
+
+/// The function that is not compared entry by entry.
+const BASE_REGRESSOR: &str = "base_regressor";
+
+const DIVIDED: &str = "a constant of the description divides by zero here";
 
 /// How much is tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +50,8 @@ pub struct Point<K: Arithmetic> {
     pub arithmetic: K,
     /// The point.
     pub reference: Reference<K::Element>,
+    /// What `base_regressor` is judged by, if the module has one.
+    base: Option<Samples<K::Element>>,
     constants: RefCell<BTreeMap<Formula, Option<K::Element>>>,
 }
 
@@ -75,6 +83,18 @@ impl<K: Arithmetic> Point<K> {
         values.iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected))
     }
 
+    /// Whether there is something here to compare a function with.
+    fn knows(&self, name: &str) -> bool {
+        self.reference.values.contains_key(name) || name == BASE_REGRESSOR && self.base.is_some()
+    }
+
+    /// The first entry of a `base_regressor` that makes it none of these parameters.
+    fn base_difference(&self, program: &Program, literals: &[Formula], base: &OwnParameters) -> Option<(String, String)> {
+        let divided = || Some((String::new(), "a constant divides by zero".to_string()));
+        let (Some(literals), Some(nominal)) = (self.literals(literals), self.literals(&base.nominal)) else { return divided() };
+        self.base.as_ref()?.fault(program, &literals, &base.named, &nominal)
+    }
+
     /// With base parameters the potential energy is defined up to a constant: its change between two configurations is compared.
     fn energy_difference(&self, program: &Program, literals: &[K::Element], here: &[Option<K::Element>]) -> Option<usize> {
         let (there, expected_there) = self.reference.elsewhere.as_ref()?;
@@ -93,7 +113,7 @@ pub struct Checker {
     exact: Vec<Point<Tower>>,
     roots: usize,
     circles: usize,
-    base: Option<Vec<(Standard, bool)>>,
+    base: Option<OwnParameters>,
 }
 
 /// Collects the constants of a description: an arithmetic whose numbers are of no interest.
@@ -122,16 +142,16 @@ fn constants_of(manipulator: &Manipulator) -> Vec<Formula> {
 
 impl Checker {
     /// Random points for an arm whose parameter vector is `vector`; `extras` for modules with functions beyond the required ones,
-    /// `base` for those with a `base_regressor`: its columns, and whether each carries others.
+    /// `base` for those with a `base_regressor`.
     pub fn new(
         manipulator: Manipulator,
         vector: Vector,
         claims: Claims,
         effort: Effort,
         extras: bool,
-        base_columns: Option<Vec<(Standard, bool)>>,
+        base: Option<OwnParameters>,
     ) -> Result<Checker, String> {
-        let wanted = |base: BaseParameters| Wanted { extras, base, base_columns: base_columns.as_deref() };
+        let wanted = |base: BaseParameters| Wanted { extras, base };
         let constants = constants_of(&manipulator);
         let atoms = Atoms::of(constants.iter().chain(claims.formulas()));
         let mut stream = Stream::new(effort.seed);
@@ -140,15 +160,20 @@ impl Checker {
             let mut field =
                 Prime::new(&mut stream, &atoms).ok_or("the constants have too many square roots for a prime field")?;
             let reference = Reference::new(&mut field, &manipulator, &vector, wanted(BaseParameters::Solved))?;
-            points.push(Point { arithmetic: field, reference, constants: RefCell::default() });
+            let samples = match &base {
+                Some(base) => Some(Samples::draw(&mut field, &manipulator, &base.named, &reference, FITTED).ok_or(DIVIDED)?),
+                None => None,
+            };
+            points.push(Point { arithmetic: field, reference, base: samples, constants: RefCell::default() });
         }
         for _ in 0..effort.exact_points {
             let Some(mut tower) = Tower::new(&mut stream, &atoms) else { break };
             let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::LeftOut))?;
-            exact.push(Point { arithmetic: tower, reference, constants: RefCell::default() });
+            let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
+            exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
         let circles = manipulator.joints.len() + atoms.angles.len();
-        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles, base: base_columns })
+        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles, base })
     }
 
     /// The arm.
@@ -164,6 +189,11 @@ impl Checker {
     /// The claimed constants.
     pub fn claims(&self) -> &Claims {
         &self.claims
+    }
+
+    /// The base parameters of its `base_regressor`.
+    pub fn base(&self) -> Option<&OwnParameters> {
+        self.base.as_ref()
     }
 
     /// Points in prime fields.
@@ -197,12 +227,8 @@ impl Checker {
 
     /// All functions of a module, those that it lacks last.
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
-        let mut reports: Vec<FunctionReport> = module
-            .functions
-            .iter()
-            .filter(|(name, _)| !UNJUDGED.contains(&name.as_str()))
-            .map(|(name, function)| self.function(name, function, module.real))
-            .collect();
+        let mut reports: Vec<FunctionReport> =
+            module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
         if let Some(odds) = Odds::new(self, &reports) {
             for report in reports.iter_mut().filter(|report| report.verdict == Verdict::Equal) {
                 if let Some(program) = module.program(&report.name) {
@@ -233,15 +259,18 @@ impl Checker {
         }
         let program = &function.program;
         let (n, p, m) = (self.manipulator.joints.len(), self.parameters(), self.manipulator.task.len());
-        let b = self.base.as_ref().map_or(0, Vec::len);
+        let b = self.base.as_ref().map_or(0, |base| base.named.len());
         let places = promise.shape.places(n, p, b, m);
+        if name == BASE_REGRESSOR && self.base.is_none() {
+            return refused(name, "the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
+        }
         if program.outputs.iter().map(|o| &o.place).ne(&places) {
             return refused(name, format!("its result does not have the {} entries that it should", places.len()));
         }
         if let Some(why) = beyond_the_end(program, n, p) {
             return refused(name, why);
         }
-        if !self.points.iter().all(|point| point.reference.values.contains_key(name)) {
+        if !self.points.iter().all(|point| point.knows(name)) {
             return refused(name, "there is no equation to compare it with for this robot".into());
         }
         self.compare(program, real)
@@ -255,7 +284,7 @@ impl Checker {
             Some((entry, why)) => Verdict::Different { entry, why },
         };
         let literals = program.literals.iter().zip(&chosen);
-        let exact_points = self.exact.iter().filter(|point| point.reference.values.contains_key(&program.name)).count();
+        let exact_points = self.exact.iter().filter(|point| point.knows(&program.name)).count();
         FunctionReport {
             name: program.name.clone(),
             verdict,
@@ -282,6 +311,9 @@ impl Checker {
     }
 
     fn difference(&self, program: &Program, literals: &[Formula]) -> Option<(String, String)> {
+        if program.name == BASE_REGRESSOR {
+            return self.base_difference(program, literals);
+        }
         let base = self.is_base();
         let modular = self.points.iter().enumerate().filter_map(|(i, point)| {
             point
@@ -293,6 +325,27 @@ impl Checker {
         });
         let (entry, place) = modular.chain(exact).min_by_key(|(entry, _)| *entry)?;
         Some((program.outputs[entry].place.clone(), format!("differs from the equations {place}")))
+    }
+
+    fn base_difference(&self, program: &Program, literals: &[Formula]) -> Option<(String, String)> {
+        let base = self.base.as_ref()?;
+        let modular = self.points.iter().enumerate().find_map(|(i, point)| {
+            let (entry, why) = point.base_difference(program, literals, base)?;
+            Some((entry, format!("{why}, at point {} modulo {}", i + 1, point.arithmetic.prime())))
+        });
+        let exact = || {
+            self.exact.iter().enumerate().find_map(|(i, point)| {
+                let (entry, why) = point.base_difference(program, literals, base)?;
+                Some((entry, format!("{why}, at rational point {}", i + 1)))
+            })
+        };
+        // A rank is proved by one point.
+        let dependent = || {
+            let point = self.points.first()?;
+            let literals = point.literals(literals)?;
+            dependent_column(point.arithmetic.clone(), program, &literals, self.manipulator.joints.len(), base.named.len())
+        };
+        modular.or_else(exact).or_else(dependent)
     }
 
     /// A literal that is not the float nearest to the exact value with which the function is right.
@@ -309,29 +362,41 @@ impl Checker {
 struct Odds {
     degrees: Degrees,
     reference: Reference<Degree>,
+    /// The named parameters of a `base_regressor` and their values.
+    base: Option<(Samples<Degree>, OwnParameters, Vec<Degree>)>,
     circles: usize,
     roots: usize,
 }
 
 impl Odds {
     fn new(checker: &Checker, reports: &[FunctionReport]) -> Option<Odds> {
-        let literals = reports.iter().flat_map(|r| &r.literals).map(|exact| &exact.value);
+        let nominal = checker.base.iter().flat_map(|base| &base.nominal);
+        let literals = reports.iter().flat_map(|r| &r.literals).map(|exact| &exact.value).chain(nominal);
         let mut degrees = Degrees::new(constants_of(&checker.manipulator).iter().chain(literals));
-        let wanted = Wanted { extras: true, base: BaseParameters::Free, base_columns: checker.base.as_deref() };
+        let wanted = Wanted { extras: true, base: BaseParameters::Free };
         let reference = Reference::new(&mut degrees, &checker.manipulator, &checker.vector, wanted).ok()?;
-        Some(Odds { degrees, reference, circles: checker.circles, roots: checker.roots })
+        let base = checker.base.as_ref().and_then(|own| {
+            let samples = Samples::draw(&mut degrees, &checker.manipulator, &own.named, &reference, 0)?;
+            let nominal = own.nominal.iter().map(|value| degrees.constant(value)).collect::<Option<Vec<_>>>()?;
+            Some((samples, own.clone(), nominal))
+        });
+        Some(Odds { degrees, reference, base, circles: checker.circles, roots: checker.roots })
     }
 
     /// log2 of the odds that a program of this degree passes one point although it differs.
     fn of(&self, program: &Program, report: &FunctionReport) -> f64 {
         let literal = |exact: &Exact| self.degrees.constant(&exact.value);
         let Some(literals) = report.literals.iter().map(literal).collect::<Option<Vec<_>>>() else { return 0.0 };
+        let odds = |degree: f64, height: f64| log2_odds(degree, height, self.circles, self.roots);
+        if let (BASE_REGRESSOR, Some((samples, own, nominal))) = (program.name.as_str(), &self.base) {
+            return samples.log2_odds(program, &literals, (&own.named, nominal), odds).min(0.0);
+        }
         let outputs = program.run(&self.reference.state, &literals);
         let Some(expected) = self.reference.values.get(&program.name) else { return 0.0 };
         let of_entry = |(output, expected): (&Option<Degree>, &Degree)| match output {
             Some(output) => {
                 let (degree, height) = output.of_difference(expected);
-                log2_odds(degree, height, self.circles, self.roots)
+                odds(degree, height)
             }
             None => 0.0,
         };

@@ -3,12 +3,13 @@
 use armgen_codegen::manipulator::{JointKind, Manipulator};
 
 use crate::arithmetic::prime::{Prime, Residue};
+use crate::arithmetic::Element;
+use crate::base::OwnParameters;
 use crate::checker::{Checker, Point};
 use crate::claims::Claims;
-use crate::contract::UNJUDGED;
 use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
-use crate::equations::parameters::Vector;
+use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::{Formula, Plain};
 use crate::program::Literal;
 use crate::reader::{Constant, Module};
@@ -77,6 +78,12 @@ pub fn names(module: &Module, constant: &str) -> Option<Vec<String>> {
     Some(names.iter().map(text).collect())
 }
 
+/// Names of the base parameters of a module that has a function of them.
+fn base_names(module: &Module) -> Option<Vec<String>> {
+    let present = module.functions.iter().any(|(name, _)| name == "base_regressor");
+    names(module, "BASE_PARAMETER_NAMES").filter(|_| present)
+}
+
 /// Names of the parameters as the module lists them.
 pub fn parameter_names(module: &Module) -> Vec<String> {
     names(module, "PARAMETER_NAMES").unwrap_or_default()
@@ -92,16 +99,50 @@ fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> O
     let literal = |entry: &Constant| match entry {
         Constant::Number(negative, Literal { text, .. }) => {
             let size = crate::formula::decimal(text).ok()?;
-            Some(if *negative { crate::arithmetic::Element::negated(&size) } else { size })
+            Some(if *negative { size.negated() } else { size })
         }
         _ => None,
     };
     entries.iter().map(literal).collect()
 }
 
-/// The nominal base parameters of a module with a `base_regressor`, as claimed: with them it must give the torques.
-pub fn nominal_base_parameters(claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
-    claimed("NOMINAL_BASE_PARAMETERS", names(module, "BASE_PARAMETER_NAMES")?.len(), claims, module)
+/// The base parameters of a module with a `base_regressor`: as it names them, with the values that are claimed.
+pub fn base_parameters(manipulator: &Manipulator, claims: &Claims, module: &Module) -> Option<OwnParameters> {
+    let names = base_names(module)?;
+    let named = parameters::base_parameters(manipulator, &names).ok()?;
+    let nominal = claimed("NOMINAL_BASE_PARAMETERS", names.len(), claims, module)?;
+    (named.len() == nominal.len()).then_some(OwnParameters { named, nominal })
+}
+
+/// The first name that is none of a base parameter, or that stands there twice.
+fn wrong_name(manipulator: &Manipulator, names: &[String]) -> Option<(usize, String)> {
+    names.iter().enumerate().find_map(|(k, name)| {
+        let one = std::slice::from_ref(name);
+        let none = parameters::base_parameters(manipulator, one).err().map(|why| (k, why));
+        none.or_else(|| names[..k].contains(name).then(|| (k, format!("`{name}` stands there twice"))))
+    })
+}
+
+/// The first base parameter that is 0, and so has no column, or that is not the standard parameter whose name it has without an R.
+fn wrong_value(checker: &Checker, own: &OwnParameters) -> Option<(usize, String)> {
+    let standard = |point: &Point<Prime>, parameter: Standard| -> Option<Residue> {
+        let names = Arm::nominal(&point.arithmetic, checker.manipulator())?;
+        Some(parameter.value(&Arm::new(&point.arithmetic, checker.manipulator(), &names)?))
+    };
+    checker.points().iter().find_map(|point| {
+        let values = point.literals(&own.nominal)?;
+        let wrong = |(k, ((parameter, carries), value)): (usize, (&(Standard, bool), &Residue))| {
+            let why = if value.is_zero() {
+                "is 0: what is 0 has no column".to_string()
+            } else if !carries && standard(point, *parameter).as_ref() != Some(value) {
+                format!("is not the standard parameter `{}`: {}", parameter.name(), own.nominal[k])
+            } else {
+                return None;
+            };
+            Some((k, why))
+        };
+        own.named.iter().zip(&values).enumerate().find_map(wrong)
+    })
 }
 
 /// The exact nominal parameters: from the description, or with base parameters as claimed (they are compared with the description's at the
@@ -157,11 +198,11 @@ fn expected(
         ("PARAMETER_NAMES", "[&str;PARAMETERS]", texts(parameter_names)),
         ("NOMINAL_PARAMETERS", "[Real;PARAMETERS]", array(nominal.iter().cloned().map(Expected::Number).collect())),
     ];
-    if let Some(names) = self::names(module, "BASE_PARAMETER_NAMES").filter(|_| !UNJUDGED.contains(&"BASE_PARAMETERS")) {
-        let nominal = nominal_base_parameters(checker.claims(), module).unwrap_or_default();
+    if let Some(names) = base_names(module) {
+        let nominal = claimed("NOMINAL_BASE_PARAMETERS", names.len(), checker.claims(), module).unwrap_or_default();
+        let nominal = nominal.into_iter().map(Expected::Number).collect();
         all.push(("BASE_PARAMETERS", "usize", Expected::Integer(names.len() as u64)));
         all.push(("BASE_PARAMETER_NAMES", "[&str;BASE_PARAMETERS]", texts(names)));
-        let nominal = nominal.into_iter().map(Expected::Number).collect();
         all.push(("NOMINAL_BASE_PARAMETERS", "[Real;BASE_PARAMETERS]", array(nominal)));
     }
     all
@@ -187,17 +228,19 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
         };
         reports.push(ConstantReport { name: (*name).into(), verdict, literals });
     }
-    let mut judge = |name: &str, nominal: &[Formula], right: &dyn Fn(&Point<Prime>) -> Option<Vec<Residue>>| {
+    let mut differs = |name: &str, wrong: &dyn Fn() -> Option<(usize, String)>| {
         let Some(report) = reports.iter_mut().find(|r| r.name == name && r.verdict == Verdict::Equal) else { return };
-        if let Some(entry) = wrong_base_parameter(checker, nominal, right) {
-            let why = format!("is not the combination of standard parameters that its name stands for: {}", nominal[entry]);
+        if let Some((entry, why)) = wrong() {
             report.verdict = Verdict::Different { entry: format!("[{entry}]"), why };
         }
     };
-    judge("NOMINAL_PARAMETERS", nominal, &|point| point.reference.nominal_base.clone());
-    let nominal_base = nominal_base_parameters(checker.claims(), module).unwrap_or_default();
-    judge("NOMINAL_BASE_PARAMETERS", &nominal_base, &|point| point.reference.base_regressor_nominal.clone());
-    let known = |name: &str| expected.iter().any(|(known, ..)| *known == name) || UNJUDGED.contains(&name);
+    differs("NOMINAL_PARAMETERS", &|| {
+        let entry = wrong_base_parameter(checker, nominal)?;
+        Some((entry, format!("is not the combination of standard parameters that its name stands for: {}", nominal[entry])))
+    });
+    differs("BASE_PARAMETER_NAMES", &|| wrong_name(checker.manipulator(), &base_names(module)?));
+    differs("NOMINAL_BASE_PARAMETERS", &|| wrong_value(checker, checker.base()?));
+    let known = |name: &str| expected.iter().any(|(known, ..)| *known == name);
     for name in module.constants.keys().filter(|name| !known(name)) {
         let why = "not a constant that the checker knows".to_string();
         reports.push(ConstantReport { name: name.clone(), verdict: Verdict::Refused(why), literals: Vec::new() });
@@ -206,14 +249,10 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
 }
 
 /// With base parameters: the first whose claimed exact value is not what the standard parameters of the description add up to.
-fn wrong_base_parameter(
-    checker: &Checker,
-    nominal: &[Formula],
-    right: &dyn Fn(&Point<Prime>) -> Option<Vec<Residue>>,
-) -> Option<usize> {
+fn wrong_base_parameter(checker: &Checker, nominal: &[Formula]) -> Option<usize> {
     checker.points().iter().find_map(|point| {
-        let right = right(point)?;
+        let right = point.reference.nominal_base.as_ref()?;
         let Some(claimed) = point.literals(nominal) else { return Some(0) };
-        claimed.iter().zip(&right).position(|(a, b)| a != b)
+        claimed.iter().zip(right).position(|(a, b)| a != b)
     })
 }

@@ -79,9 +79,6 @@ pub const PROMISES: [Promise; 21] = [
     extra("forward_dynamics_derivatives", &["q", "dq", "tau"], Shape::ThreeSquares),
 ];
 
-/// What a module may have besides and no equation of the checker judges: functions and constants. Neither a report nor a certificate speaks of it.
-pub const UNJUDGED: [&str; 4] = ["base_regressor", "BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"];
-
 impl Shape {
     /// The type in Rust, without blanks.
     pub fn rust(self) -> &'static str {

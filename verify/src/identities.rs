@@ -5,7 +5,7 @@ use crate::arithmetic::dual::Dual;
 use crate::arithmetic::prime::{Prime, Residue};
 use crate::arithmetic::Element;
 use crate::checker::{with_parameters, Checker, Point};
-use crate::contract::{PROMISES, UNJUDGED};
+use crate::contract::PROMISES;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::Formula;
@@ -45,7 +45,7 @@ impl Running<'_> {
     }
 
     fn has(&self, name: &str) -> bool {
-        self.module.functions.iter().any(|(other, _)| other == name) && !UNJUDGED.contains(&name)
+        self.module.functions.iter().any(|(other, _)| other == name)
     }
 
     fn run(&self, name: &str, state: &State<Residue>) -> Result<Entries, String> {
@@ -162,10 +162,10 @@ const IDENTITIES: [Identity; 10] = [
 
 /// All identities of a module whose functions have been read and whose literals are known.
 pub fn check(checker: &Checker, module: &Module, reports: &[FunctionReport], nominal: &[Formula]) -> Vec<IdentityReport> {
-    let nominal_base = crate::constants::nominal_base_parameters(checker.claims(), module).unwrap_or_default();
+    let nominal_base = checker.base().map_or(&[][..], |base| &base.nominal);
     let over_points = |holds: &dyn Fn(&Running<'_>) -> Result<bool, String>| {
         for point in checker.points() {
-            if !holds(&Running { module, reports, point, nominal, nominal_base: &nominal_base })? {
+            if !holds(&Running { module, reports, point, nominal, nominal_base })? {
                 return Ok(false);
             }
         }

@@ -25,6 +25,7 @@
 //! from the equations is bounded a priori ([`bounds`](mod@bounds)) and at a state ([`companion`](mod@companion)), and measured ([`errors`]).
 
 pub mod arithmetic;
+pub mod base;
 pub mod bounds;
 pub mod certificate;
 pub mod checker;
@@ -83,8 +84,8 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
     let module = Module::read(text)?;
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
-    // What is not judged yet is not derived.
-    let checker = Checker::new(manipulator, vector, claims, effort, extras, None)?;
+    let base = constants::base_parameters(&manipulator, &claims, &module);
+    let checker = Checker::new(manipulator, vector, claims, effort, extras, base)?;
     Ok(Prepared { module, checker })
 }
 

@@ -30,8 +30,6 @@ pub struct Reference<E> {
     pub elsewhere: Option<(State<E>, E)>,
     /// The nominal parameter vector where it follows from the standard one.
     pub nominal_base: Option<Vec<E>>,
-    /// The base parameters with which the columns of `base_regressor` give the torques; there are no others.
-    pub base_regressor_nominal: Option<Vec<E>>,
     /// Whether Lagrange's and Newton and Euler's torques agree.
     pub two_derivations_agree: bool,
 }
@@ -145,13 +143,11 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
 
 /// Which of the equations a reference is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted<'a> {
+pub struct Wanted {
     /// The functions that only some modules have.
     pub extras: bool,
     /// How the functions at run-time base parameters are had.
     pub base: BaseParameters,
-    /// Columns of `base_regressor`, if the module has one, and whether each carries others.
-    pub base_columns: Option<&'a [(Standard, bool)]>,
 }
 
 /// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations.
@@ -171,7 +167,7 @@ impl<E: Element> Reference<E> {
         arithmetic: &mut K,
         manipulator: &Manipulator,
         vector: &Vector,
-        wanted: Wanted<'_>,
+        wanted: Wanted,
     ) -> Result<Reference<E>, String> {
         let state = State::draw(arithmetic, manipulator.joints.len());
         Reference::at(arithmetic, manipulator, vector, state, wanted)
@@ -183,7 +179,7 @@ impl<E: Element> Reference<E> {
         manipulator: &Manipulator,
         vector: &Vector,
         mut state: State<E>,
-        wanted: Wanted<'_>,
+        wanted: Wanted,
     ) -> Result<Reference<E>, String> {
         let divided = || "a constant of the description divides by zero here".to_string();
         let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
@@ -196,21 +192,6 @@ impl<E: Element> Reference<E> {
         if wanted.extras {
             let task: Vec<usize> = manipulator.task.iter().map(|row| row.index()).collect();
             extras(&arm, &state, &task, &mut values).ok_or_else(singular)?;
-        }
-
-        let mut base_regressor_nominal = None;
-        if let Some(base) = wanted.base_columns {
-            let kept: Vec<Standard> = base.iter().map(|(parameter, _)| *parameter).collect();
-            let moving = State { dqr: state.dq.clone(), ddqr: state.ddq.clone(), ..state.clone() };
-            let columns = standard_columns(&arm, &moving, &kept, LinkFrames::Joint);
-            let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
-            values.insert("base_regressor".into(), y);
-            if wanted.base == BaseParameters::Solved {
-                let all = Standard::all(manipulator);
-                let (map, nominal) = base_map(arithmetic, &arm, &kept, &all)?;
-                check_names(&map, base, &all, &arm)?;
-                base_regressor_nominal = Some(nominal);
-            }
         }
 
         let (mut elsewhere, mut nominal_base) = (None, None);
@@ -250,7 +231,7 @@ impl<E: Element> Reference<E> {
                 if wanted.base != BaseParameters::LeftOut {
                     let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
                     state.pi = if wanted.base == BaseParameters::Solved {
-                        let (map, _) = base_map(arithmetic, &arm, &kept, all)?;
+                        let map = base_map(arithmetic, &arm, &kept, all)?;
                         check_names(&map, base, all, &arm)?;
                         let nominal: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
                         nominal_base = Some(times_vector(&map, &nominal));
@@ -274,7 +255,7 @@ impl<E: Element> Reference<E> {
         if let Some(arm) = run_time {
             agree &= quantities(&arm, &state, &mut values, "_with").ok_or_else(singular)?;
         }
-        Ok(Reference { state, values, elsewhere, nominal_base, base_regressor_nominal, two_derivations_agree: agree })
+        Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree })
     }
 }
 

@@ -16,7 +16,7 @@ use armgen_verify::arithmetic::wide::{Wide, WideArguments};
 use armgen_verify::arithmetic::{Element, Stream};
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
-use armgen_verify::contract::{Promise, UNJUDGED};
+use armgen_verify::contract::Promise;
 use armgen_verify::enclosure::Float;
 use armgen_verify::float::Arguments;
 use armgen_verify::program::Program;
@@ -101,9 +101,6 @@ fn check(name: &str, scalar: Scalar, wanted: usize) {
         let (item, count) = places[stream.below(places.len() as u64) as usize];
         let (place, choice) = (stream.below(count as u64) as usize, stream.bits());
         let Some((text, change)) = mutable.change(item, place, choice) else { continue };
-        if UNJUDGED.contains(&change.name.as_str()) {
-            continue;
-        }
         let changed = Module::read(&text).expect("a changed module still is one");
         let is_constant = module.constants.contains_key(&change.name);
         let verdict = if is_constant {
@@ -135,7 +132,9 @@ fn check(name: &str, scalar: Scalar, wanted: usize) {
             if let (Verdict::Different { entry, .. }, Ok(after)) = (&verdict, &after) {
                 // In f32 an entry may be wrong without a bit of it changing.
                 let entries = changed_entries(&before.program, &after.program, Float::F64, &states);
-                assert!(entries.contains(entry), "{name}: {change:?}: {entry} is named, the changed ones are {entries:?}");
+                // Of `base_regressor` a row is named where several of its entries may be the wrong one.
+                let named = |e: &String| e == entry || change.name == "base_regressor" && e.starts_with(entry.as_str());
+                assert!(entries.iter().any(named), "{name}: {change:?}: {entry} is named, the changed ones are {entries:?}");
             }
             verdict
         };

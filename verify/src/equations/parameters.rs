@@ -15,7 +15,7 @@ use super::vector::solve;
 use crate::arithmetic::{Arithmetic, Element};
 
 /// A standard parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Standard {
     /// One of the ten of a link.
     Link(usize, usize),
@@ -203,22 +203,20 @@ pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Ve
     names.iter().map(base).collect()
 }
 
-/// The matrix M of pi_base = M phi_standard, row by row, and the vector with which the base columns give the whole torques of the arm, masses of
-/// rotors included; an error if the base columns are not independent or do not span all others.
+/// The matrix M of pi_base = M phi_standard, row by row; an error if the base columns are not independent or do not span all others.
 pub fn base_map<K: Arithmetic>(
     arithmetic: &mut K,
     arm: &Arm<K::Element>,
     base: &[Standard],
     all: &[Standard],
-) -> Result<(Vec<Vec<K::Element>>, Vec<K::Element>), String> {
+) -> Result<Vec<Vec<K::Element>>, String> {
     let n = arm.dof();
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
         let state = State::draw(arithmetic, n);
         let y = standard_columns(arm, &state, base, LinkFrames::Joint);
-        let mut full = standard_columns(arm, &state, all, LinkFrames::Described);
-        full.push(reference_torques(arm, &state));
+        let full = standard_columns(arm, &state, all, LinkFrames::Described);
         for row in 0..n {
             left.push(y.iter().map(|column| column[row].clone()).collect::<Vec<_>>());
             right.push(full.iter().map(|column| column[row].clone()).collect::<Vec<_>>());
@@ -246,7 +244,7 @@ pub fn base_map<K: Arithmetic>(
     }
     let a: Vec<Vec<K::Element>> = chosen.iter().map(|&i| left[i].clone()).collect();
     let r: Vec<Vec<K::Element>> = chosen.iter().map(|&i| right[i].clone()).collect();
-    let mut map = solve(&a, &r).ok_or("a regular system without a solution")?;
+    let map = solve(&a, &r).ok_or("a regular system without a solution")?;
     for (y, full) in left.iter().zip(&right) {
         for (column, entry) in full.iter().enumerate() {
             let mut sum = arm.zero.clone();
@@ -254,11 +252,9 @@ pub fn base_map<K: Arithmetic>(
                 sum = sum.plus(&y.times(&map[k][column]));
             }
             if sum != *entry {
-                let whose = all.get(column).map_or("the masses of rotors".into(), |parameter| format!("`{}`", parameter.name()));
-                return Err(format!("the base parameters do not carry the effect of {whose}"));
+                return Err(format!("the base parameters do not carry the effect of `{}`", all[column].name()));
             }
         }
     }
-    let torques = map.iter_mut().map(|row| row.pop().expect("the column of the torques")).collect();
-    Ok((map, torques))
+    Ok(map)
 }

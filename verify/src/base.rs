@@ -1,0 +1,356 @@
+//! `base_regressor`: a regressor of base parameters, whichever of them its author chose.
+//!
+//! Base parameters are no definite set. Origins slide along joint axes, frames turn about them, how much second moment along its axis a link
+//! keeps is free, and what is 0 in the description has no column. None of these choices is made again here. With Y_k(q, dq, ddq) the torque of
+//! a unit of the standard parameter k, links in their joint frames, what is judged is
+//!
+//! ```text
+//! (a)  column c of Y_b = Σ x_k Y_k, x constant, over the parameters of the kind that name c is of
+//! (b)  the columns of Y_b are independent
+//! (c)  Y_b pi_b = B ddq + C dq + F + g
+//! ```
+//!
+//! A kind is what slides and turns make of one parameter, with the second moment along the axis ([`kind`]): that of a rotor or of friction is the
+//! parameter alone, and x = 1.
+//!
+//! For (a), x is found in a prime field from [`FITTED`] states, as many as there are unknowns at most, and the equation is then tested at one
+//! more, drawn independently of x: a combination with coefficients that are not constant passes with odds of degree/p as any other wrong
+//! function does. For (b), the rank of Y_b stacked over states never exceeds the true one: that it is the number of columns proves them
+//! independent. (c) is tested at all these states and at a rational one.
+//!
+//! So each column is the torque of a definite combination of inertial parameters, there is none too many, and with the values given they are the
+//! torque of the description: what was left out adds nothing there. Whether a parameter more should have had a column is not asked.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::manipulator::Manipulator;
+
+use crate::arithmetic::degree::Degree;
+use crate::arithmetic::{Arithmetic, Element};
+use crate::equations::arm::Arm;
+use crate::equations::lagrange::friction;
+use crate::equations::newton_euler::{Carrier, Motion, Moving};
+use crate::equations::parameters::Standard;
+use crate::equations::pose::Pose;
+use crate::equations::state::State;
+use crate::formula::Formula;
+use crate::program::Program;
+use crate::reference::Reference;
+
+/// The base parameters of a module: the standard ones after which they are named with whether others are carried along, and their claimed values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnParameters {
+    /// What the names say.
+    pub named: Vec<(Standard, bool)>,
+    /// Exact values.
+    pub nominal: Vec<Formula>,
+}
+
+/// Standard parameters that those of a name may be combinations of: closed under turning the joint frame about its axis, sliding it along, and
+/// changing the second moment along the axis (Izz - Ixx - Iyy).
+pub fn kind(parameter: Standard) -> Vec<Standard> {
+    // In the order m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz.
+    let of_link: &[usize] = match parameter {
+        Standard::Link(_, 0) => &[0, 3, 4, 6],
+        Standard::Link(_, 1 | 2) => &[1, 2, 7, 8],
+        Standard::Link(_, 3) => &[3, 4, 6],
+        Standard::Link(_, 4 | 5 | 6 | 9) => &[4, 5, 6, 9],
+        Standard::Link(..) => &[7, 8],
+        alone => return vec![alone],
+    };
+    let Standard::Link(i, _) = parameter else { unreachable!("all others stand alone") };
+    of_link.iter().map(|&k| Standard::Link(i, k)).collect()
+}
+
+/// Whether a column must be the very one of its parameter.
+fn is_alone(parameter: Standard) -> bool {
+    !matches!(parameter, Standard::Link(..))
+}
+
+/// States from which coefficients are found: as many as a kind has parameters, for a link that one joint alone feels.
+pub const FITTED: usize = 4;
+
+/// A state with the torques there and the columns of single parameters.
+#[derive(Clone, Debug)]
+struct Sample<E> {
+    state: State<E>,
+    torques: Vec<E>,
+    columns: BTreeMap<Standard, Vec<E>>,
+}
+
+/// Random states of an arm.
+#[derive(Clone, Debug)]
+pub struct Samples<E>(Vec<Sample<E>>);
+
+/// An entry `[joint][column]` that is wrong, with the reason.
+pub type Fault = (String, String);
+
+/// Columns of single parameters at a state, links in their joint frames, and the torques there.
+fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)]) -> Sample<E> {
+    let motion = || Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
+    let described = Pose::new(arm, &state);
+    let in_joint_frames = described.clone().with_links_in_joint_frames();
+    // Rotors and the load stand where the description says.
+    let (whole, links) = (Moving::new(arm, &described, motion()), Moving::new(arm, &in_joint_frames, motion()));
+    let nothing = || vec![arm.zero.clone(); arm.dof()];
+    let unit = |k: usize| -> Vec<E> { (0..10).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
+    let column = |parameter: Standard| {
+        let mut column = nothing();
+        match parameter {
+            Standard::Link(i, k) => links.add_body(Carrier::Link(i), &unit(k), &mut column),
+            Standard::Payload(k) => whole.add_body(Carrier::Tool, &unit(k), &mut column),
+            Standard::RotorInertia(i) => whole.add_rotor_inertia(i, &arm.one, &mut column),
+            Standard::RotorViscous(i) => {
+                let square = arm.joints[i].motor.as_ref().map_or(arm.zero.clone(), |m| m.ratio.times(&m.ratio));
+                column[i] = square.times(&state.dq[i]);
+            }
+            Standard::Viscous(i) => column[i].clone_from(&state.dq[i]),
+            Standard::Coulomb(i) => column[i].clone_from(&state.signs[i]),
+        }
+        column
+    };
+    let mut columns = BTreeMap::new();
+    for parameter in named.iter().flat_map(|(parameter, _)| kind(*parameter)) {
+        columns.entry(parameter).or_insert_with(|| column(parameter));
+    }
+    let friction = friction(arm, &state.dq, &state.signs);
+    let torques = whole.torques().iter().zip(friction).map(|(a, b)| a.plus(&b)).collect();
+    Sample { torques, columns, state }
+}
+
+impl<E: Element> Samples<E> {
+    /// The state of a reference and `more` others, each with the columns that these parameters need.
+    pub fn draw<K: Arithmetic<Element = E>>(
+        arithmetic: &mut K,
+        manipulator: &Manipulator,
+        named: &[(Standard, bool)],
+        reference: &Reference<E>,
+        more: usize,
+    ) -> Option<Samples<E>> {
+        let names = Arm::nominal(arithmetic, manipulator)?;
+        let arm = Arm::new(arithmetic, manipulator, &names)?;
+        let mut samples = vec![sample(&arm, reference.state.clone(), named)];
+        for _ in 0..more {
+            samples.push(sample(&arm, State::draw(arithmetic, arm.dof()), named));
+        }
+        Some(Samples(samples))
+    }
+
+    /// The state of a reference with the torques there alone.
+    pub fn torques(reference: &Reference<E>) -> Option<Samples<E>> {
+        let torques = reference.values.get("inverse_dynamics")?.clone();
+        Some(Samples(vec![Sample { state: reference.state.clone(), torques, columns: BTreeMap::new() }]))
+    }
+
+    /// The first entry that (a) or (c) does not hold for.
+    pub fn fault(&self, program: &Program, literals: &[E], named: &[(Standard, bool)], nominal: &[E]) -> Option<Fault> {
+        let mut values = Vec::new();
+        for sample in &self.0 {
+            let entries = program.run(&sample.state, literals);
+            if let Some(entry) = entries.iter().position(Option::is_none) {
+                return Some((program.outputs[entry].place.clone(), "divides by zero".into()));
+            }
+            values.push(entries.into_iter().flatten().collect::<Vec<E>>());
+        }
+        let y = Y::new(&self.0, values, nominal);
+        let columns = named.iter().enumerate().filter(|_| !self.0[0].columns.is_empty());
+        let off = columns.filter_map(|(c, (parameter, carries))| Some((y.wrong_row(c, *parameter)?, c, *parameter, *carries)));
+        if let Some((i, c, parameter, carries)) = off.min_by_key(|(i, c, ..)| (*i, *c)) {
+            let name = format!("{}{}", parameter.name(), if carries { "R" } else { "" });
+            let kin: Vec<String> = kind(parameter).into_iter().map(Standard::name).collect();
+            return Some((
+                format!("[{i}][{c}]"),
+                format!("differs: column `{name}` is no combination of the torques of {}", kin.join(", ")),
+            ));
+        }
+        let i = y.joints().find(|&i| y.is_wrong(i))?;
+        let place = y.proportional().map_or(format!("[{i}]"), |(i, c)| format!("[{i}][{c}]"));
+        Some((place, "differs: with NOMINAL_BASE_PARAMETERS it does not give the torque".into()))
+    }
+}
+
+/// A base regressor at samples.
+struct Y<'a, E> {
+    samples: &'a [Sample<E>],
+    /// Entries at each sample, row by row.
+    values: Vec<Vec<E>>,
+    columns: usize,
+    /// tau - Y_b pi_b at each sample.
+    missing: Vec<Vec<E>>,
+}
+
+impl<'a, E: Element> Y<'a, E> {
+    fn new(samples: &'a [Sample<E>], values: Vec<Vec<E>>, nominal: &[E]) -> Y<'a, E> {
+        let columns = nominal.len();
+        let rest = |(sample, values): (&Sample<E>, &Vec<E>)| -> Vec<E> {
+            let of = |(i, torque): (usize, &E)| {
+                let row = values[i * columns..(i + 1) * columns].iter().zip(nominal);
+                row.fold(torque.clone(), |rest, (entry, value)| rest.minus(&entry.times(value)))
+            };
+            sample.torques.iter().enumerate().map(of).collect()
+        };
+        let missing = samples.iter().zip(&values).map(rest).collect();
+        Y { samples, values, columns, missing }
+    }
+
+    fn entry(&self, sample: usize, i: usize, c: usize) -> &E {
+        &self.values[sample][i * self.columns + c]
+    }
+
+    fn joints(&self) -> std::ops::Range<usize> {
+        0..self.samples[0].torques.len()
+    }
+
+    /// Whether the torque of a joint is not Y_b pi_b.
+    fn is_wrong(&self, i: usize) -> bool {
+        self.missing.iter().any(|of| !of[i].is_zero())
+    }
+
+    /// The only column that what is missing is a multiple of, at the first joint that it acts on.
+    fn proportional(&self) -> Option<(usize, usize)> {
+        let places = || self.joints().flat_map(|i| (0..self.samples.len()).map(move |s| (s, i)));
+        let parallel = |c: usize| -> Option<usize> {
+            let (s, first) = places().find(|&(s, i)| !self.entry(s, i, c).is_zero())?;
+            let factor = self.missing[s][first].over(self.entry(s, first, c))?;
+            places().all(|(s, i)| self.missing[s][i] == factor.times(self.entry(s, i, c))).then_some(first)
+        };
+        let mut found = (0..self.columns).filter_map(|c| Some((parallel(c)?, c)));
+        let first = found.next()?;
+        found.next().is_none().then_some(first)
+    }
+
+    /// Whether a column is a combination at these joints.
+    fn is_combination(&self, c: usize, kind: &[Standard], alone: bool, joints: &[usize]) -> bool {
+        let at = |s: usize, i: usize, k: usize| &self.samples[s].columns[&kind[k]][i];
+        let one = self.samples[0].state.one.clone();
+        let coefficients = if alone {
+            vec![one]
+        } else {
+            let fitted = (0..self.samples.len() - 1).flat_map(|s| joints.iter().map(move |&i| (s, i)));
+            let equation =
+                |(s, i): (usize, usize)| (0..kind.len()).map(|k| at(s, i, k)).chain([self.entry(s, i, c)]).cloned().collect();
+            one_solution(fitted.map(equation), kind.len(), &self.samples[0].state.zero)
+        };
+        let holds = |s: usize, i: usize| {
+            let sum = coefficients.iter().enumerate().map(|(k, x)| x.times(at(s, i, k))).reduce(|a, b| a.plus(&b));
+            sum.as_ref() == Some(self.entry(s, i, c))
+        };
+        (0..self.samples.len()).all(|s| joints.iter().all(|&i| holds(s, i)))
+    }
+
+    /// A joint at which a column is not what it is at the others, if it is no combination.
+    fn wrong_row(&self, c: usize, parameter: Standard) -> Option<usize> {
+        let (kind, alone) = (kind(parameter), is_alone(parameter));
+        let all: Vec<usize> = self.joints().collect();
+        let holds = |joints: &[usize]| self.is_combination(c, &kind, alone, joints);
+        if holds(&all) {
+            return None;
+        }
+        // Where joints are wrong by themselves, or the others agree without some, it is those: the torques tell which first.
+        let by_itself = all.iter().copied().find(|&i| !holds(&[i]));
+        let without_wrong = || {
+            let right: Vec<usize> = all.iter().copied().filter(|&i| !self.is_wrong(i)).collect();
+            let first = all.iter().copied().find(|&i| self.is_wrong(i) && !holds(&[right.as_slice(), &[i]].concat()))?;
+            holds(&right).then_some(first)
+        };
+        let without_one = || all.iter().copied().find(|&i| holds(&all.iter().copied().filter(|&j| j != i).collect::<Vec<_>>()));
+        Some(by_itself.or_else(without_wrong).or_else(without_one).unwrap_or(0))
+    }
+}
+
+/// A solution of the independent ones among some equations (coefficients, then the right-hand side), with 0 for what they leave free.
+fn one_solution<E: Element>(equations: impl Iterator<Item = Vec<E>>, unknowns: usize, zero: &E) -> Vec<E> {
+    let mut echelon = Echelon::default();
+    for equation in equations {
+        if echelon.0.len() == unknowns {
+            break;
+        }
+        echelon.add(equation, unknowns);
+    }
+    let mut solution = vec![zero.clone(); unknowns];
+    for (pivot, row) in echelon.0.iter().rev() {
+        let rest = row[unknowns].clone();
+        solution[*pivot] = (0..unknowns).filter(|k| k != pivot).fold(rest, |rest, k| rest.minus(&row[k].times(&solution[k])));
+    }
+    solution
+}
+
+/// Independent rows, each with 1 at its pivot, its first entry that is not 0, and 0 at the pivots of those before.
+struct Echelon<E>(Vec<(usize, Vec<E>)>);
+
+impl<E> Default for Echelon<E> {
+    fn default() -> Echelon<E> {
+        Echelon(Vec::new())
+    }
+}
+
+impl<E: Element> Echelon<E> {
+    /// Adds a row unless those that are there span it in its first `columns` entries.
+    fn add(&mut self, mut row: Vec<E>, columns: usize) {
+        for (pivot, known) in &self.0 {
+            let factor = row[*pivot].clone();
+            if !factor.is_zero() {
+                row.iter_mut().zip(known).for_each(|(x, k)| *x = x.minus(&factor.times(k)));
+            }
+        }
+        let Some(pivot) = row[..columns].iter().position(|x| !x.is_zero()) else { return };
+        if let Some(inverse) = row[pivot].inverse() {
+            row.iter_mut().for_each(|x| *x = x.times(&inverse));
+            self.0.push((pivot, row));
+        }
+    }
+}
+
+/// (b): a column that those before it span, if there is one, at states drawn from the field until the rank is full.
+pub fn dependent_column<K: Arithmetic>(
+    mut arithmetic: K,
+    program: &Program,
+    literals: &[K::Element],
+    n: usize,
+    columns: usize,
+) -> Option<Fault> {
+    let mut echelon = Echelon::default();
+    // A row more at least in each state, if there is one to be had.
+    for _ in 0..columns + 2 {
+        if echelon.0.len() == columns {
+            return None;
+        }
+        let state = State::draw(&mut arithmetic, n);
+        let Some(entries) = program.run(&state, literals).into_iter().collect::<Option<Vec<_>>>() else { continue };
+        entries.chunks(columns).for_each(|row| echelon.add(row.to_vec(), columns));
+    }
+    let missing = (0..columns).find(|c| echelon.0.iter().all(|(pivot, _)| pivot != c))?;
+    Some((format!("[0][{missing}]"), "its column depends on those before it: a motion cannot tell these parameters apart".into()))
+}
+
+impl Samples<Degree> {
+    /// log2 of the odds that a program which (a) or (c) does not hold for passes one point; `odds` of a polynomial by degree and height.
+    pub fn log2_odds(
+        &self,
+        program: &Program,
+        literals: &[Degree],
+        parameters: (&[(Standard, bool)], &[Degree]),
+        odds: impl Fn(f64, f64) -> f64,
+    ) -> f64 {
+        let (named, nominal) = parameters;
+        let Some(sample) = self.0.first() else { return 0.0 };
+        let Some(entries) = program.run(&sample.state, literals).into_iter().collect::<Option<Vec<_>>>() else { return 0.0 };
+        let mut worst = f64::NEG_INFINITY;
+        for (i, torque) in sample.torques.iter().enumerate() {
+            let row = &entries[i * named.len()..(i + 1) * named.len()];
+            let mut product = torque.clone();
+            for ((entry, value), (parameter, _)) in row.iter().zip(nominal).zip(named) {
+                product = product.plus(&entry.times(value));
+                let kind = kind(*parameter);
+                let sum = kind.iter().fold(entry.clone(), |sum, k| sum.plus(&sample.columns[k][i]));
+                let (degree, height) = sum.of_difference(&sum);
+                // The coefficients are quotients of minors of at most so many rows; a prime that divides the next larger one misleads.
+                let rows = kind.len() as f64 + 1.0;
+                worst = worst.max(odds(degree * rows, (height + rows.log2()) * rows));
+            }
+            let (degree, height) = product.of_difference(torque);
+            worst = worst.max(odds(degree, height));
+        }
+        worst
+    }
+}
