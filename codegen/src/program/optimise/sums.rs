@@ -39,17 +39,12 @@ pub(super) fn sums_from_sums(circuit: &mut Circuit) -> usize {
             continue;
         }
         let Some(terms) = rewritten(circuit, &forms, &order, target) else { continue };
-        let (gates, values) = (circuit.gates.clone(), circuit.values.len());
-        circuit.gates[target as usize] = Gate::Sum(terms);
-        circuit.tidy();
-        let found = circuit.operations();
-        if found < best {
-            best = found;
+        if keep_if_cheaper(circuit, &mut best, |circuit| {
+            circuit.gates[target as usize] = Gate::Sum(terms);
+            circuit.tidy();
+        }) {
             order = circuit.order();
             forms = self::forms(circuit, &order);
-        } else {
-            circuit.gates = gates;
-            circuit.values.truncate(values);
         }
     }
     before - best
@@ -76,22 +71,15 @@ pub(super) fn write_out(circuit: &mut Circuit) -> usize {
         if length > now.len() + LONGER || now.len() < 3 || now.iter().all(|term| written.contains(term)) {
             continue;
         }
-        let (gates, values, constant) = (circuit.gates.clone(), circuit.values.len(), form.constant);
-        if constant != ExprId::ZERO {
-            let gate = circuit.push_constant_or_one(constant.unsigned());
-            written.push(Edge::new(gate, constant.is_negated()));
-        }
-        circuit.gates[target as usize] = Gate::Sum(written);
-        circuit.tidy();
-        share(circuit);
-        let found = circuit.operations();
-        if found < best {
-            best = found;
+        let constant = form.constant;
+        if keep_if_cheaper(circuit, &mut best, |circuit| {
+            written.extend(constant_term(circuit, constant));
+            circuit.gates[target as usize] = Gate::Sum(written);
+            circuit.tidy();
+            share(circuit);
+        }) {
             order = circuit.order();
             forms = self::forms(circuit, &order);
-        } else {
-            circuit.gates = gates;
-            circuit.values.truncate(values);
         }
     }
     before - best
@@ -129,26 +117,37 @@ pub(super) fn shift_constants(circuit: &mut Circuit) -> usize {
                 continue;
             }
             let difference = circuit.constants.sub(form.constant, constant.signed(negated));
-            let (gates, values) = (circuit.gates.clone(), circuit.values.len());
-            let mut sum = vec![Edge::new(other, negated)];
-            if difference != ExprId::ZERO {
-                let gate = circuit.push_constant_or_one(difference.unsigned());
-                sum.push(Edge::new(gate, difference.is_negated()));
-            }
-            circuit.gates[target as usize] = Gate::Sum(sum);
-            circuit.tidy();
-            let found = circuit.operations();
-            if found < best {
-                best = found;
+            if keep_if_cheaper(circuit, &mut best, |circuit| {
+                let sum = [Edge::new(other, negated)].into_iter().chain(constant_term(circuit, difference)).collect();
+                circuit.gates[target as usize] = Gate::Sum(sum);
+                circuit.tidy();
+            }) {
                 order = circuit.order();
                 forms = self::forms(circuit, &order);
                 break;
             }
-            circuit.gates = gates;
-            circuit.values.truncate(values);
         }
     }
     before - best
+}
+
+/// Changes the circuit, and takes the change back unless it has fewer operations than the best so far.
+fn keep_if_cheaper(circuit: &mut Circuit, best: &mut usize, change: impl FnOnce(&mut Circuit)) -> bool {
+    let (gates, values) = (circuit.gates.clone(), circuit.values.len());
+    change(circuit);
+    let found = circuit.operations();
+    if found < *best {
+        *best = found;
+        return true;
+    }
+    circuit.gates = gates;
+    circuit.values.truncate(values);
+    false
+}
+
+/// A constant as a term of a sum; none for 0.
+fn constant_term(circuit: &mut Circuit, constant: ExprId) -> Option<Edge> {
+    (constant != ExprId::ZERO).then(|| Edge::new(circuit.push_constant_or_one(constant.unsigned()), constant.is_negated()))
 }
 
 /// Every sum that is needed, written out, by gate.
@@ -225,9 +224,6 @@ fn rewritten(circuit: &mut Circuit, forms: &[Option<Form>], order: &[GateId], ta
     for (gate, &k) in rest.iter().enumerate() {
         terms.extend((0..k.abs()).map(|_| Edge::new(gate as GateId, k < 0)));
     }
-    if constant != ExprId::ZERO {
-        let gate = circuit.push_constant_or_one(constant.unsigned());
-        terms.push(Edge::new(gate, constant.is_negated()));
-    }
+    terms.extend(constant_term(circuit, constant));
     Some(terms)
 }
