@@ -9,6 +9,7 @@ use crate::derive::parameters::View;
 use crate::derive::passes::Use;
 use crate::derive::plan::{Pass, Passes, Plan};
 use crate::derive::{self};
+use crate::exact::Number;
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
 use crate::ring::normal_form::{Arrangement, NormalForm};
@@ -538,14 +539,21 @@ fn moving(symbol: Symbol) -> Option<fn(u16) -> Symbol> {
     }
 }
 
-/// A field in which the constants of a valid arm have their roots.
+/// A field in which the constants of a valid arm have their roots, and the angle by which its last link may be turned its sine and cosine.
 pub fn field_of(manipulator: &Manipulator) -> Field {
-    find_field(manipulator).expect("validation refuses an arm without a field")
+    let plain = find_field(manipulator).expect("validation refuses an arm without a field");
+    let turn = derive::passes::of_last_link(&plain, manipulator);
+    turn.and_then(|turn| Field::with_turn(&constants(manipulator), turn)).unwrap_or(plain)
 }
 
 /// A field in which the constants of an arm have their roots: all of them, wherever the equations may meet them. `None` if their
 /// different roots are too many for any field that is tried, which validation reports.
 pub fn find_field(manipulator: &Manipulator) -> Option<Field> {
+    Field::with_roots_of(&constants(manipulator))
+}
+
+/// All exact constants of a description.
+fn constants(manipulator: &Manipulator) -> Vec<Number> {
     let mut numbers = Vec::new();
     for joint in &manipulator.joints {
         for placement in [&joint.placement, &joint.link_frame, &manipulator.tool] {
@@ -566,5 +574,5 @@ pub fn find_field(manipulator: &Manipulator) -> Option<Field> {
     }
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
     numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
-    Field::with_roots_of(&numbers)
+    numbers
 }

@@ -1,6 +1,6 @@
 //! Numbers exactly as written: no float until emission.
 //!
-//! A [`Number`] is a polynomial with rational coefficients in *atoms*: square roots of integers, pi, and sines and cosines of
+//! A [`Number`] is a polynomial with rational coefficients in *atoms*: square roots of integers, pi, angles of points, and sines and cosines of
 //! angles that are not multiples of pi/12. Products are reduced at once by
 //!
 //! ```text
@@ -47,6 +47,8 @@ pub enum Atom {
     Cosine(Arc<Number>),
     /// One over a number that has no simpler inverse.
     Inverse(Arc<Number>),
+    /// The angle of the point (1, t) from the x axis: the arc tangent of a fraction in (0, 1), rad.
+    Arctangent(Rational),
 }
 
 /// A product of powers of atoms, sorted; empty for the number 1.
@@ -83,6 +85,28 @@ impl Number {
     /// pi.
     pub fn pi() -> Number {
         Number::atom(Atom::Pi)
+    }
+
+    /// The angle from the x axis to the point (x, y), in (-pi, pi] rad; of the origin 0.
+    pub fn angle_of(x: &Rational, y: &Rational) -> Number {
+        let (width, height) = (x.clone().abs(), y.clone().abs());
+        let quarter = &Number::pi() * &Number::from(Rational::from_parts(1.into(), 2u8.into()));
+        let arctangent = |ratio: Rational| match ratio {
+            ratio if ratio.is_zero() => Number::zero(),
+            ratio if ratio.is_one() => &quarter * &Number::from(Rational::from_parts(1.into(), 2u8.into())),
+            ratio => Number::atom(Atom::Arctangent(ratio)),
+        };
+        let first = match width.cmp(&height) {
+            Ordering::Less => &quarter - &arctangent(width / height),
+            _ if width.is_zero() => Number::zero(),
+            _ => arctangent(height / width),
+        };
+        let upper = if x.is_negative() { &Number::pi() - &first } else { first };
+        if y.is_negative() {
+            -&upper
+        } else {
+            upper
+        }
     }
 
     fn atom(atom: Atom) -> Number {
@@ -282,7 +306,7 @@ fn invert_power(atom: &Atom, power: i32, steps: u32) -> Number {
         Atom::Inverse(n) => (0..power).fold(Number::one(), |product, _| &product * n),
         // A root that stands is that of a positive number.
         Atom::RootOf(n) => &of(1) * &n.inverse_within(steps),
-        Atom::Sine(_) | Atom::Cosine(_) => {
+        Atom::Sine(_) | Atom::Cosine(_) | Atom::Arctangent(_) => {
             let inverse = Number::atom(Atom::Inverse(Arc::new(of(1))));
             (0..power).fold(Number::one(), |product, _| &product * &inverse)
         }
@@ -405,6 +429,7 @@ impl fmt::Display for Number {
                     Atom::Sine(angle) => format!("sin({angle})"),
                     Atom::Cosine(angle) => format!("cos({angle})"),
                     Atom::Inverse(n) => format!("(1/({n}))"),
+                    Atom::Arctangent(ratio) => format!("atan({ratio})"),
                 };
                 factors.push(if *power == 1 {
                     text

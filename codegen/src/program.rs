@@ -132,6 +132,8 @@ pub struct Module {
     pub scalar: Scalar,
     /// Where sines and cosines come from.
     pub trig: Trig,
+    /// The constant angle of turned sums, rad.
+    pub turn: Option<Number>,
     /// How many states the functions for many states take at a time; none: there are no such functions.
     pub batch: Option<usize>,
 }

@@ -22,6 +22,7 @@ pub mod field;
 pub mod matrix;
 pub mod normal_form;
 pub mod print;
+pub mod turn;
 
 mod calculus;
 mod count;
@@ -63,13 +64,16 @@ pub enum Symbol {
     Parameter(u16),
 }
 
-/// A sum of joint variables, some of them taken away: a bit for each joint, for the first 32.
+/// A sum of joint variables, some of them taken away: a bit for each joint, for the first 32; and the constant angle of the field
+/// ([`turn::Turn`]), if that is added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AngleSum {
     /// Joints whose variables are added.
     pub plus: u32,
     /// Joints whose variables are taken away.
     pub minus: u32,
+    /// Whether the constant angle is added.
+    pub turned: bool,
 }
 
 impl AngleSum {
@@ -82,15 +86,46 @@ impl AngleSum {
         of(self.plus, false).chain(of(self.minus, true))
     }
 
-    /// The sum without its sign: the first joint is added. And whether the sign changed.
+    /// A joint variable.
+    pub const fn of(joint: u16) -> AngleSum {
+        AngleSum { plus: 1 << joint, minus: 0, turned: false }
+    }
+
+    /// The sum of two that share no joint, at most one of them turned.
+    pub fn plus(self, other: AngleSum) -> AngleSum {
+        AngleSum { plus: self.plus | other.plus, minus: self.minus | other.minus, turned: self.turned || other.turned }
+    }
+
+    /// The joint variables alone.
+    pub fn unturned(self) -> AngleSum {
+        AngleSum { turned: false, ..self }
+    }
+
+    /// How many additions form the sum.
+    pub fn additions(self) -> usize {
+        self.terms().count() - 1 + usize::from(self.turned)
+    }
+
+    /// A sum of joint variables alone without its sign: the first joint is added. And whether the sign changed.
     pub fn unsigned(self) -> (AngleSum, bool) {
         let flip = self.minus.trailing_zeros() < self.plus.trailing_zeros();
-        (if flip { AngleSum { plus: self.minus, minus: self.plus } } else { self }, flip)
+        (if flip { AngleSum { plus: self.minus, minus: self.plus, ..self } } else { self }, flip)
     }
 
     /// Sine and cosine of the sum from those of its terms.
-    pub fn circle<T>(self, zero: (T, T), of: impl Fn(u16) -> (T, T), plus: impl Fn(&(T, T), &(T, T), bool) -> (T, T)) -> (T, T) {
-        self.terms().fold(zero, |sum, (i, minus)| plus(&sum, &of(i), minus))
+    pub fn circle<T>(
+        self,
+        zero: (T, T),
+        of: impl Fn(u16) -> (T, T),
+        turn: impl FnOnce() -> (T, T),
+        plus: impl Fn(&(T, T), &(T, T), bool) -> (T, T),
+    ) -> (T, T) {
+        let sum = self.terms().fold(zero, |sum, (i, minus)| plus(&sum, &of(i), minus));
+        if self.turned {
+            plus(&sum, &turn(), false)
+        } else {
+            sum
+        }
     }
 }
 

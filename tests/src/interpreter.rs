@@ -57,17 +57,19 @@ impl Functions for Interpreted {
 
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
         let found = self.module.functions.iter().find(|f| f.name() == function);
-        run(found.unwrap_or_else(|| panic!("no function `{function}`")), arguments)
+        run(&self.module, found.unwrap_or_else(|| panic!("no function `{function}`")), arguments)
     }
 }
 
-/// Carries out a program.
+/// Carries out a program of a module.
 ///
 /// Panics where it uses a step before it is there, or an input that is not among its arguments.
-pub fn run(function: &Function, arguments: &Arguments) -> Vec<f64> {
+pub fn run(module: &Module, function: &Function, arguments: &Arguments) -> Vec<f64> {
+    let turn = module.turn.as_ref().map_or(0.0, |turn| turn.to_f64());
     let mut values: Vec<f64> = Vec::with_capacity(function.steps.len());
     for step in &function.steps {
-        let (a, b) = (operand(function, &values, arguments, &step.left), operand(function, &values, arguments, &step.right));
+        let (a, b) =
+            (operand(function, turn, &values, arguments, &step.left), operand(function, turn, &values, arguments, &step.right));
         values.push(match step.operation {
             Operation::Add => a + b,
             Operation::Subtract => a - b,
@@ -76,7 +78,7 @@ pub fn run(function: &Function, arguments: &Arguments) -> Vec<f64> {
         });
     }
     let output = |o: &armgen_codegen::program::Output| {
-        let value = operand(function, &values, arguments, &o.operand);
+        let value = operand(function, turn, &values, arguments, &o.operand);
         if o.negated {
             -value
         } else {
@@ -86,7 +88,7 @@ pub fn run(function: &Function, arguments: &Arguments) -> Vec<f64> {
     function.outputs.iter().map(output).collect()
 }
 
-fn operand(function: &Function, values: &[f64], arguments: &Arguments, operand: &Operand) -> f64 {
+fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments, operand: &Operand) -> f64 {
     let symbol = match operand {
         Operand::Step(i) => return values[*i as usize],
         Operand::Constant(value) => return value.to_f64(),
@@ -101,8 +103,8 @@ fn operand(function: &Function, values: &[f64], arguments: &Arguments, operand: 
     match symbol {
         Symbol::Sine(i) => given(Argument::Q, &a.q, i).sin(),
         Symbol::Cosine(i) => given(Argument::Q, &a.q, i).cos(),
-        Symbol::SineOf(sum) => sum_of(sum, &|i| given(Argument::Q, &a.q, i)).sin(),
-        Symbol::CosineOf(sum) => sum_of(sum, &|i| given(Argument::Q, &a.q, i)).cos(),
+        Symbol::SineOf(sum) => sum_of(sum, turn, &|i| given(Argument::Q, &a.q, i)).sin(),
+        Symbol::CosineOf(sum) => sum_of(sum, turn, &|i| given(Argument::Q, &a.q, i)).cos(),
         Symbol::Position(i) => given(Argument::Q, &a.q, i),
         Symbol::Rate(i) => given(Argument::Dq, &a.dq, i),
         Symbol::RateSign(i) => match given(Argument::Dq, &a.dq, i) {
@@ -117,8 +119,8 @@ fn operand(function: &Function, values: &[f64], arguments: &Arguments, operand: 
     }
 }
 
-/// A sum of joint variables, added in the order in which the text adds them.
-fn sum_of(sum: AngleSum, of: &dyn Fn(u16) -> f64) -> f64 {
+/// A sum of joint variables and of the constant angle of a turned one, added in the order in which the text adds them.
+fn sum_of(sum: AngleSum, turn: f64, of: &dyn Fn(u16) -> f64) -> f64 {
     let terms = sum.terms().map(|(i, minus)| if minus { -of(i) } else { of(i) });
-    terms.reduce(|a, b| a + b).unwrap_or_default()
+    terms.chain(sum.turned.then_some(turn)).reduce(|a, b| a + b).unwrap_or_default()
 }

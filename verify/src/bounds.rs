@@ -20,7 +20,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::formula;
 use crate::float::Arguments;
 use crate::formula::{Formula, Rational};
-use crate::program::{Argument, Literal, Program, Step};
+use crate::program::{Angle, Argument, Literal, Program, Step};
 use crate::reader::{Constant, Module};
 
 /// Whether a float is a power of two whose products neither round nor leave the normal range for values of any robot.
@@ -191,16 +191,21 @@ pub fn a_priori(program: &Program, errors: &[f64], domain: &Domain, real: Float)
         Float::F32 => f64::from(f32::MIN_POSITIVE),
     };
     let smallest = smallest_divisor(program, domain, real);
-    let angle = |angle: &[(usize, i64)], shift: f64| {
+    let angle = |angle: &Angle, shift: f64| {
+        let terms = &angle.terms;
         let (mut low, mut high) = (0.0, 0.0);
-        for &(joint, factor) in angle {
+        for &(joint, factor) in terms {
             let (a, b) = (domain.q[joint].0 * factor as f64, domain.q[joint].1 * factor as f64);
             (low, high) = (low + a.min(b), high + a.max(b));
         }
-        let slack = if angle.len() > 1 || angle.iter().any(|(_, k)| k.abs() != 1) {
+        let literal = angle.turn.map(|(k, minus)| (program.turns[k], minus));
+        let turn = literal.map_or(0.0, |(literal, minus)| program.literals[literal].value * if minus { -1.0 } else { 1.0 });
+        (low, high) = (low + turn, high + turn);
+        let parts = terms.len() + usize::from(literal.is_some());
+        let slack = if parts > 1 || terms.iter().any(|(_, k)| k.abs() != 1) {
             let size =
                 |&(joint, factor): &(usize, i64)| domain.q[joint].0.abs().max(domain.q[joint].1.abs()) * factor.abs() as f64;
-            angle.len() as f64 * u * angle.iter().map(size).sum::<f64>()
+            parts as f64 * u * (terms.iter().map(size).sum::<f64>() + turn.abs()) + literal.map_or(0.0, |(l, _)| errors[l])
         } else {
             0.0
         };

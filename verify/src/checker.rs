@@ -72,10 +72,15 @@ impl<K: Arithmetic> Point<K> {
             .collect()
     }
 
+    /// What a program runs with here, its literals having these values.
+    pub fn literals_of(&self, program: &Program, values: &[Formula]) -> Option<Vec<K::Element>> {
+        self.literals(&program.exact_literals(values))
+    }
+
     /// The first entry of a program that is not what the equations say; `None` if there is none.
     fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<usize> {
         let expected = self.reference.values.get(&program.name)?;
-        let Some(literals) = self.literals(literals) else { return Some(0) };
+        let Some(literals) = self.literals_of(program, literals) else { return Some(0) };
         let values = program.run(&self.reference.state, &literals);
         if base && program.name == "potential_energy_with" {
             return self.energy_difference(program, &literals, &values);
@@ -91,7 +96,9 @@ impl<K: Arithmetic> Point<K> {
     /// The first entry of a `base_regressor` that makes it none of these parameters.
     fn base_difference(&self, program: &Program, literals: &[Formula], base: &OwnParameters) -> Option<(String, String)> {
         let divided = || Some((String::new(), "a constant divides by zero".to_string()));
-        let (Some(literals), Some(nominal)) = (self.literals(literals), self.literals(&base.nominal)) else { return divided() };
+        let (Some(literals), Some(nominal)) = (self.literals_of(program, literals), self.literals(&base.nominal)) else {
+            return divided();
+        };
         self.base.as_ref()?.fault(program, &literals, &base.named, &nominal)
     }
 
@@ -342,7 +349,7 @@ impl Checker {
         // A rank is proved by one point.
         let dependent = || {
             let point = self.points.first()?;
-            let literals = point.literals(literals)?;
+            let literals = point.literals_of(program, literals)?;
             dependent_column(point.arithmetic.clone(), program, &literals, self.manipulator.joints.len(), base.named.len())
         };
         modular.or_else(exact).or_else(dependent)
@@ -371,8 +378,12 @@ struct Odds {
 impl Odds {
     fn new(checker: &Checker, reports: &[FunctionReport]) -> Option<Odds> {
         let nominal = checker.base.iter().flat_map(|base| &base.nominal);
-        let literals = reports.iter().flat_map(|r| &r.literals).map(|exact| &exact.value).chain(nominal);
-        let mut degrees = Degrees::new(constants_of(&checker.manipulator).iter().chain(literals));
+        let literals = reports.iter().flat_map(|r| &r.literals).flat_map(|exact| {
+            let (sine, cosine) = exact.value.circle();
+            [exact.value.clone(), sine, cosine]
+        });
+        let constants: Vec<Formula> = constants_of(&checker.manipulator).into_iter().chain(literals).collect();
+        let mut degrees = Degrees::new(constants.iter().chain(nominal));
         let wanted = Wanted { extras: true, base: BaseParameters::Free };
         let reference = Reference::new(&mut degrees, &checker.manipulator, &checker.vector, wanted).ok()?;
         let base = checker.base.as_ref().and_then(|own| {
@@ -385,8 +396,10 @@ impl Odds {
 
     /// log2 of the odds that a program of this degree passes one point although it differs.
     fn of(&self, program: &Program, report: &FunctionReport) -> f64 {
-        let literal = |exact: &Exact| self.degrees.constant(&exact.value);
-        let Some(literals) = report.literals.iter().map(literal).collect::<Option<Vec<_>>>() else { return 0.0 };
+        let literals: Vec<Formula> = report.literals.iter().map(|exact| exact.value.clone()).collect();
+        let literals = program.exact_literals(&literals);
+        let literals = literals.iter().map(|value| self.degrees.constant(value)).collect::<Option<Vec<_>>>();
+        let Some(literals) = literals else { return 0.0 };
         let odds = |degree: f64, height: f64| log2_odds(degree, height, self.circles, self.roots);
         if let (BASE_REGRESSOR, Some((samples, own, nominal))) = (program.name.as_str(), &self.base) {
             return samples.log2_odds(program, &literals, (&own.named, nominal), odds).min(0.0);
@@ -417,7 +430,7 @@ fn beyond_the_end(program: &Program, n: usize, p: usize) -> Option<String> {
             Some(format!("index {index} is beyond the end of its argument"))
         }
         Step::Sine(angle) | Step::Cosine(angle) => {
-            angle.iter().find(|(joint, _)| *joint >= n).map(|(joint, _)| format!("index {joint} is beyond the end of `q`"))
+            angle.terms.iter().find(|(joint, _)| *joint >= n).map(|(joint, _)| format!("index {joint} is beyond the end of `q`"))
         }
         _ => None,
     })

@@ -6,7 +6,8 @@
 //! sum, difference   e_z = e_x + e_y + u |z|
 //! product           e_z = |x| e_y + |y| e_x + e_x e_y + u |z|
 //! quotient          e_z = (e_x + |x/y| e_y) / (|y| - e_y) + u |z|
-//! sine, cosine      e = 2 u |s|: one unit in the last place; of a sum of k angles besides k u (|q_1| + ... + |q_k|)
+//! sine, cosine      e = 2 u |s|: one unit in the last place; of a sum of k angles besides k u (|q_1| + ... + |q_k|),
+//!                   a constant angle among them, with what its literal is off by
 //! literal           e = u |c|, 0 where the float is the exact value
 //! ```
 //!
@@ -21,7 +22,7 @@ use crate::claims::Claims;
 use crate::contract::{Promise, Shape};
 use crate::enclosure::Float;
 use crate::float::Arguments;
-use crate::program::{Argument, Program, Step};
+use crate::program::{Angle, Argument, Program, Step};
 use crate::reader::{Constant, Module};
 
 /// The text taken in, as a module of this crate in each scalar: the same lines that companions have.
@@ -42,7 +43,7 @@ macro_rules! face {
             /// A program as a table of any length.
             pub(super) fn run(
                 steps: &[super::Row],
-                angles: &[super::Terms],
+                angles: &[super::Sum],
                 entries: &[u32],
                 sensitive: bool,
                 given: &Arguments<f64>,
@@ -59,7 +60,8 @@ macro_rules! face {
                 };
                 let steps: Vec<Step> = steps.iter().map(step).collect();
                 let mut values = vec![NOTHING; steps.len()];
-                let angles = terms(angles);
+                let sums: Vec<_> = angles.iter().map(terms).collect();
+                let angles: Vec<Angle<'_>> = sums.iter().zip(angles).map(|(terms, sum)| angle_of(terms, sum)).collect();
                 forward(&steps, &angles, &given, &mut values);
                 let mut scratch = vec![NOTHING; if sensitive { steps.len() } else { 0 }];
                 let mut bounds = vec![0.0; entries.len()];
@@ -67,8 +69,12 @@ macro_rules! face {
                 entries.iter().zip(bounds).map(|(&e, bound)| (f64::from(values[e as usize].value), f64::from(bound))).collect()
             }
 
-            fn terms(angles: &[super::Terms]) -> Vec<Vec<(u32, Real)>> {
-                angles.iter().map(|angle| angle.iter().map(|&(joint, factor)| (joint as u32, factor as Real)).collect()).collect()
+            fn terms(sum: &super::Sum) -> Vec<(u32, Real)> {
+                sum.terms.iter().map(|&(joint, factor)| (joint as u32, factor as Real)).collect()
+            }
+
+            fn angle_of<'a>(terms: &'a [(u32, Real)], sum: &super::Sum) -> Angle<'a> {
+                Angle { terms, turn: sum.turn as Real, off: sum.off as Real }
             }
 
             fn name(argument: crate::program::Argument) -> Name {
@@ -126,14 +132,19 @@ enum Row {
     Div(u32, u32),
 }
 
-/// A sum of joint variables: each with its factor.
-type Terms = Vec<(usize, i64)>;
+/// A sum of joint variables, each with its factor, and a constant with what its literal is off by; 0 where there is none.
+#[derive(Clone, Debug, PartialEq)]
+struct Sum {
+    terms: Vec<(usize, i64)>,
+    turn: f64,
+    off: f64,
+}
 
 /// The table of a function: its steps and which of them are its entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     rows: Vec<Row>,
-    angles: Vec<Terms>,
+    angles: Vec<Sum>,
     entries: Vec<u32>,
     sensitive: bool,
     real: Float,
@@ -146,10 +157,13 @@ const MANY: usize = 64;
 impl Table {
     /// The table of a program whose literals are off by `errors`.
     pub fn of(program: &Program, errors: &[f64], real: Float) -> Result<Table, String> {
-        let mut angles: Vec<Terms> = Vec::new();
-        let mut number_of = |angle: &Terms| {
-            let index = angles.iter().position(|known| known == angle).unwrap_or_else(|| {
-                angles.push(angle.clone());
+        let mut angles: Vec<Sum> = Vec::new();
+        let mut number_of = |angle: &Angle| {
+            let constant = angle.turn.map(|(k, minus)| (program.turns[k], minus));
+            let turn = constant.map_or(0.0, |(l, minus)| program.literals[l].value * if minus { -1.0 } else { 1.0 });
+            let sum = Sum { terms: angle.terms.clone(), turn, off: constant.map_or(0.0, |(l, _)| errors[l]) };
+            let index = angles.iter().position(|known| *known == sum).unwrap_or_else(|| {
+                angles.push(sum);
                 angles.len() - 1
             });
             index as u32
@@ -293,13 +307,16 @@ fn argument(argument: Argument) -> &'static str {
     }
 }
 
-fn row_text(row: &Row, real: Float) -> String {
-    let number = |value: f64| match real {
+fn number(value: f64, real: Float) -> String {
+    match real {
         Float::F64 => format!("{value:?}"),
         Float::F32 => format!("{:?}", value as f32),
-    };
+    }
+}
+
+fn row_text(row: &Row, real: Float) -> String {
     match *row {
-        Row::Lit(value, error) => format!("Lit({}, {})", number(value), number(error)),
+        Row::Lit(value, error) => format!("Lit({}, {})", number(value, real), number(error, real)),
         other => format!("{other:?}"),
     }
 }
@@ -314,9 +331,10 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
         Some((_, Constant::Integer(n))) => *n as usize,
         _ => 1,
     };
-    let angle = |angle: &Terms| {
-        let terms: Vec<String> = angle.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
-        format!("&[{}]", terms.join(", "))
+    let angle = |sum: &Sum| {
+        let terms: Vec<String> = sum.terms.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
+        let [turn, off] = [sum.turn, sum.off].map(|value| number(value, module.real));
+        format!("Angle {{ terms: &[{}], turn: {turn}, off: {off} }}", terms.join(", "))
     };
     let angles: Vec<String> = table.angles.iter().map(angle).collect();
     let rows: Vec<String> = table.rows.iter().map(|row| row_text(row, module.real)).collect();
@@ -326,7 +344,7 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
     let _ = write!(
         text,
         "/// Running error bound of `{name}`, entry by entry.\n#[allow(clippy::all, dead_code)]\n#[rustfmt::skip]\npub fn {name}_error_bound({}) -> {} {{\n    static \
-         STEPS: [Step; {}] = [{}];\n    static ANGLES: [Angle; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ANGLES, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
+         STEPS: [Step; {}] = [{}];\n    static ANGLES: [Angle<'static>; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ANGLES, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
         arguments.join(", "),
         promise.shape.rust().replace(';', "; ").replace(',', ", "),
         rows.len(),

@@ -3,7 +3,8 @@
 //! The constant is enclosed between two multiples of 2^-bits, ever more tightly, until the enclosure lies on one side of the boundary between
 //! the float and its neighbours: the midpoints. A constant that is a fraction is compared with them directly, ties to even.
 //!
-//! Square roots by integer roots, pi = 4 atan(1/2) + 4 atan(1/3), sine and cosine by their series.
+//! Square roots by integer roots, pi = 4 atan(1/2) + 4 atan(1/3), sine and cosine by their series, the arc tangent by its series after halving
+//! the angle.
 
 use std::cmp::Ordering;
 
@@ -95,6 +96,10 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
         }
         Formula::Sine(angle) => series(&interval(angle, bits)?, 1, bits)?,
         Formula::Cosine(angle) => series(&interval(angle, bits)?, 0, bits)?,
+        Formula::Arctangent(tangent) => {
+            let (n, d) = (tangent.numerator().clone() << bits, IBig::from(tangent.denominator().clone()));
+            arctangent_of(Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }, bits)?
+        }
         Formula::Sum(terms) => {
             let mut sum = exact(IBig::ZERO);
             for term in terms {
@@ -136,6 +141,32 @@ fn arctangent(n: u32, bits: usize) -> Interval {
     // A term inherits less than two units from its power and loses less than one itself.
     let slack = IBig::from(3 * k + 3);
     Interval { low: &sum - &slack, high: sum + slack }
+}
+
+/// atan(t) = 8 atan(t_3) for t in [0, 1), with t_(k+1) = t_k/(1 + sqrt(1 + t_k²)) the tangent of half the angle, and t_3 < 1/10 by the series
+/// Σ (-1)^k t^(2k+1)/(2k+1) at its lower end, widened by its width (the slope is at most 1).
+fn arctangent_of(tangent: Interval, bits: usize) -> Option<Interval> {
+    let one = IBig::ONE << bits;
+    let mut t = tangent;
+    for _ in 0..3 {
+        let square = multiply(&t, &t, bits);
+        let root = |n: &IBig| IBig::from(((n + &one).unsigned_abs() << bits).sqrt());
+        let below = Interval { low: &one + root(&square.low), high: &one + root(&square.high) + IBig::ONE };
+        t = multiply(&t, &invert(&below, bits)?, bits);
+    }
+    let square: IBig = (&t.low * &t.low) >> bits;
+    let mut power = t.low.clone();
+    let (mut sum, mut k) = (IBig::ZERO, 0u32);
+    while !power.is_zero() {
+        let term = &power / IBig::from(2 * k + 1);
+        sum = if k.is_multiple_of(2) { sum + term } else { sum - term };
+        power = (power * &square) >> bits;
+        k += 1;
+    }
+    // A term inherits less than two units from its power and loses less than one itself.
+    let slack = IBig::from(3 * k + 3) + (&t.high - &t.low);
+    let eight = IBig::from(8);
+    Some(Interval { low: (&sum - &slack) * &eight, high: (sum + slack) * eight })
 }
 
 /// sin (first = 1) or cos (first = 0) of an angle below 256 rad, by the series at its lower end, widened by its width (slopes are at most 1).

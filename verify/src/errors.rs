@@ -84,7 +84,7 @@ impl Subject {
             let program = function.as_ref().map_err(|e| format!("`{name}`: {e}"))?.program.clone();
             let values = claims.resolve(name, &program.literals, module.real).values;
             let errors = literal_errors(&program, &values, module.real);
-            let exact: Option<Vec<Wide>> = values.iter().map(Wide::from_formula).collect();
+            let exact: Option<Vec<Wide>> = program.exact_literals(&values).iter().map(Wide::from_formula).collect();
             let exact = exact.ok_or(format!("`{name}`: a literal out of reach"))?;
             let table = Table::of(&program, &errors, module.real)?.lanes();
             let bound = a_priori(&program, &errors, &domain, module.real);

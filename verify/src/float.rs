@@ -1,7 +1,7 @@
 //! Execution of programs in floats, as the emitted functions execute: the same operations in the same order, sine and cosine of libm.
 
 use crate::enclosure::Float;
-use crate::program::{Argument, Inputs, Program};
+use crate::program::{Argument, Inputs, Program, Turn};
 
 /// Arguments of emitted functions.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -70,17 +70,27 @@ impl<T: Copy> Arguments<T> {
 
 macro_rules! inputs {
     ($float:ty, $sincos:path) => {
+        impl Arguments<$float> {
+            fn angle(&self, terms: &[(usize, i64)]) -> $float {
+                match terms {
+                    [(joint, 1)] => self.q[*joint],
+                    terms => terms.iter().map(|&(joint, factor)| factor as $float * self.q[joint]).sum(),
+                }
+            }
+        }
+
         impl Inputs<$float> for Arguments<$float> {
             fn entry(&self, argument: Argument, index: usize) -> $float {
                 self.of(argument)[index]
             }
 
             fn sine_cosine(&self, angle: &[(usize, i64)]) -> ($float, $float) {
-                let sum = match angle {
-                    [(joint, 1)] => self.q[*joint],
-                    terms => terms.iter().map(|&(joint, factor)| factor as $float * self.q[joint]).sum(),
-                };
-                $sincos(sum)
+                $sincos(self.angle(angle))
+            }
+
+            fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, $float>) -> ($float, $float) {
+                let sum = self.angle(angle);
+                $sincos(if turn.minus { sum - turn.value } else { sum + turn.value })
             }
 
             fn sign(&self, joint: usize) -> $float {

@@ -5,13 +5,13 @@
 //!
 //! ```text
 //! sum = [-] product { (+|-) product }    product = power { (*|/) power }    power = primary [ ^ integer | ^( integer ) ]
-//! primary = decimal | pi | sqrt(sum) | sin(sum) | cos(sum) | ( sum )
+//! primary = decimal | pi | sqrt(sum) | sin(sum) | cos(sum) | atan(fraction) | ( sum )
 //! ```
 
 use std::collections::BTreeSet;
 use std::fmt;
 
-use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
+use dashu_base::{Abs, Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use crate::arithmetic::{Arithmetic, Element};
@@ -22,7 +22,7 @@ pub type Rational = dashu_ratio::RBig;
 /// What is not a fraction and has a square that is simpler.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Root {
-    /// The square root of an integer: a prime, or what trial division leaves.
+    /// The square root of an integer without a square factor that trial division finds. A product holds at most one.
     Integer(UBig),
     /// The square root of any other number.
     Nested(Box<Formula>),
@@ -41,6 +41,8 @@ pub enum Formula {
     Sine(Box<Formula>),
     /// The cosine of an angle in rad.
     Cosine(Box<Formula>),
+    /// The angle, rad, whose tangent is a fraction between 0 and 1.
+    Arctangent(Rational),
     /// A sum.
     Sum(Vec<Formula>),
     /// A product.
@@ -52,7 +54,7 @@ pub enum Formula {
 /// The roots and angles that occur in formulas; a root stands after those inside it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Atoms {
-    /// Roots.
+    /// Roots; those of integers have no factor in common, and what stands under a root of the formulas is a product of them.
     pub roots: Vec<Root>,
     /// Angles of sines and cosines.
     pub angles: BTreeSet<Formula>,
@@ -102,6 +104,8 @@ impl Formula {
             Formula::Root(inner) => root(inner),
             Formula::Sine(inner) => Some(angle(inner)?.0),
             Formula::Cosine(inner) => Some(angle(inner)?.1),
+            // As a number an angle is tied to nothing, like pi: a random value of its own.
+            Formula::Arctangent(_) => Some(angle(self)?.0),
             Formula::Sum(terms) => {
                 let (first, rest) = terms.split_first()?;
                 rest.iter().try_fold(of(first)?, |sum, term| Some(sum.plus(&of(term)?)))
@@ -126,15 +130,24 @@ impl Formula {
     /// The product, fractions taken together in front.
     fn by(self, other: Formula) -> Formula {
         let mut scale = Rational::ONE;
+        let mut under_root = UBig::ONE;
         let mut factors = Vec::new();
         for formula in [self, other] {
             let parts = if let Formula::Product(parts) = formula { parts } else { vec![formula] };
             for part in parts {
                 match part {
                     Formula::Rational(value) => scale *= value,
+                    Formula::Root(Root::Integer(n)) => {
+                        let shared = (&under_root).gcd(&n);
+                        under_root = (under_root / &shared) * (n / &shared);
+                        scale *= Rational::from(shared);
+                    }
                     other => factors.push(other),
                 }
             }
+        }
+        if !under_root.is_one() {
+            factors.insert(0, Formula::Root(Root::Integer(under_root)));
         }
         if scale.is_zero() || factors.is_empty() {
             return Formula::Rational(scale);
@@ -158,6 +171,45 @@ impl Formula {
         }
     }
 
+    /// Sine and cosine of the angle that this is, exactly: of quarter turns and arc tangents by their roots.
+    pub fn circle(&self) -> (Formula, Formula) {
+        let mut angle = (Rational::ZERO, None);
+        let known = self.add_turns(&Rational::ONE, &mut angle);
+        let (quarters, tangent) = angle;
+        let root = |tangent: &Rational| root_of_rational(&(Rational::ONE / (Rational::ONE + tangent * tangent)));
+        let (true, true, Ok(cosine)) = (known, quarters.is_int(), root(&tangent.clone().unwrap_or_default())) else {
+            return (Formula::Sine(Box::new(self.clone())), Formula::Cosine(Box::new(self.clone())));
+        };
+        let sine = Formula::Rational(tangent.unwrap_or_default()).by(cosine.clone());
+        match (quarters.numerator() % IBig::from(4) + IBig::from(4)) % IBig::from(4) {
+            n if n.is_zero() => (sine, cosine),
+            n if n.is_one() => (cosine, sine.negated()),
+            n if n == IBig::from(2) => (sine.negated(), cosine.negated()),
+            _ => (cosine.negated(), sine),
+        }
+    }
+
+    /// Adds `factor` times this angle, as quarter turns and the tangent of one arc tangent; whether it is made of nothing else.
+    fn add_turns(&self, factor: &Rational, angle: &mut (Rational, Option<Rational>)) -> bool {
+        match self {
+            Formula::Pi => {
+                angle.0 += factor * Rational::from(2);
+                true
+            }
+            Formula::Rational(value) => value.is_zero(),
+            Formula::Arctangent(tangent) => {
+                let sign = if factor.is_negative() { -tangent.clone() } else { tangent.clone() };
+                factor.clone().abs().is_one() && angle.1.replace(sign).is_none()
+            }
+            Formula::Sum(terms) => terms.iter().all(|term| term.add_turns(factor, angle)),
+            Formula::Product(factors) => match factors.as_slice() {
+                [Formula::Rational(scale), inner] => inner.add_turns(&(scale * factor), angle),
+                _ => false,
+            },
+            _ => false,
+        }
+    }
+
     fn collect(&self, atoms: &mut Atoms) {
         match self {
             Formula::Rational(_) | Formula::Pi => {}
@@ -171,6 +223,10 @@ impl Formula {
             }
             Formula::Sine(angle) | Formula::Cosine(angle) => {
                 atoms.angles.insert((**angle).clone());
+            }
+            Formula::Arctangent(_) => {
+                atoms.angles.insert(self.clone());
+                self.circle().1.collect(atoms);
             }
             Formula::Sum(parts) | Formula::Product(parts) => parts.iter().for_each(|part| part.collect(atoms)),
             Formula::Power(base, _) => base.collect(atoms),
@@ -240,6 +296,7 @@ impl fmt::Display for Formula {
             Formula::Root(Root::Nested(inner)) => write!(f, "sqrt({inner})"),
             Formula::Sine(angle) => write!(f, "sin({angle})"),
             Formula::Cosine(angle) => write!(f, "cos({angle})"),
+            Formula::Arctangent(tangent) => write!(f, "atan({tangent})"),
             Formula::Sum(terms) => {
                 for (i, term) in terms.iter().enumerate() {
                     match (i, term.leads_negative()) {
@@ -270,8 +327,50 @@ impl Atoms {
     pub fn of<'a>(formulas: impl IntoIterator<Item = &'a Formula>) -> Atoms {
         let mut atoms = Atoms::default();
         formulas.into_iter().for_each(|formula| formula.collect(&mut atoms));
+        let mut coprime = Vec::new();
+        let mut nested = Vec::new();
+        for root in atoms.roots {
+            match root {
+                Root::Integer(n) => add_coprime(&mut coprime, n),
+                other => nested.push(other),
+            }
+        }
+        coprime.sort();
+        atoms.roots = coprime.into_iter().map(Root::Integer).chain(nested).collect();
         atoms
     }
+}
+
+/// Adds an integer to some that have no factors in common: what it shares with one stands alone afterwards. No square stays whole.
+fn add_coprime(coprime: &mut Vec<UBig>, n: UBig) {
+    let root = n.sqrt();
+    if &root * &root == n {
+        if !n.is_one() {
+            add_coprime(coprime, root);
+        }
+        return;
+    }
+    let Some(at) = coprime.iter().position(|other| !other.gcd(&n).is_one()) else { return coprime.push(n) };
+    let other = coprime.swap_remove(at);
+    if other == n {
+        return coprime.push(n);
+    }
+    let shared = (&other).gcd(&n);
+    for part in [other / &shared, n / &shared, shared] {
+        add_coprime(coprime, part);
+    }
+}
+
+/// The square root of an integer from the roots of integers without common factors; `None` if they are not enough.
+pub fn root_from_coprime<'a, E: Element + 'a>(n: &UBig, one: E, roots: impl Iterator<Item = (&'a UBig, E)>) -> Option<E> {
+    let (mut rest, mut product) = (n.clone(), one);
+    for (factor, root) in roots {
+        while (&rest % factor).is_zero() {
+            rest /= factor;
+            product = product.times(&root);
+        }
+    }
+    rest.is_one().then_some(product)
 }
 
 /// The square root of a fraction: sqrt(p/q) = sqrt(p q)/q with the squares taken out.
@@ -284,8 +383,7 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
     }
     let denominator = value.denominator().clone();
     let mut rest = value.numerator().unsigned_abs() * &denominator;
-    let mut whole = UBig::ONE;
-    let mut roots = Vec::new();
+    let (mut whole, mut under_root) = (UBig::ONE, UBig::ONE);
     let mut divisor = 2u32;
     while divisor <= TRIAL_DIVISION && UBig::from(divisor) * divisor <= rest {
         let prime = UBig::from(divisor);
@@ -295,7 +393,7 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
         }
         if (&rest % &prime).is_zero() {
             rest /= &prime;
-            roots.push(prime);
+            under_root *= prime;
         }
         divisor += if divisor == 2 { 1 } else { 2 };
     }
@@ -303,10 +401,10 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
     if &root * &root == rest {
         whole *= root;
     } else {
-        roots.push(rest);
+        under_root *= rest;
     }
     let scale = Formula::Rational(Rational::from_parts(IBig::from(whole), denominator));
-    Ok(roots.into_iter().fold(scale, |product, n| product.by(Formula::Root(Root::Integer(n)))))
+    Ok(scale.by(Formula::Root(Root::Integer(under_root))))
 }
 
 struct Parser<'a> {
@@ -420,8 +518,8 @@ impl Parser<'_> {
         if word == "pi" {
             return Ok(Formula::Pi);
         }
-        if !["sqrt", "sin", "cos"].contains(&word) {
-            return Err(format!("`{word}` where a number, pi, sqrt, sin or cos can stand"));
+        if !["sqrt", "sin", "cos", "atan"].contains(&word) {
+            return Err(format!("`{word}` where a number, pi, sqrt, sin, cos or atan can stand"));
         }
         self.expect('(')?;
         let inner = self.sum()?;
@@ -430,6 +528,10 @@ impl Parser<'_> {
             ("sqrt", Formula::Rational(value)) => root_of_rational(&value)?,
             ("sqrt", inner) => Formula::Root(Root::Nested(Box::new(inner))),
             ("sin", inner) => Formula::Sine(Box::new(inner)),
+            ("atan", Formula::Rational(tangent)) if !tangent.is_negative() && tangent < Rational::ONE => {
+                Formula::Arctangent(tangent)
+            }
+            ("atan", other) => return Err(format!("the arc tangent of `{other}`, which is no fraction between 0 and 1")),
             (_, inner) => Formula::Cosine(Box::new(inner)),
         })
     }
@@ -490,6 +592,43 @@ mod tests {
             assert!(Formula::parse(wrong).is_err(), "{wrong}");
         }
         assert!(Formula::parse(&"(".repeat(100)).is_err());
+    }
+
+    #[test]
+    fn roots_of_integers_are_told_apart_by_their_factors() {
+        let parse = |text: &str| Formula::parse(text).expect("a formula");
+        assert_eq!(parse("sqrt(6)*sqrt(10)"), parse("2*sqrt(15)"));
+        assert_eq!(parse("sqrt(7)*sqrt(7)"), parse("7"));
+        let roots = |texts: &[&str]| {
+            let formulas: Vec<Formula> = texts.iter().map(|text| parse(text)).collect();
+            Atoms::of(&formulas).roots.iter().map(|root| Formula::Root(root.clone()).to_string()).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(roots(&["sqrt(2)*sqrt(13)*sqrt(137)", "sqrt(3562)/2"]), "sqrt(3562)");
+        assert_eq!(roots(&["sqrt(6)", "sqrt(10)", "1 + sqrt(21)"]), "sqrt(2) sqrt(3) sqrt(5) sqrt(7)");
+        // Primes beyond trial division, one of them squared.
+        let (p, q) = (10_007u64, 10_009u64);
+        assert_eq!(roots(&[&format!("sqrt({})", p * p * q), &format!("sqrt({q})")]), format!("sqrt({p}) sqrt({q})"));
+        let values = [(UBig::from(2u8), 2f64.sqrt()), (UBig::from(5u8), 5f64.sqrt())];
+        let root = |n: u32| root_from_coprime(&UBig::from(n), 1.0, values.iter().map(|(n, root)| (n, *root)));
+        assert!((root(40).expect("2³ · 5") - 40f64.sqrt()).abs() < 1e-12);
+        assert_eq!(root(6), None);
+    }
+
+    #[test]
+    fn angles_have_the_sine_and_cosine_of_their_points() {
+        for (text, sine, cosine) in [
+            ("atan(3/4)", "3/5", "4/5"),
+            ("1/2*pi - atan(3/4)", "4/5", "3/5"),
+            ("-(pi - atan(3/4))", "-3/5", "-4/5"),
+            ("-1/2*pi + atan(1/2)", "-2/5*sqrt(5)", "1/5*sqrt(5)"),
+            ("pi", "0", "-1"),
+            ("atan(1/3) + atan(1/2)", "sin(atan(1/3) + atan(1/2))", "cos(atan(1/3) + atan(1/2))"),
+            ("0.7", "sin(7/10)", "cos(7/10)"),
+        ] {
+            let (s, c) = Formula::parse(text).expect("an angle").circle();
+            assert_eq!((s.to_string(), c.to_string()), (sine.into(), cosine.into()), "{text}");
+        }
+        assert!(Formula::parse("atan(2)").is_err() && Formula::parse("atan(sqrt(1/2))").is_err());
     }
 
     #[test]

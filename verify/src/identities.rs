@@ -37,10 +37,10 @@ impl Running<'_> {
         let program = self.module.program(name).ok_or_else(missing)?;
         let report = self.reports.iter().find(|r| r.name == name).ok_or_else(missing)?;
         let formulas: Vec<Formula> = report.literals.iter().map(|literal| literal.value.clone()).collect();
-        let literals = self.point.literals(&formulas).ok_or_else(missing)?;
-        if literals.len() != program.literals.len() {
+        if formulas.len() != program.literals.len() {
             return Err(missing());
         }
+        let literals = self.point.literals_of(program, &formulas).ok_or_else(missing)?;
         Ok((program, literals))
     }
 

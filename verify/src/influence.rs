@@ -11,7 +11,7 @@ use crate::program::{Program, Step};
 
 /// Numbers of the steps that do not influence any entry, operations only; `None` where the function divides by zero.
 pub fn idle_steps(program: &Program, point: &mut Point<Prime>, literals: &[Formula]) -> Option<Vec<usize>> {
-    let literals = point.literals(literals)?;
+    let literals = point.literals_of(program, literals)?;
     let values: Option<Vec<_>> = program.values(&point.reference.state, &literals).into_iter().collect();
     let values = values?;
     let zero = point.arithmetic.integer(0);

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::arithmetic::Element;
+use crate::formula::Formula;
 
 /// Arguments of emitted functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -46,10 +47,10 @@ pub enum Step {
     Input(Argument, usize),
     /// A literal, by its number in the function's text.
     Literal(usize),
-    /// Sine of an integer combination of joint variables.
-    Sine(Vec<(usize, i64)>),
+    /// Sine of an angle.
+    Sine(Angle),
     /// Cosine of one.
-    Cosine(Vec<(usize, i64)>),
+    Cosine(Angle),
     /// Sign of a joint rate.
     Sign(usize),
     /// -a
@@ -62,6 +63,15 @@ pub enum Step {
     Multiply(usize, usize),
     /// a / b
     Divide(usize, usize),
+}
+
+/// An integer combination of joint variables, and a constant that is added or taken away.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Angle {
+    /// Joints with their factors.
+    pub terms: Vec<(usize, i64)>,
+    /// The number of the constant among the [`turns`](Program::turns) of the function, and whether it is taken away.
+    pub turn: Option<(usize, bool)>,
 }
 
 /// A literal in the text: digits without a sign.
@@ -93,6 +103,8 @@ pub struct Program {
     pub steps: Vec<Step>,
     /// Literals in the order of the text.
     pub literals: Vec<Literal>,
+    /// The literals that are constants of angles.
+    pub turns: Vec<usize>,
     /// Entries of the result, row by row.
     pub outputs: Vec<Output>,
 }
@@ -111,6 +123,29 @@ pub trait Inputs<E> {
     fn sine_cosine(&self, angle: &[(usize, i64)]) -> (E, E);
     /// Sign of a joint rate.
     fn sign(&self, joint: usize) -> E;
+    /// Sine and cosine of such a combination and a constant.
+    fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E);
+}
+
+/// The constant of an angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn<'a, E> {
+    /// Whether it is taken away.
+    pub minus: bool,
+    /// What its literal stands for.
+    pub value: &'a E,
+    /// Sine and cosine of the constant, where they are known.
+    pub circle: Option<(&'a E, &'a E)>,
+}
+
+/// Sine and cosine of a turned angle from those of the angle, by the addition theorem.
+///
+/// # Panics
+/// If the circle of the constant is not known: exact literals are those of [`Program::exact_literals`].
+pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E, E) {
+    let (s, c) = turn.circle.expect("exact literals come with the circles of turns");
+    let s = if turn.minus { s.negated() } else { s.clone() };
+    (sine.times(c).plus(&cosine.times(&s)), cosine.times(c).minus(&sine.times(&s)))
 }
 
 impl Program {
@@ -120,17 +155,35 @@ impl Program {
         self.outputs.iter().map(|output| values[output.step].clone()).collect()
     }
 
+    /// The exact values of the literals, followed by sine and cosine of each that is the constant of an angle: what exact runs take.
+    pub fn exact_literals(&self, values: &[Formula]) -> Vec<Formula> {
+        let circles = self.turns.iter().flat_map(|&literal| {
+            let (sine, cosine) = values[literal].circle();
+            [sine, cosine]
+        });
+        values.iter().cloned().chain(circles).collect()
+    }
+
     /// The value of every step.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
         let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());
         for step in &self.steps {
             let of = |i: &usize| values[*i].as_ref();
             let both = |a: &usize, b: &usize| Some((values[*a].as_ref()?, values[*b].as_ref()?));
+            let wave = |angle: &Angle| match angle.turn {
+                None => inputs.sine_cosine(&angle.terms),
+                Some((k, minus)) => {
+                    let at = self.literals.len() + 2 * k;
+                    let turn =
+                        Turn { minus, value: &literals[self.turns[k]], circle: literals.get(at).zip(literals.get(at + 1)) };
+                    inputs.turned(&angle.terms, &turn)
+                }
+            };
             let value = match step {
                 Step::Input(argument, index) => Some(inputs.entry(*argument, *index)),
                 Step::Literal(index) => Some(literals[*index].clone()),
-                Step::Sine(angle) => Some(inputs.sine_cosine(angle).0),
-                Step::Cosine(angle) => Some(inputs.sine_cosine(angle).1),
+                Step::Sine(angle) => Some(wave(angle).0),
+                Step::Cosine(angle) => Some(wave(angle).1),
                 Step::Sign(joint) => Some(inputs.sign(*joint)),
                 Step::Negate(a) => of(a).map(Element::negated),
                 Step::Add(a, b) => both(a, b).map(|(a, b)| a.plus(b)),
@@ -151,7 +204,8 @@ impl Program {
                 Step::Literal(index) => *index == literal,
                 Step::Negate(a) => touched[*a],
                 Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => touched[*a] || touched[*b],
-                Step::Input(..) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => false,
+                Step::Sine(angle) | Step::Cosine(angle) => angle.turn.is_some_and(|(k, _)| self.turns[k] == literal),
+                Step::Input(..) | Step::Sign(_) => false,
             };
         }
         (0..self.outputs.len()).filter(move |&i| touched[self.outputs[i].step])

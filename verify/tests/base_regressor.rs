@@ -11,7 +11,7 @@ use armgen_verify::checker::{Checker, Effort};
 use armgen_verify::claims::Claims;
 use armgen_verify::equations::parameters::{Standard, Vector};
 use armgen_verify::formula::{Formula, Rational};
-use armgen_verify::program::{Output, Program, Step};
+use armgen_verify::program::{Angle, Output, Program, Step};
 use armgen_verify::reader::{Function, Module};
 use armgen_verify::report::Verdict;
 use armgen_verify::{certify, constants, verify};
@@ -140,7 +140,7 @@ fn coefficients_are_constant() {
     let mut subject = subject("panda7");
     let column = subject.column("mcx7");
     let felt = subject.felt(column);
-    let cosine = subject.step(Step::Cosine(vec![(0, 1)]));
+    let cosine = subject.step(Step::Cosine(Angle { terms: vec![(0, 1)], turn: None }));
     subject.replace(column, felt.clone(), |row| Step::Multiply(row[column], cosine));
     subject.check(&format!(
         "[{}][{column}] differs: column `mcx7` is no combination of the torques of mcx7, mcy7, Ixz7, Iyz7",

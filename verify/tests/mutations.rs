@@ -61,7 +61,7 @@ fn same_bits(a: &Constant, b: &Constant) -> bool {
 /// Whether two programs agree to 40 digits at some states: what tells them apart then is rounding alone.
 fn differ_by_rounding_alone(a: &Program, b: &Program, states: &[Arguments<f64>]) -> bool {
     let values = |p: &Program, state: &WideArguments| -> Vec<Option<Wide>> {
-        p.run(state, &p.literals.iter().map(|l| Wide::from_f64(l.value)).collect::<Vec<_>>())
+        p.run(state, &p.literals_as_floats().expect("angles of moderate size"))
     };
     states.iter().take(6).all(|state| {
         let state = WideArguments::new(state).expect("angles of moderate size");

@@ -121,7 +121,7 @@ impl Body {
     }
 
     /// Turned by a matrix of constants.
-    fn turned(&self, pool: &mut Pool, rotation: &Matrix) -> Body {
+    pub(super) fn turned(&self, pool: &mut Pool, rotation: &Matrix) -> Body {
         Body { mass: self.mass, first: pool.transform(rotation, &self.first), second: turn_second(pool, rotation, &self.second) }
     }
 }

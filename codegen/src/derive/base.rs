@@ -8,12 +8,13 @@
 use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
 use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
+use super::passes::turn_last_link;
 use super::plan::Plan;
 use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::{Number, Rational};
 use crate::manipulator::{JointKind, Manipulator};
 use crate::ring::field::{scramble, Element, Field};
-use crate::ring::matrix::ZERO;
+use crate::ring::matrix::{IDENTITY, ZERO};
 use crate::ring::{ExprId, Node, Pool, Symbol};
 
 /// The columns of a regressor, sorted into those that are independent and the rest.
@@ -233,7 +234,8 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
 }
 
 /// Moves the origin of each joint frame along its axis to where that meets, or comes nearest to, the axis before: most torques of a force there
-/// have no lever. The base parameters of the arm's own regressor are those in these frames.
+/// have no lever. And turns the axes of the last link to its centre of mass, where its first moment has one component. The base parameters of the
+/// arm's own regressor are those in these frames.
 pub fn settle(pool: &mut Pool, arm: &mut Arm) {
     for i in (0..arm.dof()).filter(|&i| arm.joints[i].parent.is_some() && arm.joints[i].is_revolute()).collect::<Vec<_>>() {
         let axis = arm.joints[i].fixed.map(|row| row[2]);
@@ -242,7 +244,10 @@ pub fn settle(pool: &mut Pool, arm: &mut Arm) {
             arm.slide(pool, i, -along);
         }
     }
-    arm.joints.iter_mut().for_each(|joint| joint.own_origin = ZERO);
+    turn_last_link(pool, arm);
+    for joint in &mut arm.joints {
+        (joint.own_origin, joint.own_axes) = (ZERO, IDENTITY);
+    }
 }
 
 /// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction; of an arm that has been settled.
@@ -373,6 +378,9 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
     coefficients
 }
 
+/// Longer factors are shown by the nearest float.
+const LONGEST_FACTOR: usize = 60;
+
 /// A base parameter: named like the standard parameter that it is, with an R where it stands in the joint frame or others are regrouped into it.
 fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Entry {
     let mut nominal = Number::zero();
@@ -383,6 +391,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
         nominal = &nominal + &(*k * &entry.nominal);
         let negative = k.leads_negative();
         let size = if negative { -*k } else { (*k).clone() };
+        let factor = if size.to_string().len() > LONGEST_FACTOR { format!("{:?}", size.to_f64()) } else { size.to_string() };
         meaning += match (meaning.is_empty(), negative) {
             (true, false) => "",
             (true, true) => "-",
@@ -391,8 +400,9 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
         };
         meaning += &match (size.is_one(), size.terms().count()) {
             (true, _) => entry.name.clone(),
-            (false, 1) => format!("{size}*{}", entry.name),
-            (false, _) => format!("({size})*{}", entry.name),
+            (false, 1) => format!("{factor}*{}", entry.name),
+            (false, _) if factor.contains(' ') => format!("({factor})*{}", entry.name),
+            (false, _) => format!("{factor}*{}", entry.name),
         };
     }
     let rest = &coefficients[standard.len()];

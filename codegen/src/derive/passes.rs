@@ -2,6 +2,7 @@
 
 mod grouping;
 mod orientation;
+mod turn;
 mod unit;
 
 use std::collections::BTreeSet;
@@ -9,6 +10,7 @@ use std::collections::BTreeSet;
 use super::arm::Arm;
 use super::plan::{Pass, Plan};
 use crate::ring::Pool;
+pub(crate) use turn::{of_last_link, turn_last_link};
 
 /// What a derivation asks of an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +42,7 @@ pub fn suit(pool: &Pool, arm: &Arm, plan: &mut Plan) {
         })
     });
     if !short {
-        [Pass::Slides, Pass::Freedoms, Pass::UnitOfLength].into_iter().for_each(|pass| plan.keep_off(pass));
+        [Pass::Slides, Pass::Freedoms, Pass::Turn, Pass::UnitOfLength].into_iter().for_each(|pass| plan.keep_off(pass));
     }
 }
 
@@ -48,6 +50,7 @@ pub fn suit(pool: &Pool, arm: &Arm, plan: &mut Plan) {
 pub fn rewrite(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, used: Use) {
     match used {
         Use::Dynamics => {
+            turn::turn(pool, arm, plan);
             grouping::group(pool, arm, plan);
             unit::unit_of_length(pool, arm, plan);
         }

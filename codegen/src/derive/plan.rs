@@ -23,6 +23,8 @@ pub enum Pass {
     Grouping,
     /// Choose how much of each such parameter is handed on.
     Freedoms,
+    /// Turn the axes of the last link towards its centre of mass.
+    Turn,
     /// Try the closed form beside the recursion.
     ClosedForm,
     /// Ask for the sines and cosines of sums of angles as such.
@@ -39,7 +41,7 @@ pub enum Pass {
 
 impl Pass {
     /// All of them.
-    pub const ALL: [Pass; 13] = [
+    pub const ALL: [Pass; 14] = [
         Pass::ParallelAxes,
         Pass::UnitOfLength,
         Pass::Slides,
@@ -47,6 +49,7 @@ impl Pass {
         Pass::RelativeMoment,
         Pass::Grouping,
         Pass::Freedoms,
+        Pass::Turn,
         Pass::ClosedForm,
         Pass::AngleSums,
         Pass::Idle,
@@ -65,6 +68,7 @@ impl Pass {
             Pass::RelativeMoment => "relative-moment",
             Pass::Grouping => "grouping",
             Pass::Freedoms => "freedoms",
+            Pass::Turn => "turn",
             Pass::ClosedForm => "closed-form",
             Pass::AngleSums => "angle-sums",
             Pass::Idle => "idle",

@@ -72,7 +72,7 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
         quote!(#name: &[Lanes; #length])
     });
     let (used, ignored) = rust::used_and_ignored(function);
-    let (sine_lines, names) = sincos::lines_of_lanes(&rust::symbols(function));
+    let (sine_lines, names) = sincos::lines_of_lanes(module, &rust::symbols(function));
     let inputs = used.iter().map(|&a| {
         let (name, _) = argument(a);
         let length = if name == "pi" { module.parameters.len() } else { dof };

@@ -204,14 +204,18 @@ fn base_note() -> [String; 4] {
 }
 
 /// What a name of a base parameter of `base_regressor` means.
-fn own_base_note() -> [String; 5] {
-    [
+fn own_base_note(module: &Module) -> Vec<String> {
+    let turned = module.turn.as_ref().map(|turn| {
+        let angle = literal(turn, module.scalar).to_string().replace("- ", "-");
+        format!(" The x axis of the last link, {angle} rad after the joint variable, points to its centre of mass: no mcy there. Long factors are rounded.")
+    });
+    let first = [
         " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where".into(),
         " that comes nearest to the axis before, grouped with all that cannot be told from it. Links of revolute joints have Izz = Ixx + Iyy there.".into(),
         " Beside it stands its value in the standard parameters, of links in their own frames, inertia about their origins; SI units.".into(),
         " Those that are 0 are left out.".into(),
-        String::new(),
-    ]
+    ];
+    first.into_iter().chain(turned).chain([String::new()]).collect()
 }
 
 /// Whether a function of the module returns this.
@@ -231,7 +235,7 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
         " Names of the base parameters, in the order of the columns of `base_regressor`, each an exact combination of standard parameters:",
         &module.base_set,
     );
-    meanings.splice(2..2, own_base_note());
+    meanings.splice(2..2, own_base_note(module));
     Some(quote! {
         /// Number of base parameters: as many as a motion can tell apart, without those that are 0 in the description.
         #[allow(dead_code)]

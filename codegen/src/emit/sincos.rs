@@ -11,6 +11,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote, ToTokens};
 use syn::Item;
 
+use super::literal::literal;
 use super::rust::usize_literal;
 use crate::program::{Module, Scalar, Trig};
 use crate::ring::{AngleSum, Symbol};
@@ -23,7 +24,7 @@ pub(super) fn is_of_angle(symbol: Symbol) -> bool {
     matches!(symbol, Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_))
 }
 
-/// The name of a sine or a cosine: `s2`, `c2`, `s2_3` of q2 + q3, `c1_2_less_4` of q1 + q2 - q4.
+/// The name of a sine or a cosine: `s2`, `c2`, `s2_3` of q2 + q3, `c1_2_less_4` of q1 + q2 - q4, `s7_turned` of q7 and a constant angle.
 pub(super) fn name_of(symbol: Symbol) -> Ident {
     match symbol {
         Symbol::Cosine(i) => format_ident!("c{}", i + 1),
@@ -46,6 +47,9 @@ fn of_sum(sum: AngleSum) -> String {
         };
         text += &(i + 1).to_string();
     }
+    if sum.turned {
+        text += "_turned";
+    }
     text
 }
 
@@ -56,8 +60,8 @@ struct Asked {
     cosine: TokenStream,
 }
 
-/// The angles that a function asks for: sums, then single ones.
-fn asked(symbols: &[Symbol]) -> Vec<Asked> {
+/// The angles that a function asks for: sums, then single ones. `turn` is what turned sums add.
+fn asked(symbols: &[Symbol], turn: Option<&TokenStream>) -> Vec<Asked> {
     let mut sums: BTreeMap<AngleSum, (bool, bool)> = BTreeMap::new();
     let mut single: BTreeMap<u16, (bool, bool)> = BTreeMap::new();
     for &symbol in symbols {
@@ -70,52 +74,51 @@ fn asked(symbols: &[Symbol]) -> Vec<Asked> {
         }
     }
     let name = |symbol: Symbol, used: bool| if used { name_of(symbol).to_token_stream() } else { quote!(_) };
-    let of_sum = |(sum, (sine, cosine))| Asked {
-        angle: Angle::Sum(sum),
+    let of_sum = |(sum, (sine, cosine)): (AngleSum, (bool, bool))| Asked {
+        angle: Angle { terms: sum.terms().collect(), turn: turn.filter(|_| sum.turned).cloned() },
         sine: name(Symbol::SineOf(sum), sine),
         cosine: name(Symbol::CosineOf(sum), cosine),
     };
     let of_one = |(i, (sine, cosine))| Asked {
-        angle: Angle::One(i),
+        angle: Angle { terms: vec![(i, false)], turn: None },
         sine: name(Symbol::Sine(i), sine),
         cosine: name(Symbol::Cosine(i), cosine),
     };
     sums.into_iter().map(of_sum).chain(single.into_iter().map(of_one)).collect()
 }
 
-/// A joint variable, or a sum of some.
-#[derive(Clone, Copy)]
-enum Angle {
-    One(u16),
-    Sum(AngleSum),
+/// A joint variable, or a sum of some and a constant angle.
+struct Angle {
+    /// The joints, and whether their variables are taken away.
+    terms: Vec<(u16, bool)>,
+    /// A literal, with its sign.
+    turn: Option<TokenStream>,
 }
 
 impl Angle {
-    /// The joints, and whether their variables are taken away.
-    fn terms(self) -> Vec<(u16, bool)> {
-        match self {
-            Angle::One(i) => vec![(i, false)],
-            Angle::Sum(sum) => sum.terms().collect(),
-        }
+    /// `+ q[2]`, `- q[3]`, `+ 0.7`: what follows the first joint variable.
+    fn more(&self) -> Vec<(bool, TokenStream)> {
+        let joints = self.terms.iter().skip(1).map(|&(i, minus)| (minus, entry(i)));
+        let turn = self.turn.iter().map(|literal| {
+            let mut tokens = literal.clone().into_iter().peekable();
+            let minus = tokens.next_if(|token| token.to_string() == "-").is_some();
+            (minus, tokens.collect())
+        });
+        joints.chain(turn).collect()
     }
 
     /// `q[1] + q[2]`
-    fn text(self) -> TokenStream {
-        let mut text = TokenStream::new();
-        for (k, (i, minus)) in self.terms().into_iter().enumerate() {
-            let q = entry(i);
-            text.extend(match (k, minus) {
-                (0, _) => q,
-                (_, true) => quote!(- #q),
-                (_, false) => quote!(+ #q),
-            });
+    fn text(&self) -> TokenStream {
+        let mut text = self.first();
+        for (minus, term) in self.more() {
+            text.extend(if minus { quote!(- #term) } else { quote!(+ #term) });
         }
         text
     }
 
     /// `q[1]`
-    fn first(self) -> TokenStream {
-        entry(self.terms()[0].0)
+    fn first(&self) -> TokenStream {
+        entry(self.terms[0].0)
     }
 }
 
@@ -124,9 +127,14 @@ fn entry(i: u16) -> TokenStream {
     quote!(q[#index])
 }
 
+/// The literal that turned sums of a module add.
+fn turn_of(module: &Module) -> Option<TokenStream> {
+    module.turn.as_ref().map(|angle| literal(angle, module.scalar))
+}
+
 /// The lines that give `s1`, `c1` and so on for the angles among the symbols of a function.
 pub(super) fn lines(module: &Module, symbols: &[Symbol]) -> Vec<TokenStream> {
-    let asked = asked(symbols);
+    let asked = asked(symbols, turn_of(module).as_ref());
     match module.trig {
         Trig::Libm | Trig::Std => {
             let line = |Asked { angle, sine, cosine }: &Asked| {
@@ -169,25 +177,33 @@ fn together(asked: &[Asked]) -> Vec<TokenStream> {
 }
 
 /// The lines that give `s1`, `c1` and so on as arrays of lanes, and those in the loop over lanes `k` that give the numbers.
-pub(super) fn lines_of_lanes(symbols: &[Symbol]) -> (Vec<TokenStream>, Vec<TokenStream>) {
+pub(super) fn lines_of_lanes(module: &Module, symbols: &[Symbol]) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let (mut before, mut inside) = (Vec::new(), Vec::new());
-    for Asked { angle, sine, cosine } in asked(symbols) {
+    let turn = turn_of(module);
+    for Asked { angle, sine, cosine } in asked(symbols, turn.as_ref()) {
         let first = angle.first();
-        let added = angle.terms().into_iter().skip(1).map(|(i, minus)| {
-            let q = entry(i);
-            if minus {
-                quote!(angle[k] -= #q[k];)
-            } else {
-                quote!(angle[k] += #q[k];)
-            }
-        });
-        match angle {
-            Angle::One(_) => before.push(quote!(let (#sine, #cosine) = sin_cos_lanes(&#first);)),
-            Angle::Sum(_) => before.extend([
+        let lanes = angle.terms.len();
+        let added: Vec<TokenStream> = angle
+            .more()
+            .into_iter()
+            .enumerate()
+            .map(|(k, (minus, term))| {
+                let term = if k + 1 < lanes { quote!(#term[k]) } else { term };
+                if minus {
+                    quote!(angle[k] -= #term;)
+                } else {
+                    quote!(angle[k] += #term;)
+                }
+            })
+            .collect();
+        if added.is_empty() {
+            before.push(quote!(let (#sine, #cosine) = sin_cos_lanes(&#first);));
+        } else {
+            before.extend([
                 quote!(let mut angle = #first;),
                 quote!(for k in 0..LANES { #(#added)* }),
                 quote!(let (#sine, #cosine) = sin_cos_lanes(&angle);),
-            ]),
+            ]);
         }
         let used = [sine, cosine].into_iter().filter(|name| name.to_string() != "_");
         inside.extend(used.map(|name| quote!(let #name = #name[k];)));
@@ -249,7 +265,8 @@ pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStre
 fn fast(scalar: Scalar, functions: &[Vec<Symbol>]) -> TokenStream {
     let mut file =
         syn::parse_file(if scalar == Scalar::F64 { FAST_F64 } else { FAST_F32 }).expect("the text to take in is a Rust file");
-    let calls: String = functions.iter().flat_map(|symbols| together(&asked(symbols))).map(|line| line.to_string()).collect();
+    let calls: String =
+        functions.iter().flat_map(|symbols| together(&asked(symbols, None))).map(|line| line.to_string()).collect();
     let unused: Vec<&str> = ["four", "eight"].into_iter().filter(|lanes| !calls.contains(&format!("sin_cos_{lanes}"))).collect();
     file.items.retain(|item| match item {
         Item::Fn(function) => !unused.iter().any(|lanes| function.sig.ident.to_string().ends_with(lanes)),
@@ -265,7 +282,7 @@ mod tests {
 
     #[track_caller]
     fn check(symbols: &[Symbol], expected: &[&str]) {
-        let lines = together(&asked(symbols));
+        let lines = together(&asked(symbols, Some(&quote!(-0.5))));
         let lines: Vec<String> = lines.iter().map(|line| line.to_string().replace(' ', "")).collect();
         let expected: Vec<String> = expected.iter().map(|line| line.replace(' ', "")).collect();
         assert_eq!(lines, expected);
@@ -302,17 +319,26 @@ mod tests {
 
     #[test]
     fn sums_of_angles_come_first_and_are_added_up_once() {
-        let sum = AngleSum { plus: 0b110, minus: 0 };
-        let less = AngleSum { plus: 0b1, minus: 0b1000 };
+        let sum = AngleSum { plus: 0b110, minus: 0, turned: false };
+        let less = AngleSum { plus: 0b1, minus: 0b1000, turned: false };
         check(
             &[Symbol::SineOf(sum), Symbol::Cosine(4)],
             &["let (s2_3, _) = sin_cos_one(q[1] + q[2]);", "let (_, c5) = sin_cos_one(q[4]);"],
         );
-        let three = AngleSum { plus: 0b111, minus: 0 };
+        let three = AngleSum { plus: 0b111, minus: 0, turned: false };
         check(
             &[Symbol::SineOf(sum), Symbol::CosineOf(less), Symbol::SineOf(three)],
             &["let ([_, s2_3, s1_2_3, _], [c1_less_4, _, _, _]) = sin_cos_four(3, q[0] - q[3], q[1] + q[2], q[0] + q[1] + q[2], q[0]);"],
         );
+    }
+
+    #[test]
+    fn a_turned_sum_adds_a_constant() {
+        let turned = AngleSum { turned: true, ..AngleSum::of(6) };
+        let pair = [Symbol::SineOf(turned), Symbol::CosineOf(turned)];
+        check(&pair, &["let (s7_turned, c7_turned) = sin_cos_one(q[6] - 0.5);"]);
+        let with_another = AngleSum { turned: true, plus: 0b110, minus: 0 };
+        check(&[Symbol::SineOf(with_another)], &["let (s2_3_turned, _) = sin_cos_one(q[1] + q[2] - 0.5);"]);
     }
 
     #[test]

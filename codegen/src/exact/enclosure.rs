@@ -3,7 +3,7 @@
 //! Every atom is enclosed by dyadic fractions; sums and products of enclosures are exact, so the result is an enclosure too.
 //! Roots by integer square root, pi by Machin's formula pi/4 = 4 atan(1/5) - atan(1/239), sine and cosine by their series
 //! (arguments are at most pi/4 here, but nothing depends on it): an alternating series of falling terms lies between two
-//! partial sums.
+//! partial sums. The arc tangent by Euler's series, whose terms are positive and fall by more than a half each below 1.
 
 use dashu_base::{Abs, Signed, SquareRoot};
 use dashu_int::{IBig, UBig};
@@ -78,6 +78,7 @@ fn enclose_atom(atom: &Atom, bits: usize) -> Interval {
                 more *= 2;
             }
         }
+        Atom::Arctangent(ratio) => arctangent(ratio, bits),
     }
 }
 
@@ -112,6 +113,25 @@ fn arctangent_of_inverse(n: u32, bits: usize) -> Interval {
         k += 1;
     }
     let slack = IBig::from(2 * k + 4);
+    let dyadic = |x: IBig| Rational::from_parts(x, UBig::ONE << bits);
+    (dyadic(&sum - &slack), dyadic(sum + slack))
+}
+
+/// atan(t) = Σ a_k for t in (0, 1), with a_0 = t/(1 + t²) and a_(k+1) = a_k z 2(k+1)/(2k+3), z = t²/(1 + t²) < 1/2 (Euler), in integers
+/// scaled by 2^bits. What is left after a term is below that term; each term is low by less than five units.
+fn arctangent(ratio: &Rational, bits: usize) -> Interval {
+    let bits = bits + 16;
+    let scaled = |x: Rational| (x * Rational::from(UBig::ONE << bits)).floor();
+    let scale = Rational::ONE / (Rational::ONE + ratio * ratio);
+    let z = scaled(ratio * ratio * &scale);
+    let mut term = scaled(ratio * scale);
+    let (mut sum, mut k) = (IBig::ZERO, 0u32);
+    while !term.is_zero() {
+        sum += &term;
+        term = ((term * &z) >> bits) * IBig::from(2 * (k + 1)) / IBig::from(2 * k + 3);
+        k += 1;
+    }
+    let slack = IBig::from(8 * k + 16);
     let dyadic = |x: IBig| Rational::from_parts(x, UBig::ONE << bits);
     (dyadic(&sum - &slack), dyadic(sum + slack))
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Module, Operand};
 use crate::exact::Number;
+use crate::ring::Symbol;
 
 impl Module {
     /// The constants of each function by its name, each once in the order of the steps, and the nominal parameters as `NOMINAL_PARAMETERS`.
@@ -13,9 +14,13 @@ impl Module {
             let steps = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
             let mut list: Vec<Number> = Vec::new();
             for operand in steps.chain(function.outputs.iter().map(|output| &output.operand)) {
-                match operand {
-                    Operand::Constant(value) if !list.contains(value) => list.push(value.clone()),
-                    _ => {}
+                let value = match operand {
+                    Operand::Constant(value) => Some(value),
+                    Operand::Input(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) if sum.turned => self.turn.as_ref(),
+                    _ => None,
+                };
+                if let Some(value) = value.filter(|value| !list.contains(value)) {
+                    list.push(value.clone());
                 }
             }
             constants.insert(function.name(), list);

@@ -42,7 +42,7 @@ impl Cost {
             };
         }
         cost.sincos = angles.len();
-        cost.add += angles.iter().filter_map(|(_, sum)| *sum).map(|sum| sum.terms().count() - 1).sum::<usize>();
+        cost.add += angles.iter().filter_map(|(_, sum)| *sum).map(|sum| sum.additions()).sum::<usize>();
         cost.neg = function.outputs.iter().filter(|output| output.negated).count();
         cost
     }

@@ -72,6 +72,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         absent,
         scalar: options.scalar,
         trig: options.trig,
+        turn: model.field.turn().map(|turn| turn.angle.clone()),
         batch: options.batch.filter(|&lanes| lanes > 0),
     }
 }

@@ -23,11 +23,27 @@ impl Pool {
         let signed = |e: ExprId| if e.is_negated() { -&value(e) } else { value(e) };
         Some(match node {
             Node::Constant(id) => (*self.constants[id.0 as usize]).clone(),
-            Node::Symbol(symbol) => of(symbol),
+            Node::Symbol(symbol) => self.value_of_symbol(symbol, of),
             Node::Add(a, b) => &signed(a) + &signed(b),
             Node::Mul(a, b) => &signed(a) * &signed(b),
             Node::Reciprocal(a) => Number::one().checked_div(&signed(a))?,
         })
+    }
+
+    /// Turned sums have the values that follow from those of the sums.
+    fn value_of_symbol(&self, symbol: Symbol, of: &dyn Fn(Symbol) -> Number) -> Number {
+        match (symbol, self.field.turn()) {
+            (Symbol::SineOf(sum) | Symbol::CosineOf(sum), Some(turn)) if sum.turned => {
+                let sum = sum.unturned();
+                let (sine, cosine) = turn.after(&of(Symbol::SineOf(sum)), &of(Symbol::CosineOf(sum)));
+                if matches!(symbol, Symbol::SineOf(_)) {
+                    sine
+                } else {
+                    cosine
+                }
+            }
+            _ => of(symbol),
+        }
     }
 
     /// The value of a node of constant value: where all angles are 0 and everything else is 0 too.
@@ -134,7 +150,8 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
     };
     let circle_of = |sum: AngleSum| {
         use crate::exact::Rational;
-        sum.circle((Rational::ZERO, Rational::ONE), circle, |(s, c), (t, d), minus| {
+        let turn = || unreachable!("turned sums are given the values of what they turn");
+        sum.circle((Rational::ZERO, Rational::ONE), circle, turn, |(s, c), (t, d), minus| {
             let t = if minus { -t } else { t.clone() };
             (s * d + c * &t, c * d - s * &t)
         })

@@ -6,10 +6,12 @@
 //! constants of a robot hold a root that the field lacks, the next smaller prime = 1 mod 24 that has it is taken instead.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-use dashu_base::{Signed, UnsignedAbs};
+use dashu_base::{Gcd, Signed, UnsignedAbs};
 use dashu_int::UBig;
 
+use super::turn::Turn;
 use super::AngleSum;
 use crate::exact::{Atom, Number, Rational};
 
@@ -33,6 +35,10 @@ impl Element {
 /// The field, with the values of the atoms met so far.
 #[derive(Clone, Debug)]
 pub struct Field {
+    /// The constant angle of [`AngleSum::turned`], with its sine and cosine.
+    turn: Option<(Arc<Turn>, (Element, Element))>,
+    /// A root of an integer that need not be prime, but is prime to all others under roots: as free in its sign as that of a prime.
+    lone: Option<Atom>,
     p: u64,
     /// -1/p mod 2^64.
     minus_inverse: u64,
@@ -54,9 +60,41 @@ impl Field {
         for number in numbers {
             collect_roots(number, &mut roots);
         }
+        roots.retain(is_of_prime);
+        Field::with_roots(&roots, None)
+    }
+
+    /// A field for `numbers` in which the sine and cosine of a constant angle too have their values; `None` also where the root that these need
+    /// may be tied to others.
+    pub fn with_turn<'a>(numbers: impl IntoIterator<Item = &'a Number>, turn: Turn) -> Option<Field> {
+        let (mut roots, mut of_turn) = (BTreeSet::new(), BTreeSet::new());
+        for number in numbers {
+            collect_roots(number, &mut roots);
+        }
+        collect_roots(&turn.cosine, &mut of_turn);
+        collect_roots(&turn.sine, &mut of_turn);
+        let mut rest = of_turn.iter().filter(|root| !is_of_prime(root));
+        let lone = rest.next().cloned();
+        let tied = |root: &Atom| match (&lone, root) {
+            (Some(Atom::Root(n)), Atom::Root(m)) => !n.gcd(m).is_one(),
+            _ => false,
+        };
+        if rest.next().is_some() || roots.iter().any(tied) {
+            return None;
+        }
+        roots.retain(is_of_prime);
+        roots.extend(of_turn);
+        let mut field = Field::with_roots(&roots, lone)?;
+        let circle = (field.number(&turn.sine), field.number(&turn.cosine));
+        field.turn = Some((Arc::new(turn), circle));
+        Some(field)
+    }
+
+    /// A field that has roots.
+    fn with_roots(roots: &BTreeSet<Atom>, lone: Option<Atom>) -> Option<Field> {
         let mut candidates = std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24)).filter(|&p| is_prime(p));
         (0..PRIMES_TRIED)
-            .filter_map(|_| candidates.next().map(Field::modulo))
+            .filter_map(|_| candidates.next().map(|p| Field { lone: lone.clone(), ..Field::modulo(p) }))
             .find(|field| roots.iter().all(|root| field.root_atom(root).is_some()))
     }
 
@@ -64,7 +102,13 @@ impl Field {
         // Newton's iteration doubles the correct bits of the inverse modulo 2^64.
         let inverse = (0..6).fold(p, |x, _| x.wrapping_mul(2u64.wrapping_sub(p.wrapping_mul(x))));
         let r = (u128::MAX % u128::from(p) + 1) % u128::from(p);
-        Field { p, minus_inverse: inverse.wrapping_neg(), r_squared: r as u64, atoms: BTreeMap::new() }
+        let (turn, lone, atoms) = (None, None, BTreeMap::new());
+        Field { turn, lone, p, minus_inverse: inverse.wrapping_neg(), r_squared: r as u64, atoms }
+    }
+
+    /// The constant angle of sums that are turned.
+    pub fn turn(&self) -> Option<&Turn> {
+        self.turn.as_ref().map(|(turn, _)| &**turn)
     }
 
     /// The prime.
@@ -200,7 +244,7 @@ impl Field {
         }
         let value = match atom {
             Atom::Root(_) | Atom::RootOf(_) => self.root_atom(atom).unwrap_or_else(|| self.unrelated(atom)),
-            Atom::Pi => self.unrelated(atom),
+            Atom::Pi | Atom::Arctangent(_) => self.unrelated(atom),
             Atom::Sine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).0,
             Atom::Cosine(angle) => self.circle(self.unrelated(&Atom::Cosine(angle.clone()))).1,
             Atom::Inverse(number) => {
@@ -215,8 +259,8 @@ impl Field {
     fn root_atom(&self, atom: &Atom) -> Option<Element> {
         let square = match atom {
             // A root of a product that was not factored or nested might be tied to others, with a sign that
-            // the field does not know: only roots of primes get their algebraic value.
-            Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime) => self.rational(&Rational::from(n.clone())),
+            // the field does not know: only roots of primes get their algebraic value, and one that is known to be tied to none.
+            Atom::Root(n) if is_of_prime(atom) || self.lone.as_ref() == Some(atom) => self.rational(&Rational::from(n.clone())),
             _ => return None,
         };
         self.sqrt(square)
@@ -231,7 +275,8 @@ impl Field {
 
     /// Sine and cosine of a sum of angles from those of its terms.
     pub fn circle_of(&self, sum: AngleSum, of: impl Fn(u16) -> (Element, Element)) -> (Element, Element) {
-        sum.circle((self.zero(), self.one()), of, |&(s, c), &(t, d), minus| {
+        let turn = || self.turn.as_ref().map(|(_, circle)| *circle).expect("only a field with a turn has turned sums");
+        sum.circle((self.zero(), self.one()), of, turn, |&(s, c), &(t, d), minus| {
             let t = if minus { self.neg(t) } else { t };
             (self.add(self.mul(s, d), self.mul(c, t)), self.sub(self.mul(c, d), self.mul(s, t)))
         })
@@ -244,10 +289,16 @@ impl Field {
     }
 }
 
+/// Whether an atom is the root of a prime that fits 64 bits.
+fn is_of_prime(atom: &Atom) -> bool {
+    matches!(atom, Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime))
+}
+
+/// The roots of integers in a number.
 fn collect_roots(number: &Number, roots: &mut BTreeSet<Atom>) {
     for (atom, _) in number.terms().flat_map(|(monomial, _)| monomial) {
         match atom {
-            Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime) => {
+            Atom::Root(_) => {
                 roots.insert(atom.clone());
             }
             Atom::Inverse(inner) | Atom::RootOf(inner) => collect_roots(inner, roots),

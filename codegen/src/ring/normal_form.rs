@@ -14,7 +14,8 @@ use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::{ExprId, Node, Pool, Symbol};
+use super::turn::Turn;
+use super::{AngleSum, ExprId, Node, Pool, Symbol};
 use crate::exact::{Number, Rational};
 
 /// cos or sin of an integer combination of joint angles; the first coefficient that is not 0 is positive.
@@ -255,7 +256,7 @@ impl Pool {
                         .then(|| NormalForm::term(Wave::one(), Vec::new(), (**value).clone()))
                         .or(Some(NormalForm::default()))
                 }
-                Node::Symbol(symbol) => Some(symbol_form(symbol)),
+                Node::Symbol(symbol) => Some(symbol_form(symbol, self.field().turn())),
                 Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.len() <= limit),
                 Node::Mul(a, b) => of(a).zip(of(b)).and_then(|(a, b)| a.times(&b, limit)),
                 Node::Reciprocal(_) => None,
@@ -272,21 +273,29 @@ impl Pool {
     }
 }
 
-fn symbol_form(symbol: Symbol) -> NormalForm {
+fn symbol_form(symbol: Symbol, turn: Option<&Turn>) -> NormalForm {
     let (wave, factors) = match symbol {
         Symbol::Sine(i) => (Wave { angles: vec![(i, 1)], sine: true }, vec![]),
         Symbol::Cosine(i) => (Wave { angles: vec![(i, 1)], sine: false }, vec![]),
-        Symbol::SineOf(sum) | Symbol::CosineOf(sum) => {
-            let (sum, flipped) = sum.unsigned();
-            let sine = matches!(symbol, Symbol::SineOf(_));
-            let mut angles: Vec<(u16, i32)> = sum.terms().map(|(i, minus)| (i, if minus { -1 } else { 1 })).collect();
-            angles.sort_unstable();
-            let form = NormalForm::term(Wave { angles, sine }, vec![], Number::one());
-            return if flipped && sine { form.negated() } else { form };
-        }
+        Symbol::SineOf(sum) | Symbol::CosineOf(sum) => return sum_form(sum, matches!(symbol, Symbol::SineOf(_)), turn),
         other => (Wave::one(), vec![(other, 1)]),
     };
     NormalForm::term(wave, factors, Number::one())
+}
+
+/// The sine or cosine of a sum of angles; of a turned one by the addition theorem.
+fn sum_form(sum: AngleSum, sine: bool, turn: Option<&Turn>) -> NormalForm {
+    let (unsigned, flipped) = sum.unsigned();
+    let mut angles: Vec<(u16, i32)> = unsigned.terms().map(|(i, minus)| (i, if minus { -1 } else { 1 })).collect();
+    angles.sort_unstable();
+    let wave = |sine: bool, factor: &Number| {
+        let factor = if flipped && sine { -factor } else { factor.clone() };
+        NormalForm::term(Wave { angles: angles.clone(), sine }, vec![], factor)
+    };
+    match turn.filter(|_| sum.turned) {
+        None => wave(sine, &Number::one()),
+        Some(turn) => wave(sine, &turn.cosine).plus(&wave(!sine, &turn.sine), !sine),
+    }
 }
 
 /// How a normal form becomes shared products again; which order is cheapest depends on what else is computed.

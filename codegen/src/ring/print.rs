@@ -47,7 +47,12 @@ impl Printer<'_> {
                     let angle = self.symbol(Symbol::Position(i));
                     format!("{}{angle}", sign((k, minus)))
                 });
-                let angle: String = terms.collect();
+                let turn = match (sum.turned, text) {
+                    (false, _) => "",
+                    (true, true) => "+phi",
+                    (true, false) => "+\\varphi",
+                };
+                let angle = terms.collect::<String>() + turn;
                 return if text { format!("{name}({angle})") } else { format!("\\{name}({angle})") };
             }
             Symbol::RateSign(i) => {
@@ -175,6 +180,7 @@ impl Printer<'_> {
             Atom::Pi => if self.notation == Notation::Text { "pi" } else { "\\pi" }.into(),
             Atom::Sine(angle) => call("sin", self.number(angle)),
             Atom::Cosine(angle) => call("cos", self.number(angle)),
+            Atom::Arctangent(ratio) => call(if self.notation == Notation::Text { "atan" } else { "arctan" }, ratio.to_string()),
             Atom::Inverse(n) => match self.notation {
                 Notation::Text => format!("(1/({}))", self.number(n)),
                 Notation::Latex => format!("\\frac{{1}}{{{}}}", self.number(n)),

@@ -10,7 +10,7 @@ use dashu_base::{Signed, UnsignedAbs};
 use dashu_int::UBig;
 
 use super::{Arithmetic, Element, Stream};
-use crate::formula::{Atoms, Formula, Rational, Root};
+use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
 
 /// An integer modulo a prime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -178,9 +178,17 @@ impl Arithmetic for Prime {
     }
 
     fn constant(&self, formula: &Formula) -> Option<Residue> {
-        formula.evaluate(&|r| self.rational(r), &|root| self.roots.get(root).copied(), &|| Some(self.pi), &|angle| {
-            self.angles.get(angle).copied()
-        })
+        let integers = || {
+            self.roots.iter().filter_map(|(root, value)| match root {
+                Root::Integer(n) => Some((n, *value)),
+                Root::Nested(_) => None,
+            })
+        };
+        let root = |root: &Root| match root {
+            Root::Integer(n) => root_from_coprime(n, self.integer(1), integers()),
+            nested => self.roots.get(nested).copied(),
+        };
+        formula.evaluate(&|r| self.rational(r), &root, &|| Some(self.pi), &|angle| self.angles.get(angle).copied())
     }
 
     fn draw(&mut self) -> Residue {

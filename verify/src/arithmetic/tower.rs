@@ -10,7 +10,7 @@ use std::sync::Arc;
 use dashu_int::IBig;
 
 use super::{Arithmetic, Element, Stream};
-use crate::formula::{Atoms, Formula, Rational, Root};
+use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
 
 /// The squares of the adjoined roots, each in the coordinates of the field below.
 #[derive(Debug, Default, PartialEq)]
@@ -171,12 +171,22 @@ impl Arithmetic for Tower {
     }
 
     fn constant(&self, formula: &Formula) -> Option<Surd> {
+        let unit = |level: usize| {
+            let mut unit = self.integer(0);
+            unit.coordinates[1 << level] = Rational::ONE;
+            unit
+        };
+        let integers = || {
+            self.roots.iter().filter_map(|(root, &level)| match root {
+                Root::Integer(n) => Some((n, unit(level))),
+                Root::Nested(_) => None,
+            })
+        };
         formula.evaluate(
             &|r| Some(self.rational(r)),
-            &|root| {
-                let mut unit = self.integer(0);
-                unit.coordinates[1 << self.roots.get(root)?] = Rational::ONE;
-                Some(unit)
+            &|root| match root {
+                Root::Integer(n) => root_from_coprime(n, self.integer(1), integers()),
+                nested => self.roots.get(nested).map(|&level| unit(level)),
             },
             &|| Some(self.pi.clone()),
             &|angle| self.angles.get(angle).cloned(),

@@ -10,7 +10,7 @@ use super::wide::{Wide, WideArguments};
 use super::Element;
 use crate::companion::LANES;
 use crate::float::Arguments;
-use crate::program::{Argument, Inputs, Program, Step};
+use crate::program::{Angle, Argument, Inputs, Program, Step};
 
 /// high + low.
 pub type Pair = (f64, f64);
@@ -184,6 +184,15 @@ impl Default for Circle {
     }
 }
 
+/// Sine and cosine of a sum from those of its two parts.
+fn added((sine, cosine): (Twofold, Twofold), (s, c): (Twofold, Twofold)) -> (Twofold, Twofold) {
+    let both = |a: &Twofold, b: &Twofold, d: &Twofold, e: &Twofold| {
+        Twofold::of(|lane| plus(times(a.at(lane), b.at(lane)), times(d.at(lane), e.at(lane))))
+    };
+    let minus = Twofold::of(|lane| negated(s.at(lane)));
+    (both(&sine, &c, &cosine, &s), both(&cosine, &c, &sine, &minus))
+}
+
 /// Arguments in lanes with the sines and cosines of the joint variables.
 #[derive(Clone, Debug)]
 pub struct TwofoldArguments {
@@ -215,31 +224,32 @@ impl TwofoldArguments {
             let (s, c) = self.waves[joint];
             let s = if factor < 0 { Twofold::of(|lane| negated(s.at(lane))) } else { s };
             for _ in 0..factor.unsigned_abs() {
-                let next = |(sine, cosine): (Twofold, Twofold)| {
-                    let both = |a: Twofold, b: Twofold, d: Twofold, e: Twofold| {
-                        Twofold::of(|lane| plus(times(a.at(lane), b.at(lane)), times(d.at(lane), e.at(lane))))
-                    };
-                    let minus = Twofold::of(|lane| negated(s.at(lane)));
-                    (both(sine, c, cosine, s), both(cosine, c, sine, minus))
-                };
-                sum = Some(sum.map_or((s, c), next));
+                sum = Some(sum.map_or((s, c), |sum| added(sum, (s, c))));
             }
         }
         sum.unwrap_or((Twofold::ZERO, Twofold::of(|_| (1.0, 0.0))))
     }
 }
 
-/// The value of every step; `None` where a sine of a sum of angles is taken.
+/// The value of every step; the literals are followed by the circles of constants of angles ([`Program::exact_literals`]).
 pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments, values: &mut Vec<Twofold>) -> Option<()> {
     values.clear();
+    let wave = |angle: &Angle| {
+        let joints = arguments.wave(&angle.terms);
+        let Some((k, minus)) = angle.turn else { return joints };
+        let at = program.literals.len() + 2 * k;
+        let (s, c) = (literals[at], literals[at + 1]);
+        let circle = Twofold::of(|_| if minus { negated(s) } else { s });
+        added(joints, (circle, Twofold::of(|_| c)))
+    };
     for step in &program.steps {
         let exact = |high: [f64; LANES]| Twofold { high, low: [0.0; LANES] };
         let both = |a: usize, b: usize| (&values[a], &values[b]);
         let value = match step {
             Step::Input(argument, index) => exact(arguments.arguments.of(*argument)[*index]),
             Step::Literal(index) => Twofold::of(|_| literals[*index]),
-            Step::Sine(angle) => arguments.wave(angle).0,
-            Step::Cosine(angle) => arguments.wave(angle).1,
+            Step::Sine(angle) => wave(angle).0,
+            Step::Cosine(angle) => wave(angle).1,
             Step::Sign(joint) => {
                 exact(arguments.arguments.of(Argument::Dq)[*joint].map(|x| if x == 0.0 { 0.0 } else { x.signum() }))
             }

@@ -9,7 +9,7 @@ use super::Element;
 use crate::enclosure::{enclose, sine_cosine_of};
 use crate::float::Arguments;
 use crate::formula::{Formula, Rational};
-use crate::program::{Argument, Inputs};
+use crate::program::{by_addition, Argument, Inputs, Program, Turn};
 
 /// A number with 256 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -197,6 +197,30 @@ impl Element for Wide {
     }
 }
 
+/// Sine and cosine of a float below 200 in size.
+fn circle(angle: f64) -> Option<(Wide, Wide)> {
+    if angle == 0.0 {
+        return Some((ZERO, Wide::from_f64(1.0)));
+    }
+    // The sine of a small angle as finely as others, relative to its size.
+    let fine = 320 + (-angle.abs().log2()).clamp(0.0, 1100.0) as usize;
+    let (sine, cosine, bits) = sine_cosine_of(&Rational::try_from(angle).ok()?, fine)?;
+    let of = |n: &IBig| Wide::from_integer(n, -(bits as i64));
+    Some((of(&sine), of(&cosine)))
+}
+
+impl Program {
+    /// The literals as the floats that they are, with the circles of those that are constants of angles.
+    pub fn literals_as_floats(&self) -> Option<Vec<Wide>> {
+        let mut all: Vec<Wide> = self.literals.iter().map(|literal| Wide::from_f64(literal.value)).collect();
+        for &turn in &self.turns {
+            let (sine, cosine) = circle(self.literals[turn].value)?;
+            all.extend([sine, cosine]);
+        }
+        Some(all)
+    }
+}
+
 /// Arguments with the sines and cosines of the joint variables.
 #[derive(Clone, Debug)]
 pub struct WideArguments {
@@ -207,20 +231,7 @@ pub struct WideArguments {
 impl WideArguments {
     /// At the floats given, exactly; joint variables below 200 in size.
     pub fn new(arguments: &Arguments<f64>) -> Option<WideArguments> {
-        let angles: Option<Vec<(Wide, Wide)>> = arguments
-            .q
-            .iter()
-            .map(|&q| {
-                if q == 0.0 {
-                    return Some((ZERO, Wide::from_f64(1.0)));
-                }
-                // The sine of a small angle as finely as others, relative to its size.
-                let fine = 320 + (-q.abs().log2()).clamp(0.0, 1100.0) as usize;
-                let (sine, cosine, bits) = sine_cosine_of(&Rational::try_from(q).ok()?, fine)?;
-                let of = |n: &IBig| Wide::from_integer(n, -(bits as i64));
-                Some((of(&sine), of(&cosine)))
-            })
-            .collect();
+        let angles: Option<Vec<(Wide, Wide)>> = arguments.q.iter().map(|&q| circle(q)).collect();
         Some(WideArguments { arguments: arguments.clone(), angles: angles? })
     }
 }
@@ -243,6 +254,10 @@ impl Inputs<Wide> for WideArguments {
             }
         }
         sum.unwrap_or((ZERO, Wide::from_f64(1.0)))
+    }
+
+    fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, Wide>) -> (Wide, Wide) {
+        by_addition(self.sine_cosine(angle), turn)
     }
 
     fn sign(&self, joint: usize) -> Wide {

@@ -44,7 +44,7 @@ impl Side {
 pub(super) struct Lanes {
     steps: Vec<Step>,
     inputs: Vec<Option<crate::program::Argument>>,
-    angles: Vec<Vec<(u32, Real)>>,
+    angles: Vec<(Vec<(u32, Real)>, super::Sum)>,
     values: Vec<Many>,
     roundings: Vec<[Real; LANES]>,
     sensitivities: Vec<Many>,
@@ -53,7 +53,7 @@ pub(super) struct Lanes {
 }
 
 impl Lanes {
-    pub(super) fn new(rows: &[super::Row], angles: &[super::Terms], entries: &[u32], sensitive: bool) -> Lanes {
+    pub(super) fn new(rows: &[super::Row], angles: &[super::Sum], entries: &[u32], sensitive: bool) -> Lanes {
         let steps: Vec<Step> = rows.iter().map(step).collect();
         let input = |row: &super::Row| match row {
             super::Row::In(argument, _) => Some(*argument),
@@ -80,7 +80,7 @@ impl Lanes {
         let many = || vec![Many::NOTHING; steps.len()];
         Lanes {
             inputs: rows.iter().map(input).collect(),
-            angles: terms(angles),
+            angles: angles.iter().map(|sum| (terms(sum), sum.clone())).collect(),
             values: many(),
             roundings: vec![[0.0; LANES]; steps.len()],
             sensitivities: many(),
@@ -101,9 +101,10 @@ impl Lanes {
                 }
                 Step::Lit(value, error) => Many { value: [value; LANES], error: [error; LANES] },
                 Step::Sin(index) | Step::Cos(index) => {
-                    let sum = |lane: usize| angle(&self.angles[index as usize], |joint| side.arguments.q[joint][lane]);
+                    let (terms, sum) = &self.angles[index as usize];
+                    let sum = angle_of(terms, sum);
                     Many::of(|lane| {
-                        let angle = sum(lane);
+                        let angle = angle(&sum, |joint| side.arguments.q[joint][lane]);
                         let (sine, cosine) = sin_cos(angle.value);
                         wave(if matches!(step, Step::Sin(_)) { sine } else { cosine }, angle.error)
                     })

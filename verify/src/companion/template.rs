@@ -28,8 +28,14 @@ enum Step {
     Div(u32, u32),
 }
 
-/// A sum of joint variables, each with its factor.
-type Angle = &'static [(u32, Real)];
+/// A sum of joint variables, each with its factor, and a constant; 0 where there is none.
+#[derive(Clone, Copy, Debug)]
+struct Angle<'a> {
+    terms: &'a [(u32, Real)],
+    turn: Real,
+    /// How far the constant can be from the exact value that it stands for.
+    off: Real,
+}
 
 /// Name of an argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,17 +122,22 @@ fn wave(value: Real, angle: Real) -> Bounded {
     Bounded { value, error: 2.0 * UNIT * value.abs() + TINY + angle }
 }
 
-/// The angle that a sum of joint variables comes out as, and how far that is from the sum: every term is rounded at most once, and so is
-/// every sum but the first.
-fn angle(terms: &[(u32, Real)], q: impl Fn(usize) -> Real) -> Bounded {
-    let (mut value, mut size) = (0.0, 0.0);
-    for &(joint, factor) in terms {
+/// The angle that a sum comes out as, and how far that is from the exact one: every term is rounded at most once, and so is every sum but the
+/// first.
+fn angle(sum: &Angle<'_>, q: impl Fn(usize) -> Real) -> Bounded {
+    let (mut value, mut size, mut parts) = (0.0, 0.0, sum.terms.len());
+    for &(joint, factor) in sum.terms {
         let term = factor * q(joint as usize);
         value += term;
         size += term.abs();
     }
-    let single = matches!(terms, [(_, factor)] if factor.abs() == 1.0);
-    Bounded { value, error: if single { 0.0 } else { terms.len() as Real * UNIT * size } }
+    if sum.turn != 0.0 {
+        value += sum.turn;
+        size += sum.turn.abs();
+        parts += 1;
+    }
+    let exact = parts == 1 && matches!(sum.terms, [(_, factor)] if factor.abs() == 1.0);
+    Bounded { value, error: if exact { 0.0 } else { parts as Real * UNIT * size + sum.off } }
 }
 
 /// The sign of a rate; what is no number stays what it is.
@@ -142,7 +153,7 @@ fn sign(rate: Real) -> Bounded {
 }
 
 /// Values of all steps with their running error bounds (Higham, Accuracy and Stability of Numerical Algorithms, 2002, Sect. 3.3).
-fn forward<A: AsRef<[(u32, Real)]>>(steps: &[Step], angles: &[A], given: &Given<'_>, values: &mut [Bounded]) {
+fn forward(steps: &[Step], angles: &[Angle<'_>], given: &Given<'_>, values: &mut [Bounded]) {
     for (i, step) in steps.iter().enumerate() {
         let of = |step: u32| values[step as usize];
         values[i] = match *step {
@@ -160,7 +171,7 @@ fn forward<A: AsRef<[(u32, Real)]>>(steps: &[Step], angles: &[A], given: &Given<
             }
             Step::Lit(value, error) => Bounded { value, error },
             Step::Sin(index) | Step::Cos(index) => {
-                let angle = angle(angles[index as usize].as_ref(), |joint| given.q[joint]);
+                let angle = angle(&angles[index as usize], |joint| given.q[joint]);
                 let (sine, cosine) = sin_cos(angle.value);
                 wave(if matches!(step, Step::Sin(_)) { sine } else { cosine }, angle.error)
             }
@@ -255,7 +266,7 @@ fn all_bounds(steps: &[Step], entries: &[u32], values: &[Bounded], scratch: &mut
 /// The bounds of a function given by its table; `SCRATCH` is `STEPS` for bounds by sensitivities, else 0.
 fn bounds<const STEPS: usize, const ENTRIES: usize, const SCRATCH: usize>(
     steps: &[Step; STEPS],
-    angles: &[Angle],
+    angles: &[Angle<'_>],
     entries: &[u32; ENTRIES],
     given: &Given<'_>,
 ) -> [Real; ENTRIES] {

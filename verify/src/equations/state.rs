@@ -2,7 +2,7 @@
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::{Arithmetic, Element};
-use crate::program::{Argument, Inputs};
+use crate::program::{by_addition, Argument, Inputs, Turn};
 
 /// Values of joint variables, rates, accelerations, references, torques and parameters.
 #[derive(Clone, Debug)]
@@ -96,5 +96,9 @@ impl<E: Element> Inputs<E> for State<E> {
 
     fn sign(&self, joint: usize) -> E {
         self.signs[joint].clone()
+    }
+
+    fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E) {
+        by_addition(self.sine_cosine(angle), turn)
     }
 }

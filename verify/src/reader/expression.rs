@@ -6,7 +6,7 @@ use syn::{BinOp, Block, Expr, ItemFn, Lit, Member, Pat, Stmt, UnOp};
 
 use super::{constant, harmless, signature, text};
 use crate::enclosure::Float;
-use crate::program::{Argument, Literal, Output, Program, Step};
+use crate::program::{Angle, Argument, Literal, Output, Program, Step};
 
 /// A value while reading: a step, or several.
 #[derive(Clone, Debug)]
@@ -28,6 +28,7 @@ struct Compiler<'a> {
     real: Float,
     steps: Vec<Step>,
     literals: Vec<Literal>,
+    turns: Vec<usize>,
     calls: Vec<String>,
 }
 
@@ -40,7 +41,7 @@ pub(super) fn compile(
     private: &BTreeMap<String, &ItemFn>,
     real: Float,
 ) -> Result<Program, String> {
-    let mut compiler = Compiler { private, real, steps: Vec::new(), literals: Vec::new(), calls: Vec::new() };
+    let mut compiler = Compiler { private, real, steps: Vec::new(), literals: Vec::new(), turns: Vec::new(), calls: Vec::new() };
     let mut scope = Scope::new();
     let mut known = Vec::new();
     for (name, _) in arguments {
@@ -52,7 +53,7 @@ pub(super) fn compile(
     let mut outputs = Vec::new();
     flatten(&result, String::new(), &mut outputs)?;
     let name = function.sig.ident.to_string();
-    Ok(Program { name, arguments: known, steps: compiler.steps, literals: compiler.literals, outputs })
+    Ok(Program { name, arguments: known, steps: compiler.steps, literals: compiler.literals, turns: compiler.turns, outputs })
 }
 
 fn flatten(value: &Value, place: String, outputs: &mut Vec<Output>) -> Result<(), String> {
@@ -249,22 +250,48 @@ impl Compiler<'_> {
         Ok(value)
     }
 
-    /// A step as an integer combination of joint variables.
-    fn angle(&self, step: usize) -> Result<Vec<(usize, i64)>, String> {
-        let combine = |a: Vec<(usize, i64)>, b: Vec<(usize, i64)>, sign: i64| {
-            let mut sum: BTreeMap<usize, i64> = a.into_iter().collect();
-            for (joint, factor) in b {
-                *sum.entry(joint).or_default() += sign * factor;
-            }
-            sum.into_iter().filter(|&(_, factor)| factor != 0).collect()
-        };
-        match self.steps[step] {
-            Step::Input(Argument::Q, joint) => Ok(vec![(joint, 1)]),
-            Step::Negate(a) => Ok(combine(Vec::new(), self.angle(a)?, -1)),
-            Step::Add(a, b) => Ok(combine(self.angle(a)?, self.angle(b)?, 1)),
-            Step::Subtract(a, b) => Ok(combine(self.angle(a)?, self.angle(b)?, -1)),
-            _ => Err("sine of something that is not a sum of joint variables".into()),
+    /// A step as an integer combination of joint variables and at most one constant.
+    fn angle(&mut self, step: usize) -> Result<Angle, String> {
+        let mut sum = BTreeMap::new();
+        let mut constant = None;
+        self.add_angle(step, 1, &mut sum, &mut constant)?;
+        let terms: Vec<(usize, i64)> = sum.into_iter().filter(|&(_, factor)| factor != 0).collect();
+        if terms.is_empty() {
+            return Err("sine of something without a joint variable".into());
         }
+        let turn = constant.map(|(literal, minus)| {
+            let known = self.turns.iter().position(|&turn| turn == literal);
+            let index = known.unwrap_or_else(|| {
+                self.turns.push(literal);
+                self.turns.len() - 1
+            });
+            (index, minus)
+        });
+        Ok(Angle { terms, turn })
+    }
+
+    fn add_angle(
+        &self,
+        step: usize,
+        sign: i64,
+        sum: &mut BTreeMap<usize, i64>,
+        constant: &mut Option<(usize, bool)>,
+    ) -> Result<(), String> {
+        match self.steps[step] {
+            Step::Input(Argument::Q, joint) => *sum.entry(joint).or_default() += sign,
+            Step::Literal(literal) if constant.is_none() => *constant = Some((literal, sign < 0)),
+            Step::Negate(a) => self.add_angle(a, -sign, sum, constant)?,
+            Step::Add(a, b) => {
+                self.add_angle(a, sign, sum, constant)?;
+                self.add_angle(b, sign, sum, constant)?;
+            }
+            Step::Subtract(a, b) => {
+                self.add_angle(a, sign, sum, constant)?;
+                self.add_angle(b, -sign, sum, constant)?;
+            }
+            _ => return Err("sine of something that is not a sum of joint variables and a constant".into()),
+        }
+        Ok(())
     }
 }
 

@@ -26,7 +26,7 @@ impl Angle {
     fn plus(self, pool: &mut Pool, other: Angle) -> Angle {
         let rate = pool.add(self.rate, other.rate);
         if let (Some(a), Some(b)) = (self.sum, other.sum) {
-            let sum = AngleSum { plus: a.plus | b.plus, minus: a.minus | b.minus };
+            let sum = a.plus(b);
             return Angle {
                 sine: pool.symbol(Symbol::SineOf(sum)),
                 cosine: pool.symbol(Symbol::CosineOf(sum)),
@@ -48,8 +48,15 @@ impl Angle {
 
     /// Of a joint; its joint variable alone if sums may be asked for.
     fn of(pool: &mut Pool, joint: &Joint, i: usize, sums: bool) -> Angle {
-        let alone = i < usize::from(AngleSum::JOINTS) && joint.sine == pool.symbol(Symbol::Sine(i as u16));
-        let sum = (sums && alone).then_some(AngleSum { plus: 1 << i, minus: 0 });
+        let sum = (sums && i < usize::from(AngleSum::JOINTS)).then(|| AngleSum::of(i as u16)).and_then(|own| {
+            let turned = AngleSum { turned: true, ..own };
+            let is_turned = pool.field().turn().is_some() && joint.sine == pool.symbol(Symbol::SineOf(turned));
+            if is_turned {
+                Some(turned)
+            } else {
+                (joint.sine == pool.symbol(Symbol::Sine(i as u16))).then_some(own)
+            }
+        });
         Angle { sine: joint.sine, cosine: joint.cosine, rate: joint.spin, sum }
     }
 }

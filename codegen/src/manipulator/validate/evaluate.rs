@@ -164,7 +164,7 @@ fn is_small(value: &Number) -> bool {
 /// How deep roots and inverses stand within each other.
 fn nesting(value: &Number) -> usize {
     let of = |atom: &Atom| match atom {
-        Atom::Root(_) | Atom::Pi => 0,
+        Atom::Root(_) | Atom::Pi | Atom::Arctangent(_) => 0,
         Atom::RootOf(n) | Atom::Sine(n) | Atom::Cosine(n) | Atom::Inverse(n) => 1 + nesting(n),
     };
     value.terms().flat_map(|(monomial, _)| monomial.iter().map(|(atom, _)| of(atom))).max().unwrap_or(0)

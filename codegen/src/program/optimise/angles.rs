@@ -49,7 +49,7 @@ fn runs(parallel: &[Option<(u16, bool)>]) -> Vec<Vec<AngleSum>> {
         let run = of_joint[usize::from(*first)];
         of_joint.push(run);
         let (mut joint, mut minus) = (last as u16, false);
-        let mut sum = AngleSum { plus: 0, minus: 0 };
+        let mut sum = AngleSum { plus: 0, minus: 0, turned: false };
         while joint < AngleSum::JOINTS {
             *(if minus { &mut sum.minus } else { &mut sum.plus }) |= 1 << joint;
             if joint as usize != last {
@@ -84,7 +84,7 @@ fn find(circuit: &mut Circuit, sum: AngleSum) -> Option<Found> {
             replaced.extend(gates.into_iter().map(|(gate, negated)| (gate, Edge::new(id, negated))));
         }
     }
-    (!replaced.is_empty()).then(|| Found { replaced, additions: sum.terms().count() - 1 })
+    (!replaced.is_empty()).then(|| Found { replaced, additions: sum.additions() })
 }
 
 fn chosen(found: &[Found], set: usize) -> Vec<&Found> {
@@ -126,7 +126,7 @@ fn pairs(circuit: &Circuit) -> usize {
 fn angle(circuit: &Circuit, expr: ExprId) -> Option<AngleSum> {
     match circuit.constants.node(expr) {
         // Joints beyond those that a sum can tell apart count as the last of them: they are in no sum.
-        Node::Symbol(Symbol::Sine(i) | Symbol::Cosine(i)) => Some(AngleSum { plus: 1 << i.min(AngleSum::JOINTS - 1), minus: 0 }),
+        Node::Symbol(Symbol::Sine(i) | Symbol::Cosine(i)) => Some(AngleSum::of(i.min(AngleSum::JOINTS - 1))),
         Node::Symbol(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) => Some(sum),
         _ => None,
     }
