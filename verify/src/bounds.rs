@@ -171,14 +171,13 @@ fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f
     if divisors.is_empty() {
         return None;
     }
-    let literals: Vec<f64> = program.literals.iter().map(|l| l.value).collect();
+    let pivots = program.part(&divisors);
+    let literals: Vec<f64> = pivots.literals.iter().map(|l| l.value).collect();
     let mut stream = Stream::new(20_240_301);
     let mut smallest = f64::INFINITY;
     for _ in 0..STATES_FOR_DIVISORS {
-        let values = program.values(&draw(domain, &mut stream, real), &literals);
-        for &divisor in &divisors {
-            smallest = smallest.min(values[divisor].map_or(0.0, f64::abs));
-        }
+        let values = pivots.run(&draw(domain, &mut stream, real), &literals);
+        smallest = values.into_iter().fold(smallest, |smallest, value| smallest.min(value.map_or(0.0, f64::abs)));
     }
     Some(smallest / 2.0)
 }

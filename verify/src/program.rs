@@ -164,6 +164,37 @@ impl Program {
         values.iter().cloned().chain(circles).collect()
     }
 
+    /// The part of the program that some steps need: these are its results.
+    pub fn part(&self, results: &[usize]) -> Program {
+        let mut needed = vec![false; self.steps.len()];
+        results.iter().for_each(|&step| needed[step] = true);
+        for (i, step) in self.steps.iter().enumerate().rev() {
+            match step {
+                _ if !needed[i] => {}
+                Step::Negate(a) => needed[*a] = true,
+                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => {
+                    (needed[*a], needed[*b]) = (true, true);
+                }
+                Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => {}
+            }
+        }
+        let mut number = vec![0; self.steps.len()];
+        let mut steps: Vec<Step> = Vec::new();
+        for (i, step) in self.steps.iter().enumerate().filter(|&(i, _)| needed[i]) {
+            number[i] = steps.len();
+            steps.push(match step {
+                Step::Negate(a) => Step::Negate(number[*a]),
+                Step::Add(a, b) => Step::Add(number[*a], number[*b]),
+                Step::Subtract(a, b) => Step::Subtract(number[*a], number[*b]),
+                Step::Multiply(a, b) => Step::Multiply(number[*a], number[*b]),
+                Step::Divide(a, b) => Step::Divide(number[*a], number[*b]),
+                leaf => leaf.clone(),
+            });
+        }
+        let outputs = results.iter().map(|&step| Output { place: String::new(), step: number[step] }).collect();
+        Program { steps, outputs, ..self.clone() }
+    }
+
     /// The value of every step.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
         let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());

@@ -1,6 +1,8 @@
 //! From shared expressions to numbered steps, and from the derivations of each quantity to the cheapest.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::OnceLock;
 
 use super::optimise::optimise;
 use super::{Cost, Function, Module, Operand, Operation, Output, Selection, Step, Trig};
@@ -35,7 +37,7 @@ const EFFORT: usize = 500_000;
 
 /// The module of an arm.
 pub fn module(model: &Model, options: &Options) -> Module {
-    let (mut functions, mut absent) = (Vec::new(), Vec::new());
+    let (mut wanted, mut absent) = (Vec::new(), Vec::new());
     for quantity in Quantity::ALL {
         for with_parameters in [false, true] {
             if with_parameters && !quantity.has_parameters() || !options.functions.contains(quantity, with_parameters) {
@@ -43,10 +45,11 @@ pub fn module(model: &Model, options: &Options) -> Module {
             }
             match quantity.missing(model) {
                 Some(reason) => absent.push((quantity.name().to_string(), reason)),
-                None => functions.push(function(model, quantity, with_parameters, options)),
+                None => wanted.push((quantity, with_parameters)),
             }
         }
     }
+    let functions = side_by_side(&wanted, |&(quantity, with_parameters)| function(model, quantity, with_parameters, options));
     let listed = |vector: &ParameterVector| {
         vector.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect::<Vec<_>>()
     };
@@ -75,6 +78,30 @@ pub fn module(model: &Model, options: &Options) -> Module {
         turn: model.field.turn().map(|turn| turn.angle.clone()),
         batch: options.batch.filter(|&lanes| lanes > 0),
     }
+}
+
+/// As much stack as the main thread of a program has.
+const STACK: usize = 8 << 20;
+
+/// What `of` gives for each item, on as many threads as there are processors; the last items, which take longest, first.
+fn side_by_side<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let results: Vec<OnceLock<R>> = items.iter().map(|_| OnceLock::new()).collect();
+    let left = AtomicUsize::new(items.len());
+    let work = || {
+        let next = || left.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1)).ok();
+        while let Some(before) = next() {
+            results[before - 1].get_or_init(|| of(&items[before - 1]));
+        }
+    };
+    std::thread::scope(|scope| {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        for _ in 1..threads.min(items.len()) {
+            // Where there are no more threads, those that there are do the work.
+            let _ = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        }
+        work();
+    });
+    results.into_iter().map(|result| result.into_inner().expect("every item is taken")).collect()
 }
 
 /// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.
