@@ -75,7 +75,11 @@ fn measure(what: &str, selection: Selection, folder: &Path) -> Row {
     let joints = module.joints.len();
     let path = folder.join(format!("armgen_scaling_{}_{joints}.rs", std::process::id()));
     std::fs::write(&path, &text).expect("the folder for temporary files can be written");
-    Row { joints, generation, memory_mib: peak_memory(), bytes: text.len(), compilation: compile(&path), operations }
+    let compilation = compile(&path);
+    // Where there is no compiler, there is no object file.
+    let _ = std::fs::remove_file(path.with_extension("o"));
+    std::fs::remove_file(&path).expect("what was written can be removed");
+    Row { joints, generation, memory_mib: peak_memory(), bytes: text.len(), compilation, operations }
 }
 
 /// The most memory that this process has had, MiB; not a number where the system does not tell.
@@ -213,7 +217,11 @@ fn panel(svg: &mut String, left: f64, title: &str, curves: &[Curve]) {
     line(format!("<text x=\"{left}\" y=\"24\" font-size=\"14\">{title}</text>"));
     line(format!("<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"#888\"/>"));
     for power in low as i32..=high as i32 {
-        let (y, label) = (up(10f64.powi(power)), 10f64.powi(power));
+        let y = up(10f64.powi(power));
+        let label = match power {
+            -2..=3 => 10f64.powi(power).to_string(),
+            _ => format!("10<tspan dy=\"-5\" font-size=\"9\">{power}</tspan>"),
+        };
         line(format!("<line x1=\"{left}\" x2=\"{}\" y1=\"{y:.1}\" y2=\"{y:.1}\" stroke=\"#ddd\"/>", left + width));
         line(format!("<text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{label}</text>", left - 6.0, y + 4.0));
     }
@@ -243,7 +251,7 @@ fn panel(svg: &mut String, left: f64, title: &str, curves: &[Curve]) {
         for &(x, y) in points {
             line(format!("<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3\" fill=\"{colour}\"/>", across(x), up(y)));
         }
-        let y = top + 16.0 + 15.0 * index as f64;
-        line(format!("<text x=\"{}\" y=\"{y}\" fill=\"{colour}\">{name}</text>", left + 8.0));
+        let y = top + height - 10.0 - 15.0 * (curves.len() - 1 - index) as f64;
+        line(format!("<text x=\"{}\" y=\"{y}\" text-anchor=\"end\" fill=\"{colour}\">{name}</text>", left + width - 8.0));
     }
 }
