@@ -130,6 +130,15 @@ impl AngleSum {
 }
 
 impl Symbol {
+    /// The angle that this is the sine or cosine of.
+    pub fn angle(self) -> Option<AngleSum> {
+        match self {
+            Symbol::Sine(i) | Symbol::Cosine(i) => Some(AngleSum::of(i)),
+            Symbol::SineOf(sum) | Symbol::CosineOf(sum) => Some(sum),
+            _ => None,
+        }
+    }
+
     /// The index of its joint or parameter; that of its first joint.
     pub fn index(self) -> u16 {
         match self {

@@ -11,7 +11,7 @@ use quote::{format_ident, quote};
 
 use super::literal::literal;
 use super::rust::{argument, argument_of, input, usize_literal};
-use super::sincos::{is_of_angle, name_of};
+use super::sincos::name_of;
 use crate::equations::Argument;
 use crate::program::{Function, Module, Operand, Operation, Step};
 use crate::ring::Symbol;
@@ -47,7 +47,7 @@ enum Name {
 impl Name {
     fn of(symbol: Symbol) -> Name {
         match symbol {
-            of_angle if is_of_angle(of_angle) => Name::Angle(of_angle),
+            of_angle if of_angle.angle().is_some() => Name::Angle(of_angle),
             other => Name::Argument(argument_of(other)),
         }
     }

@@ -290,15 +290,7 @@ pub(super) fn argument_text(argument: Argument) -> (&'static str, &'static str) 
 
 pub(super) fn input(symbol: Symbol) -> TokenStream {
     let (argument_kind, index) = match symbol {
-        Symbol::Sine(i) => {
-            let name = format_ident!("s{}", i + 1);
-            return quote!(#name);
-        }
-        Symbol::Cosine(i) => {
-            let name = format_ident!("c{}", i + 1);
-            return quote!(#name);
-        }
-        Symbol::SineOf(_) | Symbol::CosineOf(_) => {
+        Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) => {
             let name = sincos::name_of(symbol);
             return quote!(#name);
         }
@@ -360,7 +352,7 @@ fn function(module: &Module, function: &Function) -> TokenStream {
 /// The arguments that the steps use, and the line that says of the others that they are not needed.
 pub(super) fn used_and_ignored(function: &Function) -> (Vec<Argument>, Option<TokenStream>) {
     let symbols = symbols(function);
-    let used = |a: Argument| symbols.iter().any(|&s| argument_of(s) == a && !sincos::is_of_angle(s));
+    let used = |a: Argument| symbols.iter().any(|&s| argument_of(s) == a && s.angle().is_none());
     let unused: Vec<Ident> =
         function.arguments.iter().filter(|&&a| !symbols.iter().any(|&s| argument_of(s) == a)).map(|&a| argument(a).0).collect();
     let ignored = match unused.as_slice() {
@@ -440,7 +432,7 @@ fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> TokenStream {
 
 /// Whether any function needs a sine or a cosine.
 pub(super) fn asks_for_sines(module: &Module) -> bool {
-    module.functions.iter().flat_map(symbols).any(sincos::is_of_angle)
+    module.functions.iter().flat_map(symbols).any(|symbol| symbol.angle().is_some())
 }
 
 /// Sine and cosine, and the sign of a rate: the only calls in the module.

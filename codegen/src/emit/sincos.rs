@@ -19,11 +19,6 @@ use crate::ring::{AngleSum, Symbol};
 const FAST_F64: &str = include_str!("sincos/fast_f64.rs");
 const FAST_F32: &str = include_str!("sincos/fast_f32.rs");
 
-/// Whether a symbol is a sine or a cosine.
-pub(super) fn is_of_angle(symbol: Symbol) -> bool {
-    matches!(symbol, Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_))
-}
-
 /// The name of a sine or a cosine: `s2`, `c2`, `s2_3` of q2 + q3, `c1_2_less_4` of q1 + q2 - q4, `s7_turned` of q7 and a constant angle.
 pub(super) fn name_of(symbol: Symbol) -> Ident {
     match symbol {

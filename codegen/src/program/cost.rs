@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use super::{Function, Operand, Operation};
 use crate::equations::{DIVISION, PAIR};
-use crate::ring::Symbol;
 
 /// Operations of a function: one per binary `*`, `+` or `-`, `/`; sign changes and sines apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,14 +34,12 @@ impl Cost {
         }
         let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
         for operand in operands.chain(function.outputs.iter().map(|output| &output.operand)) {
-            match operand {
-                Operand::Input(Symbol::Sine(i) | Symbol::Cosine(i)) => angles.insert((*i, None)),
-                Operand::Input(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) => angles.insert((0, Some(*sum))),
-                _ => continue,
-            };
+            if let Operand::Input(symbol) = operand {
+                angles.extend(symbol.angle());
+            }
         }
         cost.sincos = angles.len();
-        cost.add += angles.iter().filter_map(|(_, sum)| *sum).map(|sum| sum.additions()).sum::<usize>();
+        cost.add += angles.iter().map(|angle| angle.additions()).sum::<usize>();
         cost.neg = function.outputs.iter().filter(|output| output.negated).count();
         cost
     }

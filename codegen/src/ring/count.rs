@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{AngleSum, ExprId, Node, Pool, Symbol};
+use super::{AngleSum, ExprId, Node, Pool};
 
 impl Pool {
     /// Operations that the expressions need together, each node once: one for a sum or product, `reciprocal` for a reciprocal.
@@ -30,12 +30,11 @@ impl Pool {
         count
     }
 
-    /// The angles whose sines and cosines the expressions need: single ones, and sums.
-    pub fn angles(&self, exprs: &[ExprId]) -> BTreeSet<(Option<u16>, Option<AngleSum>)> {
+    /// The angles whose sines and cosines the expressions need.
+    pub fn angles(&self, exprs: &[ExprId]) -> BTreeSet<AngleSum> {
         let needed = self.reachable(exprs);
         let angle = |index: usize| match self.nodes[index] {
-            Node::Symbol(Symbol::Sine(i) | Symbol::Cosine(i)) => Some((Some(i), None)),
-            Node::Symbol(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) => Some((None, Some(sum))),
+            Node::Symbol(symbol) => symbol.angle(),
             _ => None,
         };
         (0..self.len()).filter(|&index| needed[index]).filter_map(angle).collect()

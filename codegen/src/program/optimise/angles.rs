@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
 use crate::equations::PAIR;
-use crate::ring::{AngleSum, ExprId, Node, Symbol};
+use crate::ring::{AngleSum, Node, Symbol};
 
 /// Sums of one run of parallel axes that are tried in all combinations; those beyond are tried one by one.
 const TOGETHER: usize = 6;
@@ -117,17 +117,11 @@ fn pairs(circuit: &Circuit) -> usize {
     let uses = circuit.uses();
     let used = |gate: usize| uses[gate] > 0;
     let leaves = (0..circuit.gates.len()).filter(|&gate| used(gate)).filter_map(|gate| match circuit.gates[gate] {
-        Gate::Leaf(expr) => angle(circuit, expr),
+        Gate::Leaf(expr) => match circuit.constants.node(expr) {
+            Node::Symbol(symbol) => symbol.angle(),
+            _ => None,
+        },
         _ => None,
     });
     leaves.collect::<BTreeSet<AngleSum>>().len()
-}
-
-fn angle(circuit: &Circuit, expr: ExprId) -> Option<AngleSum> {
-    match circuit.constants.node(expr) {
-        // Joints beyond those that a sum can tell apart count as the last of them: they are in no sum.
-        Node::Symbol(Symbol::Sine(i) | Symbol::Cosine(i)) => Some(AngleSum::of(i.min(AngleSum::JOINTS - 1))),
-        Node::Symbol(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) => Some(sum),
-        _ => None,
-    }
 }
