@@ -142,10 +142,7 @@ fn coefficients_are_constant() {
     let felt = subject.felt(column);
     let cosine = subject.step(Step::Cosine(Angle { terms: vec![(0, 1)], turn: None }));
     subject.replace(column, felt.clone(), |row| Step::Multiply(row[column], cosine));
-    subject.check(&format!(
-        "[{}][{column}] differs: column `mcx7` is no combination of the torques of mcx7, mcy7, Ixz7, Iyz7",
-        felt[0]
-    ));
+    subject.check(&format!("[{}][{column}] differs: column `mcx7", felt[0]));
 }
 
 #[test]
