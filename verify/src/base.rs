@@ -47,7 +47,7 @@ pub struct OwnParameters {
 }
 
 /// Standard parameters that those of a name may be combinations of: closed under turning the joint frame about its axis, sliding it along, and
-/// changing the second moment along the axis (Izz - Ixx - Iyy).
+/// changing the second moment along the axis, (Ixx + Iyy - Izz)/2.
 pub fn kind(parameter: Standard) -> Vec<Standard> {
     // In the order m, mcx, mcy, mcz, Ixx, Ixy, Iyy, Ixz, Iyz, Izz.
     let of_link: &[usize] = match parameter {

@@ -353,7 +353,8 @@ fn sentence(bound: &Bound) -> String {
     match bound.smallest_divisor {
         None => format!("Rounding error: at most {size} in any entry, over the box in the head of this file."),
         Some(least) => format!(
-            "Rounding error: at most {size} in any entry, over the box in the head of this file, where no divisor is below {least:.1e}."
+            "Rounding error: at most {size} in any entry, over the box in the head of this file, where no divisor is below {}.",
+            two_digits(least)
         ),
     }
 }

@@ -106,7 +106,7 @@ impl Certificate {
             exact_points: f.exact_points,
             odds_of_a_miss: if f.verdict == Verdict::Equal { format!("2^{:.0}", f.log2_odds.ceil()) } else { String::new() },
             error_bound: f.bound.as_ref().map_or(String::new(), |bound| two_digits(bound.largest())),
-            smallest_divisor: f.bound.as_ref().and_then(|bound| Some(format!("{:.1e}", bound.smallest_divisor?))),
+            smallest_divisor: f.bound.as_ref().and_then(|bound| bound.smallest_divisor.map(two_digits)),
             literals: literals(&f.literals),
         });
         let constants = report.constants.iter().map(|c| ConstantEntry {

@@ -95,7 +95,7 @@ impl<K: Arithmetic> Point<K> {
 
     /// The first entry of a `base_regressor` that makes it none of these parameters.
     fn base_difference(&self, program: &Program, literals: &[Formula], base: &OwnParameters) -> Option<(String, String)> {
-        let divided = || Some((String::new(), "a constant divides by zero".to_string()));
+        let divided = || Some((String::new(), "a constant has no exact value".to_string()));
         let (Some(literals), Some(nominal)) = (self.literals_of(program, literals), self.literals(&base.nominal)) else {
             return divided();
         };

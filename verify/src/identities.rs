@@ -33,7 +33,7 @@ impl Running<'_> {
         if !self.has(name) {
             return Err(ABSENT.into());
         }
-        let missing = || format!("`{name}` could not be read");
+        let missing = || format!("`{name}` has no exact values");
         let program = self.module.program(name).ok_or_else(missing)?;
         let report = self.reports.iter().find(|r| r.name == name).ok_or_else(missing)?;
         let formulas: Vec<Formula> = report.literals.iter().map(|literal| literal.value.clone()).collect();

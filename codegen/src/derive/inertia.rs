@@ -36,8 +36,9 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
     let mut b = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         let joint = &arm.joints[j];
-        // The trace does not turn; the other entries are those that the parent's composite body takes, turned already.
-        pool.add(composite[j].second[0], composite[j].second[2]);
+        // The trace does not turn: known before the two entries turn, it is what their sum is found to be. The other entries are those that the
+        // parent's composite body takes, turned already.
+        let _ = pool.add(composite[j].second[0], composite[j].second[2]);
         let Body { mass, first: h, second: [xx, _, yy, xz, yz, _] } = joint.body_about_axis(pool, &composite[j]);
         let (force, moment): (Vector, Vector) = match joint.kind {
             JointKind::Revolute => ([-h[1], h[0], ExprId::ZERO], [-xz, -yz, pool.add(xx, yy)]),

@@ -110,6 +110,15 @@ fn header(module: &Module, origin: &Origin) -> String {
         module.parameters.len(),
         module.task.len(),
     );
+    if !module.task.is_empty() {
+        let rows = module.task.iter().map(ToString::to_string).collect();
+        let _ = writeln!(
+            text,
+            "/* Rows of the geometric Jacobian in the operational space: 0 1 2 velocity along, 3 4 5 angular velocity about x y z. */\n\
+             #define {upper}_TASK {}\n",
+            braces(rows)
+        );
+    }
     text += "/* Initialisers of arrays. Limits are rad or m, per s, N m or N; infinite (math.h) where the description gives none. */\n";
     let _ = writeln!(text, "#define {upper}_JOINT_NAMES {}", braces(module.joints.iter().map(joint).collect()));
     let _ = writeln!(text, "#define {upper}_POSITION_LIMITS {}", braces(positions.collect()));
@@ -132,13 +141,24 @@ fn header(module: &Module, origin: &Origin) -> String {
         let _ = writeln!(text, "\n#define {upper}_BASE_PARAMETERS {}", module.base_set.len());
         let _ = writeln!(text, "#define {upper}_BASE_PARAMETER_NAMES {}", braces(names));
         let _ = writeln!(text, "#define {upper}_NOMINAL_BASE_PARAMETERS {}", braces(nominal));
+        text += "\n";
+        let width = module.base_set.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+        let mut meanings =
+            vec![format!("The base parameters, in the order of the columns of {name}_base_regressor:"), String::new()];
+        meanings.extend(super::rust::own_base_note(module));
+        meanings.extend(module.base_set.iter().map(|(name, _, meaning)| format!("{name:width$}  {meaning}")));
+        text += &comment("", meanings);
     }
     text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
     for function in functions(module) {
         text += "\n";
         text += &comment(
             "",
-            documentation::function(function, &module.gravity).into_iter().filter(|line| !line.contains("```")).collect(),
+            documentation::function(function, &module.gravity)
+                .into_iter()
+                .filter(|line| !line.contains("```"))
+                .map(|line| names_of_c(module, &line, &name, &upper))
+                .collect(),
         );
         let mut arguments: Vec<String> = function
             .arguments
@@ -159,6 +179,19 @@ fn header(module: &Module, origin: &Origin) -> String {
     text += "\n#ifdef __cplusplus\n}\n#endif\n\n";
     let _ = writeln!(text, "#endif");
     text
+}
+
+/// A line of documentation with the names that things have in C.
+fn names_of_c(module: &Module, line: &str, name: &str, upper: &str) -> String {
+    let constants = ["PARAMETER_NAMES", "NOMINAL_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS", "TASK"];
+    let line = constants
+        .iter()
+        .fold(line.to_string(), |line, constant| line.replace(&format!("`{constant}`"), &format!("`{upper}_{constant}`")));
+    module
+        .functions
+        .iter()
+        .map(Function::name)
+        .fold(line, |line, function| line.replace(&format!("`{function}`"), &format!("`{name}_{function}`")))
 }
 
 /// A block comment; runs of blank lines become one.

@@ -69,7 +69,7 @@ fn text(quantity: Quantity) -> Text {
         ),
         Quantity::ForwardDynamics => (
             "Accelerations that torques cause, friction included.",
-            "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.5)",
+            "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.6)",
             "an acceleration for each joint, rad/s² (revolute) or m/s² (prismatic).",
         ),
         Quantity::Regressor => (
@@ -107,9 +107,9 @@ fn text(quantity: Quantity) -> Text {
             "Regressor Y_b(q, dq, ddq) of the base parameters: columns of full rank.",
             "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = Y_b pi_b                  (Gautier and Khalil 1990)",
             "`y[joint][base parameter]`, parameters in the order of `BASE_PARAMETER_NAMES`: those of the links in their joint frames, inertias of rotors, \
-             viscous and Coulomb friction, as far as the description gives them and they are not 0. Masses of rotors are part of the links that carry \
-             them. With `NOMINAL_BASE_PARAMETERS` it is the torque of `inverse_dynamics`. All base parameters, zero or not, has `regressor` with \
-             `regressor: base` in the description.",
+             viscous and Coulomb friction, as far as the description gives them and they are not 0 at its values. Masses of rotors are part of the links \
+             that carry them. With `NOMINAL_BASE_PARAMETERS` it is the torque of `inverse_dynamics`. For identification take `regressor` with \
+             `regressor: base` in the description: it has all base parameters, zero or not.",
         ),
         Quantity::OperationalInertia => (
             "Inertia of the end effector along and about the rows of the task, in the base frame.",

@@ -198,24 +198,28 @@ fn base_note() -> [String; 4] {
     [
         " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's, grouped with all".into(),
         " that cannot be told from it. Beside it stands its value in the standard parameters, of links in their own frames, inertia about".into(),
-        " their origins; SI units.".into(),
+        " their origins; SI units; a factor of more than 60 characters as the nearest float.".into(),
         String::new(),
     ]
 }
 
 /// What a name of a base parameter of `base_regressor` means.
-fn own_base_note(module: &Module) -> Vec<String> {
+pub(super) fn own_base_note(module: &Module) -> Vec<String> {
+    let first = [
+        " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where",
+        " that comes nearest to the axis before, grouped with all that cannot be told from it. Links of revolute joints have Izz = Ixx + Iyy there.",
+        " Beside it stands its value in the standard parameters, of links in their own frames, inertia about their origins; SI units; a factor",
+        " of more than 60 characters as the nearest float.",
+        " Those that are 0 there, at the values of the description, have no column: for identification take `regressor: base`, which has all.",
+    ];
     let turned = module.turn.as_ref().map(|turn| {
         let angle = literal(turn, module.scalar).to_string().replace("- ", "-");
-        format!(" The x axis of the last link, {angle} rad after the joint variable, points to its centre of mass: no mcy there. Long factors are rounded.")
+        [
+            format!(" The x axis of the last link stands {angle} rad after the joint variable, about the joint axis; seen along that, the centre"),
+            " of mass of the link, payload included, lies on it: its mcy is 0.".to_string(),
+        ]
     });
-    let first = [
-        " A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where".into(),
-        " that comes nearest to the axis before, grouped with all that cannot be told from it. Links of revolute joints have Izz = Ixx + Iyy there.".into(),
-        " Beside it stands its value in the standard parameters, of links in their own frames, inertia about their origins; SI units.".into(),
-        " Those that are 0 are left out.".into(),
-    ];
-    first.into_iter().chain(turned).chain([String::new()]).collect()
+    first.into_iter().map(String::from).chain(turned.into_iter().flatten()).chain([String::new()]).collect()
 }
 
 /// Whether a function of the module returns this.
@@ -232,12 +236,12 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
     let names = module.base_set.iter().map(|(name, ..)| name);
     let nominal = module.base_set.iter().map(|(_, value, _)| literal(value, module.scalar));
     let mut meanings = meanings(
-        " Names of the base parameters, in the order of the columns of `base_regressor`, each an exact combination of standard parameters:",
+        " Names of the base parameters, in the order of the columns of `base_regressor`, each a combination of standard parameters:",
         &module.base_set,
     );
     meanings.splice(2..2, own_base_note(module));
     Some(quote! {
-        /// Number of base parameters: as many as a motion can tell apart, without those that are 0 in the description.
+        /// Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.
         #[allow(dead_code)]
         pub const BASE_PARAMETERS: usize = #count;
         #(#[doc = #meanings])*

@@ -228,7 +228,7 @@ pub(super) fn of_lanes(module: &Module) -> TokenStream {
         },
     };
     quote! {
-        /// Sines and cosines of the angles of one joint, rad.
+        /// Sines and cosines of one angle of each state, rad.
         #[allow(clippy::all)]
         #[inline(never)]
         fn sin_cos_lanes(x: &Lanes) -> (Lanes, Lanes) {

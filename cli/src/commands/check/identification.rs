@@ -2,7 +2,7 @@
 //!
 //! Torques measured along a motion determine pi only through Y pi. A column of Y that is a combination of others, Y_d = Σ k_i Y_i for every
 //! state, adds nothing: only the sums pi_i + Σ k_i pi_d act on the torques, and only they can be identified, whatever the motion
-//! (Siciliano et al., Sect. 7.2.1 and 7.3.1).
+//! (Siciliano et al., Sect. 7.2.2 and 7.4).
 
 use std::collections::{BTreeMap, BTreeSet};
 

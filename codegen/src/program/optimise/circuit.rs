@@ -70,7 +70,7 @@ impl Circuit {
         };
         let mut needed = vec![false; pool.len()];
         entries.iter().for_each(|e| needed[e.index()] = true);
-        for index in (0..pool.len()).rev().filter(|&i| i < pool.len()) {
+        for index in (0..pool.len()).rev() {
             if needed[index] {
                 match pool.node(pool.expr(index)) {
                     Node::Add(a, b) | Node::Mul(a, b) => {
