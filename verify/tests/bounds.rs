@@ -91,7 +91,7 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
 /// The companion, compiled beside its module, returns what the checker computes with.
 #[test]
 fn the_companion_returns_the_same_bounds() {
-    for (name, scalar) in [("everything", Scalar::F64), ("scara", Scalar::F32)] {
+    for (name, scalar) in [("everything", Scalar::F64), ("scara", Scalar::F32), ("panda7", Scalar::F32)] {
         let (text, module, claims, manipulator) = robot(name, scalar);
         let companion = companion(&module, &claims, "use super::robot::*;").expect("a companion");
         let arguments = draw(&domain_of(&manipulator, &module), &mut Stream::new(5), module.real);
@@ -154,7 +154,7 @@ fn what_is_seen_in_parts_is_seen_of_the_whole() {
 /// Side by side and one by one the same bits.
 #[test]
 fn lanes_return_the_bounds_of_the_companion() {
-    for (name, scalar) in [("scara", Scalar::F64), ("everything", Scalar::F64), ("everything", Scalar::F32)] {
+    for (name, scalar) in [("scara", Scalar::F64), ("everything", Scalar::F64), ("everything", Scalar::F32), ("panda7", Scalar::F32)] {
         let (_, module, claims, manipulator) = robot(name, scalar);
         let (domain, mut stream) = (domain_of(&manipulator, &module), Stream::new(8));
         let mut states: [_; LANES] = std::array::from_fn(|_| draw(&domain, &mut stream, module.real));
