@@ -134,6 +134,24 @@ impl Number {
         self.terms.keys().flatten().all(|(atom, _)| matches!(atom, Atom::Root(_)))
     }
 
+    /// Whether it has at most so many terms and factors, those inside of roots, angles and divisors included.
+    pub fn is_within(&self, most: usize) -> bool {
+        self.left_of(most).is_some()
+    }
+
+    fn left_of(&self, mut left: usize) -> Option<usize> {
+        for monomial in self.terms.keys() {
+            left = left.checked_sub(1)?;
+            for (atom, _) in monomial {
+                left = left.checked_sub(1)?;
+                if let Atom::RootOf(n) | Atom::Sine(n) | Atom::Cosine(n) | Atom::Inverse(n) = atom {
+                    left = n.left_of(left)?;
+                }
+            }
+        }
+        Some(left)
+    }
+
     /// The fraction, if this is one.
     pub fn as_rational(&self) -> Option<&Rational> {
         match self.terms.len() {
@@ -301,15 +319,11 @@ impl Number {
 fn invert_power(atom: &Atom, power: i32, steps: u32) -> Number {
     let of = |power: i32| Number { terms: BTreeMap::from([(vec![(atom.clone(), power)], Rational::ONE)]) };
     match atom {
-        Atom::Pi => of(-power),
+        Atom::Pi | Atom::Sine(_) | Atom::Cosine(_) | Atom::Arctangent(_) => of(-power),
         Atom::Root(n) => &of(1) * &Number::from(Rational::from_parts(IBig::ONE, n.clone())),
         Atom::Inverse(n) => (0..power).fold(Number::one(), |product, _| &product * n),
         // A root that stands is that of a positive number.
         Atom::RootOf(n) => &of(1) * &n.inverse_within(steps),
-        Atom::Sine(_) | Atom::Cosine(_) | Atom::Arctangent(_) => {
-            let inverse = Number::atom(Atom::Inverse(Arc::new(of(1))));
-            (0..power).fold(Number::one(), |product, _| &product * &inverse)
-        }
     }
 }
 
@@ -403,43 +417,74 @@ impl Mul for &Number {
     }
 }
 
-/// A plain formula: `1/2*sqrt(3) - 2*pi`.
+/// A plain formula: `1/2*sqrt(3) - 2*pi`. What several terms are divided by stands once: `(cos(7/10) - 2*pi)*(1/(1 + pi))`.
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.is_zero() {
             return f.write_str("0");
         }
-        for (i, (monomial, coefficient)) in self.terms.iter().enumerate() {
-            match (i, coefficient.is_negative()) {
-                (0, true) => f.write_str("-")?,
-                (0, false) => {}
-                (_, true) => f.write_str(" - ")?,
-                (_, false) => f.write_str(" + ")?,
-            }
+        let mut by_divisors: BTreeMap<Monomial, Number> = BTreeMap::new();
+        for (monomial, coefficient) in &self.terms {
+            let (divisors, rest) = split_divisors(monomial);
+            by_divisors.entry(divisors).or_default().terms.insert(rest, coefficient.clone());
+        }
+        let mut first = true;
+        for (monomial, coefficient) in &self.terms {
+            let (divisors, _) = split_divisors(monomial);
+            let together = match by_divisors.get(&divisors) {
+                _ if divisors.is_empty() => None,
+                Some(sum) if sum.terms.len() == 1 => None,
+                Some(_) => by_divisors.remove(&divisors),
+                None => continue,
+            };
+            let negative = together.is_none() && coefficient.is_negative();
+            f.write_str(match (first, negative) {
+                (true, true) => "-",
+                (true, false) => "",
+                (false, true) => " - ",
+                (false, false) => " + ",
+            })?;
+            first = false;
             let size = coefficient.clone().abs();
             let mut factors: Vec<String> = Vec::new();
-            if !size.is_one() || monomial.is_empty() {
-                factors.push(size.to_string());
-            }
-            for (atom, power) in monomial {
-                let text = match atom {
-                    Atom::Root(n) => format!("sqrt({n})"),
-                    Atom::RootOf(n) => format!("sqrt({n})"),
-                    Atom::Pi => "pi".into(),
-                    Atom::Sine(angle) => format!("sin({angle})"),
-                    Atom::Cosine(angle) => format!("cos({angle})"),
-                    Atom::Inverse(n) => format!("(1/({n}))"),
-                    Atom::Arctangent(ratio) => format!("atan({ratio})"),
-                };
-                factors.push(if *power == 1 {
-                    text
-                } else {
-                    format!("{text}^{power}").replace("^-", "^(-") + if *power < 0 { ")" } else { "" }
-                });
-            }
+            let atoms = match &together {
+                Some(sum) => {
+                    factors.push(format!("({sum})"));
+                    &divisors
+                }
+                None => {
+                    if !size.is_one() || monomial.is_empty() {
+                        factors.push(size.to_string());
+                    }
+                    monomial
+                }
+            };
+            factors.extend(atoms.iter().map(|(atom, power)| power_text(atom, *power)));
             f.write_str(&factors.join("*"))?;
         }
         Ok(())
+    }
+}
+
+/// What a term is divided by, and the rest of it.
+fn split_divisors(monomial: &Monomial) -> (Monomial, Monomial) {
+    monomial.iter().cloned().partition(|(atom, _)| matches!(atom, Atom::Inverse(_)))
+}
+
+fn power_text(atom: &Atom, power: i32) -> String {
+    let text = match atom {
+        Atom::Root(n) => format!("sqrt({n})"),
+        Atom::RootOf(n) => format!("sqrt({n})"),
+        Atom::Pi => "pi".into(),
+        Atom::Sine(angle) => format!("sin({angle})"),
+        Atom::Cosine(angle) => format!("cos({angle})"),
+        Atom::Inverse(n) => format!("(1/({n}))"),
+        Atom::Arctangent(ratio) => format!("atan({ratio})"),
+    };
+    match power {
+        1 => text,
+        ..=-1 => format!("{text}^({power})"),
+        _ => format!("{text}^{power}"),
     }
 }
 

@@ -151,11 +151,85 @@ fn exact_combination(pool: &Pool, y: &[Vec<ExprId>], column: usize, support: &[u
 }
 
 /// The solution of a regular system, the right-hand sides last in each row.
+///
+/// First unknowns are eliminated by entries that have a short inverse, fractions before others, those that change fewest entries first;
+/// quotients of general constants are left to the few equations that then remain.
 fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
     let n = system.len();
-    let rational = system.iter().flatten().all(|x| x.as_rational().is_some());
-    if !rational && n <= LARGEST_BY_MINORS {
-        // By Cramer's rule: no quotient of general constants before the last step.
+    for entry in system.iter_mut().flatten() {
+        *entry = zero_if_zero(field, std::mem::take(entry));
+    }
+    let (mut rows, mut unknowns): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
+    let mut eliminated = Vec::new();
+    while let Some((row, unknown)) = simplest_pivot(&system, &rows, &unknowns) {
+        rows.retain(|&r| r != row);
+        unknowns.retain(|&c| c != unknown);
+        let scale = system[row][unknown].clone();
+        for &c in unknowns.iter().chain([&n]) {
+            system[row][c] = quotient(field, &system[row][c], &scale);
+        }
+        let pivot = system[row].clone();
+        for &r in &rows {
+            let factor = system[r][unknown].clone();
+            if !factor.is_zero() {
+                for &c in unknowns.iter().chain([&n]).filter(|&&c| !pivot[c].is_zero()) {
+                    let difference = &system[r][c] - &(&factor * &pivot[c]);
+                    system[r][c] = zero_if_zero(field, difference);
+                }
+            }
+        }
+        eliminated.push((row, unknown, unknowns.clone()));
+    }
+    let rest = rows.iter().map(|&r| unknowns.iter().chain([&n]).map(|&c| system[r][c].clone()).collect()).collect();
+    let mut solution = vec![Number::zero(); n];
+    for (&unknown, value) in unknowns.iter().zip(solve_general(field, rest)) {
+        solution[unknown] = value;
+    }
+    for (row, unknown, others) in eliminated.into_iter().rev() {
+        let mut value = system[row][n].clone();
+        for c in others {
+            if !system[row][c].is_zero() && !solution[c].is_zero() {
+                value = &value - &(&system[row][c] * &solution[c]);
+            }
+        }
+        let value = zero_if_zero(field, value);
+        solution[unknown] = as_fraction(field, value);
+    }
+    solution
+}
+
+/// Row and unknown of the entry to eliminate by next; `None` if there is no simple one.
+fn simplest_pivot(system: &[Vec<Number>], rows: &[usize], unknowns: &[usize]) -> Option<(usize, usize)> {
+    let others_in_row = |r: usize| unknowns.iter().filter(|&&c| !system[r][c].is_zero()).count() - 1;
+    let others_in_column = |c: usize| rows.iter().filter(|&&r| !system[r][c].is_zero()).count() - 1;
+    let entries = rows.iter().flat_map(|&r| unknowns.iter().map(move |&c| (r, c)));
+    let simple = entries.filter_map(|(r, c)| {
+        let entry = &system[r][c];
+        let kind = match entry.terms().count() {
+            0 => return None,
+            1 => usize::from(entry.as_rational().is_none()),
+            terms if entry.is_reduced() => terms,
+            _ => return None,
+        };
+        Some((kind, others_in_row(r) * others_in_column(c), r, c))
+    });
+    simple.min().map(|(_, _, r, c)| (r, c))
+}
+
+/// The number; 0 where it is 0 without looking it: the field knows.
+fn zero_if_zero(field: &mut Field, number: Number) -> Number {
+    if !number.is_reduced() && field.number(&number) == field.zero() {
+        Number::zero()
+    } else {
+        number
+    }
+}
+
+/// The solution of a regular system of general constants.
+fn solve_general(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
+    let n = system.len();
+    if n <= LARGEST_BY_MINORS {
+        // By Cramer's rule: no quotient before the last step.
         let determinant = minors(&system, &(0..n).collect::<Vec<_>>());
         return (0..n)
             .map(|k| {
@@ -164,10 +238,8 @@ fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
             })
             .collect();
     }
-    // Quotients of general constants may be zero without looking it: the field knows.
-    let zero = field.zero();
     for k in 0..n {
-        let pivot = (k..n).find(|&r| field.number(&system[r][k]) != zero).expect("the system is regular");
+        let pivot = (k..n).find(|&r| !system[r][k].is_zero()).expect("the system is regular");
         system.swap(k, pivot);
         let scale = system[k][k].clone();
         let row: Vec<Number> = system[k].iter().map(|x| quotient(field, x, &scale)).collect();
@@ -175,8 +247,7 @@ fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
             let factor = other[k].clone();
             if r != k && !factor.is_zero() {
                 for (x, p) in other.iter_mut().zip(&row) {
-                    let difference = &*x - &(&factor * p);
-                    *x = if field.number(&difference) == zero { Number::zero() } else { difference };
+                    *x = zero_if_zero(field, &*x - &(&factor * p));
                 }
             }
         }
@@ -211,7 +282,15 @@ fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
 /// a/b; as a fraction where it is one, however a and b are written.
 fn quotient(field: &mut Field, a: &Number, b: &Number) -> Number {
     let value = a.checked_div(b).expect("the divisor is not zero");
-    if value.as_rational().is_some() || value.terms().count() == 1 && b.terms().count() == 1 {
+    if value.terms().count() == 1 && b.terms().count() == 1 {
+        return value;
+    }
+    as_fraction(field, value)
+}
+
+/// The number, as a fraction where it is a short one however it is written.
+fn as_fraction(field: &mut Field, value: Number) -> Number {
+    if value.is_reduced() {
         return value;
     }
     // A short continued fraction that the field and an enclosure confirm.
@@ -409,7 +488,9 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
     if !rest.is_zero() {
         nominal = &nominal + rest;
         meaning += if meaning.is_empty() { "" } else { " + " };
-        meaning += &format!("({rest} from the masses of rotors)");
+        let text = rest.to_string();
+        let text = if text.len() > LONGEST_FACTOR { format!("{:?}", rest.to_f64()) } else { text };
+        meaning += &format!("({text} from the masses of rotors)");
     }
     if let ([(entry, k)], true) = (&parts[..], rest.is_zero()) {
         if k.is_one() && entry.name == parameter.name() {

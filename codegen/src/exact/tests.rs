@@ -76,6 +76,26 @@ fn quotients_are_exact() {
 }
 
 #[test]
+fn divisors_cancel_and_stand_once() {
+    let (angle, one) = (Angle::new(rational(7, 10)), Number::one());
+    for value in [angle.sin(), angle.cos(), Number::pi(), &angle.sin() * &angle.cos()] {
+        let inverse = one.checked_div(&value).unwrap();
+        assert_eq!(&inverse * &value, one, "{value}");
+    }
+    let sum = &angle.cos() + &(&Number::from(2) * &Number::pi());
+    let quotient = sum.checked_div(&(&one + &Number::pi())).unwrap();
+    assert_eq!(quotient.to_string(), "(2*pi + cos(7/10))*(1/(1 + pi))");
+    assert_eq!((&one - &quotient).to_string(), "1 + (-2*pi - cos(7/10))*(1/(1 + pi))");
+    assert_eq!(one.checked_div(&(&angle.cos() * &angle.cos())).unwrap().to_string(), "cos(7/10)^(-2)");
+    // Two terms of two factors each, and twice the two terms and one factor of 1 + pi.
+    assert!(quotient.is_within(12) && !quotient.is_within(11));
+    // One over a number that is 0 to the first digits.
+    let small = Angle::new(Number::from(Rational::from_parts(1.into(), UBig::from(10u8).pow(100))));
+    let large = one.checked_div(&small.sin()).unwrap().to_f64();
+    assert!((large / 1e100 - 1.0).abs() < 1e-15, "{large}");
+}
+
+#[test]
 fn floats_are_the_nearest() {
     assert_eq!(Number::pi().to_f64(), std::f64::consts::PI);
     assert_eq!(Number::pi().to_f32(), std::f32::consts::PI);

@@ -6,6 +6,16 @@ use std::rc::Rc;
 use super::{AngleSum, ExprId, Node, Pool, Symbol};
 use crate::exact::Number;
 
+/// A constant with more terms and factors stays the expression that it arises from: a factorisation of constants nests their inverses, and the
+/// text of each could be twice as long as the one before.
+const LONGEST_CONSTANT: usize = 500;
+
+/// A pole at the origin is no constant, and what is too long should not become one: any value will do, since the caller checks it against the
+/// fingerprint.
+fn short_or_any(value: Option<Number>) -> Number {
+    value.filter(|value| value.is_within(LONGEST_CONSTANT)).unwrap_or_default()
+}
+
 impl Pool {
     /// The exact values of expressions where each symbol has the value `of` says. `None` where a reciprocal meets 0.
     pub fn evaluate(&self, exprs: &[ExprId], of: &dyn Fn(Symbol) -> Number) -> Option<Vec<Number>> {
@@ -73,14 +83,13 @@ impl Pool {
             .collect();
             if pending.is_empty() {
                 let value = self.combine(self.nodes[index], &origin, |e| self.origin_value(e));
-                // A pole at the origin: no constant; any value will do, since the caller checks it against the fingerprint.
-                self.at_origin[index] = Some(Rc::new(value.unwrap_or_default()));
+                self.at_origin[index] = Some(Rc::new(short_or_any(value)));
                 stack.pop();
             } else {
                 stack.extend(pending);
             }
         }
-        self.combine(node, &origin, |e| self.origin_value(e)).unwrap_or_default()
+        short_or_any(self.combine(node, &origin, |e| self.origin_value(e)))
     }
 
     fn origin_value(&self, expr: ExprId) -> Number {
