@@ -305,16 +305,11 @@ impl Checker {
 
     /// Where several constants round to the same literal, the choice that equals the equations; else the first.
     fn first_choice_that_holds(&self, program: &Program, resolved: &Resolved) -> (Vec<Formula>, Option<(String, String)>) {
-        let mut first = None;
-        for choice in resolved.choices() {
-            match self.difference(program, &choice) {
-                None => return (choice, None),
-                Some(difference) => {
-                    first.get_or_insert((choice, Some(difference)));
-                }
-            }
+        let Some(difference) = self.difference(program, &resolved.values) else { return (resolved.values.clone(), None) };
+        match resolved.choices().into_iter().skip(1).find(|choice| self.difference(program, choice).is_none()) {
+            Some(choice) => (choice, None),
+            None => (resolved.values.clone(), Some(difference)),
         }
-        first.expect("there is at least one choice")
     }
 
     fn difference(&self, program: &Program, literals: &[Formula]) -> Option<(String, String)> {
