@@ -10,11 +10,13 @@
 //!
 //! And what they judge: this crate is the first downstream project of the generator, its `build.rs` generates every robot.
 //!
-//! - [`emitted`]: the emitted modules, compiled; [`interpreter`]: programs carried out without a compiler; [`functions`]: either of them;
+//! - [`emitted`]: the emitted modules, compiled; [`compiled`]: further ones, compiled on request in a crate of their own;
+//!   [`interpreter`]: programs carried out without a compiler; [`functions`]: any of them;
 //! - [`judge`]: every function of a robot against the oracle at one state;
 //! - [`count`]: the operations that stand in an emitted text;
 //! - [`project`]: projects of strangers, built without network.
 
+pub mod compiled;
 pub mod count;
 pub mod emitted;
 pub mod formula;
