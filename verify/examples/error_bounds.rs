@@ -1,5 +1,5 @@
 //! Rounding errors of some robots, the worst against 256 bits, beside both bounds, as tables in Markdown; exit code 1 if a bound is exceeded:
-//! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 f64 robots/*.yaml`.
+//! `cargo run --release -p armgen-verify --example error_bounds -- 1000000 f64 robots/*.yaml`, of some functions alone where their names follow.
 
 use std::process::ExitCode;
 
@@ -24,12 +24,13 @@ fn main() -> ExitCode {
         _ => None,
     };
     let (Some(states), Some(scalar)) = (states, scalar) else {
-        eprintln!("usage: error_bounds STATES f64|f32 ROBOT.yaml...");
+        eprintln!("usage: error_bounds STATES f64|f32 ROBOT.yaml... [FUNCTION...]");
         return ExitCode::from(2);
     };
+    let (paths, functions): (Vec<String>, Vec<String>) = arguments.partition(|argument| argument.ends_with(".yaml"));
     let mut all_hold = true;
-    for path in arguments {
-        match table(&path, scalar, states) {
+    for path in paths {
+        match table(&path, scalar, states, &functions) {
             Ok(holds) => all_hold &= holds,
             Err(reason) => {
                 eprintln!("{path}: {reason}");
@@ -40,14 +41,15 @@ fn main() -> ExitCode {
     ExitCode::from(u8::from(!all_hold))
 }
 
-fn table(path: &str, scalar: Scalar, states: u64) -> Result<bool, String> {
+fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Result<bool, String> {
     let source = Source::new(path, std::fs::read_to_string(path).map_err(|e| e.to_string())?);
     #[allow(clippy::needless_update)]
     let options = Options { scalar, ..Options::default() };
     let generated = armgen_codegen::generate(&source, &options).0.ok_or("not a valid description")?;
     let (manipulator, _) = manipulator::read_for(&source, scalar).0.ok_or("not a valid description")?;
     let module = Module::read(&generated.module)?;
-    let subjects = Subject::all(&manipulator, &module, &Claims::from_numbers(&generated.constants))?;
+    let mut subjects = Subject::all(&manipulator, &module, &Claims::from_numbers(&generated.constants))?;
+    subjects.retain(|subject| functions.is_empty() || functions.contains(&subject.program.name));
     let workers = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let batches = states.div_ceil(workers * LANES as u64);
     let work = |worker: u64| -> Result<Vec<Seen>, String> {
@@ -86,7 +88,16 @@ fn table(path: &str, scalar: Scalar, states: u64) -> Result<bool, String> {
         let a_priori = two_digits(s.a_priori);
         println!("| `{}` | {:.1e} | {error} | {running} | {ratio} | {a_priori} | {} |", s.name, s.value, s.singular);
     }
-    let beyond: u64 = seen.iter().map(|s| s.beyond_running + s.beyond_a_priori).sum();
+    for s in &seen {
+        let Some(torques) = &s.residual else { continue };
+        let (constant, factor) = (two_digits(torques.bound.constant), two_digits(torques.bound.factor));
+        println!(
+            "\n`{}` is that of torques off by at most {constant} + {factor} max ddq; worst seen {:.1e}, {:.3} of its bound.",
+            s.name, torques.largest, torques.part
+        );
+    }
+    let beyond_residual: u64 = seen.iter().filter_map(|s| Some(s.residual.as_ref()?.beyond)).sum();
+    let beyond: u64 = beyond_residual + seen.iter().map(|s| s.beyond_running + s.beyond_a_priori).sum::<u64>();
     let outside: u64 = seen.iter().map(|s| s.outside).sum();
     let widest = seen.iter().filter_map(Seen::ratio).fold(0.0, f64::max);
     println!("\nBounds exceeded: {beyond} times. Largest ratio: {widest:.1}. States with a divisor too small for the a-priori bound: {outside}.\n");

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 
 use armgen_codegen::manipulator::{JointKind, Manipulator};
 
+use crate::arithmetic::wide::Wide;
 use crate::arithmetic::Stream;
 use crate::claims::Claims;
 use crate::enclosure::Float;
@@ -22,6 +23,7 @@ use crate::float::Arguments;
 use crate::formula::{Formula, Rational};
 use crate::program::{Angle, Argument, Literal, Program, Step};
 use crate::reader::{Constant, Module};
+use crate::residual::{residual, Equations, Residual};
 
 /// Whether a float is a power of two whose products neither round nor leave the normal range for values of any robot.
 pub fn is_power_of_two(value: f64) -> bool {
@@ -52,6 +54,8 @@ pub struct Bound {
     pub entries: Vec<f64>,
     /// The bound holds where no divisor is smaller than this, if there are divisors.
     pub smallest_divisor: Option<f64>,
+    /// For accelerations: how far they are from solving the equations of motion.
+    pub residual: Option<Residual>,
 }
 
 impl Bound {
@@ -118,10 +122,13 @@ pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64>
 
 /// An interval around the exact value, and how far the computed one can be from it.
 #[derive(Clone, Copy, Debug)]
-struct Range {
-    low: f64,
-    high: f64,
-    error: f64,
+pub struct Range {
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// The error.
+    pub error: f64,
 }
 
 /// A little more, for the roundings of the bounds themselves.
@@ -139,7 +146,8 @@ impl Range {
         Range { low: widen(low, -1.0), high: widen(high, 1.0), error: error * OUTWARD }
     }
 
-    fn size(&self) -> f64 {
+    /// The largest size of a value.
+    pub fn size(&self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 }
@@ -182,14 +190,13 @@ fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f
     Some(smallest / 2.0)
 }
 
-/// The bound of a program over a domain; `errors` are those of its literals.
-pub fn a_priori(program: &Program, errors: &[f64], domain: &Domain, real: Float) -> Bound {
+/// Values and errors of all steps of a program over a domain; `errors` are those of its literals, no divisor is below `smallest`.
+fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f64>, real: Float) -> Vec<Range> {
     let u = real.unit();
     let tiny = match real {
         Float::F64 => f64::MIN_POSITIVE,
         Float::F32 => f64::from(f32::MIN_POSITIVE),
     };
-    let smallest = smallest_divisor(program, domain, real);
     let angle = |angle: &Angle, shift: f64| {
         let terms = &angle.terms;
         let (mut low, mut high) = (0.0, 0.0);
@@ -283,6 +290,14 @@ pub fn a_priori(program: &Program, errors: &[f64], domain: &Domain, real: Float)
         debug_assert_eq!(ranges.len(), i);
         ranges.push(range);
     }
+    ranges
+}
+
+/// The bound of a function of a module over a domain; `values` are the exact ones of its literals.
+pub fn of_function(program: &Program, values: &[Formula], domain: &Domain, module: &Module, claims: &Claims) -> Bound {
+    let (real, errors) = (module.real, literal_errors(program, values, module.real));
+    let smallest_divisor = smallest_divisor(program, domain, real);
+    let ranges = ranges(program, &errors, domain, smallest_divisor, real);
     let error = |step: usize| {
         let error = ranges[step].error;
         if error.is_nan() {
@@ -291,7 +306,13 @@ pub fn a_priori(program: &Program, errors: &[f64], domain: &Domain, real: Float)
             error
         }
     };
-    Bound { entries: program.outputs.iter().map(|o| error(o.step)).collect(), smallest_divisor: smallest }
+    let residual = || {
+        let equations = Equations::of(&program.name, module, claims)?;
+        let literals = program.exact_literals(values).iter().map(Wide::from_formula).collect::<Option<Vec<Wide>>>()?;
+        let state = draw(domain, &mut Stream::new(31), real);
+        residual(program, &literals, &equations, &state, &ranges, real)
+    };
+    Bound { entries: program.outputs.iter().map(|o| error(o.step)).collect(), smallest_divisor, residual: residual() }
 }
 
 /// The nominal parameters as the module holds them.
@@ -317,8 +338,7 @@ pub fn of(manipulator: &Manipulator, module: &Module, claims: &Claims) -> BTreeM
     for (name, function) in &module.functions {
         let Ok(function) = function else { continue };
         let values = claims.resolve(name, &function.program.literals, module.real).values;
-        let errors = literal_errors(&function.program, &values, module.real);
-        bounds.insert(name.clone(), a_priori(&function.program, &errors, &domain, module.real));
+        bounds.insert(name.clone(), of_function(&function.program, &values, &domain, module, claims));
     }
     bounds
 }
@@ -346,16 +366,25 @@ fn sentence(bound: &Bound) -> String {
     if size == 0.0 {
         return "Rounding error: none.".into();
     }
-    if !size.is_finite() {
-        return "Rounding error: no bound over the whole box of the head of this file.".into();
-    }
-    let size = two_digits(size);
-    match bound.smallest_divisor {
-        None => format!("Rounding error: at most {size} in any entry, over the box in the head of this file."),
-        Some(least) => format!(
-            "Rounding error: at most {size} in any entry, over the box in the head of this file, where no divisor is below {}.",
-            two_digits(least)
-        ),
+    let of_torques = bound.residual.map(|r| {
+        let (constant, factor) = (two_digits(r.constant), two_digits(r.factor));
+        format!(
+            "ddq is that of torques off by at most {constant} + {factor} max|ddq| N m (N), over the box in the head of this file, where all divisors \
+             come out positive; sqrt(DOF) times that over the smallest eigenvalue of B bounds the error of ddq"
+        )
+    });
+    let of_entries = size.is_finite().then(|| {
+        let size = two_digits(size);
+        let where_it_holds =
+            bound.smallest_divisor.map_or(String::new(), |least| format!(", where no divisor is below {}", two_digits(least)));
+        format!("at most {size} in any entry, over the box in the head of this file{where_it_holds}")
+    });
+    match (of_torques, of_entries) {
+        (Some(torques), Some(entries)) => format!("Rounding error: {torques}. Also {entries}."),
+        (Some(one), None) | (None, Some(one)) => format!("Rounding error: {one}."),
+        (None, None) => "Rounding error: no bound over the whole box of the head of this file, divisors can come near 0; \
+                         at a state see the companion (`--bounds`)."
+            .into(),
     }
 }
 

@@ -63,6 +63,9 @@ pub struct FunctionEntry {
     /// The bound holds where no divisor is smaller than this, if the function divides.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub smallest_divisor: Option<String>,
+    /// Of accelerations: they are those at torques off by at most the first number plus the second times the largest of them.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub torque_error: Option<(String, String)>,
     /// Literals in the order of the text, each with its exact value.
     pub literals: Vec<(String, String)>,
 }
@@ -106,6 +109,11 @@ impl Certificate {
             exact_points: f.exact_points,
             odds_of_a_miss: if f.verdict == Verdict::Equal { format!("2^{:.0}", f.log2_odds.ceil()) } else { String::new() },
             error_bound: f.bound.as_ref().map_or(String::new(), |bound| two_digits(bound.largest())),
+            torque_error: f
+                .bound
+                .as_ref()
+                .and_then(|bound| bound.residual)
+                .map(|r| (two_digits(r.constant), two_digits(r.factor))),
             smallest_divisor: f.bound.as_ref().and_then(|bound| bound.smallest_divisor.map(two_digits)),
             literals: literals(&f.literals),
         });

@@ -9,13 +9,14 @@ use armgen_codegen::manipulator::Manipulator;
 use crate::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Element, Stream};
-use crate::bounds::{a_priori, domain_of, draw, literal_errors, Bound, Domain};
+use crate::bounds::{domain_of, draw, literal_errors, of_function, Bound, Domain};
 use crate::claims::Claims;
 use crate::companion::{LaneArguments, LaneTable, Table, LANES};
 use crate::enclosure::Float;
 use crate::float::Arguments;
 use crate::program::{Program, Step};
 use crate::reader::{Function, Module};
+use crate::residual::{Equations, Residual};
 
 /// What was seen of a function; sizes are those of the largest entry.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,9 +39,24 @@ pub struct Seen {
     pub beyond_a_priori: u64,
     /// States that the a-priori bound does not speak of: a divisor is smaller than it says.
     pub outside: u64,
+    /// What was seen of the residual, where it has a bound.
+    pub residual: Option<Torques>,
     /// States at which a divisor may be off by more than √u of itself, half of its digits, as at the singular configurations of
     /// `operational_inertia`: no size above is taken from them; the bounds must hold all the same.
     pub singular: u64,
+}
+
+/// How far accelerations were from solving the equations of motion, where all divisors were positive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Torques {
+    /// The bound.
+    pub bound: Residual,
+    /// Largest residual of any row.
+    pub largest: f64,
+    /// The largest part of its bound that a residual was.
+    pub part: f64,
+    /// States at which it was more than its bound.
+    pub beyond: u64,
 }
 
 impl Seen {
@@ -59,6 +75,11 @@ impl Seen {
         self.beyond_a_priori += other.beyond_a_priori;
         self.outside += other.outside;
         self.singular += other.singular;
+        if let (Some(own), Some(other)) = (&mut self.residual, &other.residual) {
+            own.largest = own.largest.max(other.largest);
+            own.part = own.part.max(other.part);
+            own.beyond += other.beyond;
+        }
     }
 }
 
@@ -74,6 +95,7 @@ pub struct Subject {
     /// The steps that are entries, each once, with the largest a-priori bound that holds for it.
     entries: Vec<(usize, f64)>,
     divisors: Vec<usize>,
+    equations: Option<Equations>,
 }
 
 impl Subject {
@@ -87,7 +109,7 @@ impl Subject {
             let exact: Option<Vec<Wide>> = program.exact_literals(&values).iter().map(Wide::from_formula).collect();
             let exact = exact.ok_or(format!("`{name}`: a literal out of reach"))?;
             let table = Table::of(&program, &errors, module.real)?.lanes();
-            let bound = a_priori(&program, &errors, &domain, module.real);
+            let bound = of_function(&program, &values, &domain, module, claims);
             let divisor = |step: &Step| match step {
                 Step::Divide(_, divisor) => Some(*divisor),
                 _ => None,
@@ -98,15 +120,22 @@ impl Subject {
             entries.sort_by_key(|entry| entry.0);
             entries.dedup_by_key(|entry| entry.0);
             let pairs = exact.iter().map(twofold::pair).collect();
-            Ok(Subject { program, exact, pairs, table, bound, entries, divisors })
+            let equations = Equations::of(name, module, claims);
+            Ok(Subject { program, exact, pairs, table, bound, entries, divisors, equations })
         };
         module.functions.iter().map(of).collect()
     }
 
     /// The same with other values of the literals for the reference: as if the text had other literals than it should.
     pub fn with_literals(self, exact: impl Fn(&Wide) -> Wide) -> Subject {
-        let exact: Vec<Wide> = self.exact.iter().map(exact).collect();
-        Subject { pairs: exact.iter().map(twofold::pair).collect(), exact, ..self }
+        let all = |literals: &[Wide]| -> Vec<Wide> { literals.iter().map(&exact).collect() };
+        let equations = self.equations.as_ref().map(|equations| Equations {
+            motion_literals: all(&equations.motion_literals),
+            friction_literals: all(&equations.friction_literals),
+            ..equations.clone()
+        });
+        let exact = all(&self.exact);
+        Subject { pairs: exact.iter().map(twofold::pair).collect(), exact, equations, ..self }
     }
 
     fn nothing(&self) -> Seen {
@@ -121,6 +150,7 @@ impl Subject {
             beyond_a_priori: 0,
             outside: 0,
             singular: 0,
+            residual: self.bound.residual.map(|bound| Torques { bound, largest: 0.0, part: 0.0, beyond: 0 }),
         }
     }
 
@@ -153,6 +183,7 @@ impl Subject {
                 }
             }
         }
+        self.look_at_residuals(side, scratch, seen)?;
         for lane in 0..LANES {
             seen.states += 1;
             seen.outside += u64::from(outside[lane]);
@@ -160,6 +191,29 @@ impl Subject {
             if near[lane] || worst[lane] > seen.error {
                 self.look_again(side, lane, singular[lane], outside[lane], seen)?;
             }
+        }
+        Some(())
+    }
+
+    /// How far the accelerations are from solving the equations.
+    fn look_at_residuals(&self, side: &Batch, scratch: &mut Vec<Twofold>, seen: &mut Seen) -> Option<()> {
+        let (Some(torques), Some(equations)) = (&mut seen.residual, &self.equations) else { return Some(()) };
+        let x: Vec<[f64; LANES]> = self.program.outputs.iter().map(|output| self.table.step(output.step).0).collect();
+        let wide: Vec<Twofold> = x.iter().map(|x| Twofold::exact(*x)).collect();
+        let residuals = equations.residuals(&side.fine, &wide, scratch)?;
+        for lane in 0..LANES {
+            if self.divisors.iter().any(|&divisor| exceeds(0.0, self.table.step(divisor).0[lane])) {
+                continue;
+            }
+            let most = x.iter().fold(0.0f64, |a, x| a.max(x[lane].abs()));
+            let bound = torques.bound.constant + torques.bound.factor * most;
+            let size =
+                residuals
+                    .iter()
+                    .fold(0.0f64, |a, r| if r.high[lane].is_nan() { f64::INFINITY } else { a.max(r.high[lane].abs()) });
+            torques.largest = torques.largest.max(size);
+            torques.part = torques.part.max(size / bound);
+            torques.beyond += u64::from(exceeds(size, bound));
         }
         Some(())
     }

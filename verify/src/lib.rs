@@ -44,6 +44,7 @@ pub mod program;
 pub mod reader;
 pub mod reference;
 pub mod report;
+pub mod residual;
 pub mod test_kit;
 
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
@@ -188,8 +189,7 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     for function in report.functions.iter_mut().filter(|f| f.verdict == Verdict::Equal) {
         let Some(program) = module.program(&function.name) else { continue };
         let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
-        let errors = bounds::literal_errors(program, &values, module.real);
-        function.bound = Some(bounds::a_priori(program, &errors, &report.domain, module.real));
+        function.bound = Some(bounds::of_function(program, &values, &report.domain, module, checker.claims()));
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));

@@ -9,10 +9,11 @@ use armgen_codegen::manipulator::{self, Manipulator};
 use armgen_codegen::program::Scalar;
 use armgen_verify::arithmetic::wide::Wide;
 use armgen_verify::arithmetic::{Element, Stream};
-use armgen_verify::bounds::{document, domain_of, draw, literal_errors, of, two_digits};
+use armgen_verify::bounds::{document, domain_of, draw, literal_errors, of, of_function, two_digits};
 use armgen_verify::claims::Claims;
 use armgen_verify::companion::{companion, LaneArguments, Table, LANES};
 use armgen_verify::errors::{Run, Seen, Subject};
+use armgen_verify::program::Step;
 use armgen_verify::reader::Module;
 
 /// A robot of the project: its text, module, claims and description.
@@ -36,6 +37,9 @@ fn check(name: &str, scalar: Scalar, states: u64) {
     let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
     for seen in measure(&manipulator, &module, subjects, states.div_ceil(LANES as u64), 11) {
         assert_eq!((seen.beyond_running, seen.beyond_a_priori), (0, 0), "{name} {scalar:?}: {seen:?}");
+        if let Some(torques) = &seen.residual {
+            assert!(torques.beyond == 0 && torques.part <= 1.0 && torques.largest > 0.0, "{name} {scalar:?}: {seen:?}");
+        }
         assert!(seen.running.is_finite() && seen.running <= 1e-3 * seen.value.max(1e-30), "{name} {scalar:?}: {seen:?}");
         // As few states as these do not come across the worst error: the bound of 100 is for a million.
         assert!(seen.ratio().is_none_or(|ratio| ratio < 400.0), "{name} {scalar:?}: {seen:?}");
@@ -154,7 +158,9 @@ fn what_is_seen_in_parts_is_seen_of_the_whole() {
 /// Side by side and one by one the same bits.
 #[test]
 fn lanes_return_the_bounds_of_the_companion() {
-    for (name, scalar) in [("scara", Scalar::F64), ("everything", Scalar::F64), ("everything", Scalar::F32), ("panda7", Scalar::F32)] {
+    for (name, scalar) in
+        [("scara", Scalar::F64), ("everything", Scalar::F64), ("everything", Scalar::F32), ("panda7", Scalar::F32)]
+    {
         let (_, module, claims, manipulator) = robot(name, scalar);
         let (domain, mut stream) = (domain_of(&manipulator, &module), Stream::new(8));
         let mut states: [_; LANES] = std::array::from_fn(|_| draw(&domain, &mut stream, module.real));
@@ -178,4 +184,47 @@ fn lanes_return_the_bounds_of_the_companion() {
             }
         }
     }
+}
+
+/// Accelerations have a bound over the box, of themselves or of the torques that they belong to, and errors of the equations exceed it.
+#[test]
+fn accelerations_solve_the_equations_within_a_bound() {
+    for path in common::paths() {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        let (text, module, claims, manipulator) = robot(&name, Scalar::F64);
+        let bounds = of(&manipulator, &module, &claims);
+        for function in ["forward_dynamics", "forward_dynamics_with"] {
+            let bound = &bounds[function];
+            assert!(bound.residual.is_some() || bound.largest().is_finite(), "{name} {function}");
+        }
+        if bounds["forward_dynamics"].residual.is_some() {
+            assert!(document(&text, &bounds).contains("/// Rounding error: ddq is that of torques off by at most "), "{name}");
+        }
+    }
+    let (_, module, claims, manipulator) = robot("everything", Scalar::F64);
+    let mut subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
+    subjects.retain(|subject| subject.program.name == "forward_dynamics");
+    let right = measure(&manipulator, &module, subjects.clone(), 20, 9);
+    assert_eq!(right[0].residual.as_ref().map(|torques| torques.beyond), Some(0), "{right:?}");
+    let off = Wide::from_f64(1.0 + 1e5 * f64::EPSILON);
+    let wrong = subjects.into_iter().map(|subject| subject.with_literals(|exact| exact.times(&off))).collect();
+    let wrong = measure(&manipulator, &module, wrong, 20, 9);
+    assert!(wrong[0].residual.as_ref().is_some_and(|torques| torques.beyond > 0), "{wrong:?}");
+}
+
+/// A solution of another form has no such bound: here one with another quotient.
+#[test]
+fn another_form_of_the_solution_has_no_bound_of_torques() {
+    let (_, module, claims, manipulator) = robot("panda7", Scalar::F64);
+    let domain = domain_of(&manipulator, &module);
+    let program = module.program("forward_dynamics").expect("the function");
+    let values = claims.resolve("forward_dynamics", &program.literals, module.real).values;
+    assert!(of_function(program, &values, &domain, &module, &claims).residual.is_some());
+    let mut other = program.clone();
+    let divide = |step: &Step| matches!(step, Step::Divide(..));
+    let last = other.steps.iter().rposition(divide).expect("a divisor");
+    if let Step::Divide(_, divisor) = other.steps[last] {
+        other.steps[last] = Step::Divide(divisor, divisor);
+    }
+    assert_eq!(of_function(&other, &values, &domain, &module, &claims).residual, None);
 }

@@ -98,6 +98,29 @@ impl Twofold {
         all
     }
 
+    /// Floats, exactly.
+    pub fn exact(high: [f64; LANES]) -> Twofold {
+        Twofold { high, low: [0.0; LANES] }
+    }
+
+    /// a + b.
+    #[must_use]
+    pub fn plus(&self, other: &Twofold) -> Twofold {
+        Twofold::of(|lane| plus(self.at(lane), other.at(lane)))
+    }
+
+    /// a - b.
+    #[must_use]
+    pub fn minus(&self, other: &Twofold) -> Twofold {
+        Twofold::of(|lane| plus(self.at(lane), negated(other.at(lane))))
+    }
+
+    /// a b.
+    #[must_use]
+    pub fn times(&self, other: &Twofold) -> Twofold {
+        Twofold::of(|lane| times(self.at(lane), other.at(lane)))
+    }
+
     #[inline(always)]
     fn at(&self, lane: usize) -> Pair {
         (self.high[lane], self.low[lane])
@@ -217,6 +240,11 @@ impl TwofoldArguments {
         Some(TwofoldArguments { arguments, waves })
     }
 
+    /// An entry of an argument.
+    pub fn entry(&self, argument: Argument, index: usize) -> Twofold {
+        Twofold::exact(self.arguments.of(argument)[index])
+    }
+
     /// Sine and cosine of a sum of joint variables, by the addition theorem.
     fn wave(&self, angle: &[(usize, i64)]) -> (Twofold, Twofold) {
         let mut sum: Option<(Twofold, Twofold)> = None;
@@ -243,15 +271,14 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
         added(joints, (circle, Twofold::of(|_| c)))
     };
     for step in &program.steps {
-        let exact = |high: [f64; LANES]| Twofold { high, low: [0.0; LANES] };
         let both = |a: usize, b: usize| (&values[a], &values[b]);
         let value = match step {
-            Step::Input(argument, index) => exact(arguments.arguments.of(*argument)[*index]),
+            Step::Input(argument, index) => arguments.entry(*argument, *index),
             Step::Literal(index) => Twofold::of(|_| literals[*index]),
             Step::Sine(angle) => wave(angle).0,
             Step::Cosine(angle) => wave(angle).1,
             Step::Sign(joint) => {
-                exact(arguments.arguments.of(Argument::Dq)[*joint].map(|x| if x == 0.0 { 0.0 } else { x.signum() }))
+                Twofold::exact(arguments.arguments.of(Argument::Dq)[*joint].map(|x| if x == 0.0 { 0.0 } else { x.signum() }))
             }
             Step::Negate(a) => {
                 let a = &values[*a];
@@ -259,15 +286,15 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
             }
             Step::Add(a, b) => {
                 let (a, b) = both(*a, *b);
-                Twofold::of(|lane| plus(a.at(lane), b.at(lane)))
+                a.plus(b)
             }
             Step::Subtract(a, b) => {
                 let (a, b) = both(*a, *b);
-                Twofold::of(|lane| plus(a.at(lane), negated(b.at(lane))))
+                a.minus(b)
             }
             Step::Multiply(a, b) => {
                 let (a, b) = both(*a, *b);
-                Twofold::of(|lane| times(a.at(lane), b.at(lane)))
+                a.times(b)
             }
             Step::Divide(a, b) => {
                 let (a, b) = both(*a, *b);
