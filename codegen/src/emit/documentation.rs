@@ -3,7 +3,7 @@
 
 use crate::equations::{Argument, Quantity};
 use crate::exact::Number;
-use crate::program::{Cost, Function};
+use crate::program::{Cost, Function, Operand};
 
 /// What a function is, the formula, and the result with its frame, unit and sign.
 struct Text {
@@ -166,17 +166,35 @@ pub(super) fn function(function: &Function, gravity: &[Number; 3]) -> Vec<String
             "cannot fail",
         ),
         (true, Quantity::ForwardDynamics) => (result.to_owned(), "not finite where B is singular"),
+        (_, Quantity::OperationalInertia) => (result.to_owned(), "not finite where J is singular"),
         _ => (result.to_owned(), "cannot fail"),
     };
     let blank = || String::new();
     lines.extend([blank(), " ```text".into(), format!(" {formula}"), " ```".into(), blank()]);
     lines.extend(function.arguments.iter().map(|&a| format!(" - {}", argument(a))));
     lines.push(format!(" - Returns {result}"));
+    if let Some(joint) = turned_joint(function) {
+        lines.extend([
+            blank(),
+            format!(" Inside, the last link has axes whose x axis points to its centre of mass, seen along the joint axis: q{joint} and a constant angle."),
+        ]);
+    }
     lines.extend([
         blank(),
         format!(" Cost: {}. Derived by {}. Allocates nothing, {failure}.", cost(&Cost::of(function)), function.method),
     ]);
     lines
+}
+
+/// The joint whose variable a function turns by a constant angle, counted from 1.
+fn turned_joint(function: &Function) -> Option<u16> {
+    let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
+    let angles = operands.filter_map(|operand| match operand {
+        Operand::Input(symbol) => symbol.angle(),
+        _ => None,
+    });
+    let turned = angles.filter(|angle| angle.turned).filter_map(|angle| angle.terms().last());
+    turned.map(|(joint, _)| joint + 1).next()
 }
 
 /// Operations in words.
