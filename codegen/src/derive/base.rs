@@ -460,6 +460,16 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
 /// Longer factors are shown by the nearest float.
 const LONGEST_FACTOR: usize = 60;
 
+/// A number for people: exact if it is short.
+fn shown(number: &Number) -> String {
+    let exact = number.to_string();
+    if exact.len() > LONGEST_FACTOR {
+        format!("{:?}", number.to_f64())
+    } else {
+        exact
+    }
+}
+
 /// A base parameter: named like the standard parameter that it is, with an R where it stands in the joint frame or others are regrouped into it.
 fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Entry {
     let mut nominal = Number::zero();
@@ -470,7 +480,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
         nominal = &nominal + &(*k * &entry.nominal);
         let negative = k.leads_negative();
         let size = if negative { -*k } else { (*k).clone() };
-        let factor = if size.to_string().len() > LONGEST_FACTOR { format!("{:?}", size.to_f64()) } else { size.to_string() };
+        let factor = shown(&size);
         meaning += match (meaning.is_empty(), negative) {
             (true, false) => "",
             (true, true) => "-",
@@ -488,9 +498,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
     if !rest.is_zero() {
         nominal = &nominal + rest;
         meaning += if meaning.is_empty() { "" } else { " + " };
-        let text = rest.to_string();
-        let text = if text.len() > LONGEST_FACTOR { format!("{:?}", rest.to_f64()) } else { text };
-        meaning += &format!("({text} from the masses of rotors)");
+        meaning += &format!("({} from the masses of rotors)", shown(rest));
     }
     if let ([(entry, k)], true) = (&parts[..], rest.is_zero()) {
         if k.is_one() && entry.name == parameter.name() {

@@ -130,10 +130,7 @@ fn header(module: &Module, origin: &Origin) -> String {
         let _ = writeln!(text, "#define {upper}_PARAMETER_NAMES {}", braces(names));
         let _ = writeln!(text, "#define {upper}_NOMINAL_PARAMETERS {}", braces(nominal));
         text += "\n";
-        let width = module.parameters.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
-        let mut meanings = vec!["The parameters, in the order of the columns of the regressor:".to_string(), String::new()];
-        meanings.extend(module.parameters.iter().map(|(name, _, meaning)| format!("{name:width$}  {meaning}")));
-        text += &comment("", meanings);
+        text += &meanings("The parameters, in the order of the columns of the regressor:", Vec::new(), &module.parameters);
     }
     if !module.base_set.is_empty() {
         let names = module.base_set.iter().map(|(name, ..)| format!("\"{name}\"")).collect();
@@ -142,12 +139,8 @@ fn header(module: &Module, origin: &Origin) -> String {
         let _ = writeln!(text, "#define {upper}_BASE_PARAMETER_NAMES {}", braces(names));
         let _ = writeln!(text, "#define {upper}_NOMINAL_BASE_PARAMETERS {}", braces(nominal));
         text += "\n";
-        let width = module.base_set.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
-        let mut meanings =
-            vec![format!("The base parameters, in the order of the columns of {name}_base_regressor:"), String::new()];
-        meanings.extend(super::rust::own_base_note(module));
-        meanings.extend(module.base_set.iter().map(|(name, _, meaning)| format!("{name:width$}  {meaning}")));
-        text += &comment("", meanings);
+        let title = format!("The base parameters, in the order of the columns of {name}_base_regressor:");
+        text += &meanings(&title, super::rust::own_base_note(module), &module.base_set);
     }
     text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
     for function in functions(module) {
@@ -179,6 +172,13 @@ fn header(module: &Module, origin: &Origin) -> String {
     text += "\n#ifdef __cplusplus\n}\n#endif\n\n";
     let _ = writeln!(text, "#endif");
     text
+}
+
+/// What parameters mean, one a line below a title and notes.
+fn meanings(title: &str, notes: Vec<String>, parameters: &[(String, Number, String)]) -> String {
+    let width = parameters.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+    let listed = parameters.iter().map(|(name, _, meaning)| format!("{name:width$}  {meaning}"));
+    comment("", [title.to_string(), String::new()].into_iter().chain(notes).chain(listed).collect())
 }
 
 /// A line of documentation with the names that things have in C.
