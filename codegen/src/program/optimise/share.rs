@@ -53,8 +53,7 @@ fn candidates(circuit: &Circuit, uses: &[u32]) -> Vec<Candidate> {
         let id = id as GateId;
         match gate {
             Gate::Sum(list) => {
-                let pairs = list.iter().enumerate().flat_map(|(k, a)| list[k + 1..].iter().map(|b| pair(*a, *b)));
-                for (pair, count) in disjoint(pairs.collect(), |&(a, b, _)| (a, b)) {
+                for (pair, count) in pairs_apart(list.iter().copied()) {
                     let (sum, users) = terms.entry(pair).or_default();
                     *sum += count;
                     users.push(id);
@@ -75,9 +74,8 @@ fn candidates(circuit: &Circuit, uses: &[u32]) -> Vec<Candidate> {
                 }
             }
             Gate::Product(list) => {
-                let pairs = list.iter().enumerate().flat_map(|(k, &a)| list[k + 1..].iter().map(move |&b| (a.min(b), a.max(b))));
-                for (pair, count) in disjoint(pairs.collect(), |&p| p) {
-                    let (sum, users) = factors.entry(pair).or_default();
+                for ((a, b, _), count) in pairs_apart(list.iter().map(|&factor| Edge::new(factor, false))) {
+                    let (sum, users) = factors.entry((a, b)).or_default();
                     *sum += count;
                     users.push(id);
                 }
@@ -93,22 +91,26 @@ fn candidates(circuit: &Circuit, uses: &[u32]) -> Vec<Candidate> {
     all
 }
 
-/// How often each pair of a list occurs without sharing an operand: all pairs of operands that occur once are apart.
-fn disjoint<P: Ord + Copy>(mut pairs: Vec<P>, gates: impl Fn(&P) -> (GateId, GateId)) -> Vec<(P, usize)> {
-    pairs.sort_unstable();
-    let mut counts: Vec<(P, usize)> = Vec::new();
-    for p in pairs {
-        match counts.last_mut() {
-            Some((last, count)) if *last == p => *count += 1,
-            _ => counts.push((p, 1)),
+/// How often each pair of operands, of one sign or of two, occurs in a list without sharing an operand with another: what is counted here is
+/// saved, so that the sharing ends.
+fn pairs_apart(list: impl Iterator<Item = Edge>) -> Vec<((GateId, GateId, bool), usize)> {
+    // How often each operand stands there without and with a sign.
+    let mut counts: BTreeMap<GateId, [usize; 2]> = BTreeMap::new();
+    for edge in list {
+        counts.entry(edge.gate).or_default()[usize::from(edge.negated)] += 1;
+    }
+    let counts: Vec<(GateId, [usize; 2])> = counts.into_iter().collect();
+    let mut pairs = Vec::new();
+    for (k, &(a, [plus, minus])) in counts.iter().enumerate() {
+        pairs.push(((a, a, false), plus / 2 + minus / 2));
+        pairs.push(((a, a, true), plus.min(minus)));
+        for &(b, [other_plus, other_minus]) in &counts[k + 1..] {
+            pairs.push(((a, b, false), plus.min(other_plus) + minus.min(other_minus)));
+            pairs.push(((a, b, true), plus.min(other_minus) + minus.min(other_plus)));
         }
     }
-    for (p, count) in &mut counts {
-        let (a, b) = gates(p);
-        // Among k equal operands there are k (k - 1)/2 pairs, k/2 of them apart; among k of one and m of another k m, the lesser of both apart.
-        *count = if a == b { (1 + (8 * *count + 1).isqrt()) / 4 } else { count.isqrt() };
-    }
-    counts
+    pairs.retain(|(_, count)| *count > 0);
+    pairs
 }
 
 fn pair(a: Edge, b: Edge) -> (GateId, GateId, bool) {
@@ -207,4 +209,22 @@ fn take_factor(circuit: &mut Circuit, uses: &[u32], sum: GateId, factor: GateId)
     let product = circuit.push(Gate::Product(product), value);
     rest.push(Edge::new(product, flip));
     circuit.gates[sum as usize] = Gate::Sum(rest);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_counts_as_often_as_it_can_be_taken() {
+        let list = |terms: &[(GateId, bool)]| terms.iter().map(|&(gate, negated)| Edge::new(gate, negated)).collect::<Vec<_>>();
+        let count = |terms: &[(GateId, bool)], pair: (GateId, GateId, bool)| {
+            pairs_apart(list(terms).into_iter()).iter().find(|(p, _)| *p == pair).map_or(0, |(_, count)| *count)
+        };
+        // a b^4: one of a and b, two of b and b. Two of the first would be shared and taken apart for ever.
+        let power = [(1, false), (2, false), (2, false), (2, false), (2, false)];
+        assert_eq!([count(&power, (1, 2, false)), count(&power, (2, 2, false)), count(&power, (1, 2, true))], [1, 2, 0]);
+        let signs = [(1, false), (1, true), (1, false), (2, true), (2, false), (2, true)];
+        assert_eq!([count(&signs, (1, 2, false)), count(&signs, (1, 2, true)), count(&signs, (1, 1, true))], [2, 3, 1]);
+    }
 }
