@@ -200,6 +200,12 @@ impl Number {
         (self.sign() != Ordering::Equal).then(|| self.inverse_within(RATIONALISING_STEPS))
     }
 
+    /// One over the number, made of roots, pi, sines and cosines as it is; `None` of 0, and where it would be an [`Atom::Inverse`].
+    pub fn simple_inverse(&self) -> Option<Number> {
+        let is_inverse = |(atom, _): &(Atom, i32)| matches!(atom, Atom::Inverse(_));
+        self.inverse().filter(|inverse| !inverse.terms.keys().flatten().any(is_inverse))
+    }
+
     /// One over a number other than 0, rationalised in at most so many steps.
     fn inverse_within(&self, steps: u32) -> Number {
         let mut terms = self.terms.iter();

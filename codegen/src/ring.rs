@@ -541,8 +541,9 @@ impl Pool {
             let inverse = self.field.inverse(self.fingerprint(a)[0]);
             return self.sketched(inverse).signed(negate);
         }
-        if let Some(value) = self.as_constant(a) {
-            let inverse = Number::one().checked_div(&value).expect("the divisor is not zero");
+        // A number 1/n that only stands for itself would grow with every pivot that it enters, and n (1/n) - 1 would not be seen to be 0; as a
+        // node it is found by its fingerprint.
+        if let Some(inverse) = self.as_constant(a).and_then(|value| value.simple_inverse()) {
             return self.constant(&inverse).signed(negate);
         }
         let fingerprint = self.fingerprint(a).map(|x| self.field.inverse(x));

@@ -6,18 +6,18 @@ use std::rc::Rc;
 use super::{AngleSum, ExprId, Node, Pool, Symbol};
 use crate::exact::Number;
 
-/// A constant with more terms and factors stays the expression that it arises from: a factorisation of constants nests their inverses, and the
-/// text of each could be twice as long as the one before.
+/// A constant with more terms and factors stays the expression that it arises from.
 const LONGEST_CONSTANT: usize = 500;
 
-/// A pole at the origin is no constant, and what is too long should not become one: any value will do, since the caller checks it against the
-/// fingerprint.
+/// What has no value at the origin that is a simple number is no constant, and what is too long should not become one: any value will do, since
+/// the caller checks it against the fingerprint.
 fn short_or_any(value: Option<Number>) -> Number {
     value.filter(|value| value.is_within(LONGEST_CONSTANT)).unwrap_or_default()
 }
 
 impl Pool {
-    /// The exact values of expressions where each symbol has the value `of` says. `None` where a reciprocal meets 0.
+    /// The exact values of expressions where each symbol has the value `of` says. `None` where a reciprocal meets 0 or a number that has no
+    /// simple inverse.
     pub fn evaluate(&self, exprs: &[ExprId], of: &dyn Fn(Symbol) -> Number) -> Option<Vec<Number>> {
         let needed = self.reachable(exprs);
         let mut values: Vec<Number> = vec![Number::zero(); self.len()];
@@ -36,7 +36,7 @@ impl Pool {
             Node::Symbol(symbol) => self.value_of_symbol(symbol, of),
             Node::Add(a, b) => &signed(a) + &signed(b),
             Node::Mul(a, b) => &signed(a) * &signed(b),
-            Node::Reciprocal(a) => Number::one().checked_div(&signed(a))?,
+            Node::Reciprocal(a) => signed(a).simple_inverse()?,
         })
     }
 

@@ -25,6 +25,25 @@ fn equal_polynomials_are_one_node() {
 }
 
 #[test]
+fn what_divides_by_a_constant_without_a_simple_inverse_cancels() {
+    let one_and_pi = &Number::one() + &Number::pi();
+    let mut p = Pool::new(Field::for_constants([&one_and_pi]));
+    let (n, two) = (p.constant(&one_and_pi), p.integer(2));
+    let reciprocal = p.reciprocal(n);
+    assert!(!p.is_constant(reciprocal));
+    assert_eq!(p.mul(n, reciprocal), ExprId::ONE);
+    // 1/(n - 1/n) (n² - 1) - n
+    let pivot = p.sub(n, reciprocal);
+    let of_pivot = p.reciprocal(pivot);
+    let square = p.mul(n, n);
+    let rest = p.sub(square, ExprId::ONE);
+    let quotient = p.mul(rest, of_pivot);
+    assert_eq!(p.sub(quotient, n), ExprId::ZERO);
+    let half = p.reciprocal(two);
+    assert!(p.is_constant(half));
+}
+
+#[test]
 fn near_misses_stay_apart() {
     let mut p = pool();
     let (s, c) = (p.symbol(Symbol::Sine(0)), p.symbol(Symbol::Cosine(0)));
