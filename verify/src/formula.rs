@@ -171,11 +171,15 @@ impl Formula {
         }
     }
 
-    /// Sine and cosine of the angle that this is, exactly: of quarter turns and arc tangents by their roots.
+    /// Sine and cosine of the angle that this is, exactly: of eighths of a turn and of quarter turns with an arc tangent by their roots.
     pub fn circle(&self) -> (Formula, Formula) {
         let mut angle = (Rational::ZERO, None);
         let known = self.add_turns(&Rational::ONE, &mut angle);
-        let (quarters, tangent) = angle;
+        let (mut quarters, mut tangent) = angle;
+        let eighth = Rational::from_parts(1.into(), 2u8.into());
+        if tangent.is_none() && (&quarters - &eighth).is_int() {
+            (quarters, tangent) = (quarters - eighth, Some(Rational::ONE));
+        }
         let root = |tangent: &Rational| root_of_rational(&(Rational::ONE / (Rational::ONE + tangent * tangent)));
         let (true, true, Ok(cosine)) = (known, quarters.is_int(), root(&tangent.clone().unwrap_or_default())) else {
             return (Formula::Sine(Box::new(self.clone())), Formula::Cosine(Box::new(self.clone())));
@@ -618,6 +622,8 @@ mod tests {
     fn angles_have_the_sine_and_cosine_of_their_points() {
         for (text, sine, cosine) in [
             ("atan(3/4)", "3/5", "4/5"),
+            ("1/4*pi", "1/2*sqrt(2)", "1/2*sqrt(2)"),
+            ("-3/4*pi", "-1/2*sqrt(2)", "-1/2*sqrt(2)"),
             ("1/2*pi - atan(3/4)", "4/5", "3/5"),
             ("-(pi - atan(3/4))", "-3/5", "-4/5"),
             ("-1/2*pi + atan(1/2)", "-2/5*sqrt(5)", "1/5*sqrt(5)"),
