@@ -102,11 +102,7 @@ pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
 pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     let mut uniform = |&(low, high): &(f64, f64)| {
         let value = low + (high - low) * ((stream.bits() >> 11) as f64 / (1u64 << 53) as f64);
-        let value = match real {
-            Float::F64 => value,
-            Float::F32 => f64::from(value as f32),
-        };
-        value.clamp(low, high)
+        real.rounded(value).clamp(low, high)
     };
     let mut all = |v: &[(f64, f64)]| v.iter().map(&mut uniform).collect();
     Arguments {

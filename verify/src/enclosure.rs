@@ -238,6 +238,14 @@ impl Float {
         }
     }
 
+    /// The nearest number of this format.
+    pub fn rounded(self, value: f64) -> f64 {
+        match self {
+            Float::F64 => value,
+            Float::F32 => f64::from(value as f32),
+        }
+    }
+
     fn round(self, value: &Rational) -> f64 {
         match self {
             Float::F64 => value.to_f64().value(),

@@ -3,6 +3,10 @@
 //!
 //! All states run in lanes, the reference with 106 bits ([`twofold`]); a state whose error comes near to a bound, or is the worst so far, is
 //! evaluated again with 256 bits ([`Wide`]), and what is shown comes from there.
+//!
+//! Near singular configurations the largest bound of a million states can be that of one of them, and its error is one draw of what roundings
+//! can come to. So where a bound is the largest yet, states that differ in the last digits are tried as well: the bound is the same there, the
+//! roundings are not.
 
 use armgen_codegen::manipulator::Manipulator;
 
@@ -23,7 +27,7 @@ use crate::residual::{Equations, Residual};
 pub struct Seen {
     /// The function.
     pub name: String,
-    /// States tried.
+    /// States tried, neighbours of states with a large bound not counted.
     pub states: u64,
     /// Largest value.
     pub value: f64,
@@ -154,7 +158,8 @@ impl Subject {
         }
     }
 
-    fn look(&mut self, side: &Batch, real: Float, scratch: &mut Vec<Twofold>, seen: &mut Seen) -> Option<()> {
+    /// Looks at the states of a batch. Which lane has the largest running bound yet, if one has.
+    fn look(&mut self, side: &Batch, real: Float, scratch: &mut Vec<Twofold>, seen: &mut Seen) -> Option<Option<usize>> {
         self.table.run(&side.own);
         twofold::values(&self.program, &self.pairs, &side.fine, scratch)?;
         let digits = real.unit().sqrt();
@@ -168,6 +173,7 @@ impl Subject {
         }
         // By lane: whether a bound may have been exceeded, and the largest error.
         let (mut near, mut worst) = ([false; LANES], [0.0f64; LANES]);
+        let mut largest = None;
         for &(entry, a_priori) in &self.entries {
             let (found, _) = self.table.step(entry);
             let running = self.table.bound(entry);
@@ -179,20 +185,21 @@ impl Subject {
                 if !singular[lane] {
                     worst[lane] = worst[lane].max(error);
                     seen.value = seen.value.max(found[lane].abs());
-                    seen.running = seen.running.max(running[lane]);
+                    if running[lane] > seen.running {
+                        (seen.running, largest) = (running[lane], Some(lane));
+                    }
                 }
             }
         }
         self.look_at_residuals(side, scratch, seen)?;
         for lane in 0..LANES {
-            seen.states += 1;
             seen.outside += u64::from(outside[lane]);
             seen.singular += u64::from(singular[lane]);
             if near[lane] || worst[lane] > seen.error {
                 self.look_again(side, lane, singular[lane], outside[lane], seen)?;
             }
         }
-        Some(())
+        Some(largest)
     }
 
     /// How far the accelerations are from solving the equations.
@@ -252,6 +259,33 @@ struct Batch {
     fine: TwofoldArguments,
 }
 
+impl Batch {
+    fn new(states: [Arguments<f64>; LANES], circle: &Circle, real: Float) -> Result<Batch, String> {
+        let fine = TwofoldArguments::new(circle, &states).ok_or("a joint variable out of reach")?;
+        Ok(Batch { own: LaneArguments::new(&states, real), fine, states })
+    }
+}
+
+/// Batches of neighbours that are tried of a state with the largest bound yet.
+const BATCHES_OF_NEIGHBOURS: usize = 8;
+
+/// A state of the box whose arguments differ from another's in the last four bits; what is 0 stays 0.
+fn neighbour(state: &Arguments<f64>, domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
+    let mut near = |values: &[f64], limits: &[(f64, f64)]| -> Vec<f64> {
+        let mut units = || 2.0 * real.unit() * (stream.below(17) as f64 - 8.0);
+        values.iter().zip(limits).map(|(x, &(low, high))| real.rounded(x * (1.0 + units())).clamp(low, high)).collect()
+    };
+    Arguments {
+        pi: near(&state.pi, &domain.pi),
+        q: near(&state.q, &domain.q),
+        dq: near(&state.dq, &domain.dq),
+        ddq: near(&state.ddq, &domain.ddq),
+        dqr: near(&state.dqr, &domain.dqr),
+        ddqr: near(&state.ddqr, &domain.ddqr),
+        tau: near(&state.tau, &domain.tau),
+    }
+}
+
 /// A state of the box; one in 16 has about half of its entries at 0.
 fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     let drawn = draw(domain, stream, real);
@@ -299,12 +333,19 @@ impl Run {
     /// Goes on over so many batches of [`LANES`] states.
     pub fn go_on(&mut self, batches: u64) -> Result<(), String> {
         for _ in 0..batches {
-            let states: [Arguments<f64>; LANES] = std::array::from_fn(|_| state(&self.domain, &mut self.stream, self.real));
-            let fine = TwofoldArguments::new(&self.circle, &states).ok_or("a joint variable out of reach")?;
-            let batch = Batch { own: LaneArguments::new(&states, self.real), fine, states };
+            let states = std::array::from_fn(|_| state(&self.domain, &mut self.stream, self.real));
+            let batch = Batch::new(states, &self.circle, self.real)?;
             for (subject, seen) in self.subjects.iter_mut().zip(&mut self.seen) {
-                subject.look(&batch, self.real, &mut self.scratch, seen).ok_or("an angle out of reach")?;
+                let mut look =
+                    |batch: &Batch| subject.look(batch, self.real, &mut self.scratch, seen).ok_or("an angle out of reach");
+                let Some(lane) = look(&batch)? else { continue };
+                for _ in 0..BATCHES_OF_NEIGHBOURS {
+                    let states =
+                        std::array::from_fn(|_| neighbour(&batch.states[lane], &self.domain, &mut self.stream, self.real));
+                    look(&Batch::new(states, &self.circle, self.real)?)?;
+                }
             }
+            self.seen.iter_mut().for_each(|seen| seen.states += LANES as u64);
         }
         Ok(())
     }
