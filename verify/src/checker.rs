@@ -16,7 +16,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
-use crate::formula::{Atoms, Formula};
+use crate::formula::{Atoms, Formula, Root};
 use crate::program::Program;
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
@@ -160,7 +160,16 @@ impl Checker {
     ) -> Result<Checker, String> {
         let wanted = |base: BaseParameters| Wanted { extras, base };
         let constants = constants_of(&manipulator);
-        let atoms = Atoms::of(constants.iter().chain(claims.formulas()));
+        // Angles by which the axes of a last link are turned bring the roots of their sines and cosines.
+        let circles: Vec<Formula> =
+            claims.formulas().map(|claim| claim.circle().1).filter(|cosine| !matches!(cosine, Formula::Cosine(_))).collect();
+        let atoms = Atoms::of(constants.iter().chain(claims.formulas()).chain(&circles));
+        // The sign of a nested root is free in a prime field; one that equals other constants, as sqrt(4 + pi - pi) does, would stand for either.
+        let own = Atoms::of(constants.iter());
+        if let Some(root) = atoms.roots.iter().find(|root| matches!(root, Root::Nested(_)) && !own.roots.contains(root)) {
+            let root = Formula::Root(root.clone());
+            return Err(format!("a claimed constant has {root}, which the description does not have"));
+        }
         let mut stream = Stream::new(effort.seed);
         let (mut points, mut exact) = (Vec::new(), Vec::new());
         for _ in 0..effort.points {

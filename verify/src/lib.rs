@@ -47,6 +47,8 @@ pub mod report;
 pub mod residual;
 pub mod test_kit;
 
+use std::fmt::Write;
+
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
@@ -67,9 +69,13 @@ pub fn hash(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// A seed that follows from both texts: random points that neither can have been written for.
-fn seed(input: &str, output: &str) -> u64 {
-    u64::from_str_radix(&hash(&format!("{input} {output}"))[..16], 16).unwrap_or(0)
+/// A seed that follows from both texts and from the claimed constants: random points that none of them can have been written for.
+fn seed(input: &str, output: &str, claims: &Claims) -> u64 {
+    let mut all = format!("{input} {output}");
+    for formula in claims.formulas() {
+        let _ = write!(all, " {formula}");
+    }
+    u64::from_str_radix(&hash(&all)[..16], 16).unwrap_or(0)
 }
 
 /// The module read and the equations at random points, ready to be compared.
@@ -142,7 +148,7 @@ pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) 
         return report;
     };
     report.robot.clone_from(&manipulator.name);
-    let effort = Effort { seed: effort.seed ^ seed(&report.input, &report.output), ..effort };
+    let effort = Effort { seed: effort.seed ^ seed(&report.input, &report.output, &claims), ..effort };
     match prepare(manipulator, text, claims, effort) {
         Ok(prepared) => fill(&mut report, &prepared),
         Err(fault) => report.faults.push(fault),

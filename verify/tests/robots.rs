@@ -3,8 +3,11 @@
 mod common;
 
 use armgen_codegen::program::{Options, Scalar, Trig};
+use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
-use armgen_verify::{certify, verify};
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
+use armgen_verify::{certify, verify, verify_with};
 
 /// Prints the report of each with `--nocapture`.
 fn check(scalar: Scalar) {
@@ -102,4 +105,50 @@ fn what_answers_for_the_sines_is_known_by_its_text_and_its_use_by_the_equations(
     assert!(swapped.starts_with("direct_kinematics[0][0]: "), "{swapped}");
     let left_out = fault("        7,\n        q[0],", "        6,\n        q[0],");
     assert!(left_out.contains("direct_kinematics"), "{left_out}");
+}
+
+/// Whoever writes a certificate can choose what literals stand for, but not constants whose sign is free.
+#[test]
+fn a_nested_root_that_the_description_does_not_have_is_refused() {
+    let source = common::source("scara");
+    let generated = common::generate(&source, Scalar::F64);
+    let claims = |text: &str| {
+        let mut texts: Vec<(String, Vec<String>)> = Vec::new();
+        for (name, numbers) in &generated.constants {
+            texts.push((name.clone(), numbers.iter().map(ToString::to_string).collect()));
+        }
+        texts.push(("elsewhere".into(), vec![text.into()]));
+        Claims::from_texts(texts.iter().map(|(name, list)| (name.as_str(), list.as_slice()))).expect("formulas")
+    };
+    let verdict = |text: &str| verify_with(&source, &generated.module, claims(text), Effort::default()).first_fault();
+    assert_eq!(verdict("sqrt(5)"), None);
+    let fault = verdict("sqrt(4 + pi - pi)").expect("not verified");
+    assert!(fault.contains("which the description does not have"), "{fault}");
+}
+
+/// A description with nested roots, tied to each other or not: the field of the generator knows nothing of them, and nothing is folded that it
+/// would have to know.
+#[test]
+fn an_arm_with_nested_roots_is_verified() {
+    let text = "name: roots\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  \
+        - {name: j1, type: revolute, a: sqrt(1 + sqrt(2)), alpha: 0, d: 0, theta: 0, link: {mass: 1.5, com: [-0.3, 0.1, 0.2], inertia: {zz: 0.25, yy: 0.2, xx: 0.1}}}\n  \
+        - {name: j2, type: revolute, a: sqrt(3 + sqrt(5)), alpha: pi/2, d: 0, theta: 0, link: {mass: 2.5, com: [-0.3, 0.1, 0.2], inertia: {zz: 0.25, yy: 0.2, xx: 0.1}}, \
+        motor: {ratio: 50, inertia: 0.001, mass: 0.5, axis: [1, sqrt(2), 1]}}\n  \
+        - {name: j3, type: revolute, a: sqrt(1 + sqrt(2)), alpha: 0.3, d: 0, theta: 0, link: {mass: 1.5, com: [-0.3, 0.1, 0.2]}}\n\
+        tool: {xyz: [0.1, sqrt(1 + sqrt(2)), 0], rpy: [0.2, 0, 0]}\n\
+        payload: {mass: 1, com: [0.1, 0, 0], inertia: {xx: 0.01, yy: 0.02, zz: 0.025}}\n";
+    let source = Source::new("robot.yaml", text);
+    let report = certify(&source, &common::generate(&source, Scalar::F64));
+    assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
+}
+
+/// `cfg` on an element would make the compiler read another text than the checker.
+#[test]
+fn an_attribute_inside_of_a_body_is_refused() {
+    let source = common::source("scara");
+    let generated = common::generate(&source, Scalar::F64);
+    let hidden = generated.module.replace("-0.25,", "#[cfg(any())] 0.5, -0.25,");
+    assert_ne!(hidden, generated.module);
+    let fault = verify(&source, &hidden, None).first_fault().expect("not verified");
+    assert!(fault.contains("an attribute inside of a body"), "{fault}");
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use syn::{BinOp, Block, Expr, ItemFn, Lit, Member, Pat, Stmt, UnOp};
 
-use super::{constant, harmless, signature, text};
+use super::{constant, signature, text};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Literal, Output, Program, Step};
 
@@ -89,10 +89,13 @@ impl Compiler<'_> {
     }
 
     fn block(&mut self, block: &Block, mut scope: Scope) -> Result<Value, String> {
+        // On an element of an array or a tuple `cfg` takes it away.
+        if text(block).contains('#') {
+            return Err("an attribute inside of a body".into());
+        }
         let Some((last, lines)) = block.stmts.split_last() else { return Err("an empty body".into()) };
         for line in lines {
             let Stmt::Local(local) = line else { return Err(format!("`{}` is not a `let`", shortened(line))) };
-            harmless(&local.attrs)?;
             let Some(init) = &local.init else { return Err(format!("`{}` has no value", shortened(line))) };
             if init.diverge.is_some() {
                 return Err(format!("`{}` has an else", shortened(line)));
