@@ -185,6 +185,14 @@ impl Number {
         Ordering::Equal
     }
 
+    /// Whether it is below 0.
+    pub fn is_negative(&self) -> bool {
+        match self.as_rational() {
+            Some(value) => value.is_negative(),
+            None => self.sign() == Ordering::Less,
+        }
+    }
+
     /// Whether the leading coefficient is negative: a sign that costs nothing and that negation flips.
     pub fn leads_negative(&self) -> bool {
         self.terms.values().next().is_some_and(|c| c.is_negative())

@@ -285,7 +285,8 @@ impl Pool {
     }
 
     /// A copy to try things in: constants are known by their fingerprints alone, so that arithmetic with them costs nothing. What is
-    /// derived there has the operations that it has in an exact pool, but no values to print.
+    /// derived there has the operations that it has in an exact pool (but for one over a constant without a simple inverse, which costs nothing
+    /// here), and no values to print.
     pub fn sketch(&self) -> Pool {
         let mut copy = self.clone();
         copy.sketch = true;
@@ -382,7 +383,8 @@ impl Pool {
             let value = self.field.number(value);
             return self.sketched(value);
         }
-        let negative = value.leads_negative();
+        // By its value, so that what a divisor stands for is positive where the divisor is.
+        let negative = value.is_negative();
         let size = Rc::new(if negative { -value } else { value.clone() });
         if let Some(&expr) = self.constant_nodes.get(&size) {
             return expr.signed(negative);
@@ -514,7 +516,10 @@ impl Pool {
             }
             (true, true) => {
                 let product = &self.value(a) * &self.value(b);
-                return self.constant(&product).signed(negate);
+                let expected = self.field.mul(self.fingerprint(a)[0], self.fingerprint(b)[0]);
+                if let Some(constant) = self.folded(&product, expected) {
+                    return constant.signed(negate);
+                }
             }
             (false, true) => return self.mul(b, a).signed(negate),
             // Two constant factors in a row are one.
@@ -533,8 +538,16 @@ impl Pool {
         self.find_or_push(Node::Mul(a, b), fingerprint).signed(negate)
     }
 
+    /// The constant that an operation on constants comes to, if its value in the field is what the operation gives there. It is not where a
+    /// nested root is reduced, r r to what stands under the root: its value in the field is one on which nothing is known.
+    fn folded(&mut self, value: &Number, expected: Element) -> Option<ExprId> {
+        let constant = self.constant(value);
+        (self.fingerprint(constant)[0] == expected).then_some(constant)
+    }
+
     /// 1/a. The caller knows that a is not identically zero.
     pub fn reciprocal(&mut self, a: ExprId) -> ExprId {
+        assert_ne!(a, ExprId::ZERO, "one over 0");
         let negate = a.is_negated();
         let a = a.unsigned();
         if self.sketch && self.is_constant(a) {
@@ -543,10 +556,11 @@ impl Pool {
         }
         // A number 1/n that only stands for itself would grow with every pivot that it enters, and n (1/n) - 1 would not be seen to be 0; as a
         // node it is found by its fingerprint.
-        if let Some(inverse) = self.as_constant(a).and_then(|value| value.simple_inverse()) {
-            return self.constant(&inverse).signed(negate);
-        }
         let fingerprint = self.fingerprint(a).map(|x| self.field.inverse(x));
+        let inverse = self.as_constant(a).and_then(|value| value.simple_inverse());
+        if let Some(constant) = inverse.and_then(|inverse| self.folded(&inverse, fingerprint[0])) {
+            return constant.signed(negate);
+        }
         self.find_or_push(Node::Reciprocal(a), fingerprint).signed(negate)
     }
 

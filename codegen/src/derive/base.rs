@@ -439,6 +439,13 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
             pool.symbol(Symbol::Parameter(column as u16))
         }
     };
+    // Linear in the parameters and without joint angles: no symbol is left, though a product of nested roots may.
+    let value = |pool: &Pool, expr: ExprId| {
+        pool.as_constant(expr).unwrap_or_else(|| {
+            let values = pool.evaluate(&[expr], &|_| Number::zero()).expect("grouping has no reciprocals");
+            values.into_iter().next().expect("one for each")
+        })
+    };
     // A rotor's column holds all that its inertia does, its turning with the parent link included: that part of the body is not the link's.
     let of_rotor = |k: u16| matches!(&standard.kind, ParameterKind::Standard(all) if matches!(all[usize::from(k)], StandardParameter::RotorInertia(_)));
     let of_link = matches!(parameter, StandardParameter::Link(..));
@@ -448,12 +455,12 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
                 return Number::zero();
             }
             let derivative = derivative_by_parameter(pool, &[expr], k)[0];
-            pool.as_constant(derivative).expect("grouping is linear in the parameters")
+            value(pool, derivative)
         })
         .collect();
     let mut without = Pool::new(pool.field().clone());
     let rest = pool.substitute_into(&mut without, &[expr], &|_, _| ExprId::ZERO)[0];
-    coefficients.push(without.as_constant(rest).expect("grouping asks for no joint angle"));
+    coefficients.push(value(&without, rest));
     coefficients
 }
 

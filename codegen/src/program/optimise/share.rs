@@ -165,7 +165,9 @@ fn share_factors(circuit: &mut Circuit, users: &[GateId], a: GateId, b: GateId) 
             list[i] = shared;
             list.remove(j);
         }
-        circuit.gates[id as usize] = Gate::Product(list);
+        // A factor that is left alone is no product.
+        circuit.gates[id as usize] =
+            if let [only] = list[..] { Gate::Sum(vec![Edge::new(only, false)]) } else { Gate::Product(list) };
     }
 }
 
@@ -214,6 +216,24 @@ fn take_factor(circuit: &mut Circuit, uses: &[u32], sum: GateId, factor: GateId)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::program::{Pass, Passes};
+    use crate::ring::field::Field;
+    use crate::ring::{Pool, Symbol};
+
+    #[test]
+    fn a_product_that_is_another_one_is_no_product_of_its_own() {
+        let mut pool = Pool::new(Field::for_constants([]));
+        let [a, b, c, d, e, x] = [0, 1, 2, 3, 4, 5].map(|i| pool.symbol(Symbol::Rate(i)));
+        let ab = pool.mul(a, b);
+        let (xa, xe) = (pool.mul(x, a), pool.mul(x, e));
+        let xea = pool.mul(xe, a);
+        let terms = [pool.mul(xa, b), pool.mul(xea, b), pool.mul(c, x), pool.mul(d, x)];
+        let sum = pool.sum(terms);
+        let sharing_alone: Passes = Pass::ALL.into_iter().filter(|&pass| pass != Pass::Sharing).collect();
+        // a b and x (a b (1 + e) + c + d): six operations.
+        let (pool, entries) = super::super::optimise(&pool, &[ab, sum], &[], sharing_alone);
+        assert_eq!(pool.operations(&entries, 1), 6);
+    }
 
     #[test]
     fn a_pair_counts_as_often_as_it_can_be_taken() {

@@ -103,7 +103,7 @@ impl Circuit {
             let value = self.constant(constant).expect("is a constant");
             product = self.constants.mul(product, value);
         }
-        if product.is_negated() {
+        if product.is_negated() || !self.constants.is_constant(product) {
             return false;
         }
         others.extend(self.push_constant(product));
