@@ -324,7 +324,7 @@ fn nominal(module: &Module) -> Vec<f64> {
 
 /// The box of a module's arm.
 pub fn domain_of(manipulator: &Manipulator, module: &Module) -> Domain {
-    domain(manipulator, &nominal(module))
+    domain(manipulator, &nominal(module)).map(|(low, high)| module.real.between(low, high))
 }
 
 /// The bounds of all functions that can be read, by name.
@@ -344,11 +344,17 @@ pub fn two_digits(bound: f64) -> String {
     if bound == 0.0 || !bound.is_finite() {
         return format!("{bound}");
     }
-    let mut text = format!("{bound:.1e}");
-    if text.parse::<f64>().is_ok_and(|rounded| rounded < bound) {
-        text = format!("{:.1e}", bound * 1.05);
+    let text = format!("{bound:.1e}");
+    let Some((digits, exponent)) = text.split_once('e').filter(|_| text.parse::<f64>().is_ok_and(|rounded| rounded < bound))
+    else {
+        return text;
+    };
+    // One more in the second digit.
+    let tenths = digits.chars().filter_map(|c| c.to_digit(10)).fold(0, |number, digit| 10 * number + digit) + 1;
+    match (tenths, exponent.parse::<i32>()) {
+        (100, Ok(exponent)) => format!("1.0e{}", exponent + 1),
+        _ => format!("{}.{}e{exponent}", tenths / 10, tenths % 10),
     }
-    text
 }
 
 /// The box in words, for the head of a module; the numbers are those of [`domain`].

@@ -246,6 +246,12 @@ impl Float {
         }
     }
 
+    /// The outermost numbers of this format between two others.
+    pub fn between(self, low: f64, high: f64) -> (f64, f64) {
+        let (first, last) = (self.rounded(low), self.rounded(high));
+        (if first < low { self.neighbours(first).1 } else { first }, if last > high { self.neighbours(last).0 } else { last })
+    }
+
     fn round(self, value: &Rational) -> f64 {
         match self {
             Float::F64 => value.to_f64().value(),

@@ -27,7 +27,7 @@ use crate::residual::{Equations, Residual};
 pub struct Seen {
     /// The function.
     pub name: String,
-    /// States tried, neighbours of states with a large bound not counted.
+    /// States tried; neighbours of states with a large bound count for sizes and for bounds exceeded alone.
     pub states: u64,
     /// Largest value.
     pub value: f64,
@@ -286,20 +286,23 @@ fn neighbour(state: &Arguments<f64>, domain: &Domain, stream: &mut Stream, real:
     }
 }
 
-/// A state of the box; one in 16 has about half of its entries at 0.
+/// A state of the box; one in 16 has about half of its entries at 0, or at the end of the box that is next to 0.
 fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     let drawn = draw(domain, stream, real);
     if stream.below(16) > 0 {
         return drawn;
     }
-    let mut corner = |v: &[f64]| v.iter().map(|x| if stream.below(2) == 0 { 0.0 } else { *x }).collect::<Vec<f64>>();
+    let mut corner = |values: &[f64], limits: &[(f64, f64)]| -> Vec<f64> {
+        let mut zero = |x: f64| if stream.below(2) == 0 { 0.0 } else { x };
+        values.iter().zip(limits).map(|(x, &(low, high))| zero(*x).clamp(low, high)).collect()
+    };
     Arguments {
-        q: corner(&drawn.q),
-        dq: corner(&drawn.dq),
-        ddq: corner(&drawn.ddq),
-        dqr: corner(&drawn.dqr),
-        ddqr: corner(&drawn.ddqr),
-        tau: corner(&drawn.tau),
+        q: corner(&drawn.q, &domain.q),
+        dq: corner(&drawn.dq, &domain.dq),
+        ddq: corner(&drawn.ddq, &domain.ddq),
+        dqr: corner(&drawn.dqr, &domain.dqr),
+        ddqr: corner(&drawn.ddqr, &domain.ddqr),
+        tau: corner(&drawn.tau, &domain.tau),
         pi: drawn.pi,
     }
 }
@@ -311,6 +314,8 @@ pub struct Run {
     real: Float,
     circle: Circle,
     stream: Stream,
+    /// Neighbours have draws of their own: which states are tried does not depend on what is seen.
+    of_neighbours: Stream,
     scratch: Vec<Twofold>,
     /// What has been seen of each function.
     pub seen: Vec<Seen>,
@@ -326,6 +331,7 @@ impl Run {
             real: module.real,
             circle: Circle::new(),
             stream: Stream::new(seed),
+            of_neighbours: Stream::new(!seed),
             scratch: Vec::new(),
         }
     }
@@ -336,14 +342,16 @@ impl Run {
             let states = std::array::from_fn(|_| state(&self.domain, &mut self.stream, self.real));
             let batch = Batch::new(states, &self.circle, self.real)?;
             for (subject, seen) in self.subjects.iter_mut().zip(&mut self.seen) {
-                let mut look =
-                    |batch: &Batch| subject.look(batch, self.real, &mut self.scratch, seen).ok_or("an angle out of reach");
-                let Some(lane) = look(&batch)? else { continue };
+                let mut look = |batch: &Batch, seen: &mut Seen| {
+                    subject.look(batch, self.real, &mut self.scratch, seen).ok_or("an angle out of reach")
+                };
+                let Some(lane) = look(&batch, seen)? else { continue };
+                let (outside, singular) = (seen.outside, seen.singular);
                 for _ in 0..BATCHES_OF_NEIGHBOURS {
-                    let states =
-                        std::array::from_fn(|_| neighbour(&batch.states[lane], &self.domain, &mut self.stream, self.real));
-                    look(&Batch::new(states, &self.circle, self.real)?)?;
+                    let near = |_| neighbour(&batch.states[lane], &self.domain, &mut self.of_neighbours, self.real);
+                    look(&Batch::new(std::array::from_fn(near), &self.circle, self.real)?, seen)?;
                 }
+                (seen.outside, seen.singular) = (outside, singular);
             }
             self.seen.iter_mut().for_each(|seen| seen.states += LANES as u64);
         }
