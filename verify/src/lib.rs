@@ -200,3 +200,22 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     report.identities = identities::check(checker, module, &report.functions, &nominal);
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_points_follow_from_both_texts_and_the_claims() {
+        let claims = |text: &str| Claims::from_texts([("gravity", &[text.to_string()][..])]).expect("a formula");
+        let seeds = [
+            seed("in", "out", &claims("981/100")),
+            seed("in", "out", &claims("982/100")),
+            seed("in", "other", &claims("981/100")),
+            seed("another", "out", &claims("981/100")),
+        ];
+        for (i, one) in seeds.iter().enumerate() {
+            assert!(!seeds[..i].contains(one), "{seeds:?}");
+        }
+    }
+}
