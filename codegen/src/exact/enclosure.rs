@@ -3,12 +3,13 @@
 //! Everything is enclosed between multiples of 2^-places, rounded outwards. Roots by integer square root, pi by Machin's formula
 //! pi/4 = 4 atan(1/5) - atan(1/239), sine and cosine by their series (arguments are at most pi/4 here, but nothing depends on it): an
 //! alternating series of falling terms lies between two partial sums. The arc tangent by Euler's series, whose terms are positive and fall by
-//! more than a half each below 1.
+//! more than a half each below 1. What comes out wide, a small fraction times a large root say, is done again with as many places more as
+//! were lost.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use dashu_base::{Abs, DivEuclid, SquareRoot};
+use dashu_base::{BitTest, DivEuclid, SquareRoot};
 use dashu_int::{IBig, UBig};
 
 use super::{Atom, Number, Rational};
@@ -16,11 +17,14 @@ use super::{Atom, Number, Rational};
 /// Numbers of bits to try in turn; the last is beyond what any written number needs to be told apart.
 pub(super) const PRECISIONS: [usize; 5] = [96, 160, 320, 1280, 5120];
 
+/// Enclosures wider than 2^LOST multiples of 2^-places are done again with more of them.
+const LOST: usize = 16;
+
 /// Two multiples of 2^-places.
 type Interval = (IBig, IBig);
 
 impl Number {
-    /// Two fractions around the number; they are about 2^-bits apart for numbers of moderate size.
+    /// Two fractions around the number, less than 2^-bits apart.
     pub fn enclose(&self, bits: usize) -> (Rational, Rational) {
         let places = bits + 64;
         let (low, high) = Enclosures::new(places).number(self);
@@ -42,7 +46,20 @@ impl Enclosures {
         Enclosures { places, roots: BTreeMap::new(), others: BTreeMap::new() }
     }
 
+    /// Within 2^LOST multiples of 2^-places: what sines and cosines are taken of is as short as it looks.
     fn number(&mut self, number: &Number) -> Interval {
+        let mut guard = 0;
+        loop {
+            let (low, high) = self.to(self.places + guard, |all| all.sum(number));
+            let width = (&high - &low).bit_len();
+            if width <= guard + LOST {
+                return (floor_shift(low, guard), ceil_shift(high, guard));
+            }
+            guard = width;
+        }
+    }
+
+    fn sum(&mut self, number: &Number) -> Interval {
         let mut sum = (IBig::ZERO, IBig::ZERO);
         for (monomial, coefficient) in number.terms() {
             let scaled = coefficient.numerator() << self.places;
@@ -205,10 +222,9 @@ fn arctangent(ratio: &Rational, places: usize) -> Interval {
     (floor_shift(&sum - &slack, guard), ceil_shift(sum + slack, guard))
 }
 
-/// Σ (-1)^k x^(2k+first) / (2k+first)!
+/// Σ (-1)^k x^(2k+first) / (2k+first)! for |x| < 1, so that the terms fall from the first on; each is off by less than two units.
 fn series(x: &IBig, places: usize, first: u32) -> Interval {
-    // Guard bits for the intermediate terms of arguments above 1, which first grow.
-    let guard = 16 + 2 * usize::try_from(x.clone().abs() >> places).map_or(1 << 16, |whole| whole + 1);
+    let guard = 16;
     let bits = places + guard;
     let x = x.clone() << guard;
     let square: IBig = (&x * &x) >> bits;
@@ -221,6 +237,6 @@ fn series(x: &IBig, places: usize, first: u32) -> Interval {
         k += 2;
         steps += 1;
     }
-    let slack = IBig::from(4 * steps + 8) << (guard / 2);
+    let slack = IBig::from(4 * steps + 8);
     (floor_shift(&sum - &slack, guard), ceil_shift(sum + slack, guard))
 }

@@ -120,3 +120,21 @@ fn signs_are_exact() {
     assert_eq!((&Number::pi() - &rational(22, 7)).sign(), Ordering::Less);
     assert_eq!((&Number::pi() - &rational(333, 106)).sign(), Ordering::Greater);
 }
+
+#[test]
+fn enclosures_are_tight_whatever_the_sizes() {
+    // A large root over a larger number, and its inverse: at 2^-160 the one is [0, 1] times 10^150.
+    let large = Number::from(Rational::from(IBig::from(10).pow(301) + IBig::ONE));
+    let small = large.sqrt().unwrap().checked_div(&(&large * &large)).unwrap();
+    let inverse = Number::one().checked_div(&small).unwrap();
+    let atom = Number::one().checked_div(&(&small + &Number::pi())).unwrap();
+    for number in [&small, &inverse, &atom, &Angle::new(small.clone()).sin(), &Angle::new(inverse.clone()).cos()] {
+        for bits in [1, 96, 256] {
+            let (low, high) = number.enclose(bits);
+            assert!(low <= high && (high - low) * Rational::from(UBig::ONE << bits) < Rational::ONE, "{number} to {bits} bits");
+        }
+    }
+    assert_eq!(small.sign(), Ordering::Greater);
+    assert_eq!((small.to_f64(), inverse.to_f64()), (0.0, f64::INFINITY));
+    assert_eq!(Angle::new(small).sin().sign(), Ordering::Greater);
+}
