@@ -383,12 +383,16 @@ impl Pool {
             let value = self.field.number(value);
             return self.sketched(value);
         }
+        let minus = -value;
+        // Most are known, and their signs with them.
+        for (size, negative) in [(value, false), (&minus, true)] {
+            if let Some(&expr) = self.constant_nodes.get(size) {
+                return expr.signed(negative);
+            }
+        }
         // By its value, so that what a divisor stands for is positive where the divisor is.
         let negative = value.is_negative();
-        let size = Rc::new(if negative { -value } else { value.clone() });
-        if let Some(&expr) = self.constant_nodes.get(&size) {
-            return expr.signed(negative);
-        }
+        let size = Rc::new(if negative { minus } else { value.clone() });
         let fingerprint = [self.field.number(&size); 2];
         let id = ConstantId(self.constants.len() as u32);
         let expr = self.push(Node::Constant(id), fingerprint);

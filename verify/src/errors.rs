@@ -271,40 +271,21 @@ const BATCHES_OF_NEIGHBOURS: usize = 8;
 
 /// A state of the box whose arguments differ from another's in the last four bits; what is 0 stays 0.
 fn neighbour(state: &Arguments<f64>, domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
-    let mut near = |values: &[f64], limits: &[(f64, f64)]| -> Vec<f64> {
-        let mut units = || 2.0 * real.unit() * (stream.below(17) as f64 - 8.0);
-        values.iter().zip(limits).map(|(x, &(low, high))| real.rounded(x * (1.0 + units())).clamp(low, high)).collect()
-    };
-    Arguments {
-        pi: near(&state.pi, &domain.pi),
-        q: near(&state.q, &domain.q),
-        dq: near(&state.dq, &domain.dq),
-        ddq: near(&state.ddq, &domain.ddq),
-        dqr: near(&state.dqr, &domain.dqr),
-        ddqr: near(&state.ddqr, &domain.ddqr),
-        tau: near(&state.tau, &domain.tau),
-    }
+    state.beside(domain, |x, (low, high)| {
+        let units = 2.0 * real.unit() * (stream.below(17) as f64 - 8.0);
+        real.rounded(x * (1.0 + units)).clamp(low, high)
+    })
 }
 
 /// A state of the box; one in 16 has about half of its entries at 0, or at the end of the box that is next to 0.
 fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
-    let drawn = draw(domain, stream, real);
+    let mut drawn = draw(domain, stream, real);
     if stream.below(16) > 0 {
         return drawn;
     }
-    let mut corner = |values: &[f64], limits: &[(f64, f64)]| -> Vec<f64> {
-        let mut zero = |x: f64| if stream.below(2) == 0 { 0.0 } else { x };
-        values.iter().zip(limits).map(|(x, &(low, high))| zero(*x).clamp(low, high)).collect()
-    };
-    Arguments {
-        q: corner(&drawn.q, &domain.q),
-        dq: corner(&drawn.dq, &domain.dq),
-        ddq: corner(&drawn.ddq, &domain.ddq),
-        dqr: corner(&drawn.dqr, &domain.dqr),
-        ddqr: corner(&drawn.ddqr, &domain.ddqr),
-        tau: corner(&drawn.tau, &domain.tau),
-        pi: drawn.pi,
-    }
+    let pi = std::mem::take(&mut drawn.pi);
+    let corner = drawn.beside(domain, |x, (low, high)| if stream.below(2) == 0 { 0.0 } else { x }.clamp(low, high));
+    Arguments { pi, ..corner }
 }
 
 /// A run over states of a stream of its own.

@@ -53,6 +53,20 @@ impl<T: Copy> Arguments<T> {
         }
     }
 
+    /// Each entry together with the same entry of others, in the order of the fields.
+    pub fn beside<U: Copy, V>(&self, others: &Arguments<U>, mut f: impl FnMut(T, U) -> V) -> Arguments<V> {
+        let mut all = |argument: Argument| self.of(argument).iter().zip(others.of(argument)).map(|(a, b)| f(*a, *b)).collect();
+        Arguments {
+            pi: all(Argument::Pi),
+            q: all(Argument::Q),
+            dq: all(Argument::Dq),
+            ddq: all(Argument::Ddq),
+            dqr: all(Argument::Dqr),
+            ddqr: all(Argument::Ddqr),
+            tau: all(Argument::Tau),
+        }
+    }
+
     /// The same in other numbers.
     pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Arguments<U> {
         let of = |v: &[T]| v.iter().map(|x| f(*x)).collect();
