@@ -64,6 +64,7 @@ pub(crate) fn run(files: &[PathBuf], out: &Path) -> Outcome {
     let begun = Instant::now();
     let (mut jobs, mut code) = (Vec::new(), DONE);
     let mut others: Vec<(String, usize)> = Vec::new();
+    let mut read: Vec<(String, PathBuf)> = Vec::new();
     for file in &files {
         let source = match input::source(file) {
             Ok(source) => source,
@@ -73,9 +74,19 @@ pub(crate) fn run(files: &[PathBuf], out: &Path) -> Outcome {
             }
         };
         match file::parse(file, &source, terminal::colour(&std::io::stderr())) {
-            Parsed::Experiment(experiment) => {
-                jobs.push(Job::new(*experiment));
-            }
+            Parsed::Experiment(experiment) => match read.iter().find(|(name, _)| *name == experiment.name) {
+                Some((name, first)) => {
+                    let (first, second) = (first.display(), file.display());
+                    terminal::error(&format!(
+                        "{second} is not run: its figures and logs would be those of {first}, `{name}` as well; rename it, or run it by itself with another --out"
+                    ));
+                    code = code.max(FAULTY);
+                }
+                None => {
+                    read.push((experiment.name.clone(), file.clone()));
+                    jobs.push(Job::new(*experiment));
+                }
+            },
             Parsed::OtherRobot(robot) => match others.iter_mut().find(|(known, _)| *known == robot) {
                 Some((_, count)) => *count += 1,
                 None => others.push((robot, 1)),

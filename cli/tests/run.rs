@@ -9,10 +9,14 @@ fn root() -> PathBuf {
 }
 
 fn run(folder: &Path, file: &Path) -> Output {
+    run_all(folder, &[file])
+}
+
+fn run_all(folder: &Path, files: &[&Path]) -> Output {
     let out = folder.join("out");
     let _ = fs::remove_dir_all(&out);
     let command =
-        Command::new(env!("CARGO_BIN_EXE_armgen")).arg("run").arg(file).arg("--out").arg(&out).current_dir(root()).output();
+        Command::new(env!("CARGO_BIN_EXE_armgen")).arg("run").args(files).arg("--out").arg(&out).current_dir(root()).output();
     command.expect("the program runs")
 }
 
@@ -68,4 +72,19 @@ fn what_is_not_as_expected_or_faulty_gives_code_1() {
 #[test]
 fn a_file_that_is_not_there_gives_code_2() {
     assert_eq!(run(&folder("run_absent"), Path::new("experiments/absent.yaml")).status.code(), Some(2));
+}
+
+#[test]
+fn no_experiment_writes_over_the_files_of_another() {
+    let folder = folder("run_twins");
+    let (first, twin) = (Path::new("experiments/manipulability.yaml"), folder.join("manipulability.yaml"));
+    fs::copy(root().join(first), &twin).expect("a copy");
+    let output = run_all(&folder, &[first, &twin]);
+    if skipped(&output) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.contains("run_twins/manipulability.yaml is not run") && message.contains("rename it"), "{message}");
+    assert!(String::from_utf8_lossy(&output.stdout).contains("33 of 33 results as expected"), "{output:?}");
 }
