@@ -39,6 +39,12 @@ pub(crate) enum Warnings {
 /// The valid arm of a file; what is wrong with it goes to standard error.
 pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -> Result<(Manipulator, Diagnostics), u8> {
     let (valid, diagnostics) = manipulator::read_for(source, scalar);
+    let (manipulator, _) = told(source, valid, &diagnostics, warnings)?;
+    Ok((manipulator, diagnostics))
+}
+
+/// What a file gave, or the exit code; what is wrong with the file goes to standard error.
+pub(crate) fn told<T>(source: &Source, given: Option<T>, diagnostics: &Diagnostics, warnings: Warnings) -> Result<T, u8> {
     if warnings == Warnings::Shown || diagnostics.has_errors() {
         if !diagnostics.is_empty() {
             terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));
@@ -50,15 +56,12 @@ pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -
             counted(diagnostics.warnings(), "warning")
         ));
     }
-    match valid {
-        Some((manipulator, _)) => Ok((manipulator, diagnostics)),
-        None => {
-            let (errors, warnings) = (diagnostics.errors(), diagnostics.warnings());
-            let also = if warnings == 0 { String::new() } else { format!(" and {}", counted(warnings, "warning")) };
-            terminal::error(&format!("{}: {}{also}", source.name(), counted(errors, "error")));
-            Err(FAULTY)
-        }
-    }
+    given.ok_or_else(|| {
+        let (errors, warnings) = (diagnostics.errors(), diagnostics.warnings());
+        let also = if warnings == 0 { String::new() } else { format!(" and {}", counted(warnings, "warning")) };
+        terminal::error(&format!("{}: {}{also}", source.name(), counted(errors, "error")));
+        FAULTY
+    })
 }
 
 /// The model of a file's arm.

@@ -85,15 +85,12 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         Ok(source) => source,
         Err(code) => return code,
     };
-    if let Err(code) = input::manipulator(&source, scalar, input::Warnings::Counted) {
-        return code;
-    }
     let without = choices.without.iter().copied().collect();
     let options = Options { scalar, trig, without, batch: choices.batch.map(usize::from), functions };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
-    let Some(mut generated) = generated else {
-        terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
-        return FAULTY;
+    let mut generated = match input::told(&source, generated, &diagnostics, input::Warnings::Counted) {
+        Ok(generated) => generated,
+        Err(code) => return code,
     };
     if !input::all_there(source.name(), &generated.absent, functions) {
         return FAULTY;
