@@ -35,12 +35,8 @@ fn main() {
                 modules.push_str("}\n");
                 let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("a build script has it"));
                 let text = std::fs::read_to_string(out.join(format!("{module}.rs"))).expect("it was just written");
-                let inertia = if text.contains("pub fn operational_inertia(") {
-                    format!("|a| call!({module}::operational_inertia, a, q).flat()")
-                } else {
-                    "|_| panic!(\"the arm cannot do its task\")".to_owned()
-                };
-                writeln!(list, "    emitted!({module}, \"{path}\", {inertia}),").expect("text");
+                let optional = if text.contains("pub fn operational_inertia(") { ", operational_inertia" } else { "" };
+                writeln!(list, "    emitted!({module}, \"{path}\"{optional}),").expect("text");
             };
             Robot::new(&path).generate();
             add(&stem);

@@ -48,6 +48,7 @@ impl Program {
 
 /// What reads questions: `mod arm0; mod arm1; ..` and the table of `answer` come after it.
 const MAIN: &str = include_str!("compiled/program.rs");
+const ANSWERS: &str = include_str!("answers.rs");
 
 impl Compiled {
     /// Compiles modules in f64 into one program in `root`, with warnings denied, and starts it.
@@ -70,8 +71,9 @@ impl Compiled {
                 if functions(module).iter().any(|name| name == OPTIONAL) { format!(", {OPTIONAL}") } else { String::new() };
             writeln!(table, "    answers!(arm{i}{optional}),").expect("text");
         }
-        writeln!(main, "\nconst ARMS: &[fn(&str, &Given) -> Vec<f64>] = &[\n{table}];").expect("text");
+        writeln!(main, "\nconst ARMS: &[fn(&str, &Arguments) -> Vec<f64>] = &[\n{table}];").expect("text");
         project.write("src/main.rs", &main);
+        project.write("src/answers.rs", ANSWERS);
         project.succeed(&["build", "--quiet"]);
         let mut child = Command::new(root.join("target/debug/arms"))
             .stdin(Stdio::piped())

@@ -1,8 +1,9 @@
 //! The emitted modules, compiled into this crate as a user compiles one into theirs, and each as [`Functions`].
 
-use armgen_runtime::nalgebra::{convert, RealField, SMatrix, SVector};
+use armgen_runtime::nalgebra::{RealField, SMatrix, SVector};
 use armgen_runtime::robot::{Kinematics, Regressor};
 
+use crate::answers::{array, Flat, Float};
 use crate::functions::{Arguments, Functions};
 
 /// An emitted module.
@@ -22,8 +23,6 @@ pub struct Emitted {
     pub narrow: bool,
     dof: usize,
     parameter_names: &'static [&'static str],
-    nominal: fn() -> Vec<f64>,
-    nominal_base: fn() -> Vec<f64>,
     free: fn(&str, &Arguments) -> Vec<f64>,
     traits: fn(&str, &Arguments) -> Vec<f64>,
 }
@@ -51,11 +50,11 @@ impl Functions for Emitted {
     }
 
     fn nominal(&self) -> Vec<f64> {
-        (self.nominal)()
+        self.call("nominal", &Arguments::default())
     }
 
     fn nominal_base(&self) -> Vec<f64> {
-        (self.nominal_base)()
+        self.call("nominal_base", &Arguments::default())
     }
 
     fn has(&self, function: &str) -> bool {
@@ -100,59 +99,14 @@ pub fn emitted(name: &str) -> &'static Emitted {
     ALL.iter().find(|robot| robot.module == name).unwrap_or_else(|| panic!("no emitted module `{name}`"))
 }
 
-/// f64 or f32.
-pub trait Real: RealField + Copy + Into<f64> {}
-
-impl<T: RealField + Copy + Into<f64>> Real for T {}
-
-/// The array that an emitted function takes.
-fn array<T: Real, const N: usize>(values: &[f64]) -> [T; N] {
-    assert_eq!(values.len(), N);
-    std::array::from_fn(|i| convert(values[i]))
-}
-
-/// Numbers, however they are nested, in order.
-trait Flat {
-    fn flat(self) -> Vec<f64>;
-}
-
-impl Flat for f64 {
-    fn flat(self) -> Vec<f64> {
-        vec![self]
-    }
-}
-
-impl Flat for f32 {
-    fn flat(self) -> Vec<f64> {
-        vec![f64::from(self)]
-    }
-}
-
-impl<T: Flat, const N: usize> Flat for [T; N] {
-    fn flat(self) -> Vec<f64> {
-        self.into_iter().flat_map(Flat::flat).collect()
-    }
-}
-
-impl<A: Flat, B: Flat> Flat for (A, B) {
-    fn flat(self) -> Vec<f64> {
-        [self.0.flat(), self.1.flat()].concat()
-    }
-}
-
-impl<A: Flat, B: Flat, C: Flat> Flat for (A, B, C) {
-    fn flat(self) -> Vec<f64> {
-        [self.0.flat(), self.1.flat(), self.2.flat()].concat()
-    }
-}
-
-fn flat_matrix<T: Real, const R: usize, const C: usize>(m: &SMatrix<T, R, C>) -> Vec<f64> {
+fn flat_matrix<T: RealField + Into<f64> + Copy, const R: usize, const C: usize>(m: &SMatrix<T, R, C>) -> Vec<f64> {
     (0..R).flat_map(|i| (0..C).map(move |j| m[(i, j)].into())).collect()
 }
 
 /// Calls a method of the traits.
-fn through<T: Real, R, const N: usize, const P: usize>(robot: &R, function: &str, a: &Arguments) -> Vec<f64>
+fn through<T, R, const N: usize, const P: usize>(robot: &R, function: &str, a: &Arguments) -> Vec<f64>
 where
+    T: RealField + Float + Into<f64>,
     R: Regressor<N, P> + Kinematics<N, Real = T>,
 {
     let vector = |values: &[f64]| -> SVector<T, N> { SVector::from(array::<T, N>(values)) };
@@ -180,63 +134,9 @@ where
     }
 }
 
-/// Calls a free function of a module: `call!(module, function, arguments...)`.
-macro_rules! call {
-    ($module:ident :: $function:ident, $a:ident, $($argument:ident),*) => {
-        $module::$function($(&array(&$a.$argument)),*)
-    };
-}
-
-/// The table entry of an emitted module, with what computes the function that not every module has.
+/// The table entry of an emitted module: `emitted!(module, path, function, ..)` with those functions of q that not every module has.
 macro_rules! emitted {
-    ($module:ident, $path:literal, $operational_inertia:expr) => {{
-        fn nominal_base() -> Vec<f64> {
-            $module::NOMINAL_BASE_PARAMETERS.flat()
-        }
-        fn nominal() -> Vec<f64> {
-            $module::NOMINAL_PARAMETERS.flat()
-        }
-        fn terms(terms: $module::EquationsOfMotion) -> Vec<f64> {
-            [terms.inertia.flat(), terms.coriolis.flat(), terms.gravity.flat()].concat()
-        }
-        fn free(function: &str, a: &Arguments) -> Vec<f64> {
-            match function {
-                "direct_kinematics" => call!($module::direct_kinematics, a, q).flat(),
-                "link_frames" => call!($module::link_frames, a, q).flat(),
-                "geometric_jacobian" => call!($module::geometric_jacobian, a, q).flat(),
-                "geometric_jacobian_dot" => call!($module::geometric_jacobian_dot, a, q, dq).flat(),
-                "inertia_matrix" => call!($module::inertia_matrix, a, q).flat(),
-                "inertia_matrix_with" => call!($module::inertia_matrix_with, a, pi, q).flat(),
-                "coriolis_matrix" => call!($module::coriolis_matrix, a, q, dq).flat(),
-                "coriolis_matrix_with" => call!($module::coriolis_matrix_with, a, pi, q, dq).flat(),
-                "gravity" => call!($module::gravity, a, q).flat(),
-                "gravity_with" => call!($module::gravity_with, a, pi, q).flat(),
-                "friction" => call!($module::friction, a, dq).flat(),
-                "friction_with" => call!($module::friction_with, a, pi, dq).flat(),
-                "equations_of_motion" => terms(call!($module::equations_of_motion, a, q, dq)),
-                "equations_of_motion_with" => terms(call!($module::equations_of_motion_with, a, pi, q, dq)),
-                "inverse_dynamics" => call!($module::inverse_dynamics, a, q, dq, ddq).flat(),
-                "inverse_dynamics_with" => call!($module::inverse_dynamics_with, a, pi, q, dq, ddq).flat(),
-                "forward_dynamics" => call!($module::forward_dynamics, a, q, dq, tau).flat(),
-                "forward_dynamics_with" => call!($module::forward_dynamics_with, a, pi, q, dq, tau).flat(),
-                "regressor" => call!($module::regressor, a, q, dq, dqr, ddqr).flat(),
-                "known_torque" => call!($module::known_torque, a, q, dq, dqr, ddqr).flat(),
-                "kinetic_energy" => call!($module::kinetic_energy, a, q, dq).flat(),
-                "kinetic_energy_with" => call!($module::kinetic_energy_with, a, pi, q, dq).flat(),
-                "potential_energy" => call!($module::potential_energy, a, q).flat(),
-                "potential_energy_with" => call!($module::potential_energy_with, a, pi, q).flat(),
-                "momentum" => call!($module::momentum, a, q, dq).flat(),
-                "coriolis_transpose_times" => call!($module::coriolis_transpose_times, a, q, dq).flat(),
-                "base_regressor" => call!($module::base_regressor, a, q, dq, ddq).flat(),
-                "operational_inertia" => {
-                    let operational_inertia: fn(&Arguments) -> Vec<f64> = $operational_inertia;
-                    operational_inertia(a)
-                }
-                "inverse_dynamics_derivatives" => call!($module::inverse_dynamics_derivatives, a, q, dq, ddq).flat(),
-                "forward_dynamics_derivatives" => call!($module::forward_dynamics_derivatives, a, q, dq, tau).flat(),
-                _ => panic!("no function `{function}`"),
-            }
-        }
+    ($module:ident, $path:literal $(, $optional:ident)*) => {{
         fn traits(function: &str, a: &Arguments) -> Vec<f64> {
             match function.strip_suffix("_with") {
                 None => through(&$module::Nominal, function, a),
@@ -252,9 +152,7 @@ macro_rules! emitted {
             narrow: size_of::<$module::Real>() == 4,
             dof: $module::DOF,
             parameter_names: &$module::PARAMETER_NAMES,
-            nominal,
-            nominal_base,
-            free,
+            free: answers!($module $(, $optional)*),
             traits,
         }
     }};

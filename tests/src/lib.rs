@@ -16,6 +16,8 @@
 //! - [`count`]: the operations that stand in an emitted text;
 //! - [`project`]: projects of strangers, built without network.
 
+#[macro_use]
+mod answers;
 pub mod compiled;
 pub mod count;
 pub mod emitted;
