@@ -64,8 +64,8 @@ pub enum Symbol {
     Parameter(u16),
 }
 
-/// A sum of joint variables, some of them taken away: a bit for each joint, for the first 32; and the constant angle of the field
-/// ([`turn::Turn`]), if that is added.
+/// A sum of joint variables, some of them taken away, a bit for each joint; and the constant angle of the field ([`turn::Turn`]), if that
+/// is added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AngleSum {
     /// Joints whose variables are added.
@@ -76,13 +76,13 @@ pub struct AngleSum {
     pub turned: bool,
 }
 
-impl AngleSum {
-    /// How many joints a sum can tell apart.
-    pub const JOINTS: u16 = 32;
+/// An [`AngleSum`] has a bit for every joint.
+const _: () = assert!(crate::manipulator::MAX_JOINTS <= u32::BITS as usize);
 
+impl AngleSum {
     /// The joints, and whether their variables are taken away; those that are added first.
     pub fn terms(self) -> impl Iterator<Item = (u16, bool)> {
-        let of = |set: u32, minus: bool| (0..AngleSum::JOINTS).filter(move |&i| set >> i & 1 == 1).map(move |i| (i, minus));
+        let of = |set: u32, minus: bool| (0..u32::BITS as u16).filter(move |&i| set >> i & 1 == 1).map(move |i| (i, minus));
         of(self.plus, false).chain(of(self.minus, true))
     }
 

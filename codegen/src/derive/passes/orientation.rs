@@ -48,7 +48,7 @@ impl Angle {
 
     /// Of a joint; its joint variable alone if sums may be asked for.
     fn of(pool: &mut Pool, joint: &Joint, i: usize, sums: bool) -> Angle {
-        let sum = (sums && i < usize::from(AngleSum::JOINTS)).then(|| AngleSum::of(i as u16)).and_then(|own| {
+        let sum = sums.then(|| AngleSum::of(i as u16)).and_then(|own| {
             let turned = AngleSum { turned: true, ..own };
             let is_turned = pool.field().turn().is_some() && joint.sine == pool.symbol(Symbol::SineOf(turned));
             if is_turned {

@@ -29,7 +29,7 @@ fn quarters(pool: &mut Pool, sine: ExprId, joint: u16) -> Option<usize> {
 fn last(arm: &Arm) -> Option<usize> {
     let i = arm.tip;
     let alone = arm.joints[i].is_revolute() && arm.joints.iter().all(|joint| joint.parent != Some(i));
-    (alone && i < usize::from(AngleSum::JOINTS)).then_some(i)
+    alone.then_some(i)
 }
 
 /// The constant angle after the joint variable q at which the axes of the last link point to its centre of mass, seen along the joint axis.
@@ -62,10 +62,10 @@ pub(super) fn turn(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     }
 }
 
-/// Turns the axes of the last link by the angle that the field knows, if there is one. Gives the link.
-pub(crate) fn turn_last_link(pool: &mut Pool, arm: &mut Arm) -> Option<usize> {
-    let (turn, i) = pool.field().turn().cloned().zip(last(arm))?;
-    let quarters = quarters(pool, arm.joints[i].sine, i as u16)?;
+/// Turns the axes of the last link by the angle that the field knows, if there is one.
+pub(crate) fn turn_last_link(pool: &mut Pool, arm: &mut Arm) {
+    let Some((turn, i)) = pool.field().turn().cloned().zip(last(arm)) else { return };
+    let Some(quarters) = quarters(pool, arm.joints[i].sine, i as u16) else { return };
     let (s, c) = (pool.constant(&turn.sine), pool.constant(&turn.cosine));
     // From the axes of the description, quarter turns after q, to the new ones.
     let (s, c) = [(s, c), (-c, s), (-s, -c), (c, -s)][quarters];
@@ -80,7 +80,6 @@ pub(crate) fn turn_last_link(pool: &mut Pool, arm: &mut Arm) -> Option<usize> {
     joint.own_origin = pool.transform(&back, &joint.own_origin);
     arm.tool_rotation = pool.product(&back, &arm.tool_rotation);
     arm.tool_origin = pool.transform(&back, &arm.tool_origin);
-    Some(i)
 }
 
 #[cfg(test)]
@@ -109,7 +108,7 @@ mod tests {
             let mut pool = Pool::new(field_of(&manipulator));
             let arm = Arm::new(&mut pool, &manipulator, View::Nominal);
             let mut turned = arm.clone();
-            assert_eq!(turn_last_link(&mut pool, &mut turned), Some(1), "theta: {theta}");
+            turn_last_link(&mut pool, &mut turned);
             let [x, y, _] = turned.joints[1].body.first;
             // 2 kg at (0.2, 0.4) in the joint frame, whose origin lies 0.5 further in.
             assert_eq!((pool.as_constant(x), y), (Number::from(Rational::from_parts(4.into(), 5u8.into())).sqrt(), ExprId::ZERO));

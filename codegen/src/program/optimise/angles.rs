@@ -50,7 +50,7 @@ fn runs(parallel: &[Option<(u16, bool)>]) -> Vec<Vec<AngleSum>> {
         of_joint.push(run);
         let (mut joint, mut minus) = (last as u16, false);
         let mut sum = AngleSum { plus: 0, minus: 0, turned: false };
-        while joint < AngleSum::JOINTS {
+        loop {
             *(if minus { &mut sum.minus } else { &mut sum.plus }) |= 1 << joint;
             if joint as usize != last {
                 runs[run].push(sum.unsigned().0);
