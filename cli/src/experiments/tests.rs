@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::source::Source;
+use tempfile::TempDir;
 
 use super::file::{self, Parsed};
 use super::*;
@@ -29,16 +30,14 @@ fn files() -> Vec<String> {
     names
 }
 
-/// In a folder of its own, so that tests do not meet.
-fn out(name: &str) -> PathBuf {
-    let out = std::env::temp_dir().join(format!("{name}_{}", std::process::id()));
-    std::fs::create_dir_all(&out).expect("a folder for figures");
-    out
+/// A folder for figures and logs, gone with the test.
+fn out() -> TempDir {
+    tempfile::tempdir().expect("a folder for figures")
 }
 
 #[test]
 fn every_experiment_gives_what_is_expected() {
-    let out = out("armgen_experiments");
+    let out = out();
     let (mut jobs, mut other) = (Vec::new(), 0);
     for name in files() {
         match parse(&name, &text_of(&name)) {
@@ -58,7 +57,7 @@ fn every_experiment_gives_what_is_expected() {
     assert!(!jobs.is_empty() || other > 0);
     in_parallel(&mut jobs, |job| {
         job.prepare();
-        job.run(&out);
+        job.run(out.path());
     });
     for job in &jobs {
         for line in job.lines() {
@@ -165,7 +164,8 @@ fn faulty_experiments_say_where_and_why() {
 
 #[test]
 fn faulty_paths_say_which_segment() {
-    let folder = out("armgen_paths");
+    let folder = out();
+    let folder = folder.path();
     let path = text_of("paths/ghost.yaml");
     let check = |old: &str, new: &str, code: &str, place: &str, why: &str| {
         assert!(path.contains(old));
@@ -213,7 +213,7 @@ fn damping_begins_below_the_threshold() {
         let text = text.replace("algorithm: inverse", &format!("algorithm: {law}"));
         let Parsed::Experiment(experiment) = parse("clik_inverse.yaml", &text) else { return None };
         let mut job = Job::new(*experiment);
-        job.run(&out("armgen_damped"));
+        job.run(out().path());
         let errors = job.record.log.rows().flat_map(|row| row[5..9].to_vec());
         Some(errors.map(f64::abs).fold(0.0, f64::max))
     };
@@ -230,7 +230,7 @@ fn what_is_not_as_expected_is_outside() {
     let text = text_of("manipulability.yaml").replacen("value: 0.25, tolerance: 6e-13", "value: 0.26, tolerance: 6e-13", 1);
     let Parsed::Experiment(experiment) = parse("manipulability.yaml", &text) else { return };
     let mut job = Job::new(*experiment);
-    job.run(&out("armgen_outside"));
+    job.run(out().path());
     let (report, met) = report(&[job]);
     assert!(!met && report.contains("OUTSIDE") && report.contains("32 of 33"), "{report}");
 }
