@@ -17,7 +17,9 @@ mod validate;
 
 use crate::exact::{Number, Polynomial};
 
-pub use validate::{product_out_of_range, read, read_for, JointPlaces, Places, Role, Scalar, Use, MAX_JOINTS, MAX_PARAMETERS};
+pub use validate::{
+    is_rust_name, product_out_of_range, read, read_for, JointPlaces, Places, Role, Scalar, Use, MAX_JOINTS, MAX_PARAMETERS,
+};
 
 /// Index into [`Manipulator::joints`]; link i is the one that joint i moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

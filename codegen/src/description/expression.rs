@@ -138,7 +138,9 @@ impl Expression {
 pub fn parse(scalar: &Scalar, span: Span) -> Result<Expression, Box<Diagnostic>> {
     let mut parser = Parser { text: &scalar.text, at: 0, depth: 0, operators: 0, verbatim: scalar.verbatim, whole: span };
     if scalar.text.len() > MAX_TEXT {
-        let (message, help) = if scalar.text.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b)) {
+        let mut parts = scalar.text.split(['e', 'E']);
+        let digits = |part: &str| part.trim_start_matches(['+', '-']).bytes().all(|b| b.is_ascii_digit() || b == b'.');
+        let (message, help) = if parts.clone().count() <= 2 && parts.all(digits) {
             (format!("a number of {} characters", scalar.text.len()), "no quantity is known to so many digits: shorten it")
         } else {
             (format!("an expression of {} characters", scalar.text.len()), "give parts of it names under `parameters`")

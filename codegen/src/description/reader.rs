@@ -348,8 +348,13 @@ impl Reader<'_> {
 
     /// A list of exactly as many numbers as there are `parts`.
     fn vector<const N: usize>(&mut self, node: &Node, key: Span, name: &str, parts: [&str; N]) -> Option<Spanned<[Value; N]>> {
-        // Whoever copies the help of `gravity` shall not lose it.
-        let example = if name == "gravity" { "0, 0, -9.81".to_owned() } else { ["0"; N].join(", ") };
+        // Whoever copies the help shall have what is valid, and shall not lose gravity.
+        let example = match (name, N) {
+            ("gravity", _) => "0, 0, -9.81".to_owned(),
+            ("axis", _) => "0, 0, 1".to_owned(),
+            (_, 2) => "-1, 1".to_owned(),
+            _ => ["0"; N].join(", "),
+        };
         let help = format!("write {N} values in brackets, {}: `{name}: [{example}]`", parts.join(", "));
         let Kind::List(items) = &node.kind else {
             self.wrong_kind(node, key, name, &format!("a list of {N} values"), &help);

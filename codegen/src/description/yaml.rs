@@ -269,8 +269,12 @@ impl Builder<'_> {
 
     fn syntax_error(&mut self, error: &ScanError) {
         let at = error.marker().byte_offset().unwrap_or(0).min(self.source.text().len());
-        let span = self.visible(at);
-        let (message, help) = explain(error.kind());
+        let mut span = self.visible(at);
+        let (mut message, mut help) = explain(error.kind());
+        if let Some((cause, kind)) = cause(self.source.text(), at, error.kind()) {
+            span = cause;
+            (message, help) = explain(&kind);
+        }
         let code = match error.kind() {
             ErrorKind::RecursionLimitExceeded => Code::TooLarge,
             ErrorKind::DirectiveDisallowed => Code::YamlFeature,
@@ -333,6 +337,63 @@ fn key(node: Node, seen: &mut BTreeMap<String, Span>, diagnostics: &mut Diagnost
     Some(Spanned::new(scalar.text, node.span))
 }
 
+/// Where the fault is that the reader stumbled over later, and what it is, if that can be told: a tab in the indentation of the line or of
+/// one beside it, a quote that was opened above, a key without a colon in the line above.
+fn cause(text: &str, at: usize, kind: &ErrorKind) -> Option<(Span, ErrorKind)> {
+    use ErrorKind as E;
+    let mut begin = 0;
+    let lines: Vec<(usize, &str)> = text
+        .split_inclusive('\n')
+        .map(|line| {
+            begin += line.len();
+            (begin - line.len(), line.trim_end())
+        })
+        .collect();
+    let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
+    match kind {
+        E::RecursionLimitExceeded | E::DirectiveDisallowed => return None,
+        E::InvalidQuotedScalarIndent | E::UnclosedQuotedScalar | E::DocumentIndicatorInQuotedScalar => {
+            let opened = lines[..=here].iter().rev().find_map(|(start, line)| opened_quote(line).map(|at| start + at))?;
+            return Some((Span::new(opened, opened + 1), E::UnclosedQuotedScalar));
+        }
+        _ => {}
+    }
+    let tab = |(start, line): &(usize, &str)| {
+        let indentation = line.len() - line.trim_start().len();
+        line[..indentation].find('\t').map(|tab| Span::new(start + tab, start + tab + 1))
+    };
+    let beside = &lines[here.saturating_sub(1)..lines.len().min(here + 2)];
+    if let Some(tab) = beside.iter().find_map(tab) {
+        return Some((tab, E::TabInIndentation));
+    }
+    if matches!(kind, E::MappingValueNotAllowed) {
+        // What has no colon is taken to go on in the next line.
+        let (start, line) = lines[..here].iter().rev().find(|(_, line)| !line.trim().is_empty())?;
+        let word = line.trim_start();
+        if !word.contains(':') && !word.starts_with(['#', '-', '"', '\'']) {
+            return Some((Span::new(start + line.len() - word.len(), start + line.len()), E::SimpleKeyExpected));
+        }
+    }
+    None
+}
+
+/// Where a quoted text begins in a line that does not end in it.
+fn opened_quote(line: &str) -> Option<usize> {
+    let mut open: Option<(usize, char)> = None;
+    let (mut before, mut escaped) = (' ', false);
+    for (at, c) in line.char_indices() {
+        match open {
+            Some((_, quote)) if c == quote && !escaped => open = None,
+            Some((_, quote)) => escaped = quote == '"' && c == '\\' && !escaped,
+            None if c == '#' && before == ' ' => break,
+            None if matches!(c, '"' | '\'') && matches!(before, ' ' | '[' | '{' | ',') => open = Some((at, c)),
+            None => {}
+        }
+        before = c;
+    }
+    open.map(|(at, _)| at)
+}
+
 /// What the reader's complaint means, and what to do about it.
 fn explain(kind: &ErrorKind) -> (String, String) {
     use ErrorKind as E;
@@ -365,7 +426,7 @@ fn explain(kind: &ErrorKind) -> (String, String) {
             ("the closing bracket does not fit the open one", "close `[` with `]` and `{` with `}`")
         }
         E::MisplacedFlowCollectionEnd => ("a closing bracket without an open one", "remove it, or open it with `[` or `{`"),
-        E::UnclosedQuotedScalar | E::DocumentIndicatorInQuotedScalar => {
+        E::UnclosedQuotedScalar | E::DocumentIndicatorInQuotedScalar | E::InvalidQuotedScalarIndent => {
             ("a quoted text does not end", "end it with the quote that it begins with")
         }
         E::InvalidTrailingSingleQuotedScalar | E::InvalidTrailingDoubleQuotedScalar => {
@@ -373,6 +434,12 @@ fn explain(kind: &ErrorKind) -> (String, String) {
         }
         E::UnknownAnchor => {
             ("this alias refers to nothing above it", "name the value with `&name` before it is used, or write it out")
+        }
+        E::UnexpectedCharacter { character } if character.is_control() => {
+            return (
+                format!("a control character, U+{:04X}, cannot stand in a description", u32::from(*character)),
+                "remove it".into(),
+            )
         }
         E::UnexpectedCharacter { .. } => {
             ("this character cannot begin a value", "put the text in quotes, or remove the character")

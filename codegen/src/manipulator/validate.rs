@@ -33,6 +33,7 @@ use crate::exact::Polynomial;
 use crate::source::{Source, Span};
 pub use equations::product_out_of_range;
 use evaluate::Evaluator;
+pub use names::is_rust_name;
 use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};
 

@@ -14,8 +14,10 @@ const KEYWORDS: [&str; 53] = [
 ];
 /// Words of expressions.
 const WORDS: [&str; 3] = ["pi", "deg", "sqrt"];
-/// Joint variables, rates and accelerations in printed equations, each followed by the joint's number.
-const VARIABLES: [&str; 5] = ["q", "dq", "ddq", "dqr", "ddqr"];
+/// Functions of printed equations.
+const FUNCTIONS: [&str; 4] = ["sin", "cos", "sign", "atan"];
+/// Joint variables, rates, accelerations and torques in printed equations, each followed by the joint's number.
+const VARIABLES: [&str; 6] = ["q", "dq", "ddq", "dqr", "ddqr", "tau"];
 
 /// Checks every name that the file gives.
 pub(super) fn check(description: &RobotDescription, diagnostics: &mut Diagnostics) {
@@ -45,7 +47,10 @@ fn check_name(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics)
     let shown = excerpt(&name.value);
     if let Some(meaning) = reserved(&name.value) {
         let message = format!("`{shown}` cannot be the name of {what}: it is {meaning}");
-        let help = format!("choose another name, such as `{}_`", name.value.trim_matches('_').to_lowercase());
+        let help = match name.value.trim_matches('_').to_lowercase() {
+            word if word.is_empty() => "choose a name that begins with a letter".to_owned(),
+            word => format!("choose another name, such as `{word}_`"),
+        };
         diagnostics.push(Diagnostic::new(Code::ReservedName, name.span, message, "reserved", help));
     } else {
         check_identifier(name, what, diagnostics);
@@ -54,7 +59,7 @@ fn check_name(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics)
 
 fn check_identifier(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics) {
     let shown = excerpt(&name.value);
-    if !is_identifier(&name.value) {
+    if !is_rust_name(&name.value) {
         let message = format!("`{shown}` cannot be the name of {what}: it is not an identifier");
         let help = match suggestion(&name.value) {
             Some(better) => format!("use letters, digits and `_`, a letter first: `{better}`"),
@@ -72,26 +77,30 @@ fn reserved(name: &str) -> Option<&'static str> {
     if WORDS.contains(&name) {
         return Some("a word of expressions");
     }
+    if FUNCTIONS.contains(&name) {
+        return Some("a function of the equations");
+    }
     let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
     // Joints are counted from 1.
     let number = &name[letters.len()..];
     let variable = VARIABLES.contains(&letters) && !number.is_empty() && !number.starts_with('0');
-    variable.then_some("a joint variable of the equations")
+    variable.then_some("a variable of the equations")
 }
 
-fn is_identifier(name: &str) -> bool {
+/// Whether a text can be the name of an item of Rust as it stands.
+pub fn is_rust_name(name: &str) -> bool {
     // The raw `r#fn` is an identifier too, but no word of an expression.
     !name.contains('#') && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
 }
 
 /// The name with everything replaced that an identifier cannot have.
 fn suggestion(name: &str) -> Option<String> {
-    let mut better: String =
-        name.trim().chars().take(40).map(|c| if c == '_' || c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    let fits = |c: char| c == '_' || c.is_ascii_alphanumeric();
+    let mut better: String = name.trim_matches(|c| !fits(c)).chars().take(40).map(|c| if fits(c) { c } else { '_' }).collect();
     if better.starts_with(|c: char| c.is_ascii_digit()) {
         better.insert(0, 'r');
     }
-    (is_identifier(&better) && reserved(&better).is_none()).then_some(better)
+    (is_rust_name(&better) && reserved(&better).is_none()).then_some(better)
 }
 
 #[cfg(test)]
@@ -100,17 +109,18 @@ mod tests {
 
     #[track_caller]
     fn check(name: &str, free: bool) {
-        assert_eq!(reserved(name).is_none() && is_identifier(name), free, "{name}");
+        assert_eq!(reserved(name).is_none() && is_rust_name(name), free, "{name}");
     }
 
     #[test]
     fn keywords_words_of_expressions_and_joint_variables_are_reserved() {
-        for name in
-            ["fn", "self", "Self", "gen", "try", "async", "pi", "deg", "sqrt", "q1", "dq12", "ddq3", "dqr1", "ddqr70", "_"]
-        {
+        for name in [
+            "fn", "self", "Self", "gen", "try", "async", "pi", "deg", "sqrt", "sin", "sign", "q1", "dq12", "ddq3", "dqr1",
+            "ddqr70", "tau2", "_",
+        ] {
             check(name, false);
         }
-        for name in ["q", "q0", "dq", "q1a", "m1", "qr1", "Pi", "_x", "union", "raw", "r\u{e4}der", "I1", "mcx1"] {
+        for name in ["q", "q0", "dq", "q1a", "m1", "qr1", "Pi", "tau", "sine", "_x", "union", "raw", "r\u{e4}der", "I1", "mcx1"] {
             check(name, true);
         }
         for name in ["", "1a", "a b", "a-b", "a.b", "r#fn", "a\u{2019}"] {
