@@ -188,7 +188,7 @@ impl Shown {
             Content::Closed(forms) => {
                 Formulas { steps: Vec::new(), entries: forms.iter().map(|form| printer.form(form)).collect() }
             }
-            Content::Program(derivation) => steps::formulas(derivation, &printer),
+            Content::Program(derivation) => steps::formulas(derivation, &printer, self.step_letter()),
         }
     }
 
@@ -209,12 +209,39 @@ impl Shown {
         self.rows > 1 && self.rows == self.columns && (0..self.rows).all(|i| (0..i).all(|j| equal(at(i, j), at(j, i))))
     }
 
+    /// A letter for steps: not that of the entries, and none that makes the name of a parameter.
+    fn step_letter(&self) -> &'static str {
+        let taken = |letter: &str| {
+            let number = |rest: &str| !rest.is_empty() && rest.bytes().all(|c| c.is_ascii_digit());
+            self.letter.contains(&letter) || self.parameters.iter().any(|name| name.strip_prefix(letter).is_some_and(number))
+        };
+        ["t", "z", "step"].into_iter().find(|letter| !taken(letter)).unwrap_or("armgen_step")
+    }
+
+    /// The letter of the entries in plain text, with underscores after it where a parameter is called as an entry would be.
+    fn entry_letter(&self) -> String {
+        let index = |rest: &str| {
+            let number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+            match (self.rows, self.columns) {
+                (1, 1) => rest.is_empty(),
+                (_, 1) => number(rest),
+                (rows, columns) if rows < 10 && columns < 10 => number(rest) && rest.len() == 2,
+                _ => rest.split_once('_').is_some_and(|(row, column)| number(row) && number(column)),
+            }
+        };
+        let mut letter = self.letter[0].to_owned();
+        while self.parameters.iter().any(|name| name.strip_prefix(&letter).is_some_and(index)) {
+            letter.push('_');
+        }
+        letter
+    }
+
     /// The name of an entry in plain text: `b12`, `g3`, `y[1, m_l1]`, `T`.
     fn entry_name(&self, row: usize, column: usize) -> String {
-        let letter = self.letter[0];
+        let letter = self.entry_letter();
         match (&self.column_names, self.rows, self.columns) {
             (Some(names), ..) => format!("{letter}[{}, {}]", row + 1, names[column]),
-            (None, 1, 1) => letter.into(),
+            (None, 1, 1) => letter,
             (None, _, 1) => format!("{letter}{}", row + 1),
             (None, rows, columns) if rows < 10 && columns < 10 => format!("{letter}{}{}", row + 1, column + 1),
             _ => format!("{letter}{}_{}", row + 1, column + 1),

@@ -9,7 +9,7 @@
 //! variable, with the other waves as coefficients' carriers, its content in that variable is the greatest common divisor of
 //! univariate polynomials, in tan(q/2) for an angle.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::arm::Arm;
 use super::kinematics::geometric_jacobian;
@@ -104,15 +104,6 @@ enum Variable {
 fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
     let mut rest = form.clone();
     let mut found: Vec<(NormalForm, Option<String>)> = Vec::new();
-    let positions = |form: &NormalForm| {
-        let mut all: Vec<u16> = form
-            .terms()
-            .flat_map(|(_, f, _)| f.iter().filter_map(|(s, _)| if let Symbol::Position(i) = s { Some(*i) } else { None }))
-            .collect();
-        all.sort_unstable();
-        all.dedup();
-        all
-    };
     let variables: Vec<Variable> =
         rest.angles().into_iter().map(Variable::Angle).chain(positions(&rest).into_iter().map(Variable::Position)).collect();
     for variable in variables {
@@ -126,12 +117,37 @@ fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
         let scale = rest;
         match found.first_mut() {
             Some((first, _)) => *first = first.times(&scale, TERMS).expect("a constant adds no terms"),
-            None => found.push((scale, None)),
+            None => {
+                let singular = zeros_without_joints(&scale);
+                found.push((scale, singular));
+            }
         }
     } else {
-        found.push((rest, None));
+        let singular = zeros_without_joints(&rest);
+        found.push((rest, singular));
     }
     found.into_iter().map(|(form, singular)| Factor { form, singular }).collect()
+}
+
+/// The joints whose displacements stand in a form.
+fn positions(form: &NormalForm) -> Vec<u16> {
+    let all = form.terms().flat_map(|(_, factors, _)| factors);
+    let all: BTreeSet<u16> = all.filter_map(|(s, _)| if let Symbol::Position(i) = s { Some(*i) } else { None }).collect();
+    all.into_iter().collect()
+}
+
+/// Where a factor is zero in which no joint variable stands; `None` of others.
+fn zeros_without_joints(form: &NormalForm) -> Option<String> {
+    let alone = form.angles().is_empty() && positions(form).is_empty();
+    let constant = form.terms().all(|(_, factors, _)| factors.is_empty());
+    alone.then(|| {
+        match (form.is_empty(), constant) {
+            (true, _) => "at every q",
+            (_, true) => "never",
+            _ => "where its parameters alone make it so",
+        }
+        .into()
+    })
 }
 
 /// The content of a form in one variable, in factors with their zeros, and the quotient; `None` if there is none.
@@ -286,6 +302,7 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Stri
                     let root = (-zero).checked_div(one).expect("the leading coefficient is not zero");
                     format!("{name} = {}", printer.number(&root))
                 }
+                [zero, one, two] => quadratic(&printer, &name, zero, one, two),
                 _ => format!("{name} with {} = 0", printer.form(form)),
             }
         }
@@ -306,6 +323,20 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Stri
                 _ => linear_with_constant(&printer, &name, &a, &b, &c),
             }
         }
+    }
+}
+
+/// c + b q + a q² = 0.
+fn quadratic(printer: &Printer<'_>, name: &str, c: &Number, b: &Number, a: &Number) -> String {
+    let root = |numerator: Number| {
+        let root = numerator.checked_div(&(a * &Number::from(2))).expect("the leading coefficient is not zero");
+        printer.number(&root)
+    };
+    let discriminant = &(b * b) - &(&(a * c) * &Number::from(4));
+    match discriminant.sqrt() {
+        None => "never".into(),
+        Some(zero) if zero.is_zero() => format!("{name} = {}", root(-b)),
+        Some(width) => format!("{name} = {} or {}", root(&-b - &width), root(&-b + &width)),
     }
 }
 

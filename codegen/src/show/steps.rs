@@ -37,8 +37,8 @@ impl Text {
     }
 }
 
-/// The steps, each after those that it uses, and the entries.
-pub(super) fn formulas(derivation: &Derivation, printer: &Printer<'_>) -> Formulas {
+/// The steps, named by a letter and counted from 1, each after those that it uses, and the entries.
+pub(super) fn formulas(derivation: &Derivation, printer: &Printer<'_>, letter: &str) -> Formulas {
     let pool = &derivation.pool;
     let order = order(derivation);
     let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
@@ -47,7 +47,6 @@ pub(super) fn formulas(derivation: &Derivation, printer: &Printer<'_>) -> Formul
     }
     derivation.entries.iter().for_each(|e| *uses.entry(e.index()).or_default() += 1);
 
-    let letter = letter(printer.parameters);
     let notation = printer.notation;
     let times = if notation == Notation::Text { "*" } else { "\\," };
     let mut steps: Vec<(String, String)> = Vec::new();
@@ -139,14 +138,4 @@ fn order(derivation: &Derivation) -> Vec<ExprId> {
         }
     }
     order
-}
-
-/// A letter for steps that no parameter's name can be mistaken for.
-fn letter(parameters: &[String]) -> &'static str {
-    let taken = |letter: &str| {
-        parameters.iter().any(|name| {
-            name.strip_prefix(letter).is_some_and(|rest| !rest.is_empty() && rest.chars().all(|c| c.is_ascii_digit()))
-        })
-    };
-    ["t", "z", "step"].into_iter().find(|letter| !taken(letter)).unwrap_or("armgen_step")
 }

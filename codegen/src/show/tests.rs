@@ -61,6 +61,54 @@ fn an_entry_too_long_for_a_closed_form_becomes_steps() {
 }
 
 #[test]
+fn no_name_means_two_things() {
+    // Seven joints: the frame's entries t11..t44 beside more than eleven steps.
+    let row = "type: revolute, a: 0, alpha: 1, d: 1, theta: 0, link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}";
+    let joints: String = (1..=7).map(|i| format!("  - {{name: j{i}, {row}}}\n")).collect();
+    let arm = format!("name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{joints}");
+    // And parameters that are called as steps and entries would be.
+    let pendulum =
+        PENDULUM.replace("m: 2", "g: 2").replace("mass: m", "mass: g").replace("[m]", "[g]").replace("l: 1/2", "t1: 1/2");
+    for (text, name) in [(arm, "direct_kinematics"), (pendulum.replace("a: l", "a: t1"), "gravity"), (PENDULUM.into(), "gravity")]
+    {
+        let sheet = sheet(&text, &[name], Reading::Symbolic);
+        let shown = &sheet.quantities[0];
+        let steps = shown.formulas(Notation::Text).steps.into_iter().map(|(name, _)| name);
+        let entries = (0..shown.rows).flat_map(|i| (0..shown.columns).map(move |j| (i, j))).map(|(i, j)| shown.entry_name(i, j));
+        let all: Vec<String> = steps.chain(entries).chain(shown.parameters.iter().cloned()).collect();
+        let different: BTreeSet<&String> = all.iter().collect();
+        assert_eq!(all.len(), different.len(), "{all:?}");
+    }
+}
+
+#[test]
+fn zeros_of_a_determinant_are_told_as_far_as_one_joint_decides() {
+    let zeros = |joints: &[&str], task: &str| {
+        let joints: String = joints
+            .iter()
+            .enumerate()
+            .map(|(i, row)| format!("  - {{name: j{i}, {row}, link: {{mass: 1, inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n"))
+            .collect();
+        let text = format!(
+            "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nparameters: {{l1: 2, l2: 3}}\ntask: {task}\njoints:\n{joints}"
+        );
+        let sheet = sheet(&text, &["determinant"], Reading::Symbolic);
+        let factors = sheet.quantities[0].factors(Notation::Text).expect("factors");
+        factors.into_iter().map(|(factor, singular)| format!("{factor}: {}", text::zero(singular.as_deref()))).collect::<Vec<_>>()
+    };
+    let planar = ["type: revolute, a: l1, alpha: 0, d: 0, theta: 0", "type: revolute, a: l2, alpha: 0, d: 0, theta: 0"];
+    assert_eq!(zeros(&planar, "[x, y]"), ["sin(q2): zero at q2 = k pi", "l1*l2: zero where its parameters alone make it so"]);
+    let spherical = [
+        "type: revolute, a: 0, alpha: -pi/2, d: l1, theta: 0",
+        "type: revolute, a: 0, alpha: pi/2, d: 0, theta: 0",
+        "type: prismatic, a: 0, alpha: 0, d: 1/5, theta: 0",
+    ];
+    assert_eq!(zeros(&spherical, "[x, y, z]"), ["-1/25*sin(q2): zero at q2 = k pi", "1 + 10*q3 + 25*q3^2: zero at q3 = -1/5"]);
+    let gantry = ["type: prismatic, a: 0, alpha: pi/2, d: 0, theta: 0", "type: prismatic, a: 0, alpha: 0, d: 0, theta: 0"];
+    assert_eq!(zeros(&gantry, "[y, z]"), ["1: never zero"]);
+}
+
+#[test]
 fn latex_names_and_numbers() {
     let text = sheet(PENDULUM, &["gravity", "kinetic_energy"], Reading::Symbolic).latex();
     assert!(text.contains("g(q) = \\frac{981}{100}"), "{text}");

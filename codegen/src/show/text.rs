@@ -104,6 +104,7 @@ impl Shown {
 pub(super) fn zero(singular: Option<&str>) -> String {
     match singular {
         Some(place) if place.contains('=') => format!("zero at {place}"),
+        Some("never") => "never zero".into(),
         Some(place) => format!("zero {place}"),
         None => "zero where several joints together make it so".into(),
     }
