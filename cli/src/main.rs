@@ -162,8 +162,8 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         /// Functions to count, separated by commas; all if none is named
         #[arg(long, value_name = "NAMES", value_delimiter = ',')]
         functions: Vec<String>,
-        /// Passes to leave out, of those that make the functions cheaper (docs/passes.md)
-        #[arg(long, value_name = "PASS", value_delimiter = ',', value_parser = pass_parser(), hide_possible_values = true)]
+        /// Passes to leave out, of those that make the functions cheaper (docs/passes.md), separated by commas
+        #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = pass_parser())]
         without: Vec<Pass>,
     },
     /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected

@@ -143,7 +143,7 @@ fn show_takes_names_of_quantities() {
     assert_eq!(names(&["equations_of_motion"]), ["inertia_matrix", "coriolis_matrix", "gravity"]);
     assert_eq!(names(&["inertia_matrix_with"]), ["inertia_matrix_with"]);
     for unknown in ["gravitas", "link_frame_0", "link_frame_5", "regressor_with"] {
-        let output = check(&["show", &scara, unknown], 1);
+        let output = check(&["show", &scara, unknown], 2);
         assert!(err(&output).contains(&format!("`{unknown}`")), "{}", err(&output));
         assert!(err(&output).contains("inertia_matrix"), "the names are listed");
     }
@@ -223,6 +223,34 @@ fn generate_does_not_overwrite_its_description() {
     assert_eq!(names, ["robot.yaml"], "nothing half written is left");
 }
 
+#[test]
+fn no_file_beside_the_module_is_written_over_another() {
+    let folder = folder("beside");
+    let description = folder.join("arm.h");
+    fs::copy(file("robots/scara4.yaml"), &description).expect("a copy");
+    let before = fs::read(&description).expect("the copy");
+    for out in ["module.h", "arm.rs"] {
+        let out = folder.join(out);
+        let paths = [&description, &out].map(|path| path.to_str().expect("UTF-8"));
+        let output = check(&["generate", paths[0], "--out", paths[1], "--c-abi"], 2);
+        assert!(err(&output).contains("would be written over"), "{}", err(&output));
+        assert!(!out.exists());
+        assert_eq!(fs::read(&description).expect("still there"), before);
+    }
+}
+
+#[test]
+fn a_companion_finds_its_module_whatever_the_file_is_called() {
+    let folder = folder("companion");
+    for (stem, module) in [("arm", "arm"), ("my-robot", "my_robot"), ("2r", "_2r"), ("fn", "fn_"), ("arm.v1", "arm_v1")] {
+        let out = folder.join(format!("{stem}.rs"));
+        let description = file("tests/robots/single_joint.yaml");
+        check(&["generate", &description, "--out", out.to_str().expect("UTF-8"), "--bounds"], 0);
+        let companion = fs::read_to_string(folder.join(format!("{stem}_bounds.rs"))).expect("the companion");
+        assert!(companion.contains(&format!("\nuse super::{module}::*;\n")), "{stem}");
+    }
+}
+
 /// Valid numbers whose product no float holds.
 #[test]
 fn products_out_of_range_are_told_before_anything_is_printed() {
@@ -263,7 +291,9 @@ fn a_certificate_is_written_and_verified_again() {
         fs::write(&module, format!("{}{}", &right[..at], right[at..].replacen("98.1", "98.2", 1))).expect("a file");
         let output = check(&["verify", &yaml, path], 1);
         assert!(out(&output).contains("FAULT: the certificate is of another module"), "{}", out(&output));
-        assert!(err(&output).contains("robot.rs: gravity[2]: "), "{}", err(&output));
+        let line = right[..at].lines().count() + 1;
+        assert!(err(&output).contains(&format!("robot.rs:{line}: gravity[2]: ")), "{}", err(&output));
+        assert!(err(&output).contains("its literal 98.2 is no constant of the equations"), "{}", err(&output));
         // Generating without --verify leaves no doubt about the certificate that is still there.
         let output = check(&["generate", &yaml, "--scalar", scalar, "--out", path], 0);
         assert!(err(&output).contains("robot.cert.json was not written again"), "{}", err(&output));

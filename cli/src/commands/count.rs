@@ -6,10 +6,10 @@ use armgen_codegen::program::{Cost, Options, Pass};
 use serde_json::{json, Map, Value};
 
 use crate::table::{Align, Table};
-use crate::{input, terminal, CountFormat, FAULTY};
+use crate::{input, terminal, CountFormat, FAULTY, UNREADABLE};
 
 pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String], without: Vec<Pass>) -> u8 {
-    let Some(functions) = input::selection(functions) else { return FAULTY };
+    let Some(functions) = input::selection(functions) else { return UNREADABLE };
     let model = match input::model(file) {
         Ok(model) => model,
         Err(code) => return code,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::manipulator::Scalar;
+use armgen_codegen::manipulator::{self, Scalar};
 use armgen_codegen::program::{Options, Pass, Trig};
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
@@ -20,14 +20,15 @@ pub(crate) struct Choices {
     /// Where the sines and cosines come from
     #[arg(long, value_enum, default_value_t = TrigName::Libm)]
     trig: TrigName,
-    /// Passes to leave out, of those that make the functions cheaper (docs/passes.md)
-    #[arg(long, value_name = "PASS", value_delimiter = ',', value_parser = crate::pass_parser(), hide_possible_values = true)]
+    /// Passes to leave out, of those that make the functions cheaper (docs/passes.md), separated by commas
+    #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = crate::pass_parser())]
     without: Vec<Pass>,
-    /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32; the checker reads
-    /// functions for one state only, of which each of these gives the bits
+    /// Add functions for many states, so many at a time: 8 suit f64, 16 suit f32 (docs/batches.md); not with --verify, --tests
+    /// or --bounds, which are of functions for one state
     #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
     batch: Option<u16>,
-    /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them)
+    /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them); not with --verify
+    /// or --tests, which are of the whole module
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     functions: Vec<String>,
 }
@@ -67,7 +68,7 @@ impl Beside {
 }
 
 pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &Beside) -> u8 {
-    let Some(functions) = input::selection(&choices.functions) else { return FAULTY };
+    let Some(functions) = input::selection(&choices.functions) else { return UNREADABLE };
     let scalar = match choices.scalar {
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
@@ -113,6 +114,15 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             return FAULTY;
         }
     };
+    for (i, (path, _)) in files.iter().enumerate() {
+        if files[..i].iter().any(|(other, _)| other == path) || same_file(file, path) {
+            let path = path.display();
+            terminal::error(&format!(
+                "{path} would be written over by another file that goes there: choose another name for --out"
+            ));
+            return UNREADABLE;
+        }
+    }
     for (path, text) in files {
         if let Err(error) = write(&path, &text) {
             terminal::error(&format!("cannot write {}: {error}", path.display()));
@@ -150,6 +160,19 @@ fn write(path: &Path, text: &str) -> std::io::Result<()> {
     written
 }
 
+/// The name of a module of Rust that a file of this stem holds.
+fn module_name(stem: &str) -> String {
+    let mut name: String = stem.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+    if !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+        name.insert(0, '_');
+    }
+    // A keyword, or a letter that no name of Rust may have.
+    if !manipulator::is_rust_name(&name) {
+        name.push('_');
+    }
+    name
+}
+
 /// All files to write, or why a module is not to be trusted with being written.
 fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> Result<Vec<(PathBuf, String)>, String> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
@@ -172,7 +195,7 @@ fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> 
         files.push((out.with_file_name(format!("{stem}_test.rs")), tests));
     }
     if beside.bounds {
-        let companion = armgen_verify::companion(&generated, &format!("use super::{stem}::*;"))?;
+        let companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", module_name(&stem)))?;
         files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));
     }
     if beside.runtime {

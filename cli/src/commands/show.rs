@@ -6,7 +6,7 @@ use armgen_codegen::description::did_you_mean;
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::Model;
 
-use crate::{input, terminal, ShowFormat, FAULTY};
+use crate::{input, terminal, ShowFormat, UNREADABLE};
 
 pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: ShowFormat) -> u8 {
     let model = match input::model(file) {
@@ -17,7 +17,7 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: Sh
         Ok(items) => items,
         Err(message) => {
             terminal::error(&message);
-            return FAULTY;
+            return UNREADABLE;
         }
     };
     let sheet = Sheet::new(&model, &items, if symbolic { Reading::Symbolic } else { Reading::Nominal });

@@ -43,10 +43,21 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
     match report.first_fault() {
         None => Ok(code),
         Some(fault) => {
-            terminal::error(&format!("{}: {fault}", text.name()));
+            let line = line_of(text.text(), &fault).map_or_else(String::new, |line| format!(":{line}"));
+            terminal::error(&format!("{}{line}: {fault}", text.name()));
             Err(FAULTY)
         }
     }
+}
+
+/// The line where the function or constant begins that a fault is of, counted from 1.
+fn line_of(module: &str, fault: &str) -> Option<usize> {
+    let name = fault.split(|c: char| c != '_' && !c.is_alphanumeric()).next()?;
+    let begins = |line: &str| {
+        let rest = ["pub fn ", "pub const "].iter().find_map(|word| line.strip_prefix(word)?.strip_prefix(name));
+        rest.is_some_and(|rest| rest.starts_with(['(', ':']))
+    };
+    module.lines().position(begins).map(|line| line + 1)
 }
 
 /// What a report that passed comes to, in a line.
