@@ -37,6 +37,10 @@ pub trait Element: Clone + PartialEq + Debug {
     fn inverse(&self) -> Option<Self>;
     /// Whether this is 0.
     fn is_zero(&self) -> bool;
+    /// How many bits it is written with, where that can grow.
+    fn bits(&self) -> usize {
+        0
+    }
     /// The quotient, if there is one.
     fn over(&self, other: &Self) -> Option<Self> {
         Some(self.times(&other.inverse()?))

@@ -297,7 +297,10 @@ impl Checker {
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
             None => self.misprint(program, &chosen, real).unwrap_or(Verdict::Equal),
-            Some((entry, why)) => Verdict::Different { entry, why },
+            Some((entry, why)) => {
+                let suspect = self.claims.suspect(program, &entry, real);
+                Verdict::Different { entry, why: why + &suspect.map_or_else(String::new, |suspect| format!("; {suspect}")) }
+            }
         };
         let literals = program.literals.iter().zip(&chosen);
         let exact_points = self.exact.iter().filter(|point| point.knows(&program.name)).count();

@@ -11,7 +11,7 @@ use armgen_codegen::exact::Number;
 use crate::arithmetic::Element;
 use crate::enclosure::Float;
 use crate::formula::{decimal, Formula, Rational};
-use crate::program::Literal;
+use crate::program::{Literal, Program};
 
 /// Claimed constants by function (or constant) name, in the order of the text where that is known.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -88,6 +88,23 @@ impl Claims {
             }
         }
         Resolved { values, others }
+    }
+
+    /// A literal of an entry that is none of the constants claimed for the function, in words: what makes it differ, perhaps.
+    pub fn suspect(&self, program: &Program, entry: &str, real: Float) -> Option<String> {
+        let claims: Vec<(f64, &Formula)> =
+            self.of(&program.name).iter().filter_map(|claim| Some((real.nearest(claim)?.abs(), claim))).collect();
+        let takes_part = |index: usize| program.entries_with(index).any(|e| program.outputs[e].place == entry);
+        let (_, literal) = program.literals.iter().enumerate().find(|(index, literal)| {
+            !claims.is_empty() && takes_part(*index) && claims.iter().all(|(value, _)| *value != literal.value.abs())
+        })?;
+        let distance = |value: f64| (value - literal.value.abs()).abs();
+        let (value, claim) = claims.into_iter().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))?;
+        Some(if distance(value) < 1e-6 * value {
+            format!("its literal {} is not the float nearest to {claim}", literal.text)
+        } else {
+            format!("its literal {} is no constant of the equations", literal.text)
+        })
     }
 }
 

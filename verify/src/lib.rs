@@ -61,8 +61,8 @@ use contract::Promise;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
-use reader::Module;
-use report::{Report, Verdict};
+use reader::{Constant, Module};
+use report::{FunctionReport, Report, Verdict};
 
 /// SHA-256 of a text, hexadecimal.
 pub fn hash(text: &str) -> String {
@@ -89,6 +89,11 @@ pub struct Prepared {
 /// Reads a module and prepares the equations of its arm.
 pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Effort) -> Result<Prepared, String> {
     let module = Module::read(text)?;
+    if let Some((_, Constant::Text(name))) = module.constants.get("NAME") {
+        if *name != manipulator.name {
+            return Err(format!("NAME: the module is of the robot `{name}`, the description of `{}`", manipulator.name));
+        }
+    }
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
     let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
     let base = constants::base_parameters(&manipulator, &claims, &module);
@@ -148,13 +153,23 @@ pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) 
         return report;
     };
     report.robot.clone_from(&manipulator.name);
-    let effort = Effort { seed: effort.seed ^ seed(&report.input, &report.output, &claims), ..effort };
-    match prepare(manipulator, text, claims, effort) {
-        Ok(prepared) => fill(&mut report, &prepared),
-        Err(fault) => report.faults.push(fault),
+    let mut effort = Effort { seed: effort.seed ^ seed(&report.input, &report.output, &claims), ..effort };
+    loop {
+        let mut report = report.clone();
+        match prepare(manipulator.clone(), text, claims.clone(), effort) {
+            Ok(prepared) => fill(&mut report, &prepared),
+            Err(fault) => report.faults.push(fault),
+        }
+        // Polynomials of very high degree, those of thirty joints, need more points for the same odds.
+        if !report.functions.iter().any(FunctionReport::is_uncertain) || effort.points >= MOST_POINTS {
+            return report;
+        }
+        effort.points *= 2;
     }
-    report
 }
+
+/// As many points are tried at most.
+const MOST_POINTS: usize = 32;
 
 /// The text of a test file for a project that has the module: what [`test_kit`](mod@test_kit) describes. `import` brings the module in as
 /// `robot`: `use my_crate::robot;`, or `#[path = "../src/robot.rs"] mod robot;`.
@@ -192,7 +207,10 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     report.constants = constants::check(checker, module, &nominal);
     report.functions = checker.functions(module);
     report.domain = bounds::domain_of(checker.manipulator(), module);
-    for function in report.functions.iter_mut().filter(|f| f.verdict == Verdict::Equal) {
+    // The box is of the module's constants, the residual of its equations of motion: what is wrong has no bounds.
+    let right = report.constants.iter().all(|constant| constant.verdict == Verdict::Equal)
+        && report.functions.iter().all(|function| function.verdict == Verdict::Equal);
+    for function in report.functions.iter_mut().filter(|_| right) {
         let Some(program) = module.program(&function.name) else { continue };
         let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
         function.bound = Some(bounds::of_function(program, &values, &report.domain, module, checker.claims()));

@@ -195,9 +195,11 @@ impl Program {
         Program { steps, outputs, ..self.clone() }
     }
 
-    /// The value of every step.
+    /// The value of every step; `None` of what divides by zero, and of all from where numbers have grown out of bounds: 2^20 bits for one,
+    /// 2^32 for all.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
         let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());
+        let mut bits = 0;
         for step in &self.steps {
             let of = |i: &usize| values[*i].as_ref();
             let both = |a: &usize, b: &usize| Some((values[*a].as_ref()?, values[*b].as_ref()?));
@@ -222,6 +224,12 @@ impl Program {
                 Step::Multiply(a, b) => both(a, b).map(|(a, b)| a.times(b)),
                 Step::Divide(a, b) => both(a, b).and_then(|(a, b)| a.over(b)),
             };
+            let own = value.as_ref().map_or(0, Element::bits);
+            bits += own as u64;
+            if own > 1 << 20 || bits > 1 << 32 {
+                values.resize(self.steps.len(), None);
+                break;
+            }
             values.push(value);
         }
         values

@@ -6,9 +6,11 @@
 
 mod constant;
 mod expression;
+mod nesting;
 
 use std::collections::BTreeMap;
 
+use proc_macro2::TokenStream;
 use quote::ToTokens;
 use syn::{Attribute, FnArg, Item, ItemFn, ReturnType, Visibility};
 
@@ -63,6 +65,10 @@ fn harmless(attributes: &[Attribute]) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+fn not_rust(error: impl std::fmt::Display) -> String {
+    format!("the text is not Rust, perhaps it is cut off: {error}")
 }
 
 /// The struct of the emitted module, with its fields as text without blanks.
@@ -126,7 +132,18 @@ fn known_together(name: &str, real: Float, text: &str) -> Result<(), String> {
 impl Module {
     /// Reads the text of a module.
     pub fn read(source: &str) -> Result<Module, String> {
-        let file = syn::parse_file(source).map_err(|e| format!("the text is not Rust: {e}"))?;
+        nesting::check(source)?;
+        let reading = std::thread::Builder::new().stack_size(nesting::STACK);
+        std::thread::scope(|scope| {
+            let reading =
+                reading.spawn_scoped(scope, || Module::read_nested(source)).map_err(|e| format!("no thread to read in: {e}"))?;
+            reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        })
+    }
+
+    /// The same, on a stack that is large enough.
+    fn read_nested(source: &str) -> Result<Module, String> {
+        let file = syn::parse_file(source).map_err(not_rust)?;
         if let Some(attribute) = file.attrs.first() {
             return Err(format!("inner attribute `{}`", text(attribute)));
         }
@@ -167,8 +184,13 @@ impl Module {
                     }
                 }
                 other => {
-                    let start: String = text(other).chars().take(60).collect();
-                    return Err(format!("`{start}` is not an item that an emitted module has"));
+                    let mut tokens = other.to_token_stream().into_iter().peekable();
+                    // Past the attributes, documentation among them.
+                    while tokens.next_if(|token| token.to_string() == "#").is_some() {
+                        tokens.next();
+                    }
+                    let start: String = text(&tokens.collect::<TokenStream>()).chars().take(60).collect();
+                    return Err(format!("`{start}` is not an item of an emitted module for one state"));
                 }
             }
         }

@@ -135,11 +135,18 @@ impl Report {
         };
         let constants = self.constants.iter().filter_map(|c| named(&c.name, &c.verdict));
         let uncertain = |f: &FunctionReport| {
-            (f.log2_odds >= MOST_LOG2_ODDS).then(|| format!("{}: the odds of a miss are 2^{:.0}", f.name, f.log2_odds.ceil()))
+            f.is_uncertain().then(|| format!("{}: the odds of a miss are 2^{:.0}", f.name, f.log2_odds.ceil()))
         };
         let functions = self.functions.iter().filter_map(|f| named(&f.name, &f.verdict).or_else(|| uncertain(f)));
         let identities = self.identities.iter().filter_map(identity);
         functions.chain(constants).chain(self.faults.iter().cloned()).chain(identities).next()
+    }
+}
+
+impl FunctionReport {
+    /// Whether it could be found equal by chance.
+    pub fn is_uncertain(&self) -> bool {
+        self.verdict == Verdict::Equal && self.log2_odds >= MOST_LOG2_ODDS
     }
 }
 
@@ -157,7 +164,9 @@ impl fmt::Display for Verdict {
 /// A table for people.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "robot {}, {}", self.robot, self.scalar)?;
+        // The scalar is known of a text that could be read.
+        let scalar = if self.scalar.is_empty() { String::new() } else { format!(", {}", self.scalar) };
+        writeln!(f, "robot {}{scalar}", self.robot)?;
         for fault in &self.faults {
             writeln!(f, "FAULT: {fault}")?;
         }

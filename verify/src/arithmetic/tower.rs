@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use dashu_base::BitTest;
 use dashu_int::IBig;
 
 use super::{Arithmetic, Element, Stream};
@@ -93,6 +94,9 @@ impl Element for Surd {
     }
     fn times(&self, other: &Self) -> Self {
         Surd { coordinates: multiply(&self.squares.0, &self.coordinates, &other.coordinates), squares: self.squares.clone() }
+    }
+    fn bits(&self) -> usize {
+        self.coordinates.iter().map(|x| x.numerator().bit_len() + x.denominator().bit_len()).sum()
     }
     fn negated(&self) -> Self {
         Surd { coordinates: negate(&self.coordinates), squares: self.squares.clone() }

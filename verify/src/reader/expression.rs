@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use syn::{BinOp, Block, Expr, ItemFn, Lit, Member, Pat, Stmt, UnOp};
 
+use super::nesting::MOST_TOKENS;
 use super::{constant, signature, text};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Literal, Output, Program, Step};
@@ -23,6 +24,21 @@ enum Value {
 
 type Scope = BTreeMap<String, Value>;
 
+impl Value {
+    /// How many values are in it, and how deep: numbers are alone.
+    fn size(&self) -> (usize, usize) {
+        let around = |(sum, deep): (usize, usize), value: &Value| {
+            let (size, depth) = value.size();
+            (sum + size, deep.max(depth + 1))
+        };
+        match self {
+            Value::Step(_) | Value::Argument(_) => (1, 0),
+            Value::List(_, values) => values.iter().fold((1, 1), around),
+            Value::Struct(fields) => fields.iter().map(|(_, value)| value).fold((1, 1), around),
+        }
+    }
+}
+
 struct Compiler<'a> {
     private: &'a BTreeMap<String, &'a ItemFn>,
     real: Float,
@@ -30,9 +46,21 @@ struct Compiler<'a> {
     literals: Vec<Literal>,
     turns: Vec<usize>,
     calls: Vec<String>,
+    /// Expressions around the one that is read, through all calls.
+    depth: usize,
+    /// What was read and copied so far, in expressions, values and bytes of text.
+    work: usize,
 }
 
 const MOST_STEPS: usize = 4_000_000;
+/// A module of 32 joints takes a tenth of it for its longest function.
+const MOST_WORK: usize = 1 << 25;
+/// What a call counts as.
+const WORK_OF_CALL: usize = 256;
+/// Lists in lists; what is returned is two deep.
+const MOST_LISTS: usize = 8;
+/// Angles that are added under a sine: a sum has one for each joint and perhaps a constant.
+const MOST_ANGLES: usize = 256;
 
 /// Reads a public function.
 pub(super) fn compile(
@@ -41,7 +69,16 @@ pub(super) fn compile(
     private: &BTreeMap<String, &ItemFn>,
     real: Float,
 ) -> Result<Program, String> {
-    let mut compiler = Compiler { private, real, steps: Vec::new(), literals: Vec::new(), turns: Vec::new(), calls: Vec::new() };
+    let mut compiler = Compiler {
+        private,
+        real,
+        steps: Vec::new(),
+        literals: Vec::new(),
+        turns: Vec::new(),
+        calls: Vec::new(),
+        depth: 0,
+        work: 0,
+    };
     let mut scope = Scope::new();
     let mut known = Vec::new();
     for (name, _) in arguments {
@@ -88,9 +125,19 @@ impl Compiler<'_> {
         Ok(Value::Step(self.steps.len() - 1))
     }
 
+    fn worked(&mut self, work: usize) -> Result<(), String> {
+        self.work += work;
+        if self.work > MOST_WORK {
+            return Err("it takes more work to read than that of any arm".into());
+        }
+        Ok(())
+    }
+
     fn block(&mut self, block: &Block, mut scope: Scope) -> Result<Value, String> {
+        let written = text(block);
+        self.worked(written.len())?;
         // On an element of an array or a tuple `cfg` takes it away.
-        if text(block).contains('#') {
+        if written.contains('#') {
             return Err("an attribute inside of a body".into());
         }
         let Some((last, lines)) = block.stmts.split_last() else { return Err("an empty body".into()) };
@@ -117,6 +164,21 @@ impl Compiler<'_> {
     }
 
     fn expression(&mut self, expression: &Expr, scope: &Scope) -> Result<Value, String> {
+        self.depth += 1;
+        if self.depth > MOST_TOKENS {
+            return Err("expressions and calls nest too deeply".into());
+        }
+        let value = self.value(expression, scope)?;
+        self.depth -= 1;
+        let (size, depth) = value.size();
+        if depth > MOST_LISTS {
+            return Err(format!("lists in more than {MOST_LISTS} others"));
+        }
+        self.worked(size)?;
+        Ok(value)
+    }
+
+    fn value(&mut self, expression: &Expr, scope: &Scope) -> Result<Value, String> {
         match expression {
             Expr::Paren(inner) if inner.attrs.is_empty() => self.expression(&inner.expr, scope),
             Expr::Group(inner) => self.expression(&inner.expr, scope),
@@ -242,13 +304,21 @@ impl Compiler<'_> {
         if self.calls.iter().any(|caller| caller == name) {
             return Err(format!("`{name}` calls itself"));
         }
+        self.worked(WORK_OF_CALL)?;
         let (parameters, _) = signature(function).map_err(|e| format!("`{name}`: {e}"))?;
         if parameters.len() != arguments.len() {
             return Err(format!("`{name}` takes {} arguments", parameters.len()));
         }
         let scope = parameters.into_iter().map(|(name, _)| name).zip(arguments).collect();
         self.calls.push(name.to_string());
-        let value = self.block(&function.block, scope).map_err(|e| format!("in `{name}`: {e}"))?;
+        let value = self.block(&function.block, scope).map_err(|e| {
+            // The innermost function says enough.
+            if e.starts_with("in `") {
+                e
+            } else {
+                format!("in `{name}`: {e}")
+            }
+        })?;
         self.calls.pop();
         Ok(value)
     }
@@ -257,7 +327,22 @@ impl Compiler<'_> {
     fn angle(&mut self, step: usize) -> Result<Angle, String> {
         let mut sum = BTreeMap::new();
         let mut constant = None;
-        self.add_angle(step, 1, &mut sum, &mut constant)?;
+        // Steps still to add, and with which sign: what is added twice is counted twice.
+        let mut waiting = vec![(step, 1i64)];
+        for _ in 0..MOST_ANGLES {
+            let Some((step, sign)) = waiting.pop() else { break };
+            match self.steps[step] {
+                Step::Input(Argument::Q, joint) => *sum.entry(joint).or_default() += sign,
+                Step::Literal(literal) if constant.is_none() => constant = Some((literal, sign < 0)),
+                Step::Negate(a) => waiting.push((a, -sign)),
+                Step::Add(a, b) => waiting.extend([(a, sign), (b, sign)]),
+                Step::Subtract(a, b) => waiting.extend([(a, sign), (b, -sign)]),
+                _ => return Err("sine of something that is not a sum of joint variables and a constant".into()),
+            }
+        }
+        if !waiting.is_empty() {
+            return Err(format!("sine of a sum of more than {MOST_ANGLES} terms"));
+        }
         let terms: Vec<(usize, i64)> = sum.into_iter().filter(|&(_, factor)| factor != 0).collect();
         if terms.is_empty() {
             return Err("sine of something without a joint variable".into());
@@ -271,30 +356,6 @@ impl Compiler<'_> {
             (index, minus)
         });
         Ok(Angle { terms, turn })
-    }
-
-    fn add_angle(
-        &self,
-        step: usize,
-        sign: i64,
-        sum: &mut BTreeMap<usize, i64>,
-        constant: &mut Option<(usize, bool)>,
-    ) -> Result<(), String> {
-        match self.steps[step] {
-            Step::Input(Argument::Q, joint) => *sum.entry(joint).or_default() += sign,
-            Step::Literal(literal) if constant.is_none() => *constant = Some((literal, sign < 0)),
-            Step::Negate(a) => self.add_angle(a, -sign, sum, constant)?,
-            Step::Add(a, b) => {
-                self.add_angle(a, sign, sum, constant)?;
-                self.add_angle(b, sign, sum, constant)?;
-            }
-            Step::Subtract(a, b) => {
-                self.add_angle(a, sign, sum, constant)?;
-                self.add_angle(b, -sign, sum, constant)?;
-            }
-            _ => return Err("sine of something that is not a sum of joint variables and a constant".into()),
-        }
-        Ok(())
     }
 }
 

@@ -1,0 +1,54 @@
+//! Any text in the place of any part of an emitted module, given to the checker as that module.
+//!
+//! The first four bytes choose the part, the others replace it: what the checker sees is a module in all but one place.
+#![no_main]
+
+use std::sync::OnceLock;
+
+use armgen_codegen::program::Options;
+use armgen_codegen::source::Source;
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
+use libfuzzer_sys::fuzz_target;
+
+struct Given {
+    source: Source,
+    module: String,
+    claims: Claims,
+}
+
+fn given() -> &'static Given {
+    static GIVEN: OnceLock<Given> = OnceLock::new();
+    GIVEN.get_or_init(|| {
+        let source = Source::new("robot.yaml", include_str!("../../robots/single_joint.yaml"));
+        let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a valid robot");
+        // Comments are no part of what is read.
+        let module = generated
+            .module
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"))
+            .map(|line| format!("{line}\n"))
+            .collect();
+        Given { source, module, claims: Claims::from_numbers(&generated.constants) }
+    })
+}
+
+/// The place in a text that is a part of it, of 65536.
+fn place(text: &str, part: u16) -> usize {
+    let at = text.len() * usize::from(part) / 65536;
+    (0..=at).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
+}
+
+fuzz_target!(|data: &[u8]| {
+    let Some((&[a, b, c, d], text)) = data.split_first_chunk::<4>() else { return };
+    let Given { source, module, claims } = given();
+    let (before, rest) = module.split_at(place(module, u16::from_le_bytes([a, b])));
+    // Mostly a few characters, sometimes most of it.
+    let taken = (rest.len() * usize::from(u16::from_le_bytes([c, d])).pow(3)) >> 48;
+    let after = &rest[(taken..=rest.len()).find(|&at| rest.is_char_boundary(at)).unwrap_or(rest.len())..];
+    let changed = format!("{before}{}{after}", String::from_utf8_lossy(text));
+    let effort = Effort { points: 1, exact_points: 1, ..Effort::default() };
+    let report = armgen_verify::verify_with(source, &changed, claims.clone(), effort);
+    assert_eq!(report.passed(), report.first_fault().is_none() && !report.functions.is_empty());
+    assert!(report.to_string().ends_with("verified"));
+});
