@@ -144,6 +144,8 @@ codes! {
     TriangleInequality Warning "triangle-inequality",
     /// A parameter that nothing uses.
     UnusedParameter Warning "unused-parameter",
+    /// A centre of mass, or the place of a rotor, where there is no mass.
+    NoEffect Warning "no-effect",
     /// An angle so large that degrees were probably meant.
     DegreesSuspected Warning "degrees-suspected",
     /// A decimal that is nearly a multiple of pi/12.

@@ -12,6 +12,7 @@ use crate::description::{BodyDescription, Expression, InertiaDescription, Value,
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::{Number, Polynomial, Rational};
 use crate::manipulator::Body;
+use crate::source::Span;
 
 /// The body; `called` is how messages call it.
 pub(super) fn body(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Body> {
@@ -24,11 +25,22 @@ pub(super) fn body(description: &BodyDescription, called: &str, context: &mut Co
         Some(com) => context.polynomials(&com.value),
         None => Some(zeros()),
     };
+    if let (Some(given), Some(mass), Some(com)) = (&description.com, &mass, &com) {
+        warn_of_massless(mass, com, given.span, &format!("the centre of mass of {called}"), context);
+    }
     let inertia = match &description.inertia {
         Some(inertia) => self::inertia(inertia, called, context),
         None => Some(std::array::from_fn(|_| Polynomial::zero())),
     };
     Some(Body { mass: mass?, com: com?, inertia: inertia? })
+}
+
+/// Warns of a place at which there is no mass, unless that may be the fault of an error.
+pub(super) fn warn_of_massless(mass: &Polynomial, place: &[Polynomial; 3], span: Span, what: &str, context: &mut Context<'_>) {
+    if mass.is_zero() && place.iter().any(|p| !p.is_zero()) && !context.diagnostics.has_errors() {
+        let help = "give the mass too, or leave the place out";
+        context.report(Code::NoEffect, span, format!("{what} has no effect: the mass there is 0"), "not used", help);
+    }
 }
 
 /// A value that cannot be below 0.

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::bodies::{self, optional_not_negative};
+use super::bodies::{self, optional_not_negative, warn_of_massless};
 use super::evaluate::text_of;
 use super::{call, geometry, zeros, Context};
 use crate::description::{Convention, Expression, JointDescription, LimitsDescription, MotorDescription};
@@ -121,6 +121,10 @@ fn motor(
         Some(position) => context.polynomials(&position.value),
         None => Some(zeros()),
     };
+    if let (Some(given), Some(mass), Some(position)) = (&description.position, &mass, &position) {
+        let none = Polynomial::zero();
+        warn_of_massless(mass.as_ref().unwrap_or(&none), position, given.span, &of("position"), context);
+    }
     let axis = match &description.axis {
         Some(axis) => context.numbers(&axis.value).and_then(|a| geometry::unit_vector(a, axis.span, called, context)),
         None => joint_axis,
