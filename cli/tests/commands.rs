@@ -242,7 +242,9 @@ fn no_file_beside_the_module_is_written_over_another() {
 #[test]
 fn a_companion_finds_its_module_whatever_the_file_is_called() {
     let folder = folder("companion");
-    for (stem, module) in [("arm", "arm"), ("my-robot", "my_robot"), ("2r", "_2r"), ("fn", "fn_"), ("arm.v1", "arm_v1")] {
+    for (stem, module) in
+        [("arm", "arm"), ("my-robot", "my_robot"), ("2r", "_2r"), ("fn", "_fn"), ("gen", "_gen"), ("arm\u{b2}.v1", "arm__v1")]
+    {
         let out = folder.join(format!("{stem}.rs"));
         let description = file("tests/robots/single_joint.yaml");
         check(&["generate", &description, "--out", out.to_str().expect("UTF-8"), "--bounds"], 0);

@@ -188,7 +188,7 @@ impl Shown {
             Content::Closed(forms) => {
                 Formulas { steps: Vec::new(), entries: forms.iter().map(|form| printer.form(form)).collect() }
             }
-            Content::Program(derivation) => steps::formulas(derivation, &printer, self.step_letter()),
+            Content::Program(derivation) => steps::formulas(derivation, &printer, &self.step_letter()),
         }
     }
 
@@ -209,28 +209,32 @@ impl Shown {
         self.rows > 1 && self.rows == self.columns && (0..self.rows).all(|i| (0..i).all(|j| equal(at(i, j), at(j, i))))
     }
 
-    /// A letter for steps: not that of the entries, and none that makes the name of a parameter.
-    fn step_letter(&self) -> &'static str {
+    /// A letter for steps: not that of the entries, and none that makes the name of a parameter, with an index in LaTeX or without.
+    fn step_letter(&self) -> String {
         let taken = |letter: &str| {
-            let number = |rest: &str| !rest.is_empty() && rest.bytes().all(|c| c.is_ascii_digit());
-            self.letter.contains(&letter) || self.parameters.iter().any(|name| name.strip_prefix(letter).is_some_and(number))
+            let index = |rest: &str| is_number(rest.strip_prefix('_').unwrap_or(rest));
+            self.letter.contains(&letter) || self.parameters.iter().any(|name| name.strip_prefix(letter).is_some_and(index))
         };
-        ["t", "z", "step"].into_iter().find(|letter| !taken(letter)).unwrap_or("armgen_step")
+        let mut letters = ["t", "z"].map(String::from).into_iter().chain((4..).map(|length| format!("{:_<length$}", "step")));
+        letters.find(|letter| !taken(letter)).expect("a longer one is free")
+    }
+
+    /// Whether a parameter is called as an entry with this letter would be.
+    fn is_entry_of(&self, letter: &str) -> impl Fn(&String) -> bool + use<'_> {
+        let letter = letter.to_owned();
+        let index = |rest: &str| match (self.rows, self.columns) {
+            (1, 1) => rest.is_empty(),
+            (_, 1) => is_number(rest),
+            (rows, columns) if rows < 10 && columns < 10 => is_number(rest) && rest.len() == 2,
+            _ => rest.split_once('_').is_some_and(|(row, column)| is_number(row) && is_number(column)),
+        };
+        move |name| name.strip_prefix(letter.as_str()).is_some_and(index)
     }
 
     /// The letter of the entries in plain text, with underscores after it where a parameter is called as an entry would be.
     fn entry_letter(&self) -> String {
-        let index = |rest: &str| {
-            let number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
-            match (self.rows, self.columns) {
-                (1, 1) => rest.is_empty(),
-                (_, 1) => number(rest),
-                (rows, columns) if rows < 10 && columns < 10 => number(rest) && rest.len() == 2,
-                _ => rest.split_once('_').is_some_and(|(row, column)| number(row) && number(column)),
-            }
-        };
         let mut letter = self.letter[0].to_owned();
-        while self.parameters.iter().any(|name| name.strip_prefix(&letter).is_some_and(index)) {
+        while self.parameters.iter().any(self.is_entry_of(&letter)) {
             letter.push('_');
         }
         letter
@@ -403,6 +407,10 @@ fn symbolic_regressor(model: &Model, quantity: Quantity) -> Option<Derivation> {
             .collect()
     };
     Some(Derivation { pool, entries, method: "derivatives by the names", parallel: Vec::new() })
+}
+
+fn is_number(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit())
 }
 
 fn letter(quantity: Quantity) -> [&'static str; 2] {

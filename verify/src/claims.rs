@@ -4,14 +4,14 @@
 //! or a certificate lists them, and neither needs to be trusted: a claimed value must have the literal as its nearest float, and the
 //! function, run with the claimed values, must equal the equations exactly. A literal that no claim fits stands for the decimal number it is.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::exact::Number;
 
 use crate::arithmetic::Element;
 use crate::enclosure::Float;
 use crate::formula::{decimal, Formula, Rational};
-use crate::program::{Literal, Program};
+use crate::program::{Literal, Program, Step};
 
 /// Claimed constants by function (or constant) name, in the order of the text where that is known.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,10 +94,14 @@ impl Claims {
     pub fn suspect(&self, program: &Program, entry: &str, real: Float) -> Option<String> {
         let claims: Vec<(f64, &Formula)> =
             self.of(&program.name).iter().filter_map(|claim| Some((real.nearest(claim)?.abs(), claim))).collect();
-        let takes_part = |index: usize| program.entries_with(index).any(|e| program.outputs[e].place == entry);
-        let (_, literal) = program.literals.iter().enumerate().find(|(index, literal)| {
-            !claims.is_empty() && takes_part(*index) && claims.iter().all(|(value, _)| *value != literal.value.abs())
-        })?;
+        let known: BTreeSet<u64> = claims.iter().map(|(value, _)| value.to_bits()).collect();
+        let output = program.outputs.iter().find(|output| output.place == entry)?;
+        let needed = program.needed(&[output.step]);
+        let of_entry = program.steps.iter().zip(needed).filter_map(|(step, needed)| match step {
+            Step::Literal(index) if needed => Some(&program.literals[*index]),
+            _ => None,
+        });
+        let literal = of_entry.into_iter().find(|literal| !known.contains(&literal.value.abs().to_bits()))?;
         let distance = |value: f64| (value - literal.value.abs()).abs();
         let (value, claim) = claims.into_iter().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0)))?;
         Some(if distance(value) < 1e-6 * value {

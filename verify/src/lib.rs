@@ -62,7 +62,7 @@ use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
 use reader::{Constant, Module};
-use report::{FunctionReport, Report, Verdict};
+use report::{Report, Verdict};
 
 /// SHA-256 of a text, hexadecimal.
 pub fn hash(text: &str) -> String {
@@ -161,10 +161,10 @@ pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) 
             Err(fault) => report.faults.push(fault),
         }
         // Polynomials of very high degree, those of thirty joints, need more points for the same odds.
-        if !report.functions.iter().any(FunctionReport::is_uncertain) || effort.points >= MOST_POINTS {
+        if !report.is_merely_uncertain() || effort.points >= MOST_POINTS {
             return report;
         }
-        effort.points *= 2;
+        effort.points = (2 * effort.points).max(1);
     }
 }
 

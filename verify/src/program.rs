@@ -166,18 +166,7 @@ impl Program {
 
     /// The part of the program that some steps need: these are its results.
     pub fn part(&self, results: &[usize]) -> Program {
-        let mut needed = vec![false; self.steps.len()];
-        results.iter().for_each(|&step| needed[step] = true);
-        for (i, step) in self.steps.iter().enumerate().rev() {
-            match step {
-                _ if !needed[i] => {}
-                Step::Negate(a) => needed[*a] = true,
-                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => {
-                    (needed[*a], needed[*b]) = (true, true);
-                }
-                Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => {}
-            }
-        }
+        let needed = self.needed(results);
         let mut number = vec![0; self.steps.len()];
         let mut steps: Vec<Step> = Vec::new();
         for (i, step) in self.steps.iter().enumerate().filter(|&(i, _)| needed[i]) {
@@ -193,6 +182,23 @@ impl Program {
         }
         let outputs = results.iter().map(|&step| Output { place: String::new(), step: number[step] }).collect();
         Program { steps, outputs, ..self.clone() }
+    }
+
+    /// Which steps some of them need, themselves included.
+    pub fn needed(&self, results: &[usize]) -> Vec<bool> {
+        let mut needed = vec![false; self.steps.len()];
+        results.iter().for_each(|&step| needed[step] = true);
+        for (i, step) in self.steps.iter().enumerate().rev() {
+            match step {
+                _ if !needed[i] => {}
+                Step::Negate(a) => needed[*a] = true,
+                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => {
+                    (needed[*a], needed[*b]) = (true, true);
+                }
+                Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => {}
+            }
+        }
+        needed
     }
 
     /// The value of every step; `None` of what divides by zero, and of all from where numbers have grown out of bounds: 2^20 bits for one,

@@ -213,7 +213,8 @@ impl Module {
         if !matches!(values.get("DOF"), Some((_, Constant::Integer(_)))) {
             return Err("the module has no number of joints `DOF`".into());
         }
-        let functions = public.iter().map(|f| (f.sig.ident.to_string(), read_function(f, &private, real))).collect();
+        let mut work = 0;
+        let functions = public.iter().map(|f| (f.sig.ident.to_string(), read_function(f, &private, real, &mut work))).collect();
         Ok(Module { real, trig, constants: values, functions })
     }
 
@@ -282,9 +283,14 @@ fn signature(function: &ItemFn) -> Result<(Vec<(String, String)>, String), Strin
     Ok((arguments, result))
 }
 
-fn read_function(function: &ItemFn, private: &BTreeMap<String, &ItemFn>, real: Float) -> Result<Function, String> {
+fn read_function(
+    function: &ItemFn,
+    private: &BTreeMap<String, &ItemFn>,
+    real: Float,
+    work: &mut usize,
+) -> Result<Function, String> {
     let (arguments, result) = signature(function)?;
     let listed: Vec<String> = arguments.iter().map(|(name, ty)| format!("{name}:{ty}")).collect();
-    let program = expression::compile(function, &arguments, private, real)?;
+    let program = expression::compile(function, &arguments, private, real, work)?;
     Ok(Function { signature: format!("({})->{result}", listed.join(",")), program })
 }

@@ -121,6 +121,14 @@ impl Report {
         !self.functions.is_empty() && self.first_fault().is_none()
     }
 
+    /// Whether nothing is wrong but the odds of a miss.
+    pub(crate) fn is_merely_uncertain(&self) -> bool {
+        let equal = self.functions.iter().map(|f| &f.verdict).chain(self.constants.iter().map(|c| &c.verdict));
+        self.faults.is_empty()
+            && equal.into_iter().all(|verdict| *verdict == Verdict::Equal)
+            && self.functions.iter().any(FunctionReport::is_uncertain)
+    }
+
     /// The first thing that is wrong: a function or a constant with the entry, the whole, or an identity.
     pub fn first_fault(&self) -> Option<String> {
         let named = |name: &str, verdict: &Verdict| match verdict {

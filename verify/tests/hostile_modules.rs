@@ -57,6 +57,9 @@ fn deep_expressions_are_refused_and_others_read() {
     check(around("-", "", 8000), "nests too deeply");
     check(around("", " + q[0]", 8000), "nests too deeply");
     check(around("if true {0.0} else ", "", 3000), "nests too deeply");
+    check(with_steps(&format!("let _ = {}1.0;", "|a, b|".repeat(200_000))), "nests too deeply");
+    check(with_steps(&format!("let _: {}Real;", "A<B, ".repeat(200_000))), "nests too deeply");
+    check(with_steps(&format!("let _ = {}q;", "for P {} in ".repeat(200_000))), "nests too deeply");
     assert_eq!(around("(", ")", 50), None);
     assert_eq!(around("-", "", 3000), None);
     assert_eq!(around("", " + q[0]", 900), None);
@@ -72,7 +75,14 @@ fn steps_that_grow_without_end_are_refused() {
     check(with_steps(&chain(7, |i| format!("let s{} = [{}];", i + 1, format!("s{i},").repeat(100)))), "more work to read");
     // Right, but of numbers that no machine holds.
     let squares = chain(60, |i| format!("let s{} = s{i} * s{i};", i + 1));
-    check(with_steps(&squares), "gravity");
+    check(with_steps(&squares), "differs from the equations at rational point 1");
+    // The degree doubles where no number grows.
+    let powers = chain(70, |i| format!("let s{} = s{i} * s{i};", i + 1));
+    let fault = fault(
+        "pub fn kinetic_energy(q: &[Real; DOF], dq: &[Real; DOF]) -> Real {",
+        &format!("pub fn kinetic_energy(q: &[Real; DOF], dq: &[Real; DOF]) -> Real {{ let s0 = 1.0 / q[0]; {powers}"),
+    );
+    assert!(fault.is_some_and(|fault| fault.starts_with("kinetic_energy")), "a degree that no odds follow from");
 }
 
 #[test]

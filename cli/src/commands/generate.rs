@@ -162,15 +162,11 @@ fn write(path: &Path, text: &str) -> std::io::Result<()> {
 
 /// The name of a module of Rust that a file of this stem holds.
 fn module_name(stem: &str) -> String {
-    let mut name: String = stem.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
-    if !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
-        name.insert(0, '_');
-    }
-    // A keyword, or a letter that no name of Rust may have.
-    if !manipulator::is_rust_name(&name) {
-        name.push('_');
-    }
-    name
+    let fits = |c: &char| manipulator::is_rust_name(&format!("a{c}"));
+    let name: String = stem.chars().map(|c| if fits(&c) { c } else { '_' }).collect();
+    // A digit in front, or a keyword.
+    let others = [format!("_{name}"), format!("{name}_")];
+    [name].into_iter().chain(others).find(|name| manipulator::is_rust_name(name)).unwrap_or_else(|| "robot".into())
 }
 
 /// All files to write, or why a module is not to be trusted with being written.

@@ -367,3 +367,18 @@ fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Numbe
     };
     format!("{name} = {centre}+- {opening} + 2 k pi")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_of_a_quadratic_factor() {
+        let printer = Printer { notation: Notation::Text, parameters: &[] };
+        let zeros = |c: i64, b: i64, a: i64| quadratic(&printer, "q1", &c.into(), &b.into(), &a.into());
+        assert_eq!(zeros(1, 2, 1), "q1 = -1");
+        assert_eq!(zeros(3, -4, 1), "q1 = 1 or 3");
+        assert_eq!(zeros(-2, 0, 1), "q1 = -sqrt(2) or sqrt(2)");
+        assert_eq!(zeros(1, 0, 1), "never");
+    }
+}

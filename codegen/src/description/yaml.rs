@@ -271,7 +271,9 @@ impl Builder<'_> {
         let at = error.marker().byte_offset().unwrap_or(0).min(self.source.text().len());
         let mut span = self.visible(at);
         let (mut message, mut help) = explain(error.kind());
-        if let Some((cause, kind)) = cause(self.source.text(), at, error.kind()) {
+        // In brackets a tab is a blank, and the bracket says more.
+        let in_brackets = self.open.iter().any(|open| open.flow);
+        if let Some((cause, kind)) = cause(self.source.text(), at, error.kind()).filter(|_| !in_brackets) {
             span = cause;
             (message, help) = explain(&kind);
         }
@@ -337,59 +339,94 @@ fn key(node: Node, seen: &mut BTreeMap<String, Span>, diagnostics: &mut Diagnost
     Some(Spanned::new(scalar.text, node.span))
 }
 
-/// Where the fault is that the reader stumbled over later, and what it is, if that can be told: a tab in the indentation of the line or of
-/// one beside it, a quote that was opened above, a key without a colon in the line above.
+/// Where the fault is that the reader stumbled over later, and what it is, if that can be told: a quote that was opened above, a tab in the
+/// indentation of the line or of one beside it, a key without a colon in the line above.
 fn cause(text: &str, at: usize, kind: &ErrorKind) -> Option<(Span, ErrorKind)> {
     use ErrorKind as E;
-    let mut begin = 0;
-    let lines: Vec<(usize, &str)> = text
-        .split_inclusive('\n')
-        .map(|line| {
-            begin += line.len();
-            (begin - line.len(), line.trim_end())
-        })
-        .collect();
-    let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
     match kind {
-        E::RecursionLimitExceeded | E::DirectiveDisallowed => return None,
         E::InvalidQuotedScalarIndent | E::UnclosedQuotedScalar | E::DocumentIndicatorInQuotedScalar => {
-            let opened = lines[..=here].iter().rev().find_map(|(start, line)| opened_quote(line).map(|at| start + at))?;
-            return Some((Span::new(opened, opened + 1), E::UnclosedQuotedScalar));
+            let opened = opened_quote(text.get(..at)?)?;
+            Some((Span::new(opened, opened + 1), E::UnclosedQuotedScalar))
         }
-        _ => {}
+        E::MappingValueNotAllowed => tab_beside(text, at).or_else(|| key_without_colon(text, at)),
+        E::InvalidIndentation
+        | E::ExpectedDocumentStart
+        | E::ExpectedBlockMappingKey
+        | E::ExpectedBlockSequenceEntry
+        | E::SimpleKeyExpected
+        | E::InvalidSimpleKey
+        | E::MappingKeyNotAllowed
+        | E::InvalidColonPlacement
+        | E::BlockSequenceEntryNotAllowed
+        | E::TabNotAllowed
+        | E::TabInBlockIndentation
+        | E::TabInIndentation
+        | E::TabInPlainScalar => tab_beside(text, at),
+        _ => None,
     }
-    let tab = |(start, line): &(usize, &str)| {
-        let indentation = line.len() - line.trim_start().len();
-        line[..indentation].find('\t').map(|tab| Span::new(start + tab, start + tab + 1))
-    };
-    let beside = &lines[here.saturating_sub(1)..lines.len().min(here + 2)];
-    if let Some(tab) = beside.iter().find_map(tab) {
-        return Some((tab, E::TabInIndentation));
-    }
-    if matches!(kind, E::MappingValueNotAllowed) {
-        // What has no colon is taken to go on in the next line.
-        let (start, line) = lines[..here].iter().rev().find(|(_, line)| !line.trim().is_empty())?;
-        let word = line.trim_start();
-        if !word.contains(':') && !word.starts_with(['#', '-', '"', '\'']) {
-            return Some((Span::new(start + line.len() - word.len(), start + line.len()), E::SimpleKeyExpected));
-        }
-    }
-    None
 }
 
-/// Where a quoted text begins in a line that does not end in it.
-fn opened_quote(line: &str) -> Option<usize> {
+/// Lines with their places, without their ends.
+fn lines(text: &str) -> Vec<(usize, &str)> {
+    let mut begin = 0;
+    let line = |line: &'_ str| {
+        begin += line.len();
+        begin - line.len()
+    };
+    let starts: Vec<usize> = text.split_inclusive('\n').map(line).collect();
+    starts.into_iter().zip(text.split_inclusive('\n').map(str::trim_end)).collect()
+}
+
+/// A tab before what stands in the line of `at` or in one beside it.
+fn tab_beside(text: &str, at: usize) -> Option<(Span, ErrorKind)> {
+    let lines = lines(text);
+    let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
+    lines[here.saturating_sub(1)..lines.len().min(here + 2)].iter().find_map(|(start, line)| {
+        let visible = line.trim_start();
+        let tab = line[..line.len() - visible.len()].find('\t').filter(|_| !visible.starts_with('#'))?;
+        Some((Span::new(start + tab, start + tab + 1), ErrorKind::TabInIndentation))
+    })
+}
+
+/// The line above, if it is no key but stands like one: it is taken to go on in the line of `at`, whose own colon is then one too many.
+fn key_without_colon(text: &str, at: usize) -> Option<(Span, ErrorKind)> {
+    let lines = lines(text);
+    let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
+    let mut above = lines[..here].iter().rev().filter(|(_, line)| !line.trim().is_empty());
+    let (start, line) = above.next()?;
+    let indentation = |line: &str| line.len() - line.trim_start_matches([' ', '-']).len();
+    let own = text.get(lines[here].0..at)?;
+    let word = line.trim_start();
+    let like_a_key =
+        !own.contains(':') && indentation(lines[here].1) == indentation(line) && !word.contains([':', '[', ']', '{', '}', ',']);
+    // Below a key with a value it goes on with that.
+    let begins = above.next().is_none_or(|(_, before)| before.ends_with(':') || indentation(before) >= indentation(line));
+    (like_a_key && begins && !word.starts_with(['#', '-', '"', '\'']))
+        .then(|| (Span::new(start + line.len() - word.len(), start + line.len()), ErrorKind::SimpleKeyExpected))
+}
+
+/// The quote that is open at the end of a text.
+fn opened_quote(text: &str) -> Option<usize> {
     let mut open: Option<(usize, char)> = None;
-    let (mut before, mut escaped) = (' ', false);
-    for (at, c) in line.char_indices() {
+    // The last character, and the last one that is no blank, a line's end among them.
+    let (mut last, mut visible) = ('\n', '\n');
+    let mut characters = text.char_indices().peekable();
+    while let Some((at, c)) = characters.next() {
         match open {
-            Some((_, quote)) if c == quote && !escaped => open = None,
-            Some((_, quote)) => escaped = quote == '"' && c == '\\' && !escaped,
-            None if c == '#' && before == ' ' => break,
-            None if matches!(c, '"' | '\'') && matches!(before, ' ' | '[' | '{' | ',') => open = Some((at, c)),
+            Some((_, '"')) if c == '\\' => drop(characters.next()),
+            Some((_, '\'')) if c == '\'' && characters.next_if(|(_, next)| *next == '\'').is_some() => {}
+            Some((_, quote)) if c == quote => open = None,
+            Some(_) => {}
+            None if c == '#' && last.is_whitespace() => while characters.next_if(|(_, next)| *next != '\n').is_some() {},
+            None if matches!(c, '"' | '\'') && matches!(visible, '\n' | ':' | '-' | '?' | '[' | '{' | ',') => {
+                open = Some((at, c))
+            }
             None => {}
         }
-        before = c;
+        last = c;
+        if !c.is_whitespace() || c == '\n' {
+            visible = c;
+        }
     }
     open.map(|(at, _)| at)
 }

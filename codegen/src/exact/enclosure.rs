@@ -1,7 +1,7 @@
 //! Enclosures: two fractions between which a [`Number`] lies, as close together as one asks.
 //!
 //! Everything is enclosed between multiples of 2^-places, rounded outwards. Roots by integer square root, pi by Machin's formula
-//! pi/4 = 4 atan(1/5) - atan(1/239), sine and cosine by their series (arguments are at most pi/4 here, but nothing depends on it): an
+//! pi/4 = 4 atan(1/5) - atan(1/239), sine and cosine by their series (arguments are at most pi/4): an
 //! alternating series of falling terms lies between two partial sums. The arc tangent by Euler's series, whose terms are positive and fall by
 //! more than a half each below 1. What comes out wide, a small fraction times a large root say, is done again with as many places more as
 //! were lost.
@@ -46,7 +46,7 @@ impl Enclosures {
         Enclosures { places, roots: BTreeMap::new(), others: BTreeMap::new() }
     }
 
-    /// Within 2^LOST multiples of 2^-places: what sines and cosines are taken of is as short as it looks.
+    /// Within about 2^LOST multiples of 2^-places: what sines and cosines are taken of is as short as it looks.
     fn number(&mut self, number: &Number) -> Interval {
         let mut guard = 0;
         loop {

@@ -110,17 +110,21 @@ impl Shown {
         text
     }
 
-    fn latex_entry_name(&self, row: usize, column: usize) -> String {
+    pub(super) fn latex_entry_name(&self, row: usize, column: usize) -> String {
         let letter = self.letter[1];
+        // A parameter prints its number as an index, with or without an underscore in its name.
+        let is_entry = self.is_entry_of(self.letter[0]);
+        let taken = self.parameters.iter().any(|name| is_entry(name) || is_entry(&name.replacen('_', "", 1)));
+        let prime = if taken { "'" } else { "" };
         let indexed = |index: String| {
             // The letter may have an index of its own.
             match letter.split_once('_') {
-                Some((letter, own)) => format!("{letter}_{{{own},{index}}}"),
-                None => format!("{letter}_{{{index}}}"),
+                Some((letter, own)) => format!("{letter}{prime}_{{{own},{index}}}"),
+                None => format!("{letter}{prime}_{{{index}}}"),
             }
         };
         match (self.rows, self.columns) {
-            (1, 1) => letter.into(),
+            (1, 1) => format!("{letter}{prime}"),
             (_, 1) => indexed((row + 1).to_string()),
             (rows, columns) if rows < 10 && columns < 10 => indexed(format!("{}{}", row + 1, column + 1)),
             _ => indexed(format!("{},{}", row + 1, column + 1)),

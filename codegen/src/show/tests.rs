@@ -73,6 +73,15 @@ fn no_name_means_two_things() {
     {
         let sheet = sheet(&text, &[name], Reading::Symbolic);
         let shown = &sheet.quantities[0];
+        // In LaTeX an index may belong to the name or follow it.
+        let printer = Printer { notation: Notation::Latex, parameters: &shown.parameters };
+        let names = (0..shown.parameters.len()).map(|i| printer.symbol(Symbol::Parameter(i as u16)));
+        let steps = shown.formulas(Notation::Latex).steps.into_iter().map(|(name, _)| name);
+        let entries = (0..shown.rows).flat_map(|i| (0..shown.columns).map(move |j| (i, j)));
+        let entries = entries.map(|(i, j)| shown.latex_entry_name(i, j));
+        let all: Vec<String> = names.chain(steps).chain(entries).collect();
+        let different: BTreeSet<&String> = all.iter().collect();
+        assert_eq!(all.len(), different.len(), "{all:?}");
         let steps = shown.formulas(Notation::Text).steps.into_iter().map(|(name, _)| name);
         let entries = (0..shown.rows).flat_map(|i| (0..shown.columns).map(move |j| (i, j))).map(|(i, j)| shown.entry_name(i, j));
         let all: Vec<String> = steps.chain(entries).chain(shown.parameters.iter().cloned()).collect();

@@ -32,7 +32,7 @@ pub struct Degree {
     table: Rc<Table>,
     /// Degree of N, log2 of its height, k; `None` for 0.
     size: Option<(f64, f64, f64)>,
-    divisors: BTreeMap<usize, i32>,
+    divisors: BTreeMap<usize, i64>,
 }
 
 impl PartialEq for Degree {
@@ -48,11 +48,11 @@ fn log2_sum(a: f64, b: f64) -> f64 {
 
 impl Degree {
     /// Degree and height of this value brought to the denominators given.
-    fn raised(&self, divisors: &BTreeMap<usize, i32>, k: f64) -> (f64, f64) {
+    fn raised(&self, divisors: &BTreeMap<usize, i64>, k: f64) -> (f64, f64) {
         let (mut degree, mut height, own) = self.size.unwrap_or((0.0, 0.0, 0.0));
         let mut missing = k - own;
         for (divisor, power) in divisors {
-            let extra = f64::from(power - self.divisors.get(divisor).copied().unwrap_or(0));
+            let extra = power.saturating_sub(self.divisors.get(divisor).copied().unwrap_or(0)) as f64;
             let (d, h, l) = self.table.divisors.borrow()[*divisor];
             degree += extra * d;
             height += extra * h;
@@ -85,7 +85,7 @@ impl Element for Degree {
         // The power of 1/L that both reach once they stand over the common denominators.
         let power = |value: &Degree, k: f64| {
             divisors.iter().fold(k, |k, (divisor, power)| {
-                let extra = f64::from(power - value.divisors.get(divisor).copied().unwrap_or(0));
+                let extra = power.saturating_sub(value.divisors.get(divisor).copied().unwrap_or(0)) as f64;
                 k + extra * value.table.divisors.borrow()[*divisor].2
             })
         };
@@ -105,7 +105,8 @@ impl Element for Degree {
         };
         let mut divisors = self.divisors.clone();
         for (&divisor, &power) in &other.divisors {
-            *divisors.entry(divisor).or_default() += power;
+            let entry = divisors.entry(divisor).or_default();
+            *entry = entry.saturating_add(power);
         }
         divisors.retain(|_, power| *power != 0);
         let size = Some((a.0 + b.0, a.1 + b.1, a.2 + b.2));
@@ -123,7 +124,7 @@ impl Element for Degree {
             list.push(size);
             list.len() - 1
         };
-        let mut divisors: BTreeMap<usize, i32> = self.divisors.iter().map(|(&d, &power)| (d, -power)).collect();
+        let mut divisors: BTreeMap<usize, i64> = self.divisors.iter().map(|(&d, &power)| (d, power.saturating_neg())).collect();
         divisors.insert(index, 1);
         Some(Degree { table: self.table.clone(), size: Some((0.0, 0.0, 0.0)), divisors })
     }

@@ -48,18 +48,19 @@ struct Compiler<'a> {
     calls: Vec<String>,
     /// Expressions around the one that is read, through all calls.
     depth: usize,
-    /// What was read and copied so far, in expressions, values and bytes of text.
-    work: usize,
+    /// What was read and copied so far in the whole module, in expressions, values, steps and bytes of text.
+    work: &'a mut usize,
 }
 
-const MOST_STEPS: usize = 4_000_000;
-/// A module of 32 joints takes a tenth of it for its longest function.
+/// For a module; that of 32 joints takes a third of it.
 const MOST_WORK: usize = 1 << 25;
+/// What a step counts as.
+const WORK_OF_STEP: usize = 8;
 /// What a call counts as.
 const WORK_OF_CALL: usize = 256;
 /// Lists in lists; what is returned is two deep.
 const MOST_LISTS: usize = 8;
-/// Angles that are added under a sine: a sum has one for each joint and perhaps a constant.
+/// Terms and signs under a sine: a sum has a term for each joint and perhaps a constant.
 const MOST_ANGLES: usize = 256;
 
 /// Reads a public function.
@@ -68,17 +69,10 @@ pub(super) fn compile(
     arguments: &[(String, String)],
     private: &BTreeMap<String, &ItemFn>,
     real: Float,
+    work: &mut usize,
 ) -> Result<Program, String> {
-    let mut compiler = Compiler {
-        private,
-        real,
-        steps: Vec::new(),
-        literals: Vec::new(),
-        turns: Vec::new(),
-        calls: Vec::new(),
-        depth: 0,
-        work: 0,
-    };
+    let mut compiler =
+        Compiler { private, real, steps: Vec::new(), literals: Vec::new(), turns: Vec::new(), calls: Vec::new(), depth: 0, work };
     let mut scope = Scope::new();
     let mut known = Vec::new();
     for (name, _) in arguments {
@@ -118,17 +112,15 @@ fn flatten(value: &Value, place: String, outputs: &mut Vec<Output>) -> Result<()
 
 impl Compiler<'_> {
     fn push(&mut self, step: Step) -> Result<Value, String> {
-        if self.steps.len() >= MOST_STEPS {
-            return Err(format!("more than {MOST_STEPS} steps"));
-        }
+        self.worked(WORK_OF_STEP)?;
         self.steps.push(step);
         Ok(Value::Step(self.steps.len() - 1))
     }
 
     fn worked(&mut self, work: usize) -> Result<(), String> {
-        self.work += work;
-        if self.work > MOST_WORK {
-            return Err("it takes more work to read than that of any arm".into());
+        *self.work += work;
+        if *self.work > MOST_WORK {
+            return Err("the module takes more work to read than that of any arm".into());
         }
         Ok(())
     }
@@ -185,7 +177,7 @@ impl Compiler<'_> {
             Expr::Reference(inner) if inner.mutability.is_none() => self.expression(&inner.expr, scope),
             Expr::Path(path) => {
                 let name = text(path);
-                scope.get(&name).cloned().ok_or(format!("`{name}` is not a name that stands before"))
+                scope.get(&name).cloned().ok_or_else(|| format!("`{name}` is not a name that stands before"))
             }
             Expr::Lit(literal) => match &literal.lit {
                 Lit::Float(float) => {
@@ -201,7 +193,7 @@ impl Compiler<'_> {
                 match base {
                     Value::Argument(argument) => self.push(Step::Input(argument, position)),
                     Value::List('[', values) => {
-                        values.get(position).cloned().ok_or(format!("`{}` is beyond the end", text(index)))
+                        values.get(position).cloned().ok_or_else(|| format!("`{}` is beyond the end", text(index)))
                     }
                     _ => Err(format!("`{}` is not an array", shortened(&index.expr))),
                 }
@@ -214,7 +206,7 @@ impl Compiler<'_> {
                     }
                     _ => None,
                 };
-                found.ok_or(format!("`{}` has no such field", text(field)))
+                found.ok_or_else(|| format!("`{}` has no such field", text(field)))
             }
             Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => {
                 let inner = self.step(&unary.expr, scope)?;
@@ -341,7 +333,7 @@ impl Compiler<'_> {
             }
         }
         if !waiting.is_empty() {
-            return Err(format!("sine of a sum of more than {MOST_ANGLES} terms"));
+            return Err(format!("sine of a sum of more than {MOST_ANGLES} terms and signs"));
         }
         let terms: Vec<(usize, i64)> = sum.into_iter().filter(|&(_, factor)| factor != 0).collect();
         if terms.is_empty() {

@@ -15,7 +15,7 @@ const KEYWORDS: [&str; 53] = [
 /// Words of expressions.
 const WORDS: [&str; 3] = ["pi", "deg", "sqrt"];
 /// Functions of printed equations.
-const FUNCTIONS: [&str; 4] = ["sin", "cos", "sign", "atan"];
+const FUNCTIONS: [&str; 6] = ["sin", "cos", "sign", "atan", "atan2", "acos"];
 /// Joint variables, rates, accelerations and torques in printed equations, each followed by the joint's number.
 const VARIABLES: [&str; 6] = ["q", "dq", "ddq", "dqr", "ddqr", "tau"];
 
@@ -90,7 +90,7 @@ fn reserved(name: &str) -> Option<&'static str> {
 /// Whether a text can be the name of an item of Rust as it stands.
 pub fn is_rust_name(name: &str) -> bool {
     // The raw `r#fn` is an identifier too, but no word of an expression.
-    !name.contains('#') && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
+    !name.contains('#') && !KEYWORDS.contains(&name) && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
 }
 
 /// The name with everything replaced that an identifier cannot have.
