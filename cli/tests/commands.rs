@@ -1,7 +1,7 @@
 //! The program as its users run it: exit codes, what goes to which stream, the forms of output.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
@@ -206,12 +206,18 @@ fn generate_writes_the_same_bytes_everywhere() {
     check(&["generate", &file("robots/scara.yaml"), "--out", folder("generate").to_str().expect("UTF-8")], 2);
 }
 
+/// A description in a folder, under a name, and its text.
+fn copied(folder: &Path, name: &str) -> (PathBuf, Vec<u8>) {
+    let description = folder.join(name);
+    fs::copy(file("robots/scara4.yaml"), &description).expect("a copy");
+    let text = fs::read(&description).expect("the copy");
+    (description, text)
+}
+
 #[test]
 fn generate_does_not_overwrite_its_description() {
     let folder = folder("overwrite");
-    let description = folder.join("robot.yaml");
-    fs::copy(file("robots/scara4.yaml"), &description).expect("a copy");
-    let before = fs::read(&description).expect("the copy");
+    let (description, before) = copied(&folder, "robot.yaml");
     let other_name = folder.join("..").join("overwrite").join("robot.yaml");
     for out in [&description, &other_name] {
         let arguments = ["generate", description.to_str().expect("UTF-8"), "--out", out.to_str().expect("UTF-8")];
@@ -226,9 +232,7 @@ fn generate_does_not_overwrite_its_description() {
 #[test]
 fn no_file_beside_the_module_is_written_over_another() {
     let folder = folder("beside");
-    let description = folder.join("arm.h");
-    fs::copy(file("robots/scara4.yaml"), &description).expect("a copy");
-    let before = fs::read(&description).expect("the copy");
+    let (description, before) = copied(&folder, "arm.h");
     for out in ["module.h", "arm.rs"] {
         let out = folder.join(out);
         let paths = [&description, &out].map(|path| path.to_str().expect("UTF-8"));

@@ -37,47 +37,35 @@ impl<T: Copy> Arguments<T> {
     }
 
     /// The same entry of all states side by side.
-    pub fn gather<U, const N: usize>(states: &[Arguments<T>; N], side: impl Fn([T; N]) -> U + Copy) -> Arguments<U> {
-        let all = |argument: Argument| {
+    pub fn gather<U, const N: usize>(states: &[Arguments<T>; N], side: impl Fn([T; N]) -> U) -> Arguments<U> {
+        Arguments::each(|argument| {
             let length = states.first().map_or(0, |state| state.of(argument).len());
             (0..length).map(|i| side(std::array::from_fn(|k| states[k].of(argument)[i]))).collect()
-        };
-        Arguments {
-            pi: all(Argument::Pi),
-            q: all(Argument::Q),
-            dq: all(Argument::Dq),
-            ddq: all(Argument::Ddq),
-            dqr: all(Argument::Dqr),
-            ddqr: all(Argument::Ddqr),
-            tau: all(Argument::Tau),
-        }
+        })
     }
 
     /// Each entry together with the same entry of others, in the order of the fields.
     pub fn beside<U: Copy, V>(&self, others: &Arguments<U>, mut f: impl FnMut(T, U) -> V) -> Arguments<V> {
-        let mut all = |argument: Argument| self.of(argument).iter().zip(others.of(argument)).map(|(a, b)| f(*a, *b)).collect();
-        Arguments {
-            pi: all(Argument::Pi),
-            q: all(Argument::Q),
-            dq: all(Argument::Dq),
-            ddq: all(Argument::Ddq),
-            dqr: all(Argument::Dqr),
-            ddqr: all(Argument::Ddqr),
-            tau: all(Argument::Tau),
-        }
+        Arguments::each(|argument| self.of(argument).iter().zip(others.of(argument)).map(|(a, b)| f(*a, *b)).collect())
     }
 
     /// The same in other numbers.
-    pub fn map<U>(&self, f: impl Fn(T) -> U + Copy) -> Arguments<U> {
-        let of = |v: &[T]| v.iter().map(|x| f(*x)).collect();
+    pub fn map<U>(&self, f: impl Fn(T) -> U) -> Arguments<U> {
+        Arguments::each(|argument| self.of(argument).iter().map(|x| f(*x)).collect())
+    }
+}
+
+impl<T> Arguments<T> {
+    /// All arguments, asked for in the order of the fields.
+    fn each(mut of: impl FnMut(Argument) -> Vec<T>) -> Arguments<T> {
         Arguments {
-            pi: of(&self.pi),
-            q: of(&self.q),
-            dq: of(&self.dq),
-            ddq: of(&self.ddq),
-            dqr: of(&self.dqr),
-            ddqr: of(&self.ddqr),
-            tau: of(&self.tau),
+            pi: of(Argument::Pi),
+            q: of(Argument::Q),
+            dq: of(Argument::Dq),
+            ddq: of(Argument::Ddq),
+            dqr: of(Argument::Dqr),
+            ddqr: of(Argument::Ddqr),
+            tau: of(Argument::Tau),
         }
     }
 }
