@@ -55,7 +55,7 @@ pub(crate) fn run() -> Result<Outcome, String> {
 
 /// What the sampled loop is like at these postures; an unstable one is an error, with the period that would hold.
 fn stability<C: Linearise<Nominal, DOF>>(controller: &C, postures: &[Vector]) -> Result<String, String> {
-    let report = analyse(&Nominal, &Nominal, controller, postures, PERIOD.as_secs_f64(), Delay::None)
+    let report = analyse(&Nominal, &Nominal, controller, postures, PERIOD.as_secs_f64(), Delay::NONE)
         .map_err(|error| format!("the sampled loop has no spectral radius: {error:?}"))?;
     let Report { radius, period, .. } = report;
     let milliseconds = |seconds: f64| format!("{:.3} ms", seconds * 1e3);

@@ -15,6 +15,8 @@
 //! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a memory,
 //! advanced by forward Euler after the torque is computed.
 //!
+//! Each has a method `torque`; the trait [`Controller`] is what they have in common, for a loop that runs any of them.
+//!
 //! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the memory as it was.
 
 mod adaptive;
@@ -33,7 +35,8 @@ pub use robust::{BoundaryLayer, Robust};
 
 use crate::{
     linalg::is_finite,
-    reference::{JointReference, State},
+    reference::{JointReference, OperationalReference, State},
+    robot::{Dynamics, Kinematics, Regressor},
 };
 use nalgebra::{RealField, SVector};
 
@@ -49,6 +52,10 @@ pub enum ControlError {
     Singular,
     /// The law gave an infinite or NaN torque: gains or model are beyond the range of the scalar.
     TorqueNotFinite,
+    /// The damped inverse gave no joint acceleration: Jacobian or gains are beyond the range of the scalar.
+    AccelerationNotFinite,
+    /// The next estimate or integral would be infinite or NaN: gains or model are beyond the range of the scalar.
+    MemoryNotFinite,
 }
 
 messages! { ControlError,
@@ -56,6 +63,8 @@ messages! { ControlError,
     ControlError::ReferenceNotFinite => "the reference is infinite or NaN";
     ControlError::Singular => "the Jacobian has lost a row of the task: allow damping, or keep away from singular postures";
     ControlError::TorqueNotFinite => "the torque is infinite or NaN: gains or model are beyond the range of the scalar";
+    ControlError::AccelerationNotFinite => "the damped inverse gives no joint acceleration: Jacobian or gains are beyond the range of the scalar";
+    ControlError::MemoryNotFinite => "the next estimate or integral is infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
 /// The torque for one sample.
@@ -68,6 +77,48 @@ pub struct Torque<T, const N: usize> {
     /// Whether the inverse of the Jacobian was damped, near a singularity.
     pub damped: bool,
 }
+
+/// A controller: the torque for each sample, from the model of the robot, what is desired and what is measured.
+pub trait Controller<R: Kinematics<N>, const N: usize> {
+    /// What is desired: a [`JointReference`], or an [`OperationalReference`] of the end effector.
+    type Reference;
+
+    /// Torque for one sample, then the step of the memory where the controller has one.
+    ///
+    /// # Errors
+    /// Where there is no torque; the memory stays as it was.
+    fn torque(
+        &mut self,
+        model: &R,
+        reference: &Self::Reference,
+        measured: &State<R::Real, N>,
+    ) -> Result<Torque<R::Real, N>, ControlError>;
+}
+
+/// Implements the trait by the controller's own method of that name.
+macro_rules! controller {
+    ($controller:ty, $model:path, $reference:ty $(, $size:ident)?) => {
+        impl<R: $model, const N: usize $(, const $size: usize)?> Controller<R, N> for $controller {
+            type Reference = $reference;
+
+            #[inline]
+            fn torque(
+                &mut self,
+                model: &R,
+                reference: &Self::Reference,
+                measured: &State<R::Real, N>,
+            ) -> Result<Torque<R::Real, N>, ControlError> {
+                <$controller>::torque(self, model, reference, measured)
+            }
+        }
+    };
+}
+
+controller!(PdGravity<R::Real, N>, Dynamics<N>, JointReference<R::Real, N>);
+controller!(InverseDynamics<R::Real, N>, Dynamics<N>, JointReference<R::Real, N>);
+controller!(Robust<R::Real, N>, Dynamics<N>, JointReference<R::Real, N>);
+controller!(Adaptive<R::Real, N, P>, Regressor<N, P>, JointReference<R::Real, N>, P);
+controller!(OperationalSpace<R::Real, N, M>, Dynamics<N>, OperationalReference<R::Real>, M);
 
 fn check<T: RealField + Copy, const N: usize>(measured: &State<T, N>, reference_is_finite: bool) -> Result<(), ControlError> {
     if !measured.is_finite() {

@@ -20,10 +20,11 @@ mod message;
 
 pub mod clik;
 pub mod control;
-pub mod gains;
+
 pub mod linalg;
 pub mod manipulability;
 pub mod orientation;
+pub mod parameters;
 pub mod reference;
 pub mod robot;
 #[cfg(feature = "std")]

@@ -39,6 +39,20 @@ impl Row {
     }
 }
 
+impl core::fmt::Display for Row {
+    /// `x`, `y`, `z`, `rx`, `ry`, `rz`: as descriptions name them.
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Row::X => "x",
+            Row::Y => "y",
+            Row::Z => "z",
+            Row::Rx => "rx",
+            Row::Ry => "ry",
+            Row::Rz => "rz",
+        })
+    }
+}
+
 /// `M` different rows of the operational space, in the order in which the task lists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Task<const M: usize> {
@@ -58,7 +72,7 @@ pub enum TaskError {
 
 messages! { TaskError,
     TaskError::Empty => "no row was named";
-    TaskError::Repeated(row) => "row {:?} was named twice: its Jacobian would be singular everywhere", row;
+    TaskError::Repeated(row) => "row {} was named twice: its Jacobian would be singular everywhere", row;
     TaskError::NoSuchRow(index) => "there is no row {}: 0 to 2 are x, y, z, and 3 to 5 the rotations about them", index;
 }
 

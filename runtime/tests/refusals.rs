@@ -8,8 +8,8 @@ use armgen_runtime::{
         Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
         TorqueLimits,
     },
-    gains::{Gain, GainError},
     linalg::{Damping, DampingError},
+    parameters::{Parameter, ParameterError},
     reference::{JointReference, OperationalReference, Pose, State},
     simulation::{Integrator, Plant, RunError},
     task::{Row, Task, TaskError},
@@ -23,30 +23,30 @@ const NAN: f64 = f64::NAN;
 
 #[test]
 fn gains_are_checked() {
-    let positive = |gain, index| Some(GainError::NotPositive { gain, index });
-    let finite = |gain, index| Some(GainError::NotFinite { gain, index });
+    let positive = |parameter, index| Some(ParameterError::NotPositive { parameter, index });
+    let finite = |parameter, index| Some(ParameterError::NotFinite { parameter, index });
     let (two, one) = ([2.0, 2.0], [1.0, 1.0]);
-    assert_eq!(PdGravity::new([1.0, 0.0], one).err(), positive(Gain::Proportional, 1));
-    assert_eq!(PdGravity::new(two, [-1.0, 1.0]).err(), positive(Gain::Derivative, 0));
-    assert_eq!(InverseDynamics::new([1.0, NAN], one).err(), finite(Gain::Proportional, 1));
-    assert_eq!(InverseDynamics::new(two, [f64::INFINITY, 1.0]).err(), finite(Gain::Derivative, 0));
+    assert_eq!(PdGravity::new([1.0, 0.0], one).err(), positive(Parameter::Proportional, 1));
+    assert_eq!(PdGravity::new(two, [-1.0, 1.0]).err(), positive(Parameter::Derivative, 0));
+    assert_eq!(InverseDynamics::new([1.0, NAN], one).err(), finite(Parameter::Proportional, 1));
+    assert_eq!(InverseDynamics::new(two, [f64::INFINITY, 1.0]).err(), finite(Parameter::Derivative, 0));
     let layer = |rho, epsilon| BoundaryLayer { rho, epsilon };
-    assert_eq!(Robust::new(two, one, one, [1.0, 0.0], layer(1.0, 1.0)).err(), positive(Gain::LyapunovWeight, 1));
-    assert_eq!(Robust::new(two, one, one, one, layer(-1.0, 1.0)).err(), positive(Gain::UncertaintyBound, 0));
-    assert_eq!(Robust::new(two, one, one, one, layer(1.0, 0.0)).err(), positive(Gain::BoundaryLayer, 0));
-    assert_eq!(Adaptive::new(two, one, [1.0, 0.0, 1.0], [0.0; 3], 1e-3).err(), positive(Gain::Adaptation, 1));
-    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0, 0.0, NAN], 1e-3).err(), finite(Gain::Estimate, 2));
-    assert_eq!(Adaptive::new([2.0, 0.0], one, [1.0; 3], [0.0; 3], 1e-3).err(), positive(Gain::Filter, 1));
-    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0; 3], 0.0).err(), positive(Gain::Period, 0));
-    assert_eq!(Interval::new([0.0, 2.0], [1.0, 1.0]).err(), positive(Gain::Interval, 1));
+    assert_eq!(Robust::new(two, one, one, [1.0, 0.0], layer(1.0, 1.0)).err(), positive(Parameter::LyapunovWeight, 1));
+    assert_eq!(Robust::new(two, one, one, one, layer(-1.0, 1.0)).err(), positive(Parameter::UncertaintyBound, 0));
+    assert_eq!(Robust::new(two, one, one, one, layer(1.0, 0.0)).err(), positive(Parameter::BoundaryLayer, 0));
+    assert_eq!(Adaptive::new(two, one, [1.0, 0.0, 1.0], [0.0; 3], 1e-3).err(), positive(Parameter::Adaptation, 1));
+    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0, 0.0, NAN], 1e-3).err(), finite(Parameter::Estimate, 2));
+    assert_eq!(Adaptive::new([2.0, 0.0], one, [1.0; 3], [0.0; 3], 1e-3).err(), positive(Parameter::Filter, 1));
+    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0; 3], 0.0).err(), positive(Parameter::Period, 0));
+    assert_eq!(Interval::new([0.0, 2.0], [1.0, 1.0]).err(), positive(Parameter::Interval, 1));
     let operational = |k_i, h| OperationalSpace::<f64, 4, 4>::new(ghost::task(), [1.0; 4], [1.0; 4], k_i, h);
-    assert_eq!(operational([0.0, 0.0, -1.0, 0.0], 1e-3).err(), positive(Gain::Integral, 2));
-    assert_eq!(operational([0.0; 4], NAN).err(), finite(Gain::Period, 0));
-    assert_eq!(operational([0.0; 4], 1e-3).unwrap().with_integral_limit([-1.0; 4]).err(), positive(Gain::IntegralLimit, 0));
-    assert_eq!(NullSpace::new([0.0, 0.0], [1.0, 0.0], [0.0; 2]).err(), positive(Gain::NullSpace, 1));
-    assert_eq!(TorqueLimits::new([1.0, 0.0]).err(), positive(Gain::TorqueLimit, 1));
-    assert_eq!(JointLimits::rates([1.0, NAN]).err(), finite(Gain::RateLimit, 1));
-    assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Gain::PositionLimit, 1));
+    assert_eq!(operational([0.0, 0.0, -1.0, 0.0], 1e-3).err(), positive(Parameter::Integral, 2));
+    assert_eq!(operational([0.0; 4], NAN).err(), finite(Parameter::Period, 0));
+    assert_eq!(operational([0.0; 4], 1e-3).unwrap().with_integral_limit([-1.0; 4]).err(), positive(Parameter::IntegralLimit, 0));
+    assert_eq!(NullSpace::new([0.0, 0.0], [1.0, 0.0], [0.0; 2]).err(), positive(Parameter::NullSpace, 1));
+    assert_eq!(TorqueLimits::new([1.0, 0.0]).err(), positive(Parameter::TorqueLimit, 1));
+    assert_eq!(JointLimits::rates([1.0, NAN]).err(), finite(Parameter::RateLimit, 1));
+    assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Parameter::PositionLimit, 1));
     assert_eq!(Damping::new(0.0, 1.0).err(), Some(DampingError::Threshold));
     assert_eq!(Damping::new(1.0, NAN).err(), Some(DampingError::Factor));
 }
@@ -128,7 +128,7 @@ fn a_broken_measurement_gives_an_error_and_never_a_torque() {
     // Beyond the range of the scalar: no torque either.
     let wild = State { q: ghost::start(), dq: Vector4::repeat(1e200) };
     assert_eq!(inverse.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
-    assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
+    assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::MemoryNotFinite));
     assert_eq!(operational.torque(&model, &pose, &wild).err(), Some(ControlError::TorqueNotFinite));
     // Nothing of it stays in the memory.
     assert_eq!(adaptive.estimate(), &memory);

@@ -63,7 +63,7 @@ fn control(k_i: f64) -> Errors {
     let null_space = NullSpace::new([25.0; 7], [10.0; 7], POSTURE).unwrap();
     let mut controller =
         OperationalSpace::new(Task::full(), [1e4; 6], [200.0; 6], [k_i; 6], 1e-3).unwrap().with_null_space(null_space);
-    let report = analyse(&ROBOT, &ROBOT, &controller, &[POSTURE.into()], 1e-3, Delay::None).unwrap();
+    let report = analyse(&ROBOT, &ROBOT, &controller, &[POSTURE.into()], 1e-3, Delay::NONE).unwrap();
     assert!(report.is_stable(), "{report:?}");
     let mut errors = Errors::default();
     run(

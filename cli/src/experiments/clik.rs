@@ -5,9 +5,9 @@ use armgen_runtime::clik::{
     Algorithm as Law, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
     Objective, Outcome, PseudoInverse, SecondOrder,
 };
-use armgen_runtime::gains::GainError;
 use armgen_runtime::linalg::Damping;
 use armgen_runtime::manipulability::{manipulability, manipulability_gradient};
+use armgen_runtime::parameters::ParameterError;
 use armgen_runtime::reference::State;
 use armgen_runtime::robot::Kinematics;
 use armgen_runtime::simulation::Log;
@@ -43,7 +43,7 @@ pub(crate) fn singles(run: &ClikRun) -> Vec<String> {
 const FASTEST: f64 = 100.0;
 
 /// The limits of the description; rates of [`FASTEST`] where it gives none.
-pub(crate) fn limits() -> Result<JointLimits<f64, DOF>, GainError> {
+pub(crate) fn limits() -> Result<JointLimits<f64, DOF>, ParameterError> {
     let limits = JointLimits::rates(VELOCITY_LIMITS.map(|rate| rate.min(FASTEST)))?;
     let finite = POSITION_LIMITS.iter().flatten().all(|limit| limit.is_finite());
     if finite {
@@ -96,7 +96,7 @@ pub(crate) fn run(run: &ClikRun) -> Record {
     record
 }
 
-fn refused(error: GainError) -> String {
+fn refused(error: ParameterError) -> String {
     format!("the gains are refused: {error:?}")
 }
 
@@ -163,7 +163,7 @@ pub(crate) fn second_order_of(
     k_d: [f64; TASK_ROWS],
     period: f64,
     integration: Integration,
-) -> Result<SecondOrder<f64, DOF, TASK_ROWS>, GainError> {
+) -> Result<SecondOrder<f64, DOF, TASK_ROWS>, ParameterError> {
     SecondOrder::new(task(), k_p, k_d, period, integration, limits()?, [1e-3; TASK_ROWS])
 }
 

@@ -103,7 +103,7 @@ pub(crate) fn prepare(run: &ControlRun, delayed_too: bool) -> Result<Prepared, S
         state = step.next;
         t += period;
     }
-    let delay = Delay::Samples(run.delay);
+    let delay = Delay::samples(run.delay);
     let of = |delay: Delay| match &run.law {
         Law::PdGravity(c) => stability(run, c, &postures, delay),
         Law::InverseDynamics(c) => stability(run, c, &postures, delay),
@@ -112,7 +112,7 @@ pub(crate) fn prepare(run: &ControlRun, delayed_too: bool) -> Result<Prepared, S
         Law::OperationalSpace(c) => stability(run, c.as_ref(), &postures, delay),
     };
     let report = of(delay)?;
-    let delayed = if delayed_too { Some(of(Delay::OneSample)?.radius) } else { None };
+    let delayed = if delayed_too { Some(of(Delay::samples(1))?.radius) } else { None };
     Ok(Prepared { reference, desired, report, delayed })
 }
 

@@ -5,17 +5,17 @@
 use std::path::Path as FilePath;
 use std::time::Duration;
 
+use armgen_codegen::diagnostic::{Colour, Diagnostics};
 use armgen_codegen::description::excerpt;
 use armgen_codegen::description::yaml::{self, Kind, Node};
-use armgen_codegen::diagnostic::{Colour, Diagnostics};
 use armgen_codegen::source::{Source, Span};
 use armgen_generated::{DOF, NAME, NOMINAL_PARAMETERS, PARAMETERS, PARAMETER_NAMES, TASK, TASK_ROWS};
 use armgen_runtime::clik::Integration;
 use armgen_runtime::control::{
     Adaptive, BoundaryLayer, Interval, InverseDynamics, OperationalSpace, PdGravity, Robust, TorqueLimits,
 };
-use armgen_runtime::gains::GainError;
 use armgen_runtime::nalgebra::SVector;
+use armgen_runtime::parameters::ParameterError;
 use armgen_runtime::task::{Row, Task};
 
 use super::expectation::Expectation;
@@ -677,12 +677,8 @@ impl Reader {
         built.map(|c| Law::Adaptive(Box::new(c))).map_err(|error| self.refused(keys, error)).ok()
     }
 
-    fn refused(&mut self, keys: &Fields<'_>, error: GainError) {
-        let (what, gain, index) = match error {
-            GainError::NotFinite { gain, index } => ("finite", gain, index),
-            GainError::NotPositive { gain, index } => ("positive", gain, index),
-        };
-        let message = format!("element {} of {gain:?} is not {what}", index + 1);
+    fn refused(&mut self, keys: &Fields<'_>, error: ParameterError) {
+        let message = error.to_string();
         self.faults.add("not-positive", keys.at, message, "in this controller", "gains are positive and finite, bounds in order");
     }
 }

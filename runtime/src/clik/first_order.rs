@@ -2,8 +2,8 @@
 
 use super::{ClikError, Objective};
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::{left_singular, Damping, RightInverse},
+    parameters::{self, Parameter, ParameterError},
     robot::Kinematics,
 };
 use nalgebra::{RealField, SMatrix, SVector};
@@ -34,9 +34,22 @@ pub trait Algorithm<R: Kinematics<N>, const N: usize, const M: usize> {
     ) -> Result<Rates<R::Real, N>, ClikError>;
 }
 
-fn gain<T: RealField + Copy, const M: usize>(k: [T; M]) -> Result<SVector<T, M>, GainError> {
+impl<R: Kinematics<N>, A: Algorithm<R, N, M> + ?Sized, const N: usize, const M: usize> Algorithm<R, N, M> for &A {
+    fn rates(
+        &self,
+        robot: &R,
+        q: &SVector<R::Real, N>,
+        e: &SVector<R::Real, M>,
+        v: &SVector<R::Real, M>,
+        j: &SMatrix<R::Real, M, N>,
+    ) -> Result<Rates<R::Real, N>, ClikError> {
+        (**self).rates(robot, q, e, v, j)
+    }
+}
+
+fn gain<T: RealField + Copy, const M: usize>(k: [T; M]) -> Result<SVector<T, M>, ParameterError> {
     let k = k.into();
-    gains::positive(Gain::Proportional, &k)?;
+    parameters::positive(Parameter::Proportional, &k)?;
     Ok(k)
 }
 
@@ -51,7 +64,7 @@ impl<T: RealField + Copy, const M: usize> JacobianInverse<T, M> {
     ///
     /// # Errors
     /// Where an element is not positive and finite.
-    pub fn new(k: [T; M]) -> Result<Self, GainError> {
+    pub fn new(k: [T; M]) -> Result<Self, ParameterError> {
         Ok(Self { k: gain(k)? })
     }
 }
@@ -81,7 +94,7 @@ impl<T: RealField + Copy, const M: usize> JacobianTranspose<T, M> {
     ///
     /// # Errors
     /// Where an element is not positive and finite.
-    pub fn new(k: [T; M]) -> Result<Self, GainError> {
+    pub fn new(k: [T; M]) -> Result<Self, ParameterError> {
         Ok(Self { k: gain(k)? })
     }
 
@@ -124,8 +137,8 @@ impl<T: RealField + Copy, O, const M: usize> PseudoInverse<T, O, M> {
     ///
     /// # Errors
     /// Where an element of K is not positive and finite, or k_0 is negative or not finite.
-    pub fn new(k: [T; M], k_0: T, objective: O) -> Result<Self, GainError> {
-        gains::not_negative_scalar(Gain::NullSpace, k_0)?;
+    pub fn new(k: [T; M], k_0: T, objective: O) -> Result<Self, ParameterError> {
+        parameters::not_negative_scalar(Parameter::NullSpace, k_0)?;
         Ok(Self { k: gain(k)?, k_0, objective, damping: None })
     }
 
@@ -180,7 +193,7 @@ impl<T: RealField + Copy, const M: usize> DampedLeastSquares<T, M> {
     ///
     /// # Errors
     /// Where an element of K is not positive and finite.
-    pub fn new(k: [T; M], damping: Damping<T>) -> Result<Self, GainError> {
+    pub fn new(k: [T; M], damping: Damping<T>) -> Result<Self, ParameterError> {
         Ok(Self { k: gain(k)?, damping })
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{Algorithm, ClikError, JointLimits, Outcome};
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::{is_finite, lit},
+    parameters::{self, Parameter, ParameterError},
     reference::{OperationalReference, Pose},
     robot::Kinematics,
     task::Task,
@@ -52,10 +52,16 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
     ///
     /// # Errors
     /// Where the period or a tolerance is not positive and finite.
-    pub fn new(task: Task<M>, algorithm: A, period: T, limits: JointLimits<T, N>, tolerance: [T; M]) -> Result<Self, GainError> {
+    pub fn new(
+        task: Task<M>,
+        algorithm: A,
+        period: T,
+        limits: JointLimits<T, N>,
+        tolerance: [T; M],
+    ) -> Result<Self, ParameterError> {
         let tolerance = tolerance.into();
-        gains::positive_scalar(Gain::Period, period)?;
-        gains::positive(Gain::Tolerance, &tolerance)?;
+        parameters::positive_scalar(Parameter::Period, period)?;
+        parameters::positive(Parameter::Tolerance, &tolerance)?;
         Ok(Self { task, algorithm, period, limits, tolerance })
     }
 

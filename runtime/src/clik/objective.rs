@@ -1,9 +1,9 @@
 //! Objectives for the null space: dq_0 = k_0 (dw/dq)' climbs w without disturbing the task (the book, Sect. 3.5.1, eq. 3.55).
 
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::lit,
     manipulability::manipulability_gradient,
+    parameters::{self, Parameter, ParameterError},
     robot::Kinematics,
     task::Task,
 };
@@ -53,12 +53,12 @@ impl<T: RealField + Copy, const N: usize> JointRangeDistance<T, N> {
     ///
     /// # Errors
     /// Where a limit is not finite, or the lower one is not below the upper one.
-    pub fn new(lower: [T; N], upper: [T; N]) -> Result<Self, GainError> {
+    pub fn new(lower: [T; N], upper: [T; N]) -> Result<Self, ParameterError> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
-        gains::finite(Gain::PositionLimit, &lower)?;
-        gains::finite(Gain::PositionLimit, &upper)?;
+        parameters::finite(Parameter::PositionLimit, &lower)?;
+        parameters::finite(Parameter::PositionLimit, &upper)?;
         let range = upper - lower;
-        gains::positive(Gain::PositionLimit, &range)?;
+        parameters::positive(Parameter::PositionLimit, &range)?;
         Ok(Self { middle: lower + range * lit::<T>(0.5), range })
     }
 }

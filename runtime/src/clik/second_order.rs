@@ -13,8 +13,8 @@
 
 use super::{ClikError, JointLimits, Outcome};
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::{is_finite, lit, Damping, RightInverse},
+    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Kinematics,
     task::Task,
@@ -71,12 +71,12 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
         integration: Integration,
         limits: JointLimits<T, N>,
         tolerance: [T; M],
-    ) -> Result<Self, GainError> {
+    ) -> Result<Self, ParameterError> {
         let (k_p, k_d, tolerance) = (k_p.into(), k_d.into(), tolerance.into());
-        gains::positive(Gain::Proportional, &k_p)?;
-        gains::positive(Gain::Derivative, &k_d)?;
-        gains::positive_scalar(Gain::Period, period)?;
-        gains::positive(Gain::Tolerance, &tolerance)?;
+        parameters::positive(Parameter::Proportional, &k_p)?;
+        parameters::positive(Parameter::Derivative, &k_d)?;
+        parameters::positive_scalar(Parameter::Period, period)?;
+        parameters::positive(Parameter::Tolerance, &tolerance)?;
         Ok(Self { task, k_p, k_d, period, integration, limits, tolerance, damping: None, null_damping: T::zero() })
     }
 
@@ -90,8 +90,8 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
     ///
     /// # Errors
     /// Where the rate is negative or not finite.
-    pub fn with_null_space_damping(self, rate: T) -> Result<Self, GainError> {
-        gains::not_negative_scalar(Gain::NullSpace, rate)?;
+    pub fn with_null_space_damping(self, rate: T) -> Result<Self, ParameterError> {
+        parameters::not_negative_scalar(Parameter::NullSpace, rate)?;
         Ok(Self { null_damping: rate, ..self })
     }
 

@@ -13,8 +13,8 @@
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::is_finite,
+    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, State},
     robot::Regressor,
 };
@@ -32,11 +32,11 @@ impl<T: RealField + Copy, const P: usize> Interval<T, P> {
     ///
     /// # Errors
     /// Where a bound is not finite, or the lower one exceeds the upper one.
-    pub fn new(lower: [T; P], upper: [T; P]) -> Result<Self, GainError> {
+    pub fn new(lower: [T; P], upper: [T; P]) -> Result<Self, ParameterError> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
-        gains::finite(Gain::Interval, &lower)?;
-        gains::finite(Gain::Interval, &upper)?;
-        gains::not_negative(Gain::Interval, &(upper - lower))?;
+        parameters::finite(Parameter::Interval, &lower)?;
+        parameters::finite(Parameter::Interval, &upper)?;
+        parameters::not_negative(Parameter::Interval, &(upper - lower))?;
         Ok(Self { lower, upper })
     }
 }
@@ -60,13 +60,13 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     ///
     /// # Errors
     /// Where a gain or the period is not positive and finite, or the estimate is not finite.
-    pub fn new(lambda: [T; N], k_d: [T; N], k_pi: [T; P], estimate: [T; P], period: T) -> Result<Self, GainError> {
+    pub fn new(lambda: [T; N], k_d: [T; N], k_pi: [T; P], estimate: [T; P], period: T) -> Result<Self, ParameterError> {
         let (lambda, k_d, k_pi, estimate) = (lambda.into(), k_d.into(), SVector::from(k_pi), estimate.into());
-        gains::positive(Gain::Filter, &lambda)?;
-        gains::positive(Gain::Derivative, &k_d)?;
-        gains::positive(Gain::Adaptation, &k_pi)?;
-        gains::finite(Gain::Estimate, &estimate)?;
-        gains::positive_scalar(Gain::Period, period)?;
+        parameters::positive(Parameter::Filter, &lambda)?;
+        parameters::positive(Parameter::Derivative, &k_d)?;
+        parameters::positive(Parameter::Adaptation, &k_pi)?;
+        parameters::finite(Parameter::Estimate, &estimate)?;
+        parameters::positive_scalar(Parameter::Period, period)?;
         let rate = k_pi.map(|k| T::one() / k);
         Ok(Self { lambda, k_d, rate, estimate, period, interval: None, limits: None })
     }
@@ -140,7 +140,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         if !torque.limited {
             let next = self.estimate + rate * self.period;
             if !is_finite(&next) {
-                return Err(ControlError::TorqueNotFinite);
+                return Err(ControlError::MemoryNotFinite);
             }
             self.estimate = match &self.interval {
                 Some(interval) => project(&next, interval, &self.rate),

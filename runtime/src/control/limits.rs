@@ -1,8 +1,8 @@
 //! Torque limits.
 
 use crate::{
-    gains::{positive_or_infinite, Gain, GainError},
     linalg::saturate,
+    parameters::{positive_or_infinite, Parameter, ParameterError},
 };
 use nalgebra::{RealField, SVector};
 
@@ -18,9 +18,9 @@ impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
     ///
     /// # Errors
     /// Where one is not positive.
-    pub fn new(bound: [T; N]) -> Result<Self, GainError> {
+    pub fn new(bound: [T; N]) -> Result<Self, ParameterError> {
         let bound = SVector::from(bound);
-        positive_or_infinite(Gain::TorqueLimit, &bound)?;
+        positive_or_infinite(Parameter::TorqueLimit, &bound)?;
         Ok(Self { bound })
     }
 

@@ -15,8 +15,8 @@
 
 use super::{check, issue, ControlError, Torque, TorqueLimits};
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::{is_finite, saturate, Damping, RightInverse},
+    parameters::{self, Parameter, ParameterError},
     reference::{OperationalReference, Pose, State},
     robot::Dynamics,
     task::Task,
@@ -38,11 +38,11 @@ impl<T: RealField + Copy, const N: usize> NullSpace<T, N> {
     ///
     /// # Errors
     /// Where the stiffness is negative, the damping is not positive, or something is not finite.
-    pub fn new(stiffness: [T; N], damping: [T; N], posture: [T; N]) -> Result<Self, GainError> {
+    pub fn new(stiffness: [T; N], damping: [T; N], posture: [T; N]) -> Result<Self, ParameterError> {
         let (stiffness, damping, posture) = (stiffness.into(), damping.into(), posture.into());
-        gains::not_negative(Gain::NullSpace, &stiffness)?;
-        gains::positive(Gain::NullSpace, &damping)?;
-        gains::finite(Gain::NullSpace, &posture)?;
+        parameters::not_negative(Parameter::NullSpace, &stiffness)?;
+        parameters::positive(Parameter::NullSpace, &damping)?;
+        parameters::finite(Parameter::NullSpace, &posture)?;
         Ok(Self { stiffness, damping, posture })
     }
 
@@ -78,12 +78,12 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     ///
     /// # Errors
     /// Where K_P, K_D or the period is not positive and finite, or K_I negative or not finite.
-    pub fn new(task: Task<M>, k_p: [T; M], k_d: [T; M], k_i: [T; M], period: T) -> Result<Self, GainError> {
+    pub fn new(task: Task<M>, k_p: [T; M], k_d: [T; M], k_i: [T; M], period: T) -> Result<Self, ParameterError> {
         let (k_p, k_d, k_i) = (k_p.into(), k_d.into(), k_i.into());
-        gains::positive(Gain::Proportional, &k_p)?;
-        gains::positive(Gain::Derivative, &k_d)?;
-        gains::not_negative(Gain::Integral, &k_i)?;
-        gains::positive_scalar(Gain::Period, period)?;
+        parameters::positive(Parameter::Proportional, &k_p)?;
+        parameters::positive(Parameter::Derivative, &k_d)?;
+        parameters::not_negative(Parameter::Integral, &k_i)?;
+        parameters::positive_scalar(Parameter::Period, period)?;
         Ok(Self {
             task,
             k_p,
@@ -102,9 +102,9 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     ///
     /// # Errors
     /// Where a limit is negative or not finite.
-    pub fn with_integral_limit(self, limit: [T; M]) -> Result<Self, GainError> {
+    pub fn with_integral_limit(self, limit: [T; M]) -> Result<Self, ParameterError> {
         let limit = limit.into();
-        gains::not_negative(Gain::IntegralLimit, &limit)?;
+        parameters::not_negative(Parameter::IntegralLimit, &limit)?;
         Ok(Self { integral_limit: Some(limit), ..self })
     }
 
@@ -158,7 +158,7 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         let (y, damped) = match &self.damping {
             None => (RightInverse::new(&j).ok_or(ControlError::Singular)?.solve(&a), false),
             Some(damping) => {
-                let solution = damping.solve(&j, &a).ok_or(ControlError::TorqueNotFinite)?;
+                let solution = damping.solve(&j, &a).ok_or(ControlError::AccelerationNotFinite)?;
                 (solution.x, solution.damped)
             }
         };
@@ -174,7 +174,7 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
             self.integral[i] + if winds_up { T::zero() } else { step[i] }
         });
         if !is_finite(&next) {
-            return Err(ControlError::TorqueNotFinite);
+            return Err(ControlError::MemoryNotFinite);
         }
         self.integral = match &self.integral_limit {
             Some(limit) => saturate(&next, limit).0,

@@ -5,7 +5,7 @@
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
-    gains::{self, Gain, GainError},
+    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, State},
     robot::Dynamics,
 };
@@ -24,10 +24,10 @@ impl<T: RealField + Copy, const N: usize> PdGravity<T, N> {
     ///
     /// # Errors
     /// Where one is not positive and finite.
-    pub fn new(k_p: [T; N], k_d: [T; N]) -> Result<Self, GainError> {
+    pub fn new(k_p: [T; N], k_d: [T; N]) -> Result<Self, ParameterError> {
         let (k_p, k_d) = (k_p.into(), k_d.into());
-        gains::positive(Gain::Proportional, &k_p)?;
-        gains::positive(Gain::Derivative, &k_d)?;
+        parameters::positive(Parameter::Proportional, &k_p)?;
+        parameters::positive(Parameter::Derivative, &k_d)?;
         Ok(Self { k_p, k_d, limits: None })
     }
 

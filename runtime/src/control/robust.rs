@@ -13,8 +13,8 @@
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
-    gains::{self, Gain, GainError},
     linalg::{diagonal_lyapunov, LyapunovBlocks},
+    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, State},
     robot::Dynamics,
 };
@@ -50,14 +50,14 @@ impl<T: RealField + Copy, const N: usize> Robust<T, N> {
         p_position: [T; N],
         p_velocity: [T; N],
         layer: BoundaryLayer<T>,
-    ) -> Result<Self, GainError> {
+    ) -> Result<Self, ParameterError> {
         let (k_p, k_d, p1, p2) = (k_p.into(), k_d.into(), p_position.into(), p_velocity.into());
-        gains::positive(Gain::Proportional, &k_p)?;
-        gains::positive(Gain::Derivative, &k_d)?;
-        gains::positive(Gain::LyapunovWeight, &p1)?;
-        gains::positive(Gain::LyapunovWeight, &p2)?;
-        gains::not_negative_scalar(Gain::UncertaintyBound, layer.rho)?;
-        gains::positive_scalar(Gain::BoundaryLayer, layer.epsilon)?;
+        parameters::positive(Parameter::Proportional, &k_p)?;
+        parameters::positive(Parameter::Derivative, &k_d)?;
+        parameters::positive(Parameter::LyapunovWeight, &p1)?;
+        parameters::positive(Parameter::LyapunovWeight, &p2)?;
+        parameters::not_negative_scalar(Parameter::UncertaintyBound, layer.rho)?;
+        parameters::positive_scalar(Parameter::BoundaryLayer, layer.epsilon)?;
         Ok(Self { k_p, k_d, q: diagonal_lyapunov(&k_p, &k_d, &p1, &p2), layer, limits: None })
     }
 

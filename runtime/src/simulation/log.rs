@@ -48,9 +48,27 @@ impl Log {
     }
 
     /// Largest |value| of a column over the rows for which `within` holds; `None` if there is no such column.
+    ///
+    /// NaN where one of the values is NaN, or there is no such row: what is not known is below no bound.
     pub fn peak(&self, name: &str, within: impl Fn(&[f64]) -> bool) -> Option<f64> {
+        self.reduce(name, within, |a, b| a.abs().max(b.abs())).map(f64::abs)
+    }
+
+    /// Largest value of a column over the rows for which `within` holds; NaN and `None` as for [`Log::peak`].
+    pub fn highest(&self, name: &str, within: impl Fn(&[f64]) -> bool) -> Option<f64> {
+        self.reduce(name, within, f64::max)
+    }
+
+    /// Smallest value of a column over the rows for which `within` holds; NaN and `None` as for [`Log::peak`].
+    pub fn lowest(&self, name: &str, within: impl Fn(&[f64]) -> bool) -> Option<f64> {
+        self.reduce(name, within, f64::min)
+    }
+
+    fn reduce(&self, name: &str, within: impl Fn(&[f64]) -> bool, pick: fn(f64, f64) -> f64) -> Option<f64> {
         let index = self.names.iter().position(|n| n == name)?;
-        Some(self.rows().filter(|row| within(row)).map(|row| row[index].abs()).fold(0.0, f64::max))
+        // `f64::max` and `f64::min` would drop a NaN.
+        let of_both = |a: f64, b: f64| if a.is_nan() || b.is_nan() { f64::NAN } else { pick(a, b) };
+        Some(self.rows().filter(|row| within(row)).map(|row| row[index]).reduce(of_both).unwrap_or(f64::NAN))
     }
 
     /// Writes the table as comma-separated values: a line of names, then the rows, each number as its shortest decimal that reads back.
@@ -83,8 +101,24 @@ mod tests {
         assert_eq!(log.column("x").unwrap().collect::<Vec<_>>(), [1.5, -2.0]);
         assert!(log.column("y").is_none());
         assert_eq!(log.peak("x", |row| row[0] > 0.05), Some(2.0));
+        assert_eq!(
+            (log.peak("x", |_| true), log.highest("x", |_| true), log.lowest("x", |_| true)),
+            (Some(2.0), Some(1.5), Some(-2.0))
+        );
         let mut text = String::new();
         log.write_csv(&mut text).unwrap();
         assert_eq!(text, "t,x\n0,1.5\n0.1,-2\n");
+    }
+
+    #[test]
+    fn what_is_not_known_is_below_no_bound() {
+        let mut log = Log::new(["x"]);
+        let of_all =
+            |log: &Log| [log.peak("x", |_| true), log.highest("x", |_| true), log.lowest("x", |_| true)].map(Option::unwrap);
+        assert!(of_all(&log).iter().all(|x| x.is_nan()), "no row");
+        [1.0, f64::NAN, -3.0].into_iter().for_each(|x| log.push([x]));
+        assert!(of_all(&log).iter().all(|x| x.is_nan()), "a NaN");
+        assert_eq!(log.peak("x", |row| !row[0].is_nan()), Some(3.0));
+        assert_eq!(log.peak("y", |_| true), None);
     }
 }

@@ -8,25 +8,18 @@ use super::{
 use crate::{linalg::lit, robot::Dynamics};
 use nalgebra::{linalg::balancing::balance_parlett_reinsch, DMatrix, RealField, SMatrix, SVector};
 
-/// When a torque acts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Delay {
-    /// At the sample from whose measurement it was computed.
-    None,
-    /// One sample later.
-    OneSample,
-    /// So many samples later; 0 is [`Delay::None`], 1 is [`Delay::OneSample`]. Each adds `N` states.
-    Samples(usize),
-}
+/// How many samples after its measurement a torque acts; each adds `N` states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Delay(usize);
 
 impl Delay {
-    /// In samples.
-    pub fn samples(self) -> usize {
-        match self {
-            Delay::None => 0,
-            Delay::OneSample => 1,
-            Delay::Samples(samples) => samples,
-        }
+    /// The torque acts at the sample from whose measurement it was computed.
+    pub const NONE: Delay = Delay(0);
+
+    /// The torque acts so many samples later.
+    #[must_use]
+    pub const fn samples(samples: usize) -> Self {
+        Delay(samples)
     }
 }
 
@@ -111,7 +104,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
     where
         P: Dynamics<N, Real = T>,
         R: Dynamics<N, Real = T>,
-        C: Linearise<R, N>,
+        C: Linearise<R, N> + ?Sized,
     {
         let feedback = controller.linearise(model, q).ok_or(StabilityError::Singular { posture: 0 })?;
         let inertia = plant.inertia_matrix(q).cholesky().ok_or(StabilityError::Inertia { posture: 0 })?;
@@ -147,7 +140,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
                 self.feedback.memory[(i, k - 2 * N)]
             }
         });
-        let (size, samples) = (2 * N + memories, delay.samples());
+        let (size, samples) = (2 * N + memories, delay.0);
         let all = size + samples * N;
         let mut whole = DMatrix::zeros(all, all);
         whole.view_mut((0, 0), (2 * N, 2 * N)).copy_from(&a);
@@ -253,7 +246,7 @@ where
     T: RealField + Copy,
     P: Dynamics<N, Real = T>,
     R: Dynamics<N, Real = T>,
-    C: Linearise<R, N>,
+    C: Linearise<R, N> + ?Sized,
 {
     let mut worst: Option<(T, usize)> = None;
     let mut loops = Vec::with_capacity(postures.len());

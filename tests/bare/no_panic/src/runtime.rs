@@ -8,7 +8,9 @@ use armgen_runtime::{
         Algorithm, Clik, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits, JointRangeDistance,
         Manipulability, NoObjective, Objective, PseudoInverse, SecondOrder,
     },
-    control::{Adaptive, BoundaryLayer, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits},
+    control::{
+        Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits,
+    },
     linalg::{self, Damping, RightInverse},
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
@@ -272,6 +274,7 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
     if let Ok(pd) = PdGravity::new(numbers(), numbers()) {
         keep(PdGravity::torque(&pd, robot, joint, state));
         keep(PdGravity::torque(&PdGravity::with_torque_limits(pd, limits), robot, joint, state));
+        keep(Controller::torque(&mut black_box(pd), robot, joint, state));
     }
     if let Ok(inverse) = InverseDynamics::new(numbers(), numbers()) {
         keep(InverseDynamics::torque(&inverse, robot, joint, state));
@@ -286,6 +289,7 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
     if let (Ok(mut adaptive), Ok(interval)) = (adaptive, Interval::new(numbers(), numbers())) {
         keep((Adaptive::torque(&mut adaptive, robot, joint, state), *Adaptive::estimate(&adaptive)));
         keep(Adaptive::law(&adaptive, robot, joint, state, &vector()));
+        keep(Controller::torque(&mut adaptive, robot, joint, state));
         let bounded = Adaptive::with_frozen(Adaptive::with_projection(adaptive, interval), black_box([true; P]));
         keep(Adaptive::torque(&mut Adaptive::with_torque_limits(bounded, limits), robot, joint, state));
     }
@@ -293,6 +297,7 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
     let operational = operational.and_then(|operational| OperationalSpace::with_integral_limit(operational, numbers()));
     if let (Ok(mut operational), Ok(damping)) = (operational, Damping::new(number(), number())) {
         keep((OperationalSpace::torque(&mut operational, robot, reference, state), *OperationalSpace::integral(&operational)));
+        keep(Controller::torque(&mut operational, robot, reference, state));
         let mut damped = OperationalSpace::with_torque_limits(OperationalSpace::with_damping(operational, damping), limits);
         keep(OperationalSpace::torque(&mut damped, robot, reference, state));
         if let Ok(null_space) = NullSpace::new(numbers(), numbers(), numbers()) {

@@ -1,0 +1,154 @@
+//! Numbers that are given to constructors of this crate (gains, limits, tolerances, periods), checked once.
+//!
+//! All gain matrices are diagonal: positive definite where every element is positive.
+
+use nalgebra::{RealField, SVector};
+
+/// What a refused number was meant for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Parameter {
+    /// K_P, 1/s^2 (or N m/rad, N/m for [`PdGravity`](crate::control::PdGravity)); K of first-order inverse kinematics, 1/s (or 1/(m^2 s),
+    /// 1/s for [`JacobianTranspose`](crate::clik::JacobianTranspose)).
+    Proportional,
+    /// K_D, 1/s (or N m s/rad, N s/m).
+    Derivative,
+    /// K_I, 1/s^3.
+    Integral,
+    /// Lambda, 1/s.
+    Filter,
+    /// K_pi, the weight of the estimate: J per squared unit of its parameter.
+    Adaptation,
+    /// The interval that an estimate is projected on.
+    Interval,
+    /// P of the Lyapunov equation.
+    LyapunovWeight,
+    /// rho, the bound of the uncertainty.
+    UncertaintyBound,
+    /// epsilon, the width of the boundary layer.
+    BoundaryLayer,
+    /// Gains of the null space.
+    NullSpace,
+    /// Limits of joint variables.
+    PositionLimit,
+    /// Limits of joint rates.
+    RateLimit,
+    /// Tolerance of the error of a task row.
+    Tolerance,
+    /// Limit of the integral.
+    IntegralLimit,
+    /// Torque limit.
+    TorqueLimit,
+    /// Sampling period.
+    Period,
+    /// Initial estimate.
+    Estimate,
+}
+
+impl core::fmt::Display for Parameter {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Parameter::Proportional => "K_P",
+            Parameter::Derivative => "K_D",
+            Parameter::Integral => "K_I",
+            Parameter::Filter => "Lambda",
+            Parameter::Adaptation => "K_pi",
+            Parameter::Interval => "the interval of the estimate",
+            Parameter::LyapunovWeight => "P",
+            Parameter::UncertaintyBound => "rho",
+            Parameter::BoundaryLayer => "epsilon",
+            Parameter::NullSpace => "the null-space gains",
+            Parameter::PositionLimit => "the position limits",
+            Parameter::RateLimit => "the rate limits",
+            Parameter::Tolerance => "the tolerances",
+            Parameter::IntegralLimit => "the integral limits",
+            Parameter::TorqueLimit => "the torque limits",
+            Parameter::Period => "the sampling period",
+            Parameter::Estimate => "the initial estimate",
+        })
+    }
+}
+
+/// Why a number was refused; `index` is the joint, task row or parameter, counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ParameterError {
+    /// It is infinite or NaN.
+    NotFinite {
+        /// What it was meant for.
+        parameter: Parameter,
+        /// Which of its elements.
+        index: usize,
+    },
+    /// It is negative, or zero where only a positive value makes sense: the gain matrix would not be positive definite.
+    NotPositive {
+        /// What it was meant for.
+        parameter: Parameter,
+        /// Which of its elements.
+        index: usize,
+    },
+}
+
+messages! { ParameterError,
+    ParameterError::NotFinite { parameter, index } => "element {} (from 0) of {} is infinite or NaN", index, parameter;
+    ParameterError::NotPositive { parameter, index } => "element {} (from 0) of {} is negative, or zero where only a positive value makes sense", index, parameter;
+}
+
+fn each<T: RealField + Copy, const K: usize>(
+    parameter: Parameter,
+    values: &SVector<T, K>,
+    allowed: impl Fn(T) -> bool,
+) -> Result<(), ParameterError> {
+    for (index, x) in values.iter().enumerate() {
+        if !x.is_finite() {
+            return Err(ParameterError::NotFinite { parameter, index });
+        }
+        if !allowed(*x) {
+            return Err(ParameterError::NotPositive { parameter, index });
+        }
+    }
+    Ok(())
+}
+
+/// All elements positive and finite.
+pub(crate) fn positive<T: RealField + Copy, const K: usize>(
+    parameter: Parameter,
+    values: &SVector<T, K>,
+) -> Result<(), ParameterError> {
+    each(parameter, values, |x| x > T::zero())
+}
+
+/// All elements positive; an infinite one is a limit that never acts.
+pub(crate) fn positive_or_infinite<T: RealField + Copy, const K: usize>(
+    parameter: Parameter,
+    values: &SVector<T, K>,
+) -> Result<(), ParameterError> {
+    // A NaN is not below the largest number either.
+    positive(parameter, &values.map(|x| if x > T::one() { T::one() } else { x }))
+}
+
+/// All elements finite and not negative.
+pub(crate) fn not_negative<T: RealField + Copy, const K: usize>(
+    parameter: Parameter,
+    values: &SVector<T, K>,
+) -> Result<(), ParameterError> {
+    each(parameter, values, |x| x >= T::zero())
+}
+
+/// All elements finite.
+pub(crate) fn finite<T: RealField + Copy, const K: usize>(
+    parameter: Parameter,
+    values: &SVector<T, K>,
+) -> Result<(), ParameterError> {
+    each(parameter, values, |_| true)
+}
+
+/// Positive and finite.
+pub(crate) fn positive_scalar<T: RealField + Copy>(parameter: Parameter, value: T) -> Result<(), ParameterError> {
+    positive(parameter, &SVector::<T, 1>::new(value))
+}
+
+/// Finite and not negative.
+pub(crate) fn not_negative_scalar<T: RealField + Copy>(parameter: Parameter, value: T) -> Result<(), ParameterError> {
+    not_negative(parameter, &SVector::<T, 1>::new(value))
+}
