@@ -1,23 +1,16 @@
 //! What the file says, every value with its place, nothing judged that takes more than reading.
 //!
 //! ```text
-//! Source -> yaml.rs: tree of nodes -> reader.rs: keys and kinds -> RobotDescription
-//!                                     expression.rs: scalar -> Expression
+//! Source -> document: tree of nodes -> reader.rs: which keys there are, and what stands under each -> RobotDescription
 //! ```
 //!
 //! Absent from here on: YAML, unknown keys, wrong kinds of values, malformed expressions. What could not be read is `None`, and its
 //! fault is reported; so validation goes on with the rest, and every fault of a file comes in one go.
 
-mod expression;
 mod reader;
-mod suggest;
-pub mod yaml;
-
-pub(crate) use expression::out_of_range;
-pub use expression::{parse as parse_expression, Expression, ExpressionKind, Operator};
-pub use suggest::did_you_mean;
 
 use crate::diagnostic::Diagnostics;
+use crate::document::{yaml, Expression};
 use crate::manipulator::{JointKind, TaskRow};
 use crate::source::{Source, Span, Spanned};
 
@@ -185,17 +178,6 @@ impl RobotDescription {
         let root = yaml::read(source, &mut diagnostics);
         let description = reader::read(source, root.as_ref(), &mut diagnostics);
         (description, diagnostics)
-    }
-}
-
-/// `text` shortened for a message, control characters made visible.
-pub fn excerpt(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let shown: String = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        format!("{shown}...")
-    } else {
-        shown
     }
 }
 

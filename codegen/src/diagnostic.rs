@@ -4,14 +4,13 @@
 //! There is one rendering, for terminal, build script and snapshots: [`Diagnostics::render`].
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 use crate::source::{Source, Span};
 
 /// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
     /// Nothing can be generated from the text.
     Error,
@@ -19,142 +18,200 @@ pub enum Severity {
     Warning,
 }
 
+/// A code of any kind of file: its stable name and how bad it is. Enums of codes, made by [`codes!`](crate::codes), become it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct AnyCode {
+    /// The place in its enum: of two diagnostics at one place, the earlier code comes first.
+    order: u16,
+    name: &'static str,
+    severity: Severity,
+}
+
+impl AnyCode {
+    /// What [`codes!`](crate::codes) makes of a variant.
+    #[doc(hidden)]
+    pub const fn new(order: u16, name: &'static str, severity: Severity) -> AnyCode {
+        AnyCode { order, name, severity }
+    }
+
+    /// The stable name, as printed in brackets: `error[unknown-key]`.
+    pub fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// Error or warning; a code is always the same one.
+    pub fn severity(self) -> Severity {
+        self.severity
+    }
+}
+
+/// Declares an enum of codes: each variant with its documentation, `Error` or `Warning`, and its stable name; all of them are in `ALL`.
+///
+/// ```
+/// armgen_codegen::codes! {
+///     /// Kinds of faults of a calibration file.
+///     pub enum Code {
+///         /// The key `camera` names no camera.
+///         UnknownCamera Error "unknown-camera",
+///     }
+/// }
+/// assert_eq!(Code::ALL.len(), 1);
+/// assert_eq!(Code::UnknownCamera.to_string(), "unknown-camera");
+/// ```
+#[macro_export]
 macro_rules! codes {
-    ($($(#[$doc:meta])* $variant:ident $severity:ident $name:literal,)*) => {
-        /// Kinds of diagnostics; each has a stable name.
+    ($(#[$about:meta])* $visibility:vis enum $code:ident {
+        $($(#[$doc:meta])* $variant:ident $severity:ident $name:literal,)*
+    }) => {
+        $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub enum Code {
+        $visibility enum $code {
             $($(#[$doc])* $variant,)*
         }
 
-        impl Code {
+        impl $code {
             /// Every code.
-            pub const ALL: &'static [Code] = &[$(Code::$variant,)*];
+            $visibility const ALL: &'static [$code] = &[$($code::$variant,)*];
 
             /// The stable name, as printed in brackets: `error[unknown-key]`.
-            pub fn name(self) -> &'static str {
+            $visibility fn name(self) -> &'static str {
                 match self {
-                    $(Code::$variant => $name,)*
+                    $($code::$variant => $name,)*
                 }
             }
 
             /// Error or warning; a code is always the same one.
-            pub fn severity(self) -> Severity {
+            $visibility fn severity(self) -> $crate::diagnostic::Severity {
                 match self {
-                    $(Code::$variant => Severity::$severity,)*
+                    $($code::$variant => $crate::diagnostic::Severity::$severity,)*
                 }
+            }
+        }
+
+        impl From<$code> for $crate::diagnostic::AnyCode {
+            fn from(code: $code) -> Self {
+                $crate::diagnostic::AnyCode::new(code as u16, code.name(), code.severity())
+            }
+        }
+
+        impl PartialEq<$code> for $crate::diagnostic::AnyCode {
+            fn eq(&self, code: &$code) -> bool {
+                *self == Self::from(*code)
+            }
+        }
+
+        impl std::fmt::Display for $code {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
             }
         }
     };
 }
 
 codes! {
-    // The text as YAML.
-    /// The file holds nothing.
-    EmptyFile Error "empty-file",
-    /// The text is not YAML.
-    YamlSyntax Error "yaml-syntax",
-    /// A part of YAML that a description has no use for: tags, several documents, merge keys.
-    YamlFeature Error "yaml-feature",
-    /// The text, its nesting or its aliases exceed what a description may need.
-    TooLarge Error "too-large",
-    /// A key stands twice in one mapping.
-    DuplicateKey Error "duplicate-key",
+    /// Kinds of diagnostics of a description.
+    pub enum Code {
+        // The text as YAML.
+        /// The file holds nothing.
+        EmptyFile Error "empty-file",
+        /// The text is not YAML.
+        YamlSyntax Error "yaml-syntax",
+        /// A part of YAML that a description has no use for: tags, several documents, merge keys.
+        YamlFeature Error "yaml-feature",
+        /// The text, its nesting or its aliases exceed what a description may need.
+        TooLarge Error "too-large",
+        /// A key stands twice in one mapping.
+        DuplicateKey Error "duplicate-key",
 
-    // Keys and kinds.
-    /// A key that means nothing here.
-    UnknownKey Error "unknown-key",
-    /// A required key is absent.
-    MissingKey Error "missing-key",
-    /// A mapping where a number is expected, and the like.
-    WrongKind Error "wrong-kind",
-    /// A list with too few or too many elements.
-    WrongLength Error "wrong-length",
-    /// Neither `standard` nor `modified`.
-    UnknownConvention Error "unknown-convention",
-    /// Neither `revolute` nor `prismatic`.
-    UnknownJointType Error "unknown-joint-type",
+        // Keys and kinds.
+        /// A key that means nothing here.
+        UnknownKey Error "unknown-key",
+        /// A required key is absent.
+        MissingKey Error "missing-key",
+        /// A mapping where a number is expected, and the like.
+        WrongKind Error "wrong-kind",
+        /// A list with too few or too many elements.
+        WrongLength Error "wrong-length",
+        /// Neither `standard` nor `modified`.
+        UnknownConvention Error "unknown-convention",
+        /// Neither `revolute` nor `prismatic`.
+        UnknownJointType Error "unknown-joint-type",
 
-    // Numbers and expressions.
-    /// Not an expression.
-    BadExpression Error "bad-expression",
-    /// A name that `parameters` does not define above its use.
-    UnknownName Error "unknown-name",
-    /// NaN or an infinity.
-    NotFinite Error "not-finite",
-    /// A number beyond the range of the scalar, or so small that it becomes 0 there.
-    OutOfRange Error "out-of-range",
-    /// A divisor that is 0.
-    DivisionByZero Error "division-by-zero",
-    /// The root of a negative number.
-    NegativeRoot Error "negative-root",
-    /// An expression whose exact value would grow too large to work with.
-    TooComplex Error "too-complex",
+        // Numbers and expressions.
+        /// Not an expression.
+        BadExpression Error "bad-expression",
+        /// A name that `parameters` does not define above its use.
+        UnknownName Error "unknown-name",
+        /// NaN or an infinity.
+        NotFinite Error "not-finite",
+        /// A number beyond the range of the scalar, or so small that it becomes 0 there.
+        OutOfRange Error "out-of-range",
+        /// A divisor that is 0.
+        DivisionByZero Error "division-by-zero",
+        /// The root of a negative number.
+        NegativeRoot Error "negative-root",
+        /// An expression whose exact value would grow too large to work with.
+        TooComplex Error "too-complex",
 
-    // Names.
-    /// A name that is not an identifier.
-    BadName Error "bad-name",
-    /// A name that has a meaning already.
-    ReservedName Error "reserved-name",
-    /// A name given to two things of one kind.
-    DuplicateName Error "duplicate-name",
+        // Names.
+        /// A name that is not an identifier.
+        BadName Error "bad-name",
+        /// A name that has a meaning already.
+        ReservedName Error "reserved-name",
+        /// A name given to two things of one kind.
+        DuplicateName Error "duplicate-name",
 
-    // The arm.
-    /// An arm without joints.
-    NoJoints Error "no-joints",
-    /// More joints than can be generated.
-    TooManyJoints Error "too-many-joints",
-    /// A mass below 0.
-    NegativeMass Error "negative-mass",
-    /// An inertia tensor that is not positive semidefinite.
-    ImpossibleInertia Error "impossible-inertia",
-    /// A rotor inertia below 0.
-    NegativeRotorInertia Error "negative-rotor-inertia",
-    /// A friction coefficient below 0.
-    NegativeFriction Error "negative-friction",
-    /// A gear ratio of 0.
-    ZeroRatio Error "zero-ratio",
-    /// A spin axis without a direction.
-    ZeroAxis Error "zero-axis",
-    /// A position range that holds no interval.
-    EmptyLimits Error "empty-limits",
-    /// A velocity or effort limit that is not positive.
-    NonPositiveLimit Error "non-positive-limit",
+        // The arm.
+        /// An arm without joints.
+        NoJoints Error "no-joints",
+        /// More joints than can be generated.
+        TooManyJoints Error "too-many-joints",
+        /// A mass below 0.
+        NegativeMass Error "negative-mass",
+        /// An inertia tensor that is not positive semidefinite.
+        ImpossibleInertia Error "impossible-inertia",
+        /// A rotor inertia below 0.
+        NegativeRotorInertia Error "negative-rotor-inertia",
+        /// A friction coefficient below 0.
+        NegativeFriction Error "negative-friction",
+        /// A gear ratio of 0.
+        ZeroRatio Error "zero-ratio",
+        /// A spin axis without a direction.
+        ZeroAxis Error "zero-axis",
+        /// A position range that holds no interval.
+        EmptyLimits Error "empty-limits",
+        /// A velocity or effort limit that is not positive.
+        NonPositiveLimit Error "non-positive-limit",
 
-    // Task and regressor.
-    /// A task row that does not exist.
-    UnknownTaskRow Error "unknown-task-row",
-    /// A task row named twice.
-    DuplicateTaskRow Error "duplicate-task-row",
-    /// A list that must name something names nothing.
-    EmptyList Error "empty-list",
-    /// `regressor` lists a name that `parameters` does not define.
-    UnknownParameter Error "unknown-parameter",
-    /// `regressor` lists a name twice.
-    RepeatedParameter Error "repeated-parameter",
-    /// tau is not linear in a name that `regressor` lists.
-    NonlinearParameter Error "nonlinear-parameter",
-    /// No joint moves any row of the task.
-    ImmovableTask Error "immovable-task",
-    /// The inertia matrix is singular for every q.
-    SingularInertia Error "singular-inertia",
+        // Task and regressor.
+        /// A task row that does not exist.
+        UnknownTaskRow Error "unknown-task-row",
+        /// A task row named twice.
+        DuplicateTaskRow Error "duplicate-task-row",
+        /// A list that must name something names nothing.
+        EmptyList Error "empty-list",
+        /// `regressor` lists a name that `parameters` does not define.
+        UnknownParameter Error "unknown-parameter",
+        /// `regressor` lists a name twice.
+        RepeatedParameter Error "repeated-parameter",
+        /// tau is not linear in a name that `regressor` lists.
+        NonlinearParameter Error "nonlinear-parameter",
+        /// No joint moves any row of the task.
+        ImmovableTask Error "immovable-task",
+        /// The inertia matrix is singular for every q.
+        SingularInertia Error "singular-inertia",
 
-    // Warnings.
-    /// Principal moments that no body has.
-    TriangleInequality Warning "triangle-inequality",
-    /// A parameter that nothing uses.
-    UnusedParameter Warning "unused-parameter",
-    /// A centre of mass, or the place of a rotor, where there is no mass.
-    NoEffect Warning "no-effect",
-    /// An angle so large that degrees were probably meant.
-    DegreesSuspected Warning "degrees-suspected",
-    /// A decimal that is nearly a multiple of pi/12.
-    RoundedAngle Warning "rounded-angle",
-}
-
-impl fmt::Display for Code {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        // Warnings.
+        /// Principal moments that no body has.
+        TriangleInequality Warning "triangle-inequality",
+        /// A parameter that nothing uses.
+        UnusedParameter Warning "unused-parameter",
+        /// A centre of mass, or the place of a rotor, where there is no mass.
+        NoEffect Warning "no-effect",
+        /// An angle so large that degrees were probably meant.
+        DegreesSuspected Warning "degrees-suspected",
+        /// A decimal that is nearly a multiple of pi/12.
+        RoundedAngle Warning "rounded-angle",
     }
 }
 
@@ -171,7 +228,7 @@ pub struct Label {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// Its kind.
-    pub code: Code,
+    pub code: AnyCode,
     /// One sentence: what is wrong.
     pub message: String,
     /// Where; the first label is the place of the diagnostic.
@@ -183,13 +240,18 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// A diagnostic at `span`, which says `label` there.
     pub fn new(
-        code: Code,
+        code: impl Into<AnyCode>,
         span: Span,
         message: impl Into<String>,
         label: impl Into<String>,
         help: impl Into<String>,
     ) -> Diagnostic {
-        Diagnostic { code, message: message.into(), labels: vec![Label { span, text: label.into() }], help: help.into() }
+        Diagnostic {
+            code: code.into(),
+            message: message.into(),
+            labels: vec![Label { span, text: label.into() }],
+            help: help.into(),
+        }
     }
 
     /// With a second place that has to do with it.
@@ -221,7 +283,7 @@ const RENDERED: usize = 500;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
-    seen: BTreeSet<(Span, Code)>,
+    seen: BTreeSet<(Span, AnyCode)>,
 }
 
 impl Diagnostics {
@@ -290,22 +352,7 @@ impl Diagnostics {
 
 fn render(diagnostic: &Diagnostic, source: &Source, colour: Colour) -> String {
     let Diagnostic { code, message, labels, help } = diagnostic;
-    render_one(source, code.severity(), code.name(), message, labels, help, colour)
-}
-
-/// One fault as text, with a code that need not be a [`Code`]: for other files that are judged like descriptions.
-///
-/// `labels` holds at least one; the first is the place of the fault.
-pub fn render_one(
-    source: &Source,
-    severity: Severity,
-    code: &str,
-    message: &str,
-    labels: &[Label],
-    help: &str,
-    colour: Colour,
-) -> String {
-    let level = match severity {
+    let level = match code.severity() {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
@@ -321,7 +368,8 @@ pub fn render_one(
         let annotation = kind.span(within(source.first_line(label.span)));
         snippet = snippet.annotation(if label.text.is_empty() { annotation } else { annotation.label(label.text.as_str()) });
     }
-    let report = [level.primary_title(message).id(code).element(snippet).element(Level::HELP.message(help))];
+    let report =
+        [level.primary_title(message.as_str()).id(code.name()).element(snippet).element(Level::HELP.message(help.as_str()))];
     let renderer = match colour {
         Colour::Never => Renderer::plain(),
         Colour::Always => Renderer::styled(),

@@ -16,6 +16,7 @@ pub mod build_script;
 pub mod derive;
 pub mod description;
 pub mod diagnostic;
+pub mod document;
 pub mod emit;
 pub mod equations;
 pub mod exact;

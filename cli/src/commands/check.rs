@@ -4,8 +4,9 @@ mod identification;
 
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::description::{Convention, Expression, RobotDescription};
+use armgen_codegen::description::{Convention, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::manipulator::{JointKind, Manipulator, RegressorChoice, Scalar};
 use armgen_codegen::program::Options;

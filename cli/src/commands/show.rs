@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use armgen_codegen::description::did_you_mean;
+use armgen_codegen::document::did_you_mean;
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::Model;
 

@@ -1,7 +1,7 @@
 //! What is expected of a run: a quantity, how one number is taken of it, and what that number should be.
 
-use armgen_codegen::description::did_you_mean;
-use armgen_codegen::description::yaml::Node;
+use armgen_codegen::document::did_you_mean;
+use armgen_codegen::document::yaml::Node;
 use armgen_codegen::source::{Span, Spanned};
 use armgen_generated::{JOINT_IS_REVOLUTE, JOINT_NAMES};
 use armgen_runtime::simulation::Log;

@@ -1,21 +1,12 @@
 //! What is wrong with an experiment file: gathered, then shown with the source line, as for descriptions of robots.
 
-use armgen_codegen::diagnostic::{render_one, Colour, Diagnostics, Label, Severity};
+use armgen_codegen::diagnostic::{AnyCode, Colour, Diagnostic, Diagnostics, Severity};
 use armgen_codegen::source::{Source, Span};
-
-/// One fault and its place.
-#[derive(Clone, Debug)]
-pub(crate) struct Fault {
-    code: &'static str,
-    message: String,
-    labels: Vec<Label>,
-    help: String,
-}
 
 /// The faults of one file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Faults {
-    list: Vec<Fault>,
+    list: Diagnostics,
 }
 
 impl Faults {
@@ -28,21 +19,17 @@ impl Faults {
         label: impl Into<String>,
         help: impl Into<String>,
     ) {
-        let labels = vec![Label { span, text: label.into() }];
-        self.list.push(Fault { code, message: message.into(), labels, help: help.into() });
+        self.list.push(Diagnostic::new(AnyCode::new(0, code, Severity::Error), span, message, label, help));
     }
 
     /// Adds those that the reader of YAML and of expressions found.
     pub(crate) fn extend(&mut self, diagnostics: &Diagnostics) {
-        for d in diagnostics.iter() {
-            let fault = Fault { code: d.code.name(), message: d.message.clone(), labels: d.labels.clone(), help: d.help.clone() };
-            self.list.push(fault);
-        }
+        self.list.extend(diagnostics.clone());
     }
 
     /// How many.
     pub(crate) fn len(&self) -> usize {
-        self.list.len()
+        self.list.errors()
     }
 
     /// Whether there is none.
@@ -52,9 +39,8 @@ impl Faults {
 
     /// All of them as text, in the order of the file.
     pub(crate) fn render(&self, source: &Source, colour: Colour) -> String {
-        let mut list: Vec<&Fault> = self.list.iter().collect();
-        list.sort_by_key(|fault| fault.labels[0].span.start);
-        let one = |f: &&Fault| render_one(source, Severity::Error, f.code, &f.message, &f.labels, &f.help, colour) + "\n\n";
-        list.iter().map(one).collect()
+        let mut list = self.list.clone();
+        list.sort();
+        list.render(source, colour)
     }
 }

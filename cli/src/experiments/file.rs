@@ -6,8 +6,8 @@ use std::path::Path as FilePath;
 use std::time::Duration;
 
 use armgen_codegen::diagnostic::{Colour, Diagnostics};
-use armgen_codegen::description::excerpt;
-use armgen_codegen::description::yaml::{self, Kind, Node};
+use armgen_codegen::document::excerpt;
+use armgen_codegen::document::yaml::{self, Kind, Node};
 use armgen_codegen::source::{Source, Span};
 use armgen_generated::{DOF, NAME, NOMINAL_PARAMETERS, PARAMETERS, PARAMETER_NAMES, TASK, TASK_ROWS};
 use armgen_runtime::clik::Integration;

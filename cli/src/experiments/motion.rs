@@ -5,7 +5,7 @@ use std::path::Path as FilePath;
 use std::time::Duration;
 
 use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::description::yaml::{self, Kind, Node};
+use armgen_codegen::document::yaml::{self, Kind, Node};
 use armgen_codegen::source::{Source, Span};
 use armgen_runtime::nalgebra::Matrix3;
 use armgen_runtime::trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, PlanFault, Segment, Turn};

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use armgen_codegen::description::yaml::{Kind, Node};
-use armgen_codegen::description::{did_you_mean, excerpt, parse_expression};
+use armgen_codegen::document::yaml::{Kind, Node};
+use armgen_codegen::document::{did_you_mean, excerpt, parse_expression};
 use armgen_codegen::source::{Span, Spanned};
 use armgen_runtime::task::Row;
 

@@ -20,7 +20,7 @@ fn check(text: &str, codes: &[Code]) -> Option<RobotDescription> {
     let source = Source::new("robot.yaml", text);
     let (description, mut diagnostics) = RobotDescription::parse(&source);
     diagnostics.sort();
-    let found: Vec<Code> = diagnostics.iter().map(|d| d.code).collect();
+    let found: Vec<_> = diagnostics.iter().map(|d| d.code).collect();
     assert_eq!(found, codes, "{}", diagnostics.render(&source, Colour::Never));
     description
 }

@@ -36,7 +36,7 @@ fn diagnostics_stand_in_the_order_of_the_text_and_only_once() {
     diagnostics.push(at(2, Code::UnknownKey));
     diagnostics.push(at(2, Code::RoundedAngle));
     diagnostics.sort();
-    let codes: Vec<Code> = diagnostics.iter().map(|d| d.code).collect();
+    let codes: Vec<_> = diagnostics.iter().map(|d| d.code).collect();
     assert_eq!(codes, [Code::UnknownKey, Code::RoundedAngle, Code::UnusedParameter]);
     assert_eq!((diagnostics.errors(), diagnostics.warnings()), (1, 2));
 }

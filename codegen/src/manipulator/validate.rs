@@ -168,7 +168,7 @@ fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<V
 /// How messages call a joint: by its name, else by its number.
 fn call(i: usize, joint: &JointDescription) -> String {
     match &joint.name {
-        Some(name) => format!("`{}`", crate::description::excerpt(&name.value)),
+        Some(name) => format!("`{}`", crate::document::excerpt(&name.value)),
         None => format!("{}", i + 1),
     }
 }

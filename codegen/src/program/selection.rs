@@ -1,6 +1,6 @@
 //! Which functions of a module are wanted.
 
-use crate::description::did_you_mean;
+use crate::document::did_you_mean;
 use crate::equations::Quantity;
 
 /// A choice of functions: all of them unless some are named.

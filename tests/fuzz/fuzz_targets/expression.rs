@@ -2,7 +2,7 @@
 #![no_main]
 
 use armgen_codegen::{
-    description::{parse_expression, yaml},
+    document::{parse_expression, yaml},
     manipulator,
     source::{Source, Span},
 };

@@ -8,8 +8,9 @@ use std::cmp::Ordering;
 
 use super::evaluate::text_of;
 use super::{zeros, Context};
-use crate::description::{BodyDescription, Expression, InertiaDescription, Value, INERTIA_ELEMENTS};
+use crate::description::{BodyDescription, InertiaDescription, Value, INERTIA_ELEMENTS};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::document::Expression;
 use crate::exact::{Number, Polynomial, Rational};
 use crate::manipulator::Body;
 use crate::source::Span;

@@ -2,8 +2,9 @@
 
 use super::evaluate::text_of;
 use super::{Context, FirstSeen};
-use crate::description::{did_you_mean, excerpt, RegressorDescription, RobotDescription};
+use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::document::{did_you_mean, excerpt};
 use crate::manipulator::{RegressorChoice, TaskRow};
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.

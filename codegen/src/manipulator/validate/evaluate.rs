@@ -9,8 +9,9 @@ use dashu_base::{BitTest, UnsignedAbs};
 
 use super::parameters::Parameters;
 use super::{Context, Scalar};
-use crate::description::{excerpt, out_of_range, Expression, ExpressionKind, Operator, Value};
+use crate::description::Value;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::document::{excerpt, out_of_range, Expression, ExpressionKind, Operator};
 use crate::exact::{Atom, Number, Polynomial, Rational};
 
 /// Terms of an exact number.

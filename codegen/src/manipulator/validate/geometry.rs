@@ -9,8 +9,9 @@ use std::cmp::Ordering;
 
 use super::evaluate::text_of;
 use super::{zeros, Context};
-use crate::description::{Convention, Expression, JointDescription, ToolDescription, Value};
+use crate::description::{Convention, JointDescription, ToolDescription, Value};
 use crate::diagnostic::Code;
+use crate::document::Expression;
 use crate::exact::{Angle, Number, Polynomial, Rational};
 use crate::manipulator::Placement;
 use crate::source::Span;

@@ -5,8 +5,9 @@ use std::cmp::Ordering;
 use super::bodies::{self, optional_not_negative, warn_of_massless};
 use super::evaluate::text_of;
 use super::{call, geometry, zeros, Context};
-use crate::description::{Convention, Expression, JointDescription, LimitsDescription, MotorDescription};
+use crate::description::{Convention, JointDescription, LimitsDescription, MotorDescription};
 use crate::diagnostic::Code;
+use crate::document::Expression;
 use crate::exact::{Number, Polynomial};
 use crate::manipulator::{Joint, JointKind, Limits, LinkId, Motor, Placement};
 

@@ -1,8 +1,9 @@
 //! Names: of the robot, of joints, of parameters.
 
 use super::FirstSeen;
-use crate::description::{excerpt, RobotDescription};
+use crate::description::RobotDescription;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::document::excerpt;
 use crate::source::Spanned;
 
 /// Words of Rust, editions 2015 to 2024, that cannot be the name of anything there.

@@ -1,7 +1,8 @@
 //! Where the parts of an arm stand in its file: what diagnostics about its equations point at.
 
 use super::parameters::Parameters;
-use crate::description::{BodyDescription, Expression, RegressorDescription, RobotDescription, Value};
+use crate::description::{BodyDescription, RegressorDescription, RobotDescription, Value};
+use crate::document::Expression;
 use crate::source::{Span, Spanned};
 
 /// Places of an arm's parts, in the order of the [`Manipulator`](crate::manipulator::Manipulator).

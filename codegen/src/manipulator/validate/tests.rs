@@ -32,7 +32,7 @@ fn valid(text: &str) -> (Manipulator, Places) {
 fn check(text: &str, codes: &[Code]) {
     let source = Source::new("robot.yaml", text);
     let (read, diagnostics) = read(&source);
-    let found: Vec<Code> = diagnostics.iter().map(|d| d.code).collect();
+    let found: Vec<_> = diagnostics.iter().map(|d| d.code).collect();
     assert_eq!(found, codes, "{}", diagnostics.render(&source, Colour::Never));
     assert_eq!(read.is_some(), !diagnostics.has_errors());
 }
@@ -217,12 +217,12 @@ fn angles_near_a_multiple_of_a_twelfth_of_pi_are_doubted() {
         assert_eq!(warned(near), [Code::RoundedAngle], "{near}");
     }
     for far in ["0", "0.001", "-0.0019", "1.5729", "1.5687", "0.7", "pi/2", "deg(90)", "1.57*pi/pi + 0.1", "deg(1.5708)"] {
-        assert_eq!(warned(far), [], "{far}");
+        assert_eq!(warned(far), [] as [Code; 0], "{far}");
     }
     for degrees in ["90", "-90", "45", "6.3"] {
         assert_eq!(warned(degrees), [Code::DegreesSuspected], "{degrees}");
     }
-    assert_eq!(warned("4*pi"), []);
+    assert_eq!(warned("4*pi"), [] as [Code; 0]);
     assert_eq!(warned("1000001"), [Code::OutOfRange]);
 }
 

@@ -1,0 +1,277 @@
+//! Keys and kinds of values: what a tree of nodes must look like, and what is said where it does not.
+//!
+//! A reader goes on after every fault, so that all faults of a file come in one go: a value that cannot be read is `None`, and reported.
+
+use super::yaml::{Kind, Node};
+use super::{did_you_mean, excerpt, expression, Expression};
+use crate::diagnostic::{AnyCode, Code, Diagnostic, Diagnostics};
+use crate::source::{Source, Span, Spanned};
+
+/// A key that a mapping may hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    name: &'static str,
+    required: bool,
+    /// How it is written, for the help where it is missing.
+    example: &'static str,
+}
+
+/// A key that must stand in its mapping, and how it is written.
+pub const fn required(name: &'static str, example: &'static str) -> Key {
+    Key { name, required: true, example }
+}
+
+/// A key that may be left out.
+pub const fn optional(name: &'static str) -> Key {
+    Key { name, required: false, example: "" }
+}
+
+/// The known keys of one mapping, with their places and values.
+#[derive(Clone, Debug)]
+pub struct Fields<'n> {
+    at: Span,
+    entries: Vec<(&'static str, Span, &'n Node)>,
+}
+
+impl<'n> Fields<'n> {
+    /// Place of the key and its value.
+    pub fn get(&self, name: &str) -> Option<(Span, &'n Node)> {
+        self.entries.iter().find(|(known, ..)| *known == name).map(|(_, span, node)| (*span, *node))
+    }
+
+    /// Whether the key stands here.
+    pub fn has(&self, name: &str) -> bool {
+        self.get(name).is_some()
+    }
+
+    /// Where the mapping begins: the place of what is missing in it.
+    pub fn at(&self) -> Span {
+        self.at
+    }
+
+    /// Place of a key, or of the mapping where there is none.
+    pub fn place(&self, name: &str) -> Span {
+        self.get(name).map_or(self.at, |(span, _)| span)
+    }
+}
+
+/// Reads values; what is wrong goes to the diagnostics.
+#[derive(Debug)]
+pub struct Reader<'d> {
+    diagnostics: &'d mut Diagnostics,
+    /// Keys that other formats use, and what they are called here.
+    other_names: &'static [(&'static str, &'static str)],
+}
+
+impl<'d> Reader<'d> {
+    /// A reader that reports to `diagnostics`.
+    pub fn new(diagnostics: &'d mut Diagnostics) -> Reader<'d> {
+        Reader { diagnostics, other_names: &[] }
+    }
+
+    /// The same with keys that other formats use for what has another name here.
+    #[must_use]
+    pub fn with_other_names(self, other_names: &'static [(&'static str, &'static str)]) -> Reader<'d> {
+        Reader { other_names, ..self }
+    }
+
+    /// Reports a fault.
+    pub fn report(
+        &mut self,
+        code: impl Into<AnyCode>,
+        span: Span,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.push(Diagnostic::new(code, span, message, label, help));
+    }
+
+    /// Reports what another reader found.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Whether an error has been reported.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.has_errors()
+    }
+
+    /// The mapping that a whole file must be; `what` it is otherwise not, and how it begins, are said in words.
+    pub fn root<'n>(&mut self, source: &Source, root: Option<&'n Node>, what: &str, begin: &str) -> Option<&'n Node> {
+        let Some(root) = root.filter(|node| !matches!(&node.kind, Kind::Scalar(s) if s.is_nothing())) else {
+            if !self.has_errors() {
+                let label = if source.text().trim().is_empty() { "" } else { "no key stands here" };
+                self.report(Code::EmptyFile, Span::new(0, 0), "the file describes nothing", label, begin);
+            }
+            return None;
+        };
+        if !matches!(root.kind, Kind::Mapping(_)) {
+            let message = format!("{what} is a mapping of keys to values, found {}", root.describe());
+            self.report(Code::WrongKind, root.span, message, "not `key: value`", begin);
+            return None;
+        }
+        Some(root)
+    }
+
+    /// The keys of a mapping; unknown and missing ones are reported, the latter at `at`.
+    pub fn mapping<'n>(&mut self, node: &'n Node, what: &str, at: Span, keys: &[Key]) -> Option<Fields<'n>> {
+        let names: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
+        let Kind::Mapping(entries) = &node.kind else {
+            let expected = format!("{what} is a mapping of keys to values, found {}", node.describe());
+            let help = format!("keys here: {}", names.join(", "));
+            self.report(Code::WrongKind, visible(node, at), expected, "not `key: value`", help);
+            return None;
+        };
+        let mut fields = Fields { at, entries: Vec::new() };
+        let mut unknown = Vec::new();
+        for (key, value) in entries {
+            match names.iter().find(|name| **name == key.value) {
+                Some(name) => fields.entries.push((name, key.span, value)),
+                None => unknown.push((key, value)),
+            }
+        }
+        for (key, value) in unknown {
+            let absent: Vec<&'static str> = names.iter().copied().filter(|name| !fields.has(name)).collect();
+            let other =
+                self.other_names.iter().find(|(other, name)| *other == key.value && names.contains(name)).map(|(_, name)| *name);
+            let meant = other.or_else(|| did_you_mean(&key.value, &absent)).or_else(|| did_you_mean(&key.value, &names));
+            let found = excerpt(&key.value);
+            let allowed = format!("keys here: {}", names.join(", "));
+            let help = match meant {
+                _ if key.value == "<<" => "merge keys are not supported: write the values out".to_owned(),
+                Some(meant) => format!("did you mean `{meant}`? {allowed}"),
+                None => allowed,
+            };
+            self.report(Code::UnknownKey, key.span, format!("{what} has no key `{found}`"), "unknown key", help);
+            // Read it as what was meant, so that its value is checked and the other key is not called missing.
+            if let Some(meant) = meant.filter(|meant| !fields.has(meant)) {
+                fields.entries.push((meant, key.span, value));
+            }
+        }
+        let missing: Vec<&Key> = keys.iter().filter(|key| key.required && !fields.has(key.name)).collect();
+        if !missing.is_empty() {
+            let names: Vec<String> = missing.iter().map(|key| format!("`{}`", key.name)).collect();
+            let examples: Vec<String> = missing.iter().map(|key| format!("`{}`", key.example)).collect();
+            let message = format!("{what} lacks {}", and(&names));
+            self.report(Code::MissingKey, at, message, "required here", format!("write for instance {}", and(&examples)));
+        }
+        Some(fields)
+    }
+
+    /// The elements of a list under `key`.
+    pub fn list<'n>(&mut self, node: &'n Node, key: Span, name: &str, expected: &str, help: &str) -> Option<&'n [Node]> {
+        match &node.kind {
+            Kind::List(items) => Some(items),
+            _ => {
+                self.wrong_kind(node, key, name, expected, help);
+                None
+            }
+        }
+    }
+
+    /// A number or an expression.
+    pub fn expression(&mut self, node: &Node, key: Span, name: &str, help: &str) -> Option<Expression> {
+        match &node.kind {
+            Kind::Scalar(s) if !s.is_nothing() && !matches!(s.text.as_str(), "true" | "false") => {
+                expression::parse(s, node.span).map_err(|diagnostic| self.push(*diagnostic)).ok()
+            }
+            _ => {
+                self.wrong_kind(node, key, name, "a number or an expression", help);
+                None
+            }
+        }
+    }
+
+    /// A text that is no list and no mapping; `expected` says of what kind, as in "a name".
+    pub fn text(&mut self, node: &Node, key: Span, name: &str, expected: &str, help: &str) -> Option<Spanned<String>> {
+        match &node.kind {
+            Kind::Scalar(s) if !s.is_nothing() => Some(Spanned::new(s.text.clone(), node.span)),
+            _ => {
+                self.wrong_kind(node, key, name, expected, help);
+                None
+            }
+        }
+    }
+
+    /// One of a few words; another one is reported under `code`.
+    pub fn choice<T: Copy>(
+        &mut self,
+        node: &Node,
+        key: Span,
+        name: &str,
+        words: &[(&'static str, T)],
+        code: impl Into<AnyCode>,
+        help: &str,
+    ) -> Option<Spanned<T>> {
+        let names: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        let expected = || format!("one of {}", names.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", "));
+        let found = match &node.kind {
+            Kind::Scalar(s) if !s.is_nothing() => s.text.as_str(),
+            _ => {
+                self.wrong_kind(node, key, name, &expected(), help);
+                return None;
+            }
+        };
+        if let Some((_, value)) = words.iter().find(|(word, _)| *word == found) {
+            return Some(Spanned::new(*value, node.span));
+        }
+        let meant = did_you_mean(found, &names).map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
+        let message = format!("{} cannot be `{}`", quoted(name), excerpt(found));
+        self.report(code, node.span, message, format!("not {}", or(&names)), format!("{meant}{help}"));
+        None
+    }
+
+    /// Reports that something else stands where `expected` is to stand.
+    pub fn wrong_kind(&mut self, node: &Node, key: Span, name: &str, expected: &str, help: &str) {
+        let found = match &node.kind {
+            Kind::Scalar(s) if !s.is_nothing() => format!("`{}`", excerpt(&s.text)),
+            _ => node.describe().to_owned(),
+        };
+        let message = format!("{} must be {expected}, found {found}", quoted(name));
+        self.report(Code::WrongKind, visible(node, key), message, "wrong kind of value", help);
+    }
+}
+
+/// The first key of a mapping, or the node itself.
+pub fn first_key(node: &Node) -> Span {
+    match &node.kind {
+        Kind::Mapping(entries) => entries.first().map_or(node.span, |(key, _)| key.span),
+        _ => node.span,
+    }
+}
+
+/// The node's place, or its key's where nothing stands.
+fn visible(node: &Node, key: Span) -> Span {
+    if node.span.start < node.span.end {
+        node.span
+    } else {
+        key
+    }
+}
+
+/// A key in backquotes; a description ("an element of ...") as it is.
+fn quoted(name: &str) -> String {
+    if name.contains(' ') {
+        name.to_owned()
+    } else {
+        format!("`{}`", excerpt(name))
+    }
+}
+
+/// `a, b and c`.
+pub fn and(words: &[String]) -> String {
+    join(words, "and")
+}
+
+fn or(words: &[&str]) -> String {
+    join(&words.iter().map(|w| format!("`{w}`")).collect::<Vec<_>>(), "or")
+}
+
+fn join(words: &[String], last: &str) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [start @ .., end] => format!("{} {last} {end}", start.join(", ")),
+    }
+}
