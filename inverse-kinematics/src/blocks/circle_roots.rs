@@ -1,0 +1,437 @@
+// Block R: all real roots of a trigonometric polynomial of low degree.
+//
+// The circle is covered by arcs. On an arc of half width h the polynomial is its Taylor polynomial of degree 8 about the centre, in
+// x = (angle - centre)/h, up to a remainder that is known. Where the constant term outweighs the rest there is no root; where the linear
+// term outweighs what is above it there is at most one, and the signs at the ends tell; otherwise the arc is halved.
+// Where the polynomial is weak, that is, comparable with its own noise, its coefficients say too little: the caller then gives the
+// function itself at nine points of the arc, and the same test runs on their interpolation polynomial.
+
+/// A root of a trigonometric polynomial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CircleRoot {
+    /// The cosine of the root.
+    pub c: Real,
+    /// The sine of the root.
+    pub s: Real,
+    /// A place at which |f| is so small that rounding decides between two roots and none; it stands for both.
+    pub double: bool,
+}
+
+/// The roots that [`circle_roots`] finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CircleRoots<const M: usize> {
+    /// How many of `all` count.
+    pub count: usize,
+    /// The roots, anticlockwise from (1, 0).
+    pub all: [CircleRoot; M],
+    /// Some root is `double`, or the bounds on work or room ended the search: there may be two roots fewer or more.
+    pub near: bool,
+    /// The polynomial vanishes: all amplitudes are within the noise. No root is given.
+    pub free: bool,
+    /// How often the function itself was asked for on an arc.
+    pub anew: usize,
+    /// Within what the first and the last root are one with what is found beside them.
+    apart: [Real; 2],
+}
+
+/// How often one search may halve an arc, and how often it may ask for the function itself on an arc: many times what generic polynomials of
+/// degree 8 need (about 60, and 0 to 3).
+const HALVINGS: usize = 600;
+const ANEW: usize = 40;
+
+/// Arcs are not halved below this half width, rad, 7e-8 in double precision: two roots as near as that are one change by rounding apart,
+/// since rounding of the coefficients by u moves a double root by sqrt(u).
+const SHORTEST: Real = 8.0;
+
+/// Coefficients of the Chebyshev polynomials T0 to T8, by powers.
+const CHEBYSHEV: [[Real; 9]; 9] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [-1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, -3.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 0.0, -8.0, 0.0, 8.0, 0.0, 0.0, 0.0, 0.0],
+    [0.0, 5.0, 0.0, -20.0, 0.0, 16.0, 0.0, 0.0, 0.0],
+    [-1.0, 0.0, 18.0, 0.0, -48.0, 0.0, 32.0, 0.0, 0.0],
+    [0.0, -7.0, 0.0, 56.0, 0.0, -112.0, 0.0, 64.0, 0.0],
+    [1.0, 0.0, -32.0, 0.0, 160.0, 0.0, -256.0, 0.0, 128.0],
+];
+
+/// cos(j pi/18) for j = 0 to 9; the others follow from symmetry.
+const COSINES_OF_10_DEGREES: [Real; 10] = [
+    1.0,
+    0.984807753012208059366743024589523014,
+    0.939692620785908384054109277324731470,
+    0.866025403784438646763723170752936183,
+    0.766044443118978035202392650555416674,
+    0.642787609686539326322643409907263433,
+    0.5,
+    0.342020143325668733044099614682259581,
+    0.173648177666930348851716626769314796,
+    0.0,
+];
+
+/// cos(j pi/18) for j >= 0.
+#[inline]
+fn cosine_of_10_degrees(j: usize) -> Real {
+    let j = j % 36;
+    let j = if j > 18 { 36 - j } else { j };
+    let (i, sign) = if j > 9 { (18 - j, -1.0) } else { (j, 1.0) };
+    COSINES_OF_10_DEGREES.get(i).map_or(0.0, |c| sign * c)
+}
+
+/// A trigonometric polynomial a_0 + sum_k a_k cos kt + b_k sin kt, with what the search needs of it.
+struct TrigonometricPolynomial<'a, const N: usize> {
+    a: &'a [Real; N],
+    b: &'a [Real; N],
+    /// The half width h of the first arcs.
+    h: Real,
+    /// weights[k][j] = (k h)^j / j!.
+    weights: [[Real; 9]; N],
+    /// sum_k (|a_k| + |b_k|) (k h)^9 / 9!: the remainder on the first arcs.
+    remainder: Real,
+}
+
+impl<'a, const N: usize> TrigonometricPolynomial<'a, N> {
+    fn new(a: &'a [Real; N], b: &'a [Real; N]) -> Self {
+        const PI: Real = 3.141592653589793238462643383279502884;
+        let h = PI / (4 * (N - 1)) as Real;
+        let mut weights = [[0.0; 9]; N];
+        let mut remainder = 0.0;
+        for (k, ((row, a), b)) in weights.iter_mut().zip(a).zip(b).enumerate() {
+            let mut w = 1.0;
+            for (j, weight) in row.iter_mut().enumerate() {
+                *weight = w;
+                w *= k as Real * h / (j + 1) as Real;
+            }
+            remainder += (a.abs() + b.abs()) * w;
+        }
+        TrigonometricPolynomial { a, b, h, weights, remainder }
+    }
+
+    /// Value and derivative.
+    fn at(&self, c: Real, s: Real) -> (Real, Real) {
+        let (mut ck, mut sk) = (1.0, 0.0);
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (k, (a, b)) in self.a.iter().zip(self.b).enumerate() {
+            value += a * ck + b * sk;
+            slope += k as Real * (b * ck - a * sk);
+            (ck, sk) = (ck * c - sk * s, sk * c + ck * s);
+        }
+        (value, slope)
+    }
+
+    /// Taylor coefficients about (c, s) in units of the half width h `part`.
+    fn taylor(&self, c: Real, s: Real, part: Real) -> [Real; 9] {
+        let mut t = [0.0; 9];
+        let (mut ck, mut sk) = (1.0, 0.0);
+        for ((w, a), b) in self.weights.iter().zip(self.a).zip(self.b) {
+            let (u, v) = (a * ck + b * sk, b * ck - a * sk);
+            let signed = [u, v, -u, -v, u, v, -u, -v, u];
+            for j in 0..9 {
+                t[j] += signed[j] * w[j];
+            }
+            (ck, sk) = (ck * c - sk * s, sk * c + ck * s);
+        }
+        let mut p = 1.0;
+        for t in &mut t {
+            *t *= p;
+            p *= part;
+        }
+        t
+    }
+}
+
+/// What the coefficients of a polynomial say of its roots in [-1, 1].
+enum Interval {
+    /// There are none.
+    Empty,
+    /// It is monotone there.
+    Monotone,
+    /// They do not tell.
+    Open,
+}
+
+/// Judges a polynomial that is known up to `error`, its derivative up to 9 times that.
+fn judge(t: &[Real; 9], error: Real) -> Interval {
+    let (mut rest, mut slopes) = (0.0, 0.0);
+    for (j, t) in t.iter().enumerate().skip(2) {
+        rest += t.abs();
+        slopes += j as Real * t.abs();
+    }
+    if t[0].abs() > t[1].abs() + rest + error {
+        Interval::Empty
+    } else if t[1].abs() > slopes + 9.0 * error {
+        Interval::Monotone
+    } else {
+        Interval::Open
+    }
+}
+
+/// The sum of the absolute values of the coefficients: a bound of the polynomial on [-1, 1].
+fn largest(t: &[Real; 9]) -> Real {
+    t.iter().fold(0.0, |sum: Real, t| sum + t.abs())
+}
+
+/// Value and derivative of a polynomial.
+fn value_and_slope(t: &[Real; 9], x: Real) -> (Real, Real) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    for t in t.iter().rev() {
+        slope = slope * x + value;
+        value = value * x + t;
+    }
+    (value, slope)
+}
+
+/// The root of a polynomial that is monotone on [-1, 1] and has one there, or just outside: Newton's method kept in its bracket.
+fn root_of_monotone(t: &[Real; 9]) -> Real {
+    let rising = t[1] > 0.0;
+    let (mut low, mut high, mut x) = (-1.0, 1.0, (-t[0] / t[1]).clamp(-1.0, 1.0));
+    for _ in 0..30 {
+        let (value, slope) = value_and_slope(t, x);
+        if (value > 0.0) == rising {
+            high = x;
+        } else {
+            low = x;
+        }
+        let newton = x - value / slope;
+        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        if (next - x).abs() <= 4.0 * UNIT_ROUNDOFF {
+            return next;
+        }
+        x = next;
+    }
+    x
+}
+
+/// The minimum of |t| near 0, by its parabola.
+fn minimum(t: &[Real; 9]) -> Real {
+    if t[2].abs() > 0.5 * t[1].abs() {
+        -0.5 * t[1] / t[2]
+    } else {
+        0.0
+    }
+}
+
+impl<const M: usize> CircleRoots<M> {
+    /// Adds a root unless it is one that has been found: roots come in order along the circle, so only the last and the first can be it.
+    fn add(&mut self, root: CircleRoot, apart: Real) {
+        // Onto the circle: turn by turn it has been left by some rounding.
+        let over = 1.5 - 0.5 * (root.c * root.c + root.s * root.s);
+        let root = CircleRoot { c: root.c * over, s: root.s * over, ..root };
+        let same = |known: &CircleRoot, width: Real| (known.c - root.c).abs() + (known.s - root.s).abs() <= width;
+        let [of_first, of_last] = self.apart;
+        if let Some(last) = self.all.get_mut(self.count.wrapping_sub(1)) {
+            if same(last, apart.max(of_last)) {
+                last.double |= root.double;
+                self.apart[1] = apart.max(of_last);
+                return;
+            }
+        }
+        if self.count > 1 {
+            if let Some(first) = self.all.first_mut() {
+                if same(first, apart.max(of_first)) {
+                    first.double |= root.double;
+                    return;
+                }
+            }
+        }
+        if let Some(slot) = self.all.get_mut(self.count) {
+            *slot = root;
+            if self.count == 0 {
+                self.apart[0] = apart;
+            }
+            self.apart[1] = apart;
+            self.count += 1;
+        } else {
+            self.near = true;
+        }
+    }
+}
+
+/// Block R: all real roots of f(t) = a_0 + sum over k < N of a_k cos kt + b_k sin kt, on the circle (c, s) = (cos t, sin t).
+///
+/// 4 (N - 1) equal arcs, each a Taylor polynomial of degree 8 with remainder <= sum_k (|a_k| + |b_k|) (kh)^9/9! (above). The ends of an arc
+/// count with it if |f| is within the noise there, so no root is lost between two arcs; what is found twice is found to be one.
+///
+/// - `b[0]` is not read. `noise`: how far the coefficients' rounding may move f, > 0; that of evaluating f is added here.
+/// - `exact(c, s)`: f itself, right relative to its largest value nearby; asked for at nine Chebyshev points of an arc of half width
+///   <= pi/256 on which |f| stays below [`WEAK`] times the noise. There the noise is 1e-13 of the largest value (1000 u), and the
+///   interpolation's remainder sum_k .. (kh)^9/(9! 2^8).
+/// - Two roots nearer than 16 sqrt(u) rad, or a minimum of |f| as flat as that: one root, `double`, and `near`.
+/// - All amplitudes within the noise, f = 0 included: `free`. A coefficient that is not finite: `near` without a root.
+/// - At most `HALVINGS` arcs are halved and `ANEW` interpolated; where that ends the search it says `near`.
+pub fn circle_roots<const N: usize, const M: usize>(
+    a: &[Real; N],
+    b: &[Real; N],
+    noise: Real,
+    mut exact: impl FnMut(Real, Real) -> Real,
+) -> CircleRoots<M> {
+    let root = CircleRoot { c: 1.0, s: 0.0, double: false };
+    let mut found = CircleRoots { count: 0, all: [root; M], near: false, free: false, anew: 0, apart: [0.0; 2] };
+    let mut amplitude = 0.0;
+    for (k, (a, b)) in a.iter().zip(b).enumerate() {
+        amplitude += a.abs() + if k == 0 { 0.0 } else { b.abs() };
+    }
+    if !(amplitude < Real::MAX) || N < 2 {
+        found.near = true;
+        return found;
+    }
+    // N operations' rounding, for a value near the largest.
+    let noise = noise + 4.0 * UNIT_ROUNDOFF * amplitude;
+    if amplitude <= noise {
+        found.free = true;
+        return found;
+    }
+    let f = TrigonometricPolynomial::new(a, b);
+    let shortest = SHORTEST * sqrt(UNIT_ROUNDOFF);
+    let mut halvings = HALVINGS;
+
+    let (first, step) = (small_turn(f.h), small_turn(0.5 * f.h));
+    let step = {
+        // Turn by 2 h, from h/2.
+        let (c, s) = step;
+        let (c, s) = (c * c - s * s, 2.0 * c * s);
+        (c * c - s * s, 2.0 * c * s)
+    };
+    let mut centre = first;
+    // Arcs to be looked at: centre, and what part of the first half width they have. Each halving leaves one more.
+    let mut arcs = [(0.0, 0.0, 0.0); 32];
+    for _ in 0..4 * (N - 1) {
+        let mut open = 1;
+        arcs[0] = (centre.0, centre.1, 1.0);
+        centre = (centre.0 * step.0 - centre.1 * step.1, centre.1 * step.0 + centre.0 * step.1);
+        while open > 0 && open <= arcs.len() {
+            open -= 1;
+            let (c, s, part) = arcs[open];
+            let h = f.h * part;
+            let t = f.taylor(c, s, part);
+            let cube = part * part * part;
+            let remainder = f.remainder * (cube * cube * cube);
+            let turned = |x: Real| {
+                let (cx, sx) = small_turn(h * x);
+                (c * cx - s * sx, s * cx + c * sx)
+            };
+            match judge(&t, remainder + noise) {
+                Interval::Empty => continue,
+                _ if largest(&t) < WEAK * noise && h <= 0.0123 && found.anew < ANEW => {
+                    found.anew += 1;
+                    let mut values = [0.0; 9];
+                    let mut size: Real = 0.0;
+                    for (i, value) in values.iter_mut().enumerate() {
+                        let (c, s) = turned(cosine_of_10_degrees(2 * i + 1));
+                        *value = exact(c, s);
+                        size = size.max(value.abs());
+                    }
+                    let remainder = remainder / 256.0;
+                    if remainder <= sqrt(UNIT_ROUNDOFF) * size || h <= shortest {
+                        let t = interpolation(&values);
+                        let error = 1000.0 * UNIT_ROUNDOFF * size + remainder;
+                        roots_of_interpolation(&t, error, shortest / h, &mut halvings, &mut |x, width, double| {
+                            let (c, s) = turned(x);
+                            found.near |= double;
+                            found.add(CircleRoot { c, s, double }, width * h + 8.0 * UNIT_ROUNDOFF);
+                        });
+                        continue;
+                    }
+                }
+                Interval::Monotone => {
+                    let (low, high) = (turned(-1.0), turned(1.0));
+                    let (low, high) = (f.at(low.0, low.1).0, f.at(high.0, high.1).0);
+                    // Beside the noise, the ends of neighbours do not meet exactly: each has been turned by as many rounded steps as arcs.
+                    let slack = noise + 256.0 * UNIT_ROUNDOFF * t[1].abs() / h;
+                    if (low > 0.0) == (high > 0.0) && low.abs() > slack && high.abs() > slack {
+                        continue;
+                    }
+                    let (mut c, mut s) = turned(root_of_monotone(&t));
+                    let mut slope = t[1] / h;
+                    for _ in 0..2 {
+                        let (value, derivative) = f.at(c, s);
+                        slope = derivative;
+                        let (cx, sx) = small_turn((-value / slope).clamp(-h, h));
+                        (c, s) = (c * cx - s * sx, s * cx + c * sx);
+                    }
+                    found.add(CircleRoot { c, s, double: false }, 4.0 * slack / slope.abs());
+                    continue;
+                }
+                Interval::Open => {}
+            }
+            if h <= shortest || halvings == 0 || open + 2 > arcs.len() {
+                let (c, s) = turned(minimum(&t).clamp(-1.0, 1.0));
+                found.near = true;
+                found.add(CircleRoot { c, s, double: true }, 4.0 * h);
+                continue;
+            }
+            halvings -= 1;
+            let (left, right) = (turned(-0.5), turned(0.5));
+            arcs[open] = (right.0, right.1, 0.5 * part);
+            arcs[open + 1] = (left.0, left.1, 0.5 * part);
+            open += 2;
+        }
+    }
+    found
+}
+
+/// The polynomial of degree 8 with the given values at the Chebyshev points cos((2i + 1) pi/18), by powers.
+fn interpolation(values: &[Real; 9]) -> [Real; 9] {
+    let mut t = [0.0; 9];
+    for (k, row) in CHEBYSHEV.iter().enumerate() {
+        let mut sum = 0.0;
+        for (i, value) in values.iter().enumerate() {
+            sum += value * cosine_of_10_degrees(k * (2 * i + 1));
+        }
+        let coefficient = sum * if k == 0 { 1.0 / 9.0 } else { 2.0 / 9.0 };
+        for (t, power) in t.iter_mut().zip(row) {
+            *t += coefficient * power;
+        }
+    }
+    t
+}
+
+/// The roots in [-1, 1] of a polynomial that is known up to `error`, handed to `found` with the width within which they are one, and
+/// whether they stand for two. Intervals are not halved below the half width `shortest`.
+fn roots_of_interpolation(
+    t: &[Real; 9],
+    error: Real,
+    shortest: Real,
+    halvings: &mut usize,
+    found: &mut impl FnMut(Real, Real, bool),
+) {
+    let mut intervals = [(0.0, 0.0); 32];
+    let mut open = 1;
+    intervals[0] = (0.0, 1.0);
+    while open > 0 && open <= intervals.len() {
+        open -= 1;
+        let (x, width) = intervals[open];
+        // About x, in units of the width.
+        let mut local = *t;
+        for i in 0..8 {
+            for j in (i..8).rev() {
+                local[j] += x * local[j + 1];
+            }
+        }
+        let mut power = 1.0;
+        for t in &mut local {
+            *t *= power;
+            power *= width;
+        }
+        match judge(&local, error) {
+            Interval::Empty => continue,
+            Interval::Monotone => {
+                let (low, high) = (value_and_slope(&local, -1.0).0, value_and_slope(&local, 1.0).0);
+                if (low > 0.0) != (high > 0.0) || low.abs() <= error || high.abs() <= error {
+                    found(x + width * root_of_monotone(&local), 4.0 * width * error / local[1].abs(), false);
+                }
+                continue;
+            }
+            Interval::Open => {}
+        }
+        if width <= shortest || *halvings == 0 || open + 2 > intervals.len() {
+            found(x + width * minimum(&local).clamp(-1.0, 1.0), 4.0 * width, true);
+            continue;
+        }
+        *halvings -= 1;
+        intervals[open] = (x + 0.5 * width, 0.5 * width);
+        intervals[open + 1] = (x - 0.5 * width, 0.5 * width);
+        open += 2;
+    }
+}

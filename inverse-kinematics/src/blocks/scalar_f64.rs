@@ -1,0 +1,45 @@
+// The scalar and what depends on it.
+
+/// The scalar: double precision.
+pub type Real = f64;
+
+/// Half the distance from 1 to the next larger number: the relative error of one rounded operation.
+pub const UNIT_ROUNDOFF: Real = 0.5 * Real::EPSILON;
+
+/// Where a trigonometric polynomial stays below this many times its noise on a short arc, its values there are asked for anew.
+/// About u^-0.38: roots of a polynomial larger than that keep more than a third of the digits.
+pub const WEAK: Real = 1e6;
+
+/// The square root, correctly rounded.
+#[inline]
+pub fn sqrt(x: Real) -> Real {
+    libm::sqrt(x)
+}
+
+/// The angle of the point (c, s) in [-pi, pi], rad.
+#[inline]
+pub fn atan2(s: Real, c: Real) -> Real {
+    libm::atan2(s, c)
+}
+
+/// Cosine and sine of an angle in rad, in this order.
+#[inline]
+pub fn cos_sin(angle: Real) -> (Real, Real) {
+    let (s, c) = libm::sincos(angle);
+    (c, s)
+}
+
+/// 1/sqrt(x) for x > 0, within 2 units in the last place; finite at 0. Without branches, so that lanes side by side become vector
+/// instructions, which `sqrt` does not.
+///
+/// The bits of x, halved, give a first value within 3.5 %; each step y (3 - x y²)/2 squares the error and multiplies it by 3/2.
+#[inline]
+pub fn inverse_sqrt(x: Real) -> Real {
+    let mut y = Real::from_bits(0x5fe6_eb50_c7b5_37a9_u64.wrapping_sub(x.to_bits() >> 1));
+    let half = 0.5 * x;
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y *= 1.5 - half * y * y;
+    y
+}

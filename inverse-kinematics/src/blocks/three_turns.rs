@@ -1,0 +1,78 @@
+// Block 5: a rotation as three turns about given axes.
+
+/// The turns that [`three_turns`] finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThreeTurns {
+    /// How many of `turns` count: 0, 1 or 2.
+    pub count: usize,
+    /// (cos, sin) of t1, t2, t3; first the one with sin t2 >= 0.
+    pub turns: [[[Real; 2]; 3]; 2],
+    /// The two solutions meet as far as rounding lets one tell, with t1 and t3 determined; one is given.
+    pub double: bool,
+    /// Axes 1 and 3 are parallel: only t1 + t3 or t1 - t3 is determined; t1 = 0 is given.
+    pub free: bool,
+    /// The defect in the cosine between axes 1 and 3 where there is none, else 0.
+    pub miss: Real,
+}
+
+/// Block 5, three turns: R = Rz(t1) Rx(alpha) Rz(t2) Rx(beta) Rz(t3); sin alpha and sin beta are not 0.
+///
+/// R33 = cos alpha cos beta - sin alpha sin beta cos t2 is the cosine between axes 1 and 3. With D1 = cos(alpha - beta) - R33 and
+/// D2 = R33 - cos(alpha + beta), (sin alpha sin beta sin t2)² = D1 D2. Where R33 is near such a cosine the difference is
+/// (h² - sin²)/(sum of the cosines) with h = hypot(R13, R23) the sine between the axes, not a difference of cosines: otherwise half the
+/// digits of t2 are gone near the pose at which both axes are parallel.
+/// t1 then takes the third column of Rx(alpha) Rz(t2) Rx(beta) to that of R, and t3 is what is left of R, so that R is met even
+/// where t1 and t3 are badly determined.
+///
+/// - `r`: its rotation is R. `alpha`, `beta`: (cos, sin). `noise`: how far rounding may have moved R's entries.
+/// - h <= noise with axes that can be parallel: `free`. D1 or D2 within its noise of 0: `double`. Negative: none, `miss` = -D.
+#[inline]
+pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real) -> ThreeTurns {
+    let mut found = ThreeTurns { count: 0, turns: [[[1.0, 0.0]; 3]; 2], double: false, free: false, miss: 0.0 };
+    let ([ca, sa], [cb, sb]) = (alpha, beta);
+    let (z, h) = (r[2][2], length(r[0][2], r[1][2]));
+    // The cosine `c` with the sine `s` less that of z with the sine h, and whether it is 0 to rounding.
+    let difference = |c: Real, s: Real| {
+        let sum = c + z;
+        // The cosine loses digits where both sines are small, the sines where both are near 1.
+        if sum.abs() > 1.0 {
+            let (d, e) = (h - s.abs(), h + s.abs());
+            (d * e / sum, d.abs() <= noise)
+        } else {
+            (c - z, (c - z).abs() <= noise)
+        }
+    };
+    let (d1, zero1) = difference(ca * cb + sa * sb, sa * cb - ca * sb);
+    let (d2, zero2) = difference(ca * cb - sa * sb, sa * cb + ca * sb);
+    let (d1, d2) = if sa * sb > 0.0 { (d1, -d2) } else { (-d1, d2) };
+    let double = zero1 || zero2;
+    if !(double || (d1 > 0.0 && d2 > 0.0)) {
+        found.miss = if d1 < d2 { -d1 } else { -d2 };
+        return found;
+    }
+    let over = 1.0 / (sa * sb);
+    let (c2, s2) = if double {
+        (if zero1 { -1.0 } else { 1.0 }, 0.0)
+    } else {
+        ((ca * cb - z) * over, sqrt(d1 * d2) * over.abs())
+    };
+    // At the end of the range with axes 1 and 3 parallel.
+    found.free = double && h <= noise;
+    found.double = double && !found.free;
+    found.count = if double { 1 } else { 2 };
+    let mut sign = 1.0;
+    for turns in &mut found.turns {
+        let s2 = sign * s2;
+        sign = -sign;
+        // Columns of Rx(alpha) Rz(t2) Rx(beta).
+        let first = [c2, ca * s2, sa * s2];
+        let second = [-s2 * cb, ca * c2 * cb - sa * sb, sa * c2 * cb + ca * sb];
+        let third = [s2 * sb, -ca * c2 * sb - sa * cb];
+        let t1 = if found.free { [1.0, 0.0] } else { turn(third, [r[0][2], r[1][2]], 0.0).value };
+        let x = turn_vector(t1[0], -t1[1], column(r, 0));
+        let (c3, s3) = (dot(first, x), dot(second, x));
+        let over = 1.0 / length(c3, s3);
+        *turns = [t1, [c2, s2], [c3 * over, s3 * over]];
+    }
+    found
+}

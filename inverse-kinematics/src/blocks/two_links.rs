@@ -1,0 +1,70 @@
+// Block 4: two links in a plane.
+
+/// The postures that [`two_links`] finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoLinks {
+    /// How many of `shoulder` and `elbow` count: 0, 1 or 2.
+    pub count: usize,
+    /// (cos q1, sin q1) of the first joint.
+    pub shoulder: [[Real; 2]; 2],
+    /// (cos q2, sin q2) of the second joint; first the one with sin q2 >= 0.
+    pub elbow: [[Real; 2]; 2],
+    /// Stretched or folded as far as rounding lets one tell: the two postures are given as one.
+    pub double: bool,
+    /// The first joint can take any angle: p = 0 and both links are equally long. (1, 0) is given.
+    pub shoulder_free: bool,
+    /// The second joint can take any angle: the second link has no length. (1, 0) is given.
+    pub elbow_free: bool,
+    /// The distance of |p| from [|l1 - l2|, l1 + l2], 0 where there is a posture.
+    pub miss: Real,
+}
+
+/// Block 4, two links in a plane: p = Rz(q1) (l1 + l2 cos q2, l2 sin q2) for lengths l1, l2 >= 0.
+///
+/// cos q2 = (|p|² - l1² - l2²)/(2 l1 l2); (2 l1 l2 sin q2)² = (l1 + l2 - |p|)(l1 + l2 + |p|)(|p| - |l1 - l2|)(|p| + |l1 - l2|), a product,
+/// so that the sine keeps its digits near the stretched and the folded arm. q1 by block 2.
+///
+/// - `noise`: how far rounding may have moved |p|, l1 and l2, >= 0.
+/// - |p| within noise of l1 + l2 or of |l1 - l2|: `double`.
+/// - p = 0 and l1 = l2: `shoulder_free`. l1 or l2 within noise of 0 and |p| right: `elbow_free`.
+#[inline]
+pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real) -> TwoLinks {
+    let mut found = TwoLinks {
+        count: 0,
+        shoulder: [[1.0, 0.0]; 2],
+        elbow: [[1.0, 0.0]; 2],
+        double: false,
+        shoulder_free: false,
+        elbow_free: false,
+        miss: 0.0,
+    };
+    let distance = length(p[0], p[1]);
+    let (outer, inner) = (l1 + l2 - distance, distance - (l1 - l2).abs());
+    if !(outer >= -noise && inner >= -noise) {
+        found.miss = if outer < inner { -outer } else { -inner };
+        return found;
+    }
+    if !(l1 > noise && l2 > noise) {
+        found.count = 1;
+        found.elbow_free = true;
+    } else if outer <= noise {
+        found.count = 1;
+        found.double = true;
+    } else if inner <= noise {
+        found.count = 1;
+        found.double = true;
+        found.elbow = [[-1.0, 0.0]; 2];
+    } else {
+        found.count = 2;
+        let over = 0.5 / (l1 * l2);
+        let c = (distance * distance - l1 * l1 - l2 * l2) * over;
+        let s = sqrt(outer * (l1 + l2 + distance) * inner * (distance + (l1 - l2).abs())) * over;
+        found.elbow = [[c, s], [c, -s]];
+    }
+    for (shoulder, elbow) in found.shoulder.iter_mut().zip(&found.elbow) {
+        let first = turn([l1 + l2 * elbow[0], l2 * elbow[1]], p, noise);
+        *shoulder = first.value;
+        found.shoulder_free |= first.free;
+    }
+    found
+}

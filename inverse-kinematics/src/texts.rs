@@ -1,0 +1,35 @@
+//! The blocks as text, for a generator that prints them into a module.
+
+/// A block's text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Text {
+    /// The name of its file, without the ending.
+    pub name: &'static str,
+    /// What it says: items over `Real`, with outer attributes and documentation only.
+    pub source: &'static str,
+    /// The names of the texts whose items it uses; theirs are needed as well.
+    pub needs: &'static [&'static str],
+}
+
+macro_rules! texts {
+    ($($name:literal needs [$($need:literal),*],)*) => {
+        /// Every text, each after those that it needs.
+        pub const TEXTS: &[Text] = &[$(Text {
+            name: $name,
+            source: include_str!(concat!("blocks/", $name, ".rs")),
+            needs: &[$($need),*],
+        }),*];
+    };
+}
+
+texts! {
+    "scalar_f64" needs [],
+    "scalar_f32" needs [],
+    "frame" needs [],
+    "line_and_circle" needs ["frame"],
+    "turn" needs ["frame"],
+    "two_turns" needs ["frame", "line_and_circle", "turn"],
+    "two_links" needs ["frame", "turn"],
+    "three_turns" needs ["frame", "turn"],
+    "circle_roots" needs ["frame"],
+}
