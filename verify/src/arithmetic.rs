@@ -15,11 +15,14 @@
 pub mod degree;
 pub mod dual;
 pub mod prime;
+pub mod roots;
 pub mod tower;
 pub mod twofold;
 pub mod wide;
 
 use std::fmt::Debug;
+
+use sha2::{Digest, Sha256};
 
 use crate::formula::Formula;
 
@@ -69,22 +72,43 @@ pub trait Arithmetic {
     }
 }
 
-/// A reproducible stream of bits: the generator splitmix64 (Steele, Lea and Flood 2014).
+/// A reproducible stream of bits that nobody can steer: SHA-256 of a key and a counter.
 #[derive(Clone, Debug)]
-pub struct Stream(u64);
+pub struct Stream {
+    key: [u8; 32],
+    blocks: u64,
+    /// What is left of the last block.
+    left: Vec<u64>,
+}
 
 impl Stream {
-    /// The stream of a seed.
+    /// The stream of a number.
     pub fn new(seed: u64) -> Stream {
-        Stream(seed)
+        let mut key = [0; 32];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        Stream::of(key)
+    }
+
+    /// The stream of a key.
+    pub fn of(key: [u8; 32]) -> Stream {
+        Stream { key, blocks: 0, left: Vec::new() }
+    }
+
+    /// A stream of its own that follows from this one.
+    pub fn branch(&mut self) -> Stream {
+        let mut key = [0; 32];
+        key.chunks_mut(8).for_each(|part| part.copy_from_slice(&self.bits().to_le_bytes()));
+        Stream::of(key)
     }
 
     /// 64 bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let x = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ (x >> 31)
+        if self.left.is_empty() {
+            let block: [u8; 32] = Sha256::new().chain_update(self.key).chain_update(self.blocks.to_le_bytes()).finalize().into();
+            self.blocks += 1;
+            self.left.extend(block.chunks(8).map(|part| part.iter().fold(0, |bits, &byte| bits << 8 | u64::from(byte))));
+        }
+        self.left.pop().unwrap_or(0)
     }
 
     /// A number below `bound`.

@@ -7,8 +7,9 @@ use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
 use crate::arithmetic::prime::Prime;
+use crate::arithmetic::roots::{dependent, Dependent};
 use crate::arithmetic::tower::Tower;
-use crate::arithmetic::{Arithmetic, Element, Stream};
+use crate::arithmetic::{Arithmetic, Element};
 use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::claims::{Claims, Resolved};
 use crate::contract::Promise;
@@ -16,11 +17,12 @@ use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
-use crate::formula::{Atoms, Formula, Root};
+use crate::formula::{Atoms, Formula};
 use crate::program::Program;
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
-use crate::report::{Exact, FunctionReport, Verdict};
+use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
+use crate::seed;
 
 /// The function that is not compared entry by entry.
 const BASE_REGRESSOR: &str = "base_regressor";
@@ -30,13 +32,16 @@ const DIVIDED: &str = "a constant of the description divides by zero here";
 /// How much is tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Points in prime fields, each with a prime of its own.
+    /// Points in prime fields, each with a prime of its own: so many at least, more where the odds of a miss ask for them.
     pub points: usize,
     /// Rational points.
     pub exact_points: usize,
-    /// Where the random points come from.
+    /// Other points for other numbers; all else that they follow from is what is verified ([`mod@crate::seed`]).
     pub seed: u64,
 }
+
+/// As many points in prime fields are tried at most.
+const MOST_POINTS: usize = 32;
 
 impl Default for Effort {
     fn default() -> Effort {
@@ -111,6 +116,49 @@ impl<K: Arithmetic> Point<K> {
     }
 }
 
+/// Numbers of joints, parameters, base parameters and rows of the task.
+#[derive(Clone, Copy, Debug)]
+struct Sizes {
+    joints: usize,
+    parameters: usize,
+    base: Option<usize>,
+    task: usize,
+}
+
+impl Sizes {
+    fn of(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters>) -> Sizes {
+        let parameters = match vector {
+            Vector::Names(ids) => ids.len(),
+            Vector::Standard(all) => all.len(),
+            Vector::Base(base, _) => base.len(),
+        };
+        let base = base.map(|base| base.named.len());
+        Sizes { joints: manipulator.joints.len(), parameters, base, task: manipulator.task.len() }
+    }
+
+    /// The program of a function that takes and gives what its name promises; else what is wrong.
+    fn fitting<'a>(&self, name: &str, function: &'a Function) -> Result<&'a Program, String> {
+        let promise = Promise::of(name).ok_or("not a function that the checker knows the equations of")?;
+        let (promise, with_parameters) = promise;
+        let signature = promise.signature(with_parameters);
+        if function.signature != signature {
+            return Err(format!("its signature is `{}`, not `{signature}`", function.signature));
+        }
+        if name == BASE_REGRESSOR && self.base.is_none() {
+            return Err("the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
+        }
+        let program = &function.program;
+        let places = promise.shape.places(self.joints, self.parameters, self.base.unwrap_or(0), self.task);
+        if program.outputs.iter().map(|o| &o.place).ne(&places) {
+            return Err(format!("its result does not have the {} entries that it should", places.len()));
+        }
+        match beyond_the_end(program, self.joints, self.parameters) {
+            Some(why) => Err(why),
+            None => Ok(program),
+        }
+    }
+}
+
 /// The equations of an arm at random points, ready for any module that claims to be its.
 pub struct Checker {
     manipulator: Manipulator,
@@ -118,9 +166,10 @@ pub struct Checker {
     claims: Claims,
     points: Vec<Point<Prime>>,
     exact: Vec<Point<Tower>>,
-    roots: usize,
-    circles: usize,
+    /// log2 of the odds of a miss by function, for all points in prime fields together.
+    log2_odds: BTreeMap<String, f64>,
     base: Option<OwnParameters>,
+    sizes: Sizes,
 }
 
 /// Collects the constants of a description: an arithmetic whose numbers are of no interest.
@@ -147,34 +196,60 @@ fn constants_of(manipulator: &Manipulator) -> Vec<Formula> {
     collector.0.into_inner()
 }
 
+/// What the constants of a description and the claimed ones are made of.
+struct Constants {
+    atoms: Atoms,
+    dependent: Dependent,
+}
+
+impl Constants {
+    fn of(manipulator: &Manipulator, claims: &Claims) -> Result<Constants, String> {
+        let constants = constants_of(manipulator);
+        // Angles by which the axes of a last link are turned bring the roots of their sines and cosines.
+        let circles: Vec<Formula> =
+            claims.formulas().map(|claim| claim.circle().1).filter(|cosine| !matches!(cosine, Formula::Cosine(_))).collect();
+        let atoms = Atoms::of(constants.iter().chain(claims.formulas()).chain(&circles));
+        let own = Atoms::of(constants.iter());
+        if let Some(root) = atoms.roots.iter().find(|root| root.nested().is_some() && !own.roots.contains(root)) {
+            let root = Formula::Root(root.clone());
+            return Err(format!("a claimed constant has {root}, which the description does not have"));
+        }
+        let dependent = dependent(&atoms)?;
+        Ok(Constants { atoms, dependent })
+    }
+
+    /// Roots that are independent.
+    fn roots(&self) -> usize {
+        self.atoms.roots.len() - self.dependent.len()
+    }
+}
+
 impl Checker {
-    /// Random points for an arm whose parameter vector is `vector`; `extras` for modules with functions beyond the required ones,
-    /// `base` for those with a `base_regressor`.
+    /// Random points for an arm whose parameter vector is `vector`, as many as the functions of the module ask for; `base` for a module with a
+    /// `base_regressor`.
     pub fn new(
         manipulator: Manipulator,
         vector: Vector,
         claims: Claims,
         effort: Effort,
-        extras: bool,
+        module: &Module,
         base: Option<OwnParameters>,
     ) -> Result<Checker, String> {
+        let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
         let wanted = |base: BaseParameters| Wanted { extras, base };
-        let constants = constants_of(&manipulator);
-        // Angles by which the axes of a last link are turned bring the roots of their sines and cosines.
-        let circles: Vec<Formula> =
-            claims.formulas().map(|claim| claim.circle().1).filter(|cosine| !matches!(cosine, Formula::Cosine(_))).collect();
-        let atoms = Atoms::of(constants.iter().chain(claims.formulas()).chain(&circles));
-        // The sign of a nested root is free in a prime field; one that equals other constants, as sqrt(4 + pi - pi) does, would stand for either.
-        let own = Atoms::of(constants.iter());
-        if let Some(root) = atoms.roots.iter().find(|root| matches!(root, Root::Nested(_)) && !own.roots.contains(root)) {
-            let root = Formula::Root(root.clone());
-            return Err(format!("a claimed constant has {root}, which the description does not have"));
-        }
-        let mut stream = Stream::new(effort.seed);
+        let constants = Constants::of(&manipulator, &claims)?;
+        let Constants { atoms, dependent } = &constants;
+        let mut log2_odds = Odds::of_functions(&manipulator, &vector, &claims, &constants, module, base.as_ref());
+        let worst = log2_odds.values().copied().filter(|odds| *odds < 0.0).fold(f64::NEG_INFINITY, f64::max);
+        // A function of which nothing is known is refused whatever the number of points.
+        let needed = (MOST_LOG2_ODDS / worst).ceil() as usize;
+        let count = if effort.points == 0 { 0 } else { needed.min(MOST_POINTS).max(effort.points) };
+        log2_odds.values_mut().for_each(|odds| *odds *= count as f64);
+        let mut stream = seed::stream(&manipulator, module, &claims, effort.seed);
         let (mut points, mut exact) = (Vec::new(), Vec::new());
-        for _ in 0..effort.points {
+        for _ in 0..count {
             let mut field =
-                Prime::new(&mut stream, &atoms).ok_or("the constants have too many square roots for a prime field")?;
+                Prime::new(&mut stream, atoms, dependent).ok_or("the constants have too many square roots for a prime field")?;
             let reference = Reference::new(&mut field, &manipulator, &vector, wanted(BaseParameters::Solved))?;
             let samples = match &base {
                 Some(base) => Some(Samples::draw(&mut field, &manipulator, &base.named, &reference, FITTED).ok_or(DIVIDED)?),
@@ -183,13 +258,13 @@ impl Checker {
             points.push(Point { arithmetic: field, reference, base: samples, constants: RefCell::default() });
         }
         for _ in 0..effort.exact_points {
-            let Some(mut tower) = Tower::new(&mut stream, &atoms) else { break };
-            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::LeftOut))?;
+            let Some(mut tower) = Tower::new(&mut stream, atoms, dependent) else { break };
+            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::Kept))?;
             let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
             exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
-        let circles = manipulator.joints.len() + atoms.angles.len();
-        Ok(Checker { manipulator, vector, claims, points, exact, roots: atoms.roots.len(), circles, base })
+        let sizes = Sizes::of(&manipulator, &vector, base.as_ref());
+        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, base, sizes })
     }
 
     /// The arm.
@@ -224,11 +299,7 @@ impl Checker {
 
     /// Number of entries of the parameter vector.
     pub fn parameters(&self) -> usize {
-        match &self.vector {
-            Vector::Names(ids) => ids.len(),
-            Vector::Standard(all) => all.len(),
-            Vector::Base(base, _) => base.len(),
-        }
+        self.sizes.parameters
     }
 
     fn is_base(&self) -> bool {
@@ -245,13 +316,6 @@ impl Checker {
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
         let mut reports: Vec<FunctionReport> =
             module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
-        if let Some(odds) = Odds::new(self, &reports) {
-            for report in reports.iter_mut().filter(|report| report.verdict == Verdict::Equal) {
-                if let Some(program) = module.program(&report.name) {
-                    report.log2_odds = odds.of(program, report) * self.points.len() as f64;
-                }
-            }
-        }
         for name in Promise::required() {
             if !module.functions.iter().any(|(other, _)| *other == name) {
                 reports.push(refused(&name, "the module does not have it".into()));
@@ -262,30 +326,10 @@ impl Checker {
 
     /// One function.
     pub fn function(&self, name: &str, function: &Result<Function, String>, real: Float) -> FunctionReport {
-        let function = match function {
-            Ok(function) => function,
-            Err(why) => return refused(name, why.clone()),
+        let program = match function.as_ref().map_err(String::clone).and_then(|function| self.sizes.fitting(name, function)) {
+            Ok(program) => program,
+            Err(why) => return refused(name, why),
         };
-        let Some((promise, with_parameters)) = Promise::of(name) else {
-            return refused(name, "not a function that the checker knows the equations of".into());
-        };
-        let signature = promise.signature(with_parameters);
-        if function.signature != signature {
-            return refused(name, format!("its signature is `{}`, not `{signature}`", function.signature));
-        }
-        let program = &function.program;
-        let (n, p, m) = (self.manipulator.joints.len(), self.parameters(), self.manipulator.task.len());
-        let b = self.base.as_ref().map_or(0, |base| base.named.len());
-        let places = promise.shape.places(n, p, b, m);
-        if name == BASE_REGRESSOR && self.base.is_none() {
-            return refused(name, "the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
-        }
-        if program.outputs.iter().map(|o| &o.place).ne(&places) {
-            return refused(name, format!("its result does not have the {} entries that it should", places.len()));
-        }
-        if let Some(why) = beyond_the_end(program, n, p) {
-            return refused(name, why);
-        }
         if !self.points.iter().all(|point| point.knows(name)) {
             return refused(name, "there is no equation to compare it with for this robot".into());
         }
@@ -309,7 +353,7 @@ impl Checker {
             verdict,
             points: self.points.len(),
             exact_points,
-            log2_odds: 0.0,
+            log2_odds: self.log2_odds.get(&program.name).copied().unwrap_or(0.0),
             literals: literals.map(|(l, value)| Exact { literal: l.text.clone(), value: value.clone() }).collect(),
             bound: None,
         }
@@ -383,28 +427,41 @@ struct Odds {
 }
 
 impl Odds {
-    fn new(checker: &Checker, reports: &[FunctionReport]) -> Option<Odds> {
-        let nominal = checker.base.iter().flat_map(|base| &base.nominal);
-        let literals = reports.iter().flat_map(|r| &r.literals).flat_map(|exact| {
-            let (sine, cosine) = exact.value.circle();
-            [exact.value.clone(), sine, cosine]
-        });
-        let constants: Vec<Formula> = constants_of(&checker.manipulator).into_iter().chain(literals).collect();
-        let mut degrees = Degrees::new(constants.iter().chain(nominal));
+    /// log2 of the odds, for one point, by function.
+    fn of_functions<'a>(
+        manipulator: &Manipulator,
+        vector: &Vector,
+        claims: &Claims,
+        constants: &Constants,
+        module: &'a Module,
+        base: Option<&OwnParameters>,
+    ) -> BTreeMap<String, f64> {
+        let sizes = Sizes::of(manipulator, vector, base);
+        let fitting =
+            |(name, function): &'a (String, Result<Function, String>)| sizes.fitting(name, function.as_ref().ok()?).ok();
+        let literals: Vec<(&Program, Vec<Formula>)> = (module.functions.iter().filter_map(fitting))
+            .map(|program| {
+                let values = claims.resolve(&program.name, &program.literals, module.real).values;
+                (program, program.exact_literals(&values))
+            })
+            .collect();
+        let own = constants_of(manipulator);
+        let nominal = base.iter().flat_map(|base| &base.nominal);
+        let mut degrees = Degrees::new(own.iter().chain(literals.iter().flat_map(|(_, values)| values)).chain(nominal));
         let wanted = Wanted { extras: true, base: BaseParameters::Free };
-        let reference = Reference::new(&mut degrees, &checker.manipulator, &checker.vector, wanted).ok()?;
-        let base = checker.base.as_ref().and_then(|own| {
-            let samples = Samples::draw(&mut degrees, &checker.manipulator, &own.named, &reference, 0)?;
+        let Ok(reference) = Reference::new(&mut degrees, manipulator, vector, wanted) else { return BTreeMap::new() };
+        let base = base.and_then(|own| {
+            let samples = Samples::draw(&mut degrees, manipulator, &own.named, &reference, 0)?;
             let nominal = own.nominal.iter().map(|value| degrees.constant(value)).collect::<Option<Vec<_>>>()?;
             Some((samples, own.clone(), nominal))
         });
-        Some(Odds { degrees, reference, base, circles: checker.circles, roots: checker.roots })
+        let circles = manipulator.joints.len() + constants.atoms.angles.len();
+        let odds = Odds { degrees, reference, base, circles, roots: constants.roots() };
+        literals.iter().map(|(program, values)| (program.name.clone(), odds.of(program, values))).collect()
     }
 
     /// log2 of the odds that a program of this degree passes one point although it differs.
-    fn of(&self, program: &Program, report: &FunctionReport) -> f64 {
-        let literals: Vec<Formula> = report.literals.iter().map(|exact| exact.value.clone()).collect();
-        let literals = program.exact_literals(&literals);
+    fn of(&self, program: &Program, literals: &[Formula]) -> f64 {
         let literals = literals.iter().map(|value| self.degrees.constant(value)).collect::<Option<Vec<_>>>();
         let Some(literals) = literals else { return 0.0 };
         let odds = |degree: f64, height: f64| log2_odds(degree, height, self.circles, self.roots);

@@ -12,6 +12,7 @@ use crate::arithmetic::Element;
 use crate::enclosure::Float;
 use crate::formula::{decimal, Formula, Rational};
 use crate::program::{Literal, Program, Step};
+use crate::reader::Module;
 
 /// Claimed constants by function (or constant) name, in the order of the text where that is known.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -41,6 +42,20 @@ impl Claims {
             by_name.insert(name.to_string(), formulas.map_err(|e| format!("`{name}`: {e}"))?);
         }
         Ok(Claims { by_name })
+    }
+
+    /// Those that literals of the module stand for, with what else is claimed for the same literals, and those for the entries of `constants`.
+    /// What is claimed besides has no influence.
+    pub fn used(&self, module: &Module, constants: &[&str]) -> Claims {
+        let mut by_name = BTreeMap::new();
+        for (name, program) in module.programs().filter(|(name, _)| self.by_name.contains_key(*name)) {
+            let Resolved { values, others } = self.resolve(name, &program.literals, module.real);
+            by_name.insert(name.to_string(), values.into_iter().chain(others.into_values().flatten()).collect());
+        }
+        for name in constants {
+            by_name.insert((*name).to_string(), self.of(name).to_vec());
+        }
+        Claims { by_name }
     }
 
     /// All claimed constants.

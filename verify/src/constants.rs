@@ -89,6 +89,12 @@ pub fn parameter_names(module: &Module) -> Vec<String> {
     names(module, "PARAMETER_NAMES").unwrap_or_default()
 }
 
+/// The constants whose exact values are claimed: those of base parameters.
+pub fn claimed_constants(vector: &Vector, module: &Module) -> Vec<&'static str> {
+    let run_time = matches!(vector, Vector::Base(..)).then_some("NOMINAL_PARAMETERS");
+    run_time.into_iter().chain(base_names(module).map(|_| "NOMINAL_BASE_PARAMETERS")).collect()
+}
+
 /// The exact values of so many base parameters as claimed; the decimals that stand there where nothing is claimed.
 fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
     let claimed = claims.of(constant);

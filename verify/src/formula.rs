@@ -28,6 +28,24 @@ pub enum Root {
     Nested(Box<Formula>),
 }
 
+impl Root {
+    /// The integer under it, if it is one.
+    pub fn integer(&self) -> Option<&UBig> {
+        match self {
+            Root::Integer(n) => Some(n),
+            Root::Nested(_) => None,
+        }
+    }
+
+    /// The number under it, if that is no integer.
+    pub fn nested(&self) -> Option<&Formula> {
+        match self {
+            Root::Integer(_) => None,
+            Root::Nested(inner) => Some(inner),
+        }
+    }
+}
+
 /// An exact constant.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Formula {

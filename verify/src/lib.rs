@@ -45,9 +45,8 @@ pub mod reader;
 pub mod reference;
 pub mod report;
 pub mod residual;
+pub mod seed;
 pub mod test_kit;
-
-use std::fmt::Write;
 
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
 use armgen_codegen::source::Source;
@@ -57,7 +56,6 @@ use sha2::{Digest, Sha256};
 use certificate::Certificate;
 use checker::{Checker, Effort};
 use claims::Claims;
-use contract::Promise;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
@@ -67,15 +65,6 @@ use report::{Report, Verdict};
 /// SHA-256 of a text, hexadecimal.
 pub fn hash(text: &str) -> String {
     Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// A seed that follows from both texts and from the claimed constants: random points that none of them can have been written for.
-fn seed(input: &str, output: &str, claims: &Claims) -> u64 {
-    let mut all = format!("{input} {output}");
-    for formula in claims.formulas() {
-        let _ = write!(all, " {formula}");
-    }
-    u64::from_str_radix(&hash(&all)[..16], 16).unwrap_or(0)
 }
 
 /// The module read and the equations at random points, ready to be compared.
@@ -95,9 +84,9 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
         }
     }
     let vector = Vector::of(&manipulator, &constants::parameter_names(&module))?;
-    let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
+    let claims = claims.used(&module, &constants::claimed_constants(&vector, &module));
     let base = constants::base_parameters(&manipulator, &claims, &module);
-    let checker = Checker::new(manipulator, vector, claims, effort, extras, base)?;
+    let checker = Checker::new(manipulator, vector, claims, effort, &module, base)?;
     Ok(Prepared { module, checker })
 }
 
@@ -153,23 +142,12 @@ pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) 
         return report;
     };
     report.robot.clone_from(&manipulator.name);
-    let mut effort = Effort { seed: effort.seed ^ seed(&report.input, &report.output, &claims), ..effort };
-    loop {
-        let mut report = report.clone();
-        match prepare(manipulator.clone(), text, claims.clone(), effort) {
-            Ok(prepared) => fill(&mut report, &prepared),
-            Err(fault) => report.faults.push(fault),
-        }
-        // Polynomials of very high degree, those of thirty joints, need more points for the same odds.
-        if !report.is_merely_uncertain() || effort.points >= MOST_POINTS {
-            return report;
-        }
-        effort.points = (2 * effort.points).max(1);
+    match prepare(manipulator, text, claims, effort) {
+        Ok(prepared) => fill(&mut report, &prepared),
+        Err(fault) => report.faults.push(fault),
     }
+    report
 }
-
-/// As many points are tried at most.
-const MOST_POINTS: usize = 32;
 
 /// The text of a test file for a project that has the module: what [`test_kit`](mod@test_kit) describes. `import` brings the module in as
 /// `robot`: `use my_crate::robot;`, or `#[path = "../src/robot.rs"] mod robot;`.
@@ -217,23 +195,4 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_points_follow_from_both_texts_and_the_claims() {
-        let claims = |text: &str| Claims::from_texts([("gravity", &[text.to_string()][..])]).expect("a formula");
-        let seeds = [
-            seed("in", "out", &claims("981/100")),
-            seed("in", "out", &claims("982/100")),
-            seed("in", "other", &claims("981/100")),
-            seed("another", "out", &claims("981/100")),
-        ];
-        for (i, one) in seeds.iter().enumerate() {
-            assert!(!seeds[..i].contains(one), "{seeds:?}");
-        }
-    }
 }

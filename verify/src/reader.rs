@@ -218,6 +218,11 @@ impl Module {
         Ok(Module { real, trig, constants: values, functions })
     }
 
+    /// The programs of all functions that could be read, by name.
+    pub fn programs(&self) -> impl Iterator<Item = (&str, &Program)> {
+        self.functions.iter().filter_map(|(name, function)| Some((name.as_str(), &function.as_ref().ok()?.program)))
+    }
+
     /// A function's program, if it could be read.
     pub fn program(&self, name: &str) -> Option<&Program> {
         self.functions.iter().find(|(n, _)| n == name)?.1.as_ref().ok().map(|f| &f.program)

@@ -11,7 +11,9 @@ use crate::equations::lagrange::{
     accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, times_vector,
 };
 use crate::equations::newton_euler::{Motion, Moving};
-use crate::equations::parameters::{base_map, reference_torques, standard_columns, with_standard, LinkFrames, Standard, Vector};
+use crate::equations::parameters::{
+    base_map, reference_torques, standard_columns, with_standard, KeptAlone, LinkFrames, Standard, Vector,
+};
 use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::equations::vector::solve;
@@ -34,15 +36,39 @@ pub struct Reference<E> {
     pub two_derivations_agree: bool,
 }
 
-/// The quantities of an arm.
+/// What the equations of motion are made of: B and C row by row, g, F and U.
+pub struct Parts<E> {
+    /// B(q).
+    pub b: Vec<Vec<E>>,
+    /// C(q, dq).
+    pub c: Vec<Vec<E>>,
+    /// g(q).
+    pub g: Vec<E>,
+    /// F(dq).
+    pub f: Vec<E>,
+    /// U(q).
+    pub u: E,
+}
+
+/// The quantities of an arm; whether its torques after Newton and Euler are the same.
 fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>, suffix: &str) -> Option<bool> {
+    let parts = Parts {
+        b: inertia_matrix(arm, state),
+        c: coriolis_matrix(&inertia_derivatives(arm, state), &state.dq, &arm.half()),
+        g: gravity(arm, state),
+        f: friction(arm, &state.dq, &state.signs),
+        u: potential_energy(arm, state),
+    };
+    let without_friction = of_parts(arm, state, parts, values, suffix)?;
+    let pose = Pose::new(arm, state);
+    let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
+    Some(Moving::new(arm, &pose, motion).torques() == without_friction)
+}
+
+/// The quantities that follow from these parts; the torques without friction.
+fn of_parts<E: Element>(arm: &Arm<E>, state: &State<E>, parts: Parts<E>, values: &mut Values<E>, suffix: &str) -> Option<Vec<E>> {
     let mut put = |name: &str, value: Vec<E>| values.insert(format!("{name}{suffix}"), value);
-    let half = arm.half();
-    let b = inertia_matrix(arm, state);
-    let derivatives = inertia_derivatives(arm, state);
-    let c = coriolis_matrix(&derivatives, &state.dq, &half);
-    let g = gravity(arm, state);
-    let f = friction(arm, &state.dq, &state.signs);
+    let (half, Parts { b, c, g, f, u }) = (arm.half(), parts);
     let sum = |a: &[E], b: &[E]| -> Vec<E> { a.iter().zip(b).map(|(a, b)| a.plus(b)).collect() };
     let rest = sum(&sum(&times_vector(&c, &state.dq), &f), &g);
     let without_friction = sum(&sum(&times_vector(&b, &state.ddq), &times_vector(&c, &state.dq)), &g);
@@ -59,14 +85,11 @@ fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     put("inverse_dynamics", sum(&times_vector(&b, &state.ddq), &rest));
     put("forward_dynamics", forward.clone());
     put("kinetic_energy", vec![kinetic]);
-    put("potential_energy", vec![potential_energy(arm, state)]);
+    put("potential_energy", vec![u]);
     put("momentum", momentum);
     let transposed: Vec<Vec<E>> = (0..arm.dof()).map(|i| c.iter().map(|row| row[i].clone()).collect()).collect();
     put("coriolis_transpose_times", times_vector(&transposed, &state.dq));
-
-    let pose = Pose::new(arm, state);
-    let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
-    Some(Moving::new(arm, &pose, motion).torques() == without_friction)
+    Some(without_friction)
 }
 
 /// ∂τ/∂q and ∂τ/∂q̇ row by row, by dual numbers through Newton and Euler.
@@ -150,13 +173,16 @@ pub struct Wanted {
     pub base: BaseParameters,
 }
 
-/// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations.
+/// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations. To those that they are named after
+/// it is the identity: an arm in which the others are 0 has its standard parameters for base parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BaseParameters {
     /// Solved for.
     Solved,
     /// Taken to be independent of the standard ones: right for bounds on degrees.
     Free,
+    /// Those of an arm that has no others.
+    Kept,
     /// Left out.
     LeftOut,
 }
@@ -227,8 +253,18 @@ impl<E: Element> Reference<E> {
                 let kept: Vec<Standard> = base.iter().map(|(parameter, _)| *parameter).collect();
                 let columns = standard_columns(&arm, &state, &kept, LinkFrames::Joint);
                 let known = known_torque(&arm, &state, all)?;
-                let mut run_time = None;
-                if wanted.base != BaseParameters::LeftOut {
+                if wanted.base == BaseParameters::LeftOut {
+                    (columns, known, None)
+                } else if wanted.base == BaseParameters::Kept {
+                    state.pi = kept.iter().map(|_| arithmetic.draw()).collect();
+                    let alone = KeptAlone { arm: &arm, kept: &kept, all, pi: &state.pi };
+                    of_parts(&arm, &state, alone.parts(&state), &mut values, "_with").ok_or_else(singular)?;
+                    let mut there = State::draw(arithmetic, n);
+                    there.pi.clone_from(&state.pi);
+                    let energy = alone.potential_energy(&there);
+                    elsewhere = Some((there, energy));
+                    (columns, known, None)
+                } else {
                     let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
                     state.pi = if wanted.base == BaseParameters::Solved {
                         let map = base_map(arithmetic, &arm, &kept, all)?;
@@ -244,9 +280,8 @@ impl<E: Element> Reference<E> {
                     there.pi.clone_from(&state.pi);
                     let energy = potential_energy(&other, &there);
                     elsewhere = Some((there, energy));
-                    run_time = Some(other);
+                    (columns, known, Some(other))
                 }
-                (columns, known, run_time)
             }
         };
         let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();

@@ -5,8 +5,8 @@ use std::fmt;
 use crate::bounds::{Bound, Domain};
 use crate::formula::Formula;
 
-/// What is not known by better odds of a miss than this is not verified.
-const MOST_LOG2_ODDS: f64 = -30.0;
+/// What is not known by odds of a miss of at most 2^-168 is not verified: 2^40 tries of somebody who looks for a miss leave 2^-128.
+pub const MOST_LOG2_ODDS: f64 = -168.0;
 
 /// What is said of a function or a constant.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,14 +121,6 @@ impl Report {
         !self.functions.is_empty() && self.first_fault().is_none()
     }
 
-    /// Whether nothing is wrong but the odds of a miss.
-    pub(crate) fn is_merely_uncertain(&self) -> bool {
-        let equal = self.functions.iter().map(|f| &f.verdict).chain(self.constants.iter().map(|c| &c.verdict));
-        self.faults.is_empty()
-            && equal.into_iter().all(|verdict| *verdict == Verdict::Equal)
-            && self.functions.iter().any(FunctionReport::is_uncertain)
-    }
-
     /// The first thing that is wrong: a function or a constant with the entry, the whole, or an identity.
     pub fn first_fault(&self) -> Option<String> {
         let named = |name: &str, verdict: &Verdict| match verdict {
@@ -154,7 +146,7 @@ impl Report {
 impl FunctionReport {
     /// Whether it could be found equal by chance.
     pub fn is_uncertain(&self) -> bool {
-        self.verdict == Verdict::Equal && self.log2_odds >= MOST_LOG2_ODDS
+        self.verdict == Verdict::Equal && self.log2_odds > MOST_LOG2_ODDS
     }
 }
 
@@ -191,6 +183,15 @@ impl fmt::Display for Report {
         }
         for report in self.constants.iter().filter(|c| c.verdict != Verdict::Equal) {
             writeln!(f, "{:width$}  {}", report.name, report.verdict)?;
+        }
+        let without: Vec<&str> = self
+            .functions
+            .iter()
+            .filter(|f| f.verdict == Verdict::Equal && f.exact_points == 0)
+            .map(|f| f.name.as_str())
+            .collect();
+        if !without.is_empty() {
+            writeln!(f, "at no rational point, prime fields alone: {}", without.join(", "))?;
         }
         let equal = self.constants.iter().filter(|c| c.verdict == Verdict::Equal).count();
         writeln!(f, "{equal} constants equal the description")?;

@@ -73,7 +73,7 @@ impl Subject {
     fn checker(&self) -> Checker {
         let vector = Vector::of(&self.manipulator, &constants::parameter_names(&self.module)).expect("a parameter vector");
         let effort = Effort { points: 2, exact_points: 1, seed: 5 };
-        Checker::new(self.manipulator.clone(), vector, self.claims.clone(), effort, false, Some(self.own.clone()))
+        Checker::new(self.manipulator.clone(), vector, self.claims.clone(), effort, &self.module, Some(self.own.clone()))
             .expect("points")
     }
 

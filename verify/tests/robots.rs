@@ -115,14 +115,14 @@ fn a_nested_root_that_the_description_does_not_have_is_refused() {
     let claims = |text: &str| {
         let mut texts: Vec<(String, Vec<String>)> = Vec::new();
         for (name, numbers) in &generated.constants {
-            texts.push((name.clone(), numbers.iter().map(ToString::to_string).collect()));
+            let five = |number: String| if name == "inertia_matrix" && number == "5" { text.into() } else { number };
+            texts.push((name.clone(), numbers.iter().map(|number| five(number.to_string())).collect()));
         }
-        texts.push(("elsewhere".into(), vec![text.into()]));
         Claims::from_texts(texts.iter().map(|(name, list)| (name.as_str(), list.as_slice()))).expect("formulas")
     };
     let verdict = |text: &str| verify_with(&source, &generated.module, claims(text), Effort::default()).first_fault();
-    assert_eq!(verdict("sqrt(5)"), None);
-    let fault = verdict("sqrt(4 + pi - pi)").expect("not verified");
+    assert_eq!(verdict("sqrt(5)*sqrt(5)"), None);
+    let fault = verdict("5/2*sqrt(4 + pi - pi)").expect("not verified");
     assert!(fault.contains("which the description does not have"), "{fault}");
 }
 

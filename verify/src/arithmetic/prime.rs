@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use dashu_base::{Signed, UnsignedAbs};
 use dashu_int::UBig;
 
+use super::roots::Dependent;
 use super::{Arithmetic, Element, Stream};
 use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
 
@@ -23,6 +24,11 @@ impl Residue {
     /// The representative in 0..p.
     pub fn value(self) -> u64 {
         self.value
+    }
+
+    /// Whether it is no square.
+    pub fn is_no_square(self) -> bool {
+        !self.is_zero() && self.power((self.prime - 1) / 2).value != 1
     }
 
     fn power(self, mut exponent: u64) -> Residue {
@@ -43,13 +49,13 @@ impl Residue {
         if self.is_zero() {
             return Some(self);
         }
-        if self.power((p - 1) / 2) != one {
+        if self.is_no_square() {
             return None;
         }
         let (a, w) = loop {
             let a = Residue { value: stream.below(p), prime: p };
             let w = a.times(&a).minus(&self);
-            if !w.is_zero() && w.power((p - 1) / 2) != one {
+            if w.is_no_square() {
                 break (a, w);
             }
         };
@@ -114,13 +120,23 @@ pub struct Prime {
 const PRIMES_TRIED: usize = 1 << 16;
 
 impl Prime {
-    /// The field of the next random prime in which all roots of `atoms` exist; `None` if there are too many of them.
-    pub fn new(stream: &mut Stream, atoms: &Atoms) -> Option<Prime> {
+    /// The field of the next random prime in which all roots of `atoms` exist, any of two for those that are independent; `None` if there
+    /// are too many of them.
+    pub fn new(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent) -> Option<Prime> {
+        Prime::next(stream, atoms, dependent, 24)
+    }
+
+    /// The same among all primes: those that are 1 mod 24 cannot tell 2 and 3 from squares.
+    pub fn any(stream: &mut Stream, atoms: &Atoms) -> Option<Prime> {
+        Prime::next(stream, atoms, &Dependent::new(), 2)
+    }
+
+    fn next(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent, modulus: u64) -> Option<Prime> {
         for _ in 0..PRIMES_TRIED {
-            let prime = random_prime(stream);
+            let prime = random_prime(stream, modulus);
             let mut field = Prime {
                 prime,
-                stream: Stream::new(stream.bits()),
+                stream: stream.branch(),
                 pi: Residue { value: 0, prime },
                 roots: BTreeMap::new(),
                 angles: BTreeMap::new(),
@@ -130,20 +146,20 @@ impl Prime {
                 let point = field.draw_angle();
                 field.angles.insert(angle.clone(), point);
             }
-            if field.find_roots(atoms).is_some() {
+            if field.find_roots(atoms, dependent).is_some() {
                 return Some(field);
             }
         }
         None
     }
 
-    fn find_roots(&mut self, atoms: &Atoms) -> Option<()> {
+    fn find_roots(&mut self, atoms: &Atoms, dependent: &Dependent) -> Option<()> {
         for root in &atoms.roots {
-            let square = match root {
-                Root::Integer(n) => self.unsigned(n),
-                Root::Nested(inner) => self.constant(inner)?,
+            let value = match (root, dependent.get(root)) {
+                (_, Some(by)) => self.constant(by)?,
+                (Root::Integer(n), _) => self.unsigned(n).sqrt(&mut self.stream)?,
+                (Root::Nested(inner), _) => self.constant(inner)?.sqrt(&mut self.stream)?,
             };
-            let value = square.sqrt(&mut self.stream)?;
             self.roots.insert(root.clone(), value);
         }
         Some(())
@@ -178,12 +194,7 @@ impl Arithmetic for Prime {
     }
 
     fn constant(&self, formula: &Formula) -> Option<Residue> {
-        let integers = || {
-            self.roots.iter().filter_map(|(root, value)| match root {
-                Root::Integer(n) => Some((n, *value)),
-                Root::Nested(_) => None,
-            })
-        };
+        let integers = || self.roots.iter().filter_map(|(root, value)| Some((root.integer()?, *value)));
         let root = |root: &Root| match root {
             Root::Integer(n) => root_from_coprime(n, self.integer(1), integers()),
             nested => self.roots.get(nested).copied(),
@@ -196,10 +207,11 @@ impl Arithmetic for Prime {
     }
 }
 
-fn random_prime(stream: &mut Stream) -> u64 {
+/// A prime between 2^62 and 2^63 that is 1 modulo `modulus`.
+fn random_prime(stream: &mut Stream, modulus: u64) -> u64 {
     loop {
         let candidate = (1 << 62) + stream.below(1 << 62);
-        let candidate = candidate - candidate % 24 + 1;
+        let candidate = candidate - candidate % modulus + 1;
         if candidate >= 1 << 62 && is_prime(candidate) {
             return candidate;
         }
@@ -240,7 +252,7 @@ mod tests {
         let atoms = Atoms::of(&formulas);
         let mut stream = Stream::new(1);
         for _ in 0..3 {
-            let field = Prime::new(&mut stream, &atoms).expect("few roots");
+            let field = Prime::new(&mut stream, &atoms, &Dependent::new()).expect("few roots");
             assert_eq!(field.prime() % 24, 1);
             let of = |text: &str| field.constant(&parse(text)).expect("no division by zero");
             assert_eq!(of("sqrt(6)"), of("sqrt(2)*sqrt(3)"));
@@ -257,7 +269,7 @@ mod tests {
         assert!(is_prime(0xffff_ffff_0000_0001) && is_prime((1 << 61) - 1));
         assert!(!is_prime((1u64 << 62) - 57 + 2) || (1u64 << 62) - 55 != 0);
         assert!(!is_prime(3_215_031_751) && !is_prime(1_000_003 * 999_983));
-        let field = Prime::new(&mut Stream::new(2), &Atoms::default()).expect("no roots");
+        let field = Prime::new(&mut Stream::new(2), &Atoms::default(), &Dependent::new()).expect("no roots");
         let (seven, third) = (field.integer(7), field.integer(-3));
         assert_eq!(seven.over(&third).unwrap().times(&third), seven);
         assert_eq!(field.integer(0).inverse(), None);

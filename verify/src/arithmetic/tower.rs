@@ -1,8 +1,7 @@
 //! Fractions with square roots adjoined: Q(√a1)(√a2)..., each ak a number of the field below it.
 //!
 //! An element of the k-th field is a pair (x, y) of elements of the one below, x + y √ak, stored flat; products and inverses follow from
-//! (x + y√a)(u + v√a) = (xu + yv a) + (xv + yu)√a. Where √ak already exists below, what arises is a ring with zero divisors: an equality
-//! there still is an equality of numbers.
+//! (x + y√a)(u + v√a) = (xu + yv a) + (xv + yu)√a. Roots that follow from others are no levels of their own ([`super::roots`]).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,6 +9,7 @@ use std::sync::Arc;
 use dashu_base::BitTest;
 use dashu_int::IBig;
 
+use super::roots::Dependent;
 use super::{Arithmetic, Element, Stream};
 use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
 
@@ -25,7 +25,19 @@ pub struct Surd {
 }
 
 /// As many roots are adjoined: a product costs up to 4^k products of fractions.
-const MOST_ROOTS: usize = 5;
+pub const MOST_ROOTS: usize = 5;
+
+impl Surd {
+    /// Coordinates over the products of the adjoined roots: the k-th bit of a place says whether the k-th root is a factor.
+    pub fn coordinates(&self) -> &[Rational] {
+        &self.coordinates
+    }
+
+    /// The squares of the adjoined roots.
+    pub fn squares(&self) -> &[Vec<Rational>] {
+        &self.squares.0
+    }
+}
 
 impl PartialEq for Surd {
     fn eq(&self, other: &Surd) -> bool {
@@ -33,11 +45,11 @@ impl PartialEq for Surd {
     }
 }
 
-fn is_zero(a: &[Rational]) -> bool {
+pub(super) fn is_zero(a: &[Rational]) -> bool {
     a.iter().all(Rational::is_zero)
 }
 
-fn add(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+pub(super) fn add(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     a.iter()
         .zip(b)
         .map(|(a, b)| {
@@ -52,11 +64,11 @@ fn add(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
         .collect()
 }
 
-fn negate(a: &[Rational]) -> Vec<Rational> {
+pub(super) fn negate(a: &[Rational]) -> Vec<Rational> {
     a.iter().map(|a| -a.clone()).collect()
 }
 
-fn multiply(squares: &[Vec<Rational>], a: &[Rational], b: &[Rational]) -> Vec<Rational> {
+pub(super) fn multiply(squares: &[Vec<Rational>], a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     if is_zero(a) || is_zero(b) {
         return vec![Rational::ZERO; a.len()];
     }
@@ -71,7 +83,7 @@ fn multiply(squares: &[Vec<Rational>], a: &[Rational], b: &[Rational]) -> Vec<Ra
     low
 }
 
-fn invert(squares: &[Vec<Rational>], a: &[Rational]) -> Option<Vec<Rational>> {
+pub(super) fn invert(squares: &[Vec<Rational>], a: &[Rational]) -> Option<Vec<Rational>> {
     if is_zero(a) {
         return None;
     }
@@ -115,20 +127,27 @@ pub struct Tower {
     squares: Arc<Squares>,
     stream: Stream,
     pi: Surd,
-    roots: BTreeMap<Root, usize>,
+    roots: BTreeMap<Root, Surd>,
     angles: BTreeMap<Formula, (Surd, Surd)>,
 }
 
 impl Tower {
-    /// The tower in which all roots of `atoms` exist; `None` if there are too many of them.
-    pub fn new(stream: &mut Stream, atoms: &Atoms) -> Option<Tower> {
-        if atoms.roots.len() > MOST_ROOTS {
-            return None;
-        }
-        let levels = atoms.roots.len();
+    /// The tower in which all roots of `atoms` exist; `None` if too many of them are independent.
+    pub fn new(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent) -> Option<Tower> {
+        let levels = atoms.roots.len() - dependent.len();
+        (levels <= MOST_ROOTS).then(|| Tower::with_levels(levels, stream, atoms, dependent)).flatten()
+    }
+
+    /// The tower of some roots of integers without common factors.
+    pub fn of_integers(roots: &[Root]) -> Tower {
+        let atoms = Atoms { roots: roots.to_vec(), ..Atoms::default() };
+        Tower::with_levels(roots.len(), &mut Stream::new(0), &atoms, &Dependent::new()).expect("integers have roots")
+    }
+
+    fn with_levels(levels: usize, stream: &mut Stream, atoms: &Atoms, dependent: &Dependent) -> Option<Tower> {
         let mut tower = Tower {
             squares: Arc::new(Squares(Vec::new())),
-            stream: Stream::new(stream.bits()),
+            stream: stream.branch(),
             pi: Surd { coordinates: vec![Rational::ZERO; 1 << levels], squares: Arc::default() },
             roots: BTreeMap::new(),
             angles: BTreeMap::new(),
@@ -141,23 +160,34 @@ impl Tower {
             let point = tower.draw_angle();
             tower.angles.insert(angle.clone(), point);
         }
-        for (level, root) in atoms.roots.iter().enumerate() {
-            let square = match root {
-                Root::Integer(n) => tower.rational(&Rational::from(n.clone())),
-                Root::Nested(inner) => tower.constant(inner)?,
+        let mut level = 0;
+        for root in &atoms.roots {
+            let value = match dependent.get(root) {
+                Some(by) => tower.constant(by)?,
+                None => {
+                    let square = match root {
+                        Root::Integer(n) => tower.rational(&Rational::from(n.clone())),
+                        Root::Nested(inner) => tower.constant(inner)?,
+                    };
+                    squares[level] = square.coordinates[..1 << level].to_vec();
+                    tower.renew(Squares(squares.clone()));
+                    let mut unit = tower.integer(0);
+                    unit.coordinates[1 << level] = Rational::ONE;
+                    level += 1;
+                    unit
+                }
             };
-            squares[level] = square.coordinates[..1 << level].to_vec();
-            tower.squares = Arc::new(Squares(squares.clone()));
-            tower.roots.insert(root.clone(), level);
-        }
-        let squares = tower.squares.clone();
-        let renew = |surd: &mut Surd| surd.squares = squares.clone();
-        renew(&mut tower.pi);
-        for (sine, cosine) in tower.angles.values_mut() {
-            renew(sine);
-            renew(cosine);
+            tower.roots.insert(root.clone(), value);
         }
         Some(tower)
+    }
+
+    /// Tells all numbers that are kept what the squares are.
+    fn renew(&mut self, squares: Squares) {
+        self.squares = Arc::new(squares);
+        let angles = self.angles.values_mut().flat_map(|(sine, cosine)| [sine, cosine]);
+        let all = angles.chain(self.roots.values_mut()).chain([&mut self.pi]);
+        all.for_each(|surd| surd.squares = self.squares.clone());
     }
 
     fn rational(&self, value: &Rational) -> Surd {
@@ -175,22 +205,12 @@ impl Arithmetic for Tower {
     }
 
     fn constant(&self, formula: &Formula) -> Option<Surd> {
-        let unit = |level: usize| {
-            let mut unit = self.integer(0);
-            unit.coordinates[1 << level] = Rational::ONE;
-            unit
-        };
-        let integers = || {
-            self.roots.iter().filter_map(|(root, &level)| match root {
-                Root::Integer(n) => Some((n, unit(level))),
-                Root::Nested(_) => None,
-            })
-        };
+        let integers = || self.roots.iter().filter_map(|(root, value)| Some((root.integer()?, value.clone())));
         formula.evaluate(
             &|r| Some(self.rational(r)),
             &|root| match root {
                 Root::Integer(n) => root_from_coprime(n, self.integer(1), integers()),
-                nested => self.roots.get(nested).map(|&level| unit(level)),
+                nested => self.roots.get(nested).cloned(),
             },
             &|| Some(self.pi.clone()),
             &|angle| self.angles.get(angle).cloned(),
@@ -213,7 +233,7 @@ mod tests {
     fn roots_of_roots_square_to_what_they_are_roots_of() {
         let parse = |text: &str| Formula::parse(text).expect("a formula");
         let formulas: Vec<Formula> = ["sqrt(6)", "sqrt(5 + sqrt(2))", "cos(7/10)", "pi"].iter().map(|t| parse(t)).collect();
-        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas)).expect("three roots");
+        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas), &Dependent::new()).expect("three roots");
         let of = |text: &str| tower.constant(&parse(text)).expect("no division by zero");
         assert_eq!(of("sqrt(6)*sqrt(2)"), of("2*sqrt(3)"));
         assert_eq!(of("sqrt(5 + sqrt(2))^2"), of("5 + sqrt(2)"));

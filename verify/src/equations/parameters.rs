@@ -6,13 +6,14 @@
 
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 
-use super::arm::{Arm, Body};
+use super::arm::{Arm, Body, Joint};
 use super::lagrange::friction;
 use super::newton_euler::{body, ten, Carrier, Reference};
 use super::pose::Pose;
 use super::state::State;
-use super::vector::solve;
+use super::vector::{add, dot, scale, solve};
 use crate::arithmetic::{Arithmetic, Element};
+use crate::reference::Parts;
 
 /// A standard parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -152,6 +153,98 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
             Standard::Coulomb(i) => single(i, state.signs[i].clone()),
         })
         .collect()
+}
+
+/// An arm without other standard parameters than some, links in their joint frames: its equations are linear in these, and need no centre of mass.
+pub struct KeptAlone<'a, E> {
+    /// Where everything is, and the masses of rotors.
+    pub arm: &'a Arm<E>,
+    /// The parameters that it has.
+    pub kept: &'a [Standard],
+    /// All that there are: the others of these are 0.
+    pub all: &'a [Standard],
+    /// Their values.
+    pub pi: &'a [E],
+}
+
+impl<E: Element> KeptAlone<'_, E> {
+    fn of(&self, parameter: Standard, otherwise: &E) -> E {
+        let kept = self.kept.iter().position(|k| *k == parameter).map(|at| &self.pi[at]);
+        let zero = self.all.contains(&parameter).then_some(&self.arm.zero);
+        kept.or(zero).unwrap_or(otherwise).clone()
+    }
+
+    fn ten(&self, of: impl Fn(usize) -> Standard) -> Vec<E> {
+        (0..10).map(|k| self.of(of(k), &self.arm.zero)).collect()
+    }
+
+    /// B ddqr + C(q, dq) dqr + g.
+    fn torques(&self, poses: (&Pose<E>, &Pose<E>), dq: &[E], dqr: &[E], ddqr: &[E]) -> Vec<E> {
+        let (described, joint_frames) = poses;
+        let of_links = Reference::new(self.arm, joint_frames, dq, dqr, ddqr).torques(&|moving, torques| {
+            for i in 0..self.arm.dof() {
+                moving.add_body(Carrier::Link(i), &self.ten(|k| Standard::Link(i, k)), torques);
+            }
+        });
+        let of_others = Reference::new(self.arm, described, dq, dqr, ddqr).torques(&|moving, torques| {
+            for (i, joint) in self.arm.joints.iter().enumerate() {
+                moving.add_rotor_mass(i, torques);
+                if let Some(motor) = &joint.motor {
+                    moving.add_rotor_inertia(i, &self.of(Standard::RotorInertia(i), &motor.inertia), torques);
+                }
+            }
+            if self.arm.payload.is_some() {
+                moving.add_body(Carrier::Tool, &self.ten(Standard::Payload), torques);
+            }
+        });
+        of_links.iter().zip(&of_others).map(|(a, b)| a.plus(b)).collect()
+    }
+
+    /// B, C and g from the torques of single accelerations and rates.
+    pub fn parts(&self, state: &State<E>) -> Parts<E> {
+        let (n, zero) = (self.arm.dof(), &self.arm.zero);
+        let described = Pose::new(self.arm, state);
+        let joint_frames = described.clone().with_links_in_joint_frames();
+        let still = vec![zero.clone(); n];
+        let torques = |dqr: &[E], ddqr: &[E]| self.torques((&described, &joint_frames), &state.dq, dqr, ddqr);
+        let g = torques(&still, &still);
+        let unit = |j: usize| -> Vec<E> { (0..n).map(|i| if i == j { self.arm.one.clone() } else { zero.clone() }).collect() };
+        let without_gravity = |column: Vec<E>| -> Vec<E> { column.iter().zip(&g).map(|(x, g)| x.minus(g)).collect() };
+        let rows = |columns: Vec<Vec<E>>| -> Vec<Vec<E>> {
+            (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect()
+        };
+        let b = rows((0..n).map(|j| without_gravity(torques(&still, &unit(j)))).collect());
+        let c = rows((0..n).map(|j| without_gravity(torques(&unit(j), &still))).collect());
+        let friction = |(i, joint): (usize, &Joint<E>)| {
+            let mut viscous = self.of(Standard::Viscous(i), &joint.viscous);
+            if let Some(motor) = &joint.motor {
+                let square = motor.ratio.times(&motor.ratio);
+                viscous = viscous.plus(&square.times(&self.of(Standard::RotorViscous(i), &motor.viscous)));
+            }
+            let coulomb = self.of(Standard::Coulomb(i), &joint.coulomb);
+            viscous.times(&state.dq[i]).plus(&coulomb.times(&state.signs[i]))
+        };
+        let f = self.arm.joints.iter().enumerate().map(friction).collect();
+        Parts { b, c, g, f, u: self.potential_energy(state) }
+    }
+
+    /// U(q) = -Σ g0'(m p + R h), h the first moment in a frame at p.
+    pub fn potential_energy(&self, state: &State<E>) -> E {
+        let described = Pose::new(self.arm, state);
+        let links = (0..self.arm.dof()).map(|i| (&described.joints[i], self.ten(|k| Standard::Link(i, k))));
+        let load = self.arm.payload.as_ref().map(|_| (&described.tool, self.ten(Standard::Payload)));
+        let of_bodies = links.chain(load).fold(self.arm.zero.clone(), |sum, (frame, ten)| {
+            let h = [1, 2, 3].map(|k| ten[k].clone());
+            sum.minus(&dot(&self.arm.gravity, &add(&scale(&ten[0], &frame.origin), &frame.direction(&h))))
+        });
+        self.arm.joints.iter().filter_map(|joint| Some((joint.parent, joint.motor.as_ref()?))).fold(
+            of_bodies,
+            |sum, (parent, motor)| {
+                let place = parent.map_or_else(|| motor.position.clone(), |p| described.links[p].point(&motor.position));
+                sum.minus(&motor.mass.times(&dot(&self.arm.gravity, &place)))
+            },
+        )
+    }
 }
 
 /// B ddqr + C(q, dq) dqr + F + g of an arm, friction with dqr and the signs of dq.

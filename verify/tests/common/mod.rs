@@ -8,8 +8,12 @@ use armgen_codegen::Generated;
 
 /// All descriptions of the project, sorted.
 pub(crate) fn paths() -> Vec<PathBuf> {
+    in_folders(&["robots", "tests/robots"])
+}
+
+fn in_folders(folders: &[&str]) -> Vec<PathBuf> {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let mut paths: Vec<PathBuf> = ["robots", "tests/robots"]
+    let mut paths: Vec<PathBuf> = folders
         .iter()
         .flat_map(|folder| std::fs::read_dir(format!("{root}/{folder}")).expect("a folder of robots"))
         .map(|entry| entry.expect("an entry").path())
@@ -19,9 +23,18 @@ pub(crate) fn paths() -> Vec<PathBuf> {
     paths
 }
 
+/// Those that are made to be hard on armgen.
+pub(crate) fn hostile_paths() -> Vec<PathBuf> {
+    in_folders(&["tests/robots/hostile"])
+}
+
 /// A description of the project by its name.
 pub(crate) fn source(name: &str) -> Source {
-    let path = paths().into_iter().find(|p| p.file_stem().is_some_and(|stem| stem == name)).expect("a robot of the project");
+    let path = paths()
+        .into_iter()
+        .chain(hostile_paths())
+        .find(|p| p.file_stem().is_some_and(|stem| stem == name))
+        .expect("a robot of the project");
     Source::new(format!("{name}.yaml"), std::fs::read_to_string(path).expect("a description"))
 }
 

@@ -1,0 +1,215 @@
+//! Where the random points come from: a hash of what is to be proved, so that nobody can choose it to suit the points.
+//!
+//! Whoever wants a wrong module verified can make many and see which passes. So the hash is of what counts alone: of the description its numbers and
+//! how they hang together; of the module what its functions do, step by step from the entries back, with the literals and the exact values that they
+//! are run with. Names, comments, blanks, documentation, the order of items and of statements, steps without influence, the order of summands
+//! and of factors, and claims that stand for no literal do not enter: changing them tries nothing again.
+//!
+//! What remains, another sum that is as wrong, costs a reading and a run for each try. 2^40 tries at odds of 2^-168 each leave 2^-128
+//! ([`crate::report::MOST_LOG2_ODDS`]).
+
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::manipulator::{Body, Manipulator, Placement, RegressorChoice};
+use sha2::{Digest, Sha256};
+
+use crate::arithmetic::Stream;
+use crate::claims::{Claims, Resolved};
+use crate::enclosure::Float;
+use crate::equations::arm::formula;
+use crate::formula::Formula;
+use crate::program::{Angle, Program, Step};
+use crate::reader::Module;
+
+/// A SHA-256 hash.
+type Hash = [u8; 32];
+
+/// A hash of parts, each with its length in front: two lists of parts are never one.
+struct Parts(Sha256);
+
+impl Parts {
+    /// Of what the parts are: no two kinds have one hash.
+    fn of(kind: &str) -> Parts {
+        let mut parts = Parts(Sha256::new());
+        parts.add(kind.as_bytes());
+        parts
+    }
+
+    fn add(&mut self, part: &[u8]) {
+        self.0.update((part.len() as u64).to_le_bytes());
+        self.0.update(part);
+    }
+
+    fn integer(&mut self, value: u64) {
+        self.add(&value.to_le_bytes());
+    }
+
+    fn finish(self) -> Hash {
+        self.0.finalize().into()
+    }
+}
+
+/// The stream of random bits for a module: from the description, the module and the claims that its literals use; `run` for another run with points of its own.
+pub fn stream(manipulator: &Manipulator, module: &Module, claims: &Claims, run: u64) -> Stream {
+    let mut parts = Parts::of("module");
+    parts.integer(run);
+    parts.add(&of_description(manipulator));
+    parts.integer(u64::from(module.real == Float::F32));
+    let mut functions: Vec<(&str, &Program)> = module.programs().collect();
+    functions.sort_by_key(|(name, _)| *name);
+    for (name, program) in functions {
+        parts.add(name.as_bytes());
+        parts.add(&of_program(program, &claims.resolve(name, &program.literals, module.real)));
+    }
+    for constant in ["NOMINAL_PARAMETERS", "NOMINAL_BASE_PARAMETERS"] {
+        parts.add(&of_formulas(claims.of(constant)));
+    }
+    Stream::of(parts.finish())
+}
+
+fn of_formulas(formulas: &[Formula]) -> Hash {
+    let mut parts = Parts::of("formulas");
+    formulas.iter().for_each(|formula| parts.add(formula.to_string().as_bytes()));
+    parts.finish()
+}
+
+/// What a function does: its entries, each as the tree of its steps.
+fn of_program(program: &Program, resolved: &Resolved) -> Hash {
+    let literal = |index: usize| {
+        let others = resolved.others.get(&index).map_or(&[][..], Vec::as_slice);
+        of_formulas(&[std::slice::from_ref(&resolved.values[index]), others].concat())
+    };
+    let literals: Vec<Hash> = (0..program.literals.len()).map(literal).collect();
+    let mut steps: Vec<Hash> = Vec::with_capacity(program.steps.len());
+    for step in &program.steps {
+        let one = |kind: &str, a: &usize| {
+            let mut parts = Parts::of(kind);
+            parts.add(&steps[*a]);
+            parts.finish()
+        };
+        let two = |kind: &str, first: &Hash, second: &Hash| {
+            let mut parts = Parts::of(kind);
+            parts.add(first);
+            parts.add(second);
+            parts.finish()
+        };
+        // The order of summands and factors changes no bit.
+        let either = |kind: &str, a: &usize, b: &usize| {
+            let (a, b) = (&steps[*a], &steps[*b]);
+            two(kind, a.min(b), a.max(b))
+        };
+        let angle = |kind: &str, angle: &Angle| {
+            let mut parts = Parts::of(kind);
+            for &(joint, factor) in &angle.terms {
+                parts.integer(joint as u64);
+                parts.add(&factor.to_le_bytes());
+            }
+            if let Some((turn, minus)) = angle.turn {
+                parts.add(&literals[program.turns[turn]]);
+                parts.integer(u64::from(minus));
+            }
+            parts.finish()
+        };
+        let hash = match step {
+            Step::Input(argument, index) => {
+                let mut parts = Parts::of("input");
+                parts.integer(*argument as u64);
+                parts.integer(*index as u64);
+                parts.finish()
+            }
+            Step::Literal(index) => literals[*index],
+            Step::Sine(sum) => angle("sine", sum),
+            Step::Cosine(sum) => angle("cosine", sum),
+            Step::Sign(joint) => {
+                let mut parts = Parts::of("sign");
+                parts.integer(*joint as u64);
+                parts.finish()
+            }
+            Step::Negate(a) => one("negate", a),
+            Step::Add(a, b) => either("add", a, b),
+            Step::Subtract(a, b) => two("subtract", &steps[*a], &steps[*b]),
+            Step::Multiply(a, b) => either("multiply", a, b),
+            Step::Divide(a, b) => two("divide", &steps[*a], &steps[*b]),
+        };
+        steps.push(hash);
+    }
+    let mut parts = Parts::of("program");
+    program.outputs.iter().for_each(|output| parts.add(&steps[output.step]));
+    parts.finish()
+}
+
+/// The numbers of a description and how they hang together.
+fn of_description(manipulator: &Manipulator) -> Hash {
+    let mut arm = Description(Parts::of("description"));
+    let Manipulator { name: _, parameters, gravity, joints, tip, tool, payload, task, regressor } = manipulator;
+    parameters.iter().for_each(|parameter| arm.number(&parameter.nominal));
+    arm.polynomials(gravity);
+    for joint in joints {
+        arm.word(&format!("{:?} {:?}", joint.kind, joint.parent));
+        arm.placement(&joint.placement);
+        arm.placement(&joint.link_frame);
+        let limits = &joint.limits;
+        let limits = limits.position.iter().flatten().chain(&limits.velocity).chain(&limits.effort);
+        limits.for_each(|limit| arm.number(limit));
+        arm.body(&joint.link);
+        if let Some(motor) = &joint.motor {
+            arm.word("motor");
+            arm.polynomials([&motor.ratio, &motor.mass]);
+            arm.polynomials(&motor.position);
+            motor.axis.iter().for_each(|entry| arm.number(entry));
+            arm.optional(&motor.inertia);
+            arm.optional(&motor.viscous);
+        }
+        arm.optional(&joint.viscous);
+        arm.optional(&joint.coulomb);
+    }
+    arm.word(&format!("{tip:?} {task:?}"));
+    arm.placement(tool);
+    if let Some(payload) = payload {
+        arm.word("payload");
+        arm.body(payload);
+    }
+    match regressor {
+        RegressorChoice::Standard => arm.word("standard"),
+        RegressorChoice::Base => arm.word("base"),
+        RegressorChoice::Names(names) => arm.word(&format!("{names:?}")),
+    }
+    arm.0.finish()
+}
+
+struct Description(Parts);
+
+impl Description {
+    fn word(&mut self, word: &str) {
+        self.0.add(word.as_bytes());
+    }
+
+    fn number(&mut self, number: &Number) {
+        self.word(&formula(number).to_string());
+    }
+
+    fn polynomials<'a>(&mut self, polynomials: impl IntoIterator<Item = &'a Polynomial>) {
+        for polynomial in polynomials {
+            self.word("polynomial");
+            for (powers, coefficient) in polynomial.terms() {
+                self.word(&format!("{powers:?}"));
+                self.number(coefficient);
+            }
+        }
+    }
+
+    fn optional(&mut self, polynomial: &Option<Polynomial>) {
+        self.polynomials(polynomial);
+        self.word("next");
+    }
+
+    fn placement(&mut self, placement: &Placement) {
+        placement.rotation.iter().flatten().for_each(|entry| self.number(entry));
+        self.polynomials(&placement.translation);
+    }
+
+    fn body(&mut self, body: &Body) {
+        self.polynomials([&body.mass]);
+        self.polynomials(&body.com);
+        self.polynomials(&body.inertia);
+    }
+}
