@@ -30,7 +30,7 @@ pub enum Pass {
     /// Ask for the sines and cosines of sums of angles as such.
     AngleSums,
     /// Leave out what cancels in every output.
-    Idle,
+    Cancellation,
     /// Take common factors out of sums, and share partial sums and products.
     Sharing,
     /// Form a sum from another one that holds much of it.
@@ -52,7 +52,7 @@ impl Pass {
         Pass::Turn,
         Pass::ClosedForm,
         Pass::AngleSums,
-        Pass::Idle,
+        Pass::Cancellation,
         Pass::Sharing,
         Pass::Sums,
         Pass::Resubstitution,
@@ -71,7 +71,7 @@ impl Pass {
             Pass::Turn => "turn",
             Pass::ClosedForm => "closed-form",
             Pass::AngleSums => "angle-sums",
-            Pass::Idle => "idle",
+            Pass::Cancellation => "cancellation",
             Pass::Sharing => "sharing",
             Pass::Sums => "sums",
             Pass::Resubstitution => "resubstitution",

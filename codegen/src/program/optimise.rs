@@ -4,7 +4,7 @@
 //! fingerprint. What saves operations is then done as often as it is found, the greatest gain first:
 //!
 //! - sines and cosines of sums of angles about parallel axes become inputs ([`angles`]),
-//! - what cancels in every output is left out ([`idle`]),
+//! - what cancels in every output is left out ([`cancellation`]),
 //! - x y + x z becomes x (y + z) ([`share`]),
 //! - constants of a sum or a product become one ([`tidy`]),
 //! - a sum is formed from another one and what is missing ([`sums`]),
@@ -14,8 +14,8 @@
 //! Every step leaves the value of every output as it is: the fingerprints say so.
 
 mod angles;
+mod cancellation;
 mod circuit;
-mod idle;
 mod resubstitute;
 mod share;
 mod sums;
@@ -45,7 +45,7 @@ pub(super) fn optimise(
     if has(Pass::AngleSums) {
         angles::sums_of_angles(&mut circuit, parallel);
     }
-    if has(Pass::Idle) && idle::drop_idle(&mut circuit) > 0 {
+    if has(Pass::Cancellation) && cancellation::remove_cancelled(&mut circuit) > 0 {
         // Gates that have become equal are one again.
         let (pool, entries) = circuit.to_pool();
         circuit = Circuit::of(&pool, &entries);

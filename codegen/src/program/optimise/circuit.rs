@@ -9,8 +9,8 @@ use crate::ring::{ExprId, Fingerprint, Identity, Node, Pool, Symbol};
 /// Index of a gate.
 pub(super) type GateId = u32;
 
-/// So many bits tell values apart roughly.
-const MAYBE: usize = 1 << 16;
+/// Bits of the Bloom filter over `known`.
+const FILTER_BITS: usize = 1 << 16;
 
 /// A gate and a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,8 +42,10 @@ pub(super) struct Circuit {
     pub(super) outputs: Vec<Edge>,
     /// The gate of a value or of its negative, by the lesser of the two, and whether that is the negative.
     known: HashMap<Fingerprint, Edge, BuildHasherDefault<Identity>>,
-    /// A bit for each known value and its negative, by their last bits: most values that are looked for are not there.
-    maybe: Vec<u64>,
+    /// Bloom filter over `known` and the negatives of its values, by their last bits: it rejects most lookups.
+    filter: Vec<u64>,
+    /// The first gate of each constant and symbol.
+    leaves: HashMap<ExprId, GateId>,
 }
 
 impl Edge {
@@ -66,7 +68,8 @@ impl Circuit {
             values: Vec::new(),
             outputs: Vec::new(),
             known: HashMap::default(),
-            maybe: vec![0; MAYBE / 64],
+            filter: vec![0; FILTER_BITS / 64],
+            leaves: HashMap::new(),
         };
         let mut needed = vec![false; pool.len()];
         entries.iter().for_each(|e| needed[e.index()] = true);
@@ -102,9 +105,19 @@ impl Circuit {
     /// A new gate.
     pub(super) fn push(&mut self, gate: Gate, value: Fingerprint) -> GateId {
         let id = self.gates.len() as GateId;
+        if let Gate::Leaf(expr) = gate {
+            if self.leaf(expr).is_none() {
+                self.leaves.insert(expr, id);
+            }
+        }
         self.gates.push(gate);
         self.values.push(value);
         id
+    }
+
+    /// The gate of a constant or a symbol, if there is one: a trial that was taken back has removed those that it had added.
+    pub(super) fn leaf(&self, expr: ExprId) -> Option<GateId> {
+        self.leaves.get(&expr).copied().filter(|&id| self.gates.get(id as usize) == Some(&Gate::Leaf(expr)))
     }
 
     fn key(&self, value: &Fingerprint) -> (Fingerprint, bool) {
@@ -119,11 +132,11 @@ impl Circuit {
     /// The gates of a list are found by value from now on.
     pub(super) fn index(&mut self, gates: &[GateId]) {
         self.known.clear();
-        self.maybe.fill(0);
+        self.filter.fill(0);
         for &gate in gates {
             let value = self.values[gate as usize][0];
-            for bit in [value, self.field.neg(value)].map(|x| x.bits() as usize % MAYBE) {
-                self.maybe[bit / 64] |= 1 << (bit % 64);
+            for bit in [value, self.field.neg(value)].map(|x| x.bits() as usize % FILTER_BITS) {
+                self.filter[bit / 64] |= 1 << (bit % 64);
             }
             let (key, negated) = self.key(&self.values[gate as usize]);
             self.known.entry(key).or_insert(Edge { gate, negated });
@@ -133,8 +146,8 @@ impl Circuit {
     /// Whether a gate may have a value with this first half, or its negative; if not, none has.
     #[inline]
     pub(super) fn may_hold(&self, first: Element) -> bool {
-        let bit = first.bits() as usize % MAYBE;
-        self.maybe[bit / 64] >> (bit % 64) & 1 == 1
+        let bit = first.bits() as usize % FILTER_BITS;
+        self.filter[bit / 64] >> (bit % 64) & 1 == 1
     }
 
     /// The gate of a value, with the sign that it is found by.

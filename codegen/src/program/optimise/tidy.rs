@@ -125,7 +125,6 @@ impl Circuit {
     }
 
     pub(super) fn push_constant_or_one(&mut self, value: ExprId) -> GateId {
-        let known = self.gates.iter().position(|gate| *gate == Gate::Leaf(value));
-        known.map_or_else(|| self.push(Gate::Leaf(value), self.constants.fingerprint(value)), |id| id as GateId)
+        self.leaf(value).unwrap_or_else(|| self.push(Gate::Leaf(value), self.constants.fingerprint(value)))
     }
 }

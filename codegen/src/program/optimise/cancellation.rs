@@ -1,4 +1,4 @@
-//! Gates that no output depends on, although they are used: what they give to one term, another takes away.
+//! Gates whose contributions cancel in every output: dead code that only shows after cancellation.
 //!
 //! A sweep from the outputs inwards gives the derivative of a random combination of the outputs by every gate, in the prime field of the
 //! fingerprints. Where it is 0 at both points, the gate is taken as 0, if all outputs then keep their values.
@@ -7,34 +7,34 @@ use super::circuit::{Circuit, Edge, Gate, GateId};
 use crate::ring::field::scramble;
 use crate::ring::Fingerprint;
 
-/// So many gates at most are taken out of one function.
-const MOST: usize = 200;
+/// At most this many gates are removed from one function.
+const MOST_REMOVED: usize = 200;
 
-/// Takes idle gates out; the number of those.
-pub(super) fn drop_idle(circuit: &mut Circuit) -> usize {
+/// Removes the gates on which no output depends, and returns their number.
+pub(super) fn remove_cancelled(circuit: &mut Circuit) -> usize {
     let expected: Vec<Fingerprint> = circuit.outputs.iter().map(|&output| circuit.value(output)).collect();
-    let mut dropped = 0;
+    let mut removed = 0;
     let mut kept: Vec<GateId> = Vec::new();
-    while dropped + kept.len() < MOST {
+    while removed + kept.len() < MOST_REMOVED {
         let order = circuit.order();
         let derivatives = derivatives(circuit, &order);
         let zero = [circuit.field.zero(); 2];
-        let idle = order.iter().rev().copied().find(|&gate| {
+        let cancelled = order.iter().rev().copied().find(|&gate| {
             let inner = !matches!(circuit.gates[gate as usize], Gate::Leaf(_));
             inner && derivatives[gate as usize] == zero && !kept.contains(&gate)
         });
-        let Some(gate) = idle else { break };
+        let Some(gate) = cancelled else { break };
         let (gates, values) = (circuit.gates.clone(), circuit.values.clone());
         circuit.gates[gate as usize] = Gate::Sum(Vec::new());
-        renew(circuit, &order);
+        propagate_zeros(circuit, &order);
         if circuit.outputs.iter().map(|&output| circuit.value(output)).eq(expected.iter().copied()) {
-            dropped += 1;
+            removed += 1;
         } else {
             (circuit.gates, circuit.values) = (gates, values);
             kept.push(gate);
         }
     }
-    dropped
+    removed
 }
 
 /// The derivative of a random combination of the outputs by each gate, at both points.
@@ -69,8 +69,8 @@ fn derivatives(circuit: &Circuit, order: &[GateId]) -> Vec<Fingerprint> {
     all
 }
 
-/// Leaves zeros out, and computes all values anew.
-fn renew(circuit: &mut Circuit, order: &[GateId]) {
+/// Drops operands that have become 0 and recomputes all fingerprints.
+fn propagate_zeros(circuit: &mut Circuit, order: &[GateId]) {
     let is_zero = |circuit: &Circuit, gate: GateId| matches!(&circuit.gates[gate as usize], Gate::Sum(terms) if terms.is_empty());
     for &gate in order {
         let (new, value) = match circuit.gates[gate as usize].clone() {
