@@ -4,20 +4,12 @@
 //! main.rs      arguments, dispatch
 //! commands/    one file per command
 //! input.rs     descriptions from files
-//! experiments/ files that say how the built robot moves, and what should come out
-//! figures/     SVG of what came out
-//! motion.rs    the built robot in motion, where there are no experiments for it
-//! figure.rs    charts as SVG
 //! terminal.rs  standard output and error: colour, closed pipes
 //! table.rs     aligned tables
 //! ```
 
 mod commands;
-mod experiments;
-mod figure;
-mod figures;
 mod input;
-mod motion;
 mod table;
 mod terminal;
 

@@ -1,47 +1,61 @@
 //! `armgen run` as its users run it: the table, the files, the exit codes.
+//!
+//! The experiments of these tests are written for the robot that the program was built with, whichever it is, and expect what is true of any:
+//! so they are run, and not skipped, after robot.yaml has been edited. What the experiments of the repository give is tested in
+//! `tests/experiments`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
+use armgen_experiments::run::Arm;
 
-fn run(folder: &Path, file: &Path) -> Output {
-    run_all(folder, &[file])
-}
-
-fn run_all(folder: &Path, files: &[&Path]) -> Output {
+fn run(folder: &Path, files: &[&Path]) -> Output {
     let out = folder.join("out");
     let _ = fs::remove_dir_all(&out);
-    let command =
-        Command::new(env!("CARGO_BIN_EXE_armgen")).arg("run").args(files).arg("--out").arg(&out).current_dir(root()).output();
-    command.expect("the program runs")
+    Command::new(env!("CARGO_BIN_EXE_armgen")).arg("run").args(files).arg("--out").arg(&out).output().expect("the program runs")
 }
 
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder for the test");
     folder
 }
 
-/// Whether the program was built with another robot: then there is nothing to compare.
-fn skipped(output: &Output) -> bool {
-    String::from_utf8_lossy(&output.stderr).contains("skipped: for the robot")
+/// A file with an experiment for this robot, of which one expectation is w >= `w`.
+fn experiment(folder: &Path, name: &str, robot: &str, w: f64) -> PathBuf {
+    let arm = armgen_instance::built();
+    let q = vec!["0.3"; arm.robot().dof()].join(", ");
+    let text = format!(
+        "robot: {robot}\ntitle: A posture\npostures:\n  - {{name: bent, q: [{q}]}}\ngrid: {{first: [0, 1], second: [0, 1]}}\nexpect:\n  \
+         - {{quantity: bent.w, at_least: {w}}}\n  - {{quantity: bent.velocity_1, at_least: 0}}\n"
+    );
+    let file = folder.join(name);
+    fs::write(&file, text).expect("a file");
+    file
+}
+
+fn for_the_built_robot(folder: &Path, name: &str, w: f64) -> PathBuf {
+    experiment(folder, name, &armgen_instance::built().robot().name, w)
+}
+
+fn out(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn err(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 #[test]
-fn what_is_as_expected_gives_a_table_figures_logs_and_code_0() {
+fn results_as_expected_give_a_table_figures_logs_and_code_0() {
     let folder = folder("run_as_expected");
-    let output = run(&folder, Path::new("experiments/manipulability.yaml"));
+    let output = run(&folder, &[&for_the_built_robot(&folder, "posture.yaml", 0.0)]);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-    if skipped(&output) {
-        return;
-    }
-    let text = String::from_utf8_lossy(&output.stdout);
-    assert!(text.contains("33 of 33 results as expected"), "{text}");
-    for file in ["manipulability.csv", "manipulability_postures.svg", "manipulability_workspace.svg"] {
+    assert!(out(&output).contains("2 of 2 results as expected"), "{}", out(&output));
+    assert!(err(&output).contains("2 figures and 1 log in"), "{}", err(&output));
+    for file in ["posture.csv", "posture_postures.svg", "posture_workspace.svg"] {
         let text = fs::read_to_string(folder.join("out").join(file)).expect("it was written");
         assert!(
             !file.ends_with("svg") || (text.starts_with("<svg") && text.contains("fill=\"#ffffff\"") && !text.contains("NaN"))
@@ -50,41 +64,48 @@ fn what_is_as_expected_gives_a_table_figures_logs_and_code_0() {
 }
 
 #[test]
-fn what_is_not_as_expected_or_faulty_gives_code_1() {
+fn results_outside_and_faulty_files_give_code_1() {
     let folder = folder("run_outside");
-    let text = fs::read_to_string(root().join("experiments/manipulability.yaml")).expect("the experiment");
-    let wrong = folder.join("wrong.yaml");
-    fs::write(&wrong, text.replacen("value: 0.25, tolerance", "value: 0.2501, tolerance", 1)).expect("a file");
-    let output = run(&folder, &wrong);
-    if skipped(&output) {
-        return;
-    }
+    let outside = for_the_built_robot(&folder, "outside.yaml", 1e9);
+    let output = run(&folder, &[&outside]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("OUTSIDE"), "{output:?}");
+    assert!(out(&output).contains("OUTSIDE") && out(&output).contains("1 of 2 results as expected"), "{output:?}");
     let faulty = folder.join("faulty.yaml");
-    fs::write(&faulty, text.replacen("title:", "titel:", 1)).expect("a file");
-    let output = run(&folder, &faulty);
+    let text = fs::read_to_string(outside).expect("the file").replacen("title:", "titel:", 1);
+    fs::write(&faulty, text).expect("a file");
+    let output = run(&folder, &[&faulty]);
     assert_eq!(output.status.code(), Some(1));
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(message.contains("faulty.yaml:3:1") && message.contains("did you mean `title`?"), "{message}");
+    assert!(err(&output).contains("faulty.yaml:2:1") && err(&output).contains("did you mean `title`?"), "{}", err(&output));
 }
 
 #[test]
 fn a_file_that_is_not_there_gives_code_2() {
-    assert_eq!(run(&folder("run_absent"), Path::new("experiments/absent.yaml")).status.code(), Some(2));
+    assert_eq!(run(&folder("run_absent"), &[Path::new("experiments/absent.yaml")]).status.code(), Some(2));
+}
+
+#[test]
+fn an_experiment_for_another_robot_is_skipped_and_said_to_be() {
+    let folder = folder("run_another");
+    let other = experiment(&folder, "other.yaml", "someone_else", 0.0);
+    let own = for_the_built_robot(&folder, "own.yaml", 0.0);
+    let output = run(&folder, &[&other, &own]);
+    assert_eq!(output.status.code(), Some(0));
+    assert!(err(&output).contains("1 experiment skipped: for the robot `someone_else`"), "{}", err(&output));
+    assert!(out(&output).contains("2 of 2 results as expected"), "{}", out(&output));
+    // Alone it leaves the arm to its demonstration.
+    let output = run(&folder, &[&other]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(out(&output).contains("demonstration.svg"), "{}", out(&output));
 }
 
 #[test]
 fn no_experiment_writes_over_the_files_of_another() {
     let folder = folder("run_twins");
-    let (first, twin) = (Path::new("experiments/manipulability.yaml"), folder.join("manipulability.yaml"));
-    fs::copy(root().join(first), &twin).expect("a copy");
-    let output = run_all(&folder, &[first, &twin]);
-    if skipped(&output) {
-        return;
-    }
+    fs::create_dir_all(folder.join("twin")).expect("a folder");
+    let first = for_the_built_robot(&folder, "posture.yaml", 0.0);
+    let twin = for_the_built_robot(&folder, "twin/posture.yaml", 0.0);
+    let output = run(&folder, &[&first, &twin]);
     assert_eq!(output.status.code(), Some(1));
-    let message = String::from_utf8_lossy(&output.stderr);
-    assert!(message.contains("run_twins/manipulability.yaml is not run") && message.contains("rename it"), "{message}");
-    assert!(String::from_utf8_lossy(&output.stdout).contains("33 of 33 results as expected"), "{output:?}");
+    assert!(err(&output).contains("twin/posture.yaml is not run") && err(&output).contains("rename it"), "{}", err(&output));
+    assert!(out(&output).contains("2 of 2 results as expected"), "{output:?}");
 }

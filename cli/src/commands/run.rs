@@ -1,37 +1,220 @@
 //! `armgen run`: the robot that this program was built with, in motion.
+//!
+//! The order: read all files; linearise every sampled loop and say which are unstable; only then move; draw; judge.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
-use armgen_generated::{DOF, NAME};
+use armgen_experiments::campaign::{self, in_parallel, Job};
+use armgen_experiments::draw;
+use armgen_experiments::model::{Channel, Experiment, JointQuantity, Quantity, Record, Robot};
+use armgen_experiments::read::{self, Parsed};
+use armgen_experiments::run::Arm;
+use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::experiments::{self, Outcome};
-use crate::motion;
-use crate::{terminal, FAULTY, UNREADABLE};
+use crate::table::{Align, Table};
+use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 
 /// Runs the experiments for this robot; where there are none, moves it along a demonstration.
 pub(crate) fn run(files: &[PathBuf], out: &Path) -> u8 {
-    match experiments::run(files, out) {
-        Outcome::Ran(code) => code,
-        Outcome::NoneForThisRobot => demonstrate(out),
+    let arm = armgen_instance::built();
+    let Files { experiments, others, code } = read_all(&named(files), arm.robot());
+    let built = &arm.robot().name;
+    for (robot, count) in &others {
+        let what = input::counted(*count, "experiment");
+        terminal::note(&format!("{what} skipped: for the robot `{robot}`, and this program was built with `{built}`"));
+    }
+    match (experiments.as_slice(), code) {
+        // A file that is faulty or absent is the answer; without any there is nothing to run.
+        ([], DONE) => demonstrate(&arm, out),
+        ([], code) => code,
+        (experiments, code) => code.max(run_all(experiments, &arm, out)),
     }
 }
 
-fn demonstrate(out: &Path) -> u8 {
-    let outcome = match motion::run() {
-        Ok(outcome) => outcome,
+/// The files to run: those named, or the experiments of the working directory, in the order of their names.
+fn named(files: &[PathBuf]) -> Vec<PathBuf> {
+    if !files.is_empty() {
+        return files.to_vec();
+    }
+    let Ok(entries) = std::fs::read_dir("experiments") else { return Vec::new() };
+    let yaml = |path: &PathBuf| path.is_file() && path.extension().is_some_and(|ending| ending == "yaml");
+    let mut found: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(yaml).collect();
+    found.sort();
+    found
+}
+
+/// What the files came to.
+struct Files {
+    experiments: Vec<Experiment>,
+    /// Other robots that files are for, and how many.
+    others: Vec<(String, usize)>,
+    code: u8,
+}
+
+/// Reads all files; what is wrong with one goes to standard error.
+fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
+    let mut all = Files { experiments: Vec::new(), others: Vec::new(), code: DONE };
+    let mut read: Vec<&PathBuf> = Vec::new();
+    for file in files {
+        let source = match input::source(file) {
+            Ok(source) => source,
+            Err(unreadable) => {
+                all.code = all.code.max(unreadable);
+                continue;
+            }
+        };
+        match read::experiment(file, &source, robot, &text_of) {
+            Parsed::Experiment(experiment) => match all.experiments.iter().position(|known| known.name == experiment.name) {
+                Some(first) => {
+                    let (name, first, second) = (&experiment.name, read[first].display(), file.display());
+                    terminal::error(&format!(
+                        "{second} is not run: its figures and logs would be those of {first}, `{name}` as well; rename it, or run it by itself with another --out"
+                    ));
+                    all.code = all.code.max(FAULTY);
+                }
+                None => {
+                    read.push(file);
+                    all.experiments.push(*experiment);
+                }
+            },
+            Parsed::OtherRobot(robot) => match all.others.iter_mut().find(|(known, _)| *known == robot) {
+                Some((_, count)) => *count += 1,
+                None => all.others.push((robot, 1)),
+            },
+            Parsed::Faulty(faulty) => {
+                let colour = terminal::colour(&std::io::stderr());
+                for (source, diagnostics) in &faulty {
+                    terminal::diagnose(&diagnostics.render(source, colour));
+                }
+                let count = faulty.iter().map(|(_, diagnostics)| diagnostics.errors()).sum();
+                terminal::error(&format!("{}: {}", source.name(), input::counted(count, "error")));
+                all.code = all.code.max(FAULTY);
+            }
+        }
+    }
+    all
+}
+
+/// The text of a file that an experiment names. One byte more than is taken: the reader says what a file may hold, and one without an end
+/// is not waited for.
+fn text_of(path: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    std::fs::File::open(path)?.take(read::MAX_TEXT as u64 + 1).read_to_string(&mut text)?;
+    Ok(text)
+}
+
+fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path) -> u8 {
+    if let Err(error) = std::fs::create_dir_all(out) {
+        terminal::error(&format!("cannot create {}: {error}", out.display()));
+        return UNREADABLE;
+    }
+    let begun = Instant::now();
+    let mut jobs: Vec<Job<'_>> = experiments.iter().map(|experiment| Job::new(experiment, arm)).collect();
+    let bar = progress(jobs.len() as u64 * 2);
+    in_parallel(&mut jobs, |job| {
+        job.prepare();
+        bar.inc(1);
+    });
+    for job in &jobs {
+        if let Some(warning) = job.warning() {
+            bar.suspend(|| terminal::warning(&format!("{}: {warning}", job.experiment().name)));
+        }
+    }
+    in_parallel(&mut jobs, |job| {
+        job.run();
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    let groups = campaign::groups(&jobs);
+    let drawn = groups.len() + jobs.iter().map(|job| job.figures().len()).sum::<usize>();
+    let (mut code, mut written) = (DONE, 0);
+    for (name, text) in jobs.iter().map(Job::log).chain(jobs.iter().flat_map(Job::figures).cloned()).chain(groups) {
+        match std::fs::write(out.join(&name), text) {
+            Ok(()) => written += 1,
+            Err(error) => {
+                terminal::error(&format!("cannot write {}: {error}", out.join(name).display()));
+                code = UNREADABLE;
+            }
+        }
+    }
+    let (text, met) = report(&jobs);
+    code = code.max(terminal::print(&text));
+    let (simulated, took) = jobs
+        .iter()
+        .map(|job| job.record().speed)
+        .fold((0.0, 0.0), |(simulated, took), speed| (simulated + speed.simulated, took + speed.took));
+    let speed = if took > 0.0 {
+        format!(", {simulated:.0} s of motion simulated {:.0} times faster than real time", simulated / took)
+    } else {
+        String::new()
+    };
+    let seconds = begun.elapsed().as_secs_f64();
+    if written == drawn + jobs.len() {
+        let (figures, logs) = (input::counted(drawn, "figure"), input::counted(jobs.len(), "log"));
+        terminal::note(&format!("{figures} and {logs} in {}; {seconds:.1} s{speed}", out.display()));
+    }
+    if met {
+        code
+    } else {
+        code.max(FAULTY)
+    }
+}
+
+fn progress(steps: u64) -> ProgressBar {
+    // Drawn on a terminal only.
+    let bar = ProgressBar::new(steps);
+    if let Ok(style) = ProgressStyle::with_template("  [{bar:30}] {pos}/{len} {elapsed}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar
+}
+
+/// The table of results, and whether all expectations are met.
+fn report(jobs: &[Job<'_>]) -> (String, bool) {
+    let columns = [
+        ("experiment", Align::Left),
+        ("quantity", Align::Left),
+        ("found", Align::Right),
+        ("unit", Align::Left),
+        ("expected", Align::Left),
+        ("", Align::Left),
+    ];
+    let mut table = Table::new(columns);
+    let (mut total, mut met) = (0, 0);
+    for job in jobs {
+        for (i, line) in job.lines().into_iter().enumerate() {
+            total += 1;
+            met += usize::from(line.met);
+            let name = if i == 0 { job.experiment().name.clone() } else { String::new() };
+            let verdict = if line.met { "ok" } else { "OUTSIDE" };
+            table.row([name, line.what, line.found, line.unit.to_string(), line.expected, verdict.into()]);
+        }
+    }
+    (format!("{}\n{met} of {total} results as expected\n", table.text()), met == total)
+}
+
+fn demonstrate(arm: &dyn Arm, out: &Path) -> u8 {
+    let robot = arm.robot();
+    let demonstration = match arm.demonstrate() {
+        Ok(demonstration) => demonstration,
         Err(reason) => {
             terminal::error(&reason);
             return FAULTY;
         }
     };
-    let title = terminal::bold(&format!("{NAME}: first motion of the arm that this program was built with"), &std::io::stdout());
-    let joints = if DOF == 1 { "1 joint".to_string() } else { format!("{DOF} joints") };
-    let mut text = format!("{title} ({joints})\n\n{}", outcome.report);
+    let title = format!("{}: a demonstration of the arm that this program was built with", robot.name);
+    let title = terminal::bold(&title, &std::io::stdout());
+    let summary: String = demonstration.summary.iter().map(|line| format!("  {line}\n")).collect();
+    let joints = input::counted(robot.dof(), "joint");
+    let mut text = format!("{title} ({joints})\n\n{summary}\n{}", joint_table(&demonstration.record, robot));
     let mut csv = String::new();
-    outcome.log.write_csv(&mut csv).expect("writing to a string");
-    let mut code = 0;
-    for (extension, content) in [("svg", outcome.figure.svg()), ("csv", csv)] {
-        let file = out.join(format!("{}.{extension}", outcome.name));
+    demonstration.record.log().write_csv(&mut csv).expect("writing to a string");
+    let mut code = DONE;
+    for (name, content) in [("demonstration.svg", draw::demonstration(&demonstration.record, robot)), ("demonstration.csv", csv)]
+    {
+        let file = out.join(name);
         match std::fs::create_dir_all(out).and_then(|()| std::fs::write(&file, content)) {
             Ok(()) => text += &format!("\n  {}", file.display()),
             Err(reason) => {
@@ -42,9 +225,41 @@ fn demonstrate(out: &Path) -> u8 {
     }
     text += "\n";
     code = code.max(terminal::print(&text));
-    if let Some(fault) = outcome.fault {
+    if let Some(fault) = demonstration.fault {
         terminal::error(&fault);
         code = code.max(FAULTY);
     }
     code
+}
+
+/// A table of what each joint did and needed.
+fn joint_table(record: &Record, robot: &Robot) -> String {
+    use Align::{Left, Right};
+    let mut table = Table::new([
+        ("joint", Left),
+        ("from", Right),
+        ("to", Right),
+        ("largest error", Right),
+        ("error at end", Right),
+        ("largest rate", Right),
+        ("largest effort", Right),
+    ]);
+    for (i, joint) in robot.joints.iter().enumerate() {
+        let of = |of: JointQuantity| Channel::new(Quantity::Joint(of, i), robot);
+        let peak = |channel: &Channel| record.log().peak(&channel.name, |_| true).unwrap_or(f64::NAN);
+        let [q, e, dq, tau] = [JointQuantity::Position, JointQuantity::Error, JointQuantity::Rate, JointQuantity::Effort].map(of);
+        let low = record.log().lowest(&q.name, |_| true).unwrap_or(f64::NAN);
+        let high = record.log().highest(&q.name, |_| true).unwrap_or(f64::NAN);
+        let last = record.values(e.quantity).last().copied().unwrap_or(f64::NAN).abs();
+        table.row([
+            format!("{} {}", i + 1, joint.name),
+            format!("{low:.4} {}", q.unit),
+            format!("{high:.4} {}", q.unit),
+            format!("{:.2e} {}", peak(&e), e.unit),
+            format!("{last:.2e} {}", e.unit),
+            format!("{:.4} {}", peak(&dq), dq.unit),
+            format!("{:.3} {}", peak(&tau), tau.unit),
+        ]);
+    }
+    table.text()
 }

@@ -1,0 +1,122 @@
+//! Many experiments at once: all sampled loops are linearised first, then everything moves, on all processors.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
+
+use crate::draw;
+use crate::judge::{judge, Line};
+use crate::model::{Body, Experiment, Quantity, Record};
+use crate::run::{Arm, Run};
+
+/// A file that is to be written: its name and its text.
+pub type File = (String, String);
+
+/// One experiment and what is known of it.
+pub struct Job<'a> {
+    experiment: &'a Experiment,
+    arm: &'a dyn Arm,
+    prepared: Option<Result<Box<dyn Run + 'a>, String>>,
+    record: Record,
+    figures: Vec<File>,
+}
+
+impl std::fmt::Debug for Job<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Job").field("experiment", &self.experiment.name).field("record", &self.record).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Job<'a> {
+    /// An experiment that is to be run on this arm.
+    pub fn new(experiment: &'a Experiment, arm: &'a dyn Arm) -> Job<'a> {
+        Job { experiment, arm, prepared: None, record: Record::default(), figures: Vec::new() }
+    }
+
+    /// The experiment.
+    pub fn experiment(&self) -> &'a Experiment {
+        self.experiment
+    }
+
+    /// What the run left behind; nothing before it.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// Finds out what can be known before anything moves.
+    pub fn prepare(&mut self) {
+        self.prepared = Some(self.arm.prepare(self.experiment));
+    }
+
+    /// What has to be said before anything moves.
+    pub fn warning(&self) -> Option<String> {
+        self.prepared.as_ref()?.as_ref().ok()?.warning()
+    }
+
+    /// Runs and draws it, prepared or not.
+    pub fn run(&mut self) {
+        let prepared = self.prepared.take().unwrap_or_else(|| self.arm.prepare(self.experiment));
+        self.record = match prepared {
+            Ok(run) => run.run(),
+            Err(reason) => Record::without_samples(reason),
+        };
+        self.figures = draw::experiment(self.experiment, &self.record, self.arm.robot());
+    }
+
+    /// Its figures.
+    pub fn figures(&self) -> &[File] {
+        &self.figures
+    }
+
+    /// Its log as comma-separated values.
+    pub fn log(&self) -> File {
+        (format!("{}.csv", self.experiment.name), self.record.csv())
+    }
+
+    /// The lines of the table; an early end that nothing accounts for is one of them.
+    pub fn lines(&self) -> Vec<Line> {
+        let expect = &self.experiment.expect;
+        let mut lines: Vec<Line> = expect.iter().map(|expectation| judge(expectation, &self.record)).collect();
+        let accounted = expect.iter().any(|e| e.channel.quantity == Quantity::LostAt);
+        if let Some(ended) = self.record.ended.as_ref().filter(|_| !accounted) {
+            lines.push(Line::unmet("runs to the end", ended.clone(), "yes"));
+        }
+        lines
+    }
+
+    /// Roughly how long it takes, in steps.
+    fn effort(&self) -> u64 {
+        match &self.experiment.body {
+            Body::Postures(_) => 0,
+            Body::Path(_) => 1,
+            Body::Clik(_) => 2,
+            Body::Control(run) => 10 * u64::from(run.substeps),
+        }
+    }
+}
+
+/// The figures of the groups of these experiments.
+pub fn groups(jobs: &[Job<'_>]) -> Vec<File> {
+    let Some(arm) = jobs.first().map(|job| job.arm) else { return Vec::new() };
+    let all: Vec<(&Experiment, &Record)> = jobs.iter().map(|job| (job.experiment, &job.record)).collect();
+    draw::groups(&all, arm.robot())
+}
+
+/// Does `work` on every job, on all processors; the longest first.
+pub fn in_parallel<'a>(jobs: &mut [Job<'a>], work: impl Fn(&mut Job<'a>) + Sync) {
+    let mut queue: Vec<&mut Job<'a>> = jobs.iter_mut().collect();
+    queue.sort_by_key(|job| std::cmp::Reverse(job.effort()));
+    let queue: Vec<Mutex<&mut Job<'a>>> = queue.into_iter().map(Mutex::new).collect();
+    let next = AtomicUsize::new(0);
+    let workers = std::thread::available_parallelism().map_or(1, usize::from).min(queue.len());
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some(job) = queue.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if let Ok(mut job) = job.lock() {
+                        work(&mut job);
+                    }
+                }
+            });
+        }
+    });
+}

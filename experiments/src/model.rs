@@ -1,0 +1,19 @@
+//! What an experiment is, and what a run leaves behind.
+
+mod channel;
+mod expectation;
+mod experiment;
+mod law;
+mod motion;
+mod number;
+mod record;
+mod robot;
+
+pub use channel::{Channel, JointQuantity, PostureQuantity, Quantity, Unit};
+pub use expectation::{Expectation, Take, Target};
+pub use experiment::{Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Postures, Sampling};
+pub use law::{Adaptation, Gain, Law, LawKind, Per};
+pub use motion::{Motion, Sheet, Trajectory};
+pub use number::{digits, number};
+pub use record::{Record, Shape, Shapes, Speed};
+pub use robot::{Joint, Parameter, Robot};

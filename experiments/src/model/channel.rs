@@ -1,0 +1,267 @@
+//! Channels: what a run records, each with its quantity, its name in files and tables, and its unit.
+//!
+//! Runs write, figures and expectations look up by [`Quantity`]; the name is for people and for the headers of logs.
+
+use std::fmt;
+
+use armgen_runtime::task::Row;
+
+use super::Robot;
+
+/// What a channel holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    // Over time.
+    /// t.
+    Time,
+    /// Of the joint of this index.
+    Joint(JointQuantity, usize),
+    /// Position of the tip along the axis of this index.
+    Tip(usize),
+    /// Its desired position.
+    DesiredTip(usize),
+    /// Error of a row of the task, desired minus actual.
+    TaskError(Row),
+    /// Turn about z0 from the frame of the path, without jumps.
+    Angle,
+    /// |v| of the tip.
+    Speed,
+    /// |a| of the tip.
+    Acceleration,
+    /// Rate of the angle.
+    TurnRate,
+    /// Acceleration of the angle.
+    TurnAcceleration,
+    /// Distance of the tip from the z0 axis.
+    Distance,
+    /// Change of the velocity of the tip in one sample, along the axis where it is largest.
+    VelocityStep,
+    /// w of the task of the robot.
+    Manipulability,
+    /// w of the rows that are followed.
+    FollowedManipulability,
+    /// T_s lambda_max(J' K J) of the Jacobian transpose.
+    LoopGain,
+    /// |z| of robust control.
+    ZNorm,
+    /// Estimate of the parameter of this index.
+    Estimate(usize),
+
+    // Of the whole run.
+    /// The largest spectral radius of the sampled loop along the path.
+    SpectralRadius,
+    /// The same with one sample of delay.
+    DelayedSpectralRadius,
+    /// The sampling period up to which the loop is stable.
+    StablePeriod,
+    /// When a joint was first off by more than a tenth.
+    LostAt,
+    /// When a rate was first cut.
+    RateLimitedAt,
+    /// The end of the path.
+    EndsAt,
+    /// The largest miss of a stop.
+    Stops,
+    /// The least distance to the end of the segment of this index, a via point.
+    Via(usize),
+    /// Of the posture of this index.
+    Posture(PostureQuantity, usize),
+}
+
+/// Quantities of a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointQuantity {
+    /// q.
+    Position,
+    /// q_d - q.
+    Error,
+    /// dq.
+    Rate,
+    /// tau.
+    Effort,
+}
+
+/// Quantities of a posture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PostureQuantity {
+    /// Position of the tip along the axis of this index.
+    Tip(usize),
+    /// Manipulability w of the task of the robot.
+    Manipulability,
+    /// Angle of the end effector's y axis in the plane.
+    Heading,
+    /// Semi-axis of the velocity ellipsoid of this index.
+    Velocity(usize),
+    /// Direction of that axis.
+    Direction(usize),
+    /// Semi-axis of the force ellipsoid of this index.
+    Force(usize),
+    /// Condition number of the Jacobian in the plane.
+    Condition,
+    /// Its distance to a singular one.
+    Distance,
+}
+
+impl PostureQuantity {
+    /// All of them, as they stand in files.
+    pub const ALL: [PostureQuantity; 13] = [
+        PostureQuantity::Tip(0),
+        PostureQuantity::Tip(1),
+        PostureQuantity::Tip(2),
+        PostureQuantity::Manipulability,
+        PostureQuantity::Heading,
+        PostureQuantity::Velocity(0),
+        PostureQuantity::Velocity(1),
+        PostureQuantity::Direction(0),
+        PostureQuantity::Direction(1),
+        PostureQuantity::Force(0),
+        PostureQuantity::Force(1),
+        PostureQuantity::Condition,
+        PostureQuantity::Distance,
+    ];
+
+    fn name(self) -> String {
+        match self {
+            PostureQuantity::Tip(axis) => AXES[axis].into(),
+            PostureQuantity::Manipulability => "w".into(),
+            PostureQuantity::Heading => "heading".into(),
+            PostureQuantity::Velocity(i) => format!("velocity_{}", i + 1),
+            PostureQuantity::Direction(i) => format!("direction_{}", i + 1),
+            PostureQuantity::Force(i) => format!("force_{}", i + 1),
+            PostureQuantity::Condition => "condition".into(),
+            PostureQuantity::Distance => "distance".into(),
+        }
+    }
+
+    fn unit(self) -> Unit {
+        match self {
+            PostureQuantity::Tip(_) | PostureQuantity::Distance => Unit::Metre,
+            PostureQuantity::Heading => Unit::Radian,
+            PostureQuantity::Direction(_) => Unit::Degree,
+            _ => Unit::None,
+        }
+    }
+}
+
+/// Units of channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// A pure number, or a unit that depends on the rows of the task or on the parameter.
+    None,
+    /// s
+    Second,
+    /// m
+    Metre,
+    /// rad
+    Radian,
+    /// deg
+    Degree,
+    /// m/s
+    MetrePerSecond,
+    /// rad/s
+    RadianPerSecond,
+    /// m/s²
+    MetrePerSecondSquared,
+    /// rad/s²
+    RadianPerSecondSquared,
+    /// N m
+    NewtonMetre,
+    /// N
+    Newton,
+    /// 1/s
+    PerSecond,
+}
+
+impl Unit {
+    /// As it is printed; nothing for a pure number.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Unit::None => "",
+            Unit::Second => "s",
+            Unit::Metre => "m",
+            Unit::Radian => "rad",
+            Unit::Degree => "deg",
+            Unit::MetrePerSecond => "m/s",
+            Unit::RadianPerSecond => "rad/s",
+            Unit::MetrePerSecondSquared => "m/s²",
+            Unit::RadianPerSecondSquared => "rad/s²",
+            Unit::NewtonMetre => "N m",
+            Unit::Newton => "N",
+            Unit::PerSecond => "1/s",
+        }
+    }
+
+    /// Of a row of the operational space: m or rad.
+    pub const fn of_row(row: Row) -> Unit {
+        if row.is_angular() {
+            Unit::Radian
+        } else {
+            Unit::Metre
+        }
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.symbol())
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A quantity with its name and its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// What it holds.
+    pub quantity: Quantity,
+    /// Its name in files, tables and the headers of logs.
+    pub name: String,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+impl Channel {
+    /// The channel of a quantity of a run on this robot.
+    pub fn new(quantity: Quantity, robot: &Robot) -> Channel {
+        use JointQuantity as J;
+        let joint = |i: usize| &robot.joints[i];
+        let (name, unit) = match quantity {
+            Quantity::Time => ("t".into(), Unit::Second),
+            Quantity::Joint(J::Position, i) => (format!("q_{}", joint(i).name), joint(i).unit()),
+            Quantity::Joint(J::Error, i) => (format!("eq_{}", joint(i).name), joint(i).unit()),
+            Quantity::Joint(J::Rate, i) => (format!("dq_{}", joint(i).name), joint(i).rate_unit()),
+            Quantity::Joint(J::Effort, i) => (format!("tau_{}", joint(i).name), joint(i).effort_unit()),
+            Quantity::Tip(axis) => (AXES[axis].into(), Unit::Metre),
+            Quantity::DesiredTip(axis) => (format!("{}_d", AXES[axis]), Unit::Metre),
+            Quantity::TaskError(row) => (format!("e_{row}"), Unit::of_row(row)),
+            Quantity::Angle => ("angle".into(), Unit::Radian),
+            Quantity::Speed => ("speed".into(), Unit::MetrePerSecond),
+            Quantity::Acceleration => ("acceleration".into(), Unit::MetrePerSecondSquared),
+            Quantity::TurnRate => ("turn_rate".into(), Unit::RadianPerSecond),
+            Quantity::TurnAcceleration => ("turn_acceleration".into(), Unit::RadianPerSecondSquared),
+            Quantity::Distance => ("distance".into(), Unit::Metre),
+            Quantity::VelocityStep => ("velocity_step".into(), Unit::MetrePerSecond),
+            Quantity::Manipulability => ("w".into(), Unit::None),
+            Quantity::FollowedManipulability => ("w_followed".into(), Unit::None),
+            Quantity::LoopGain => ("loop_gain".into(), Unit::None),
+            Quantity::ZNorm => ("z_norm".into(), Unit::None),
+            Quantity::Estimate(i) => (format!("estimate_{}", robot.parameters[i].name), Unit::None),
+            Quantity::SpectralRadius => ("radius".into(), Unit::None),
+            Quantity::DelayedSpectralRadius => ("radius_delayed".into(), Unit::None),
+            Quantity::StablePeriod => ("stable_period".into(), Unit::Second),
+            Quantity::LostAt => ("lost_at".into(), Unit::Second),
+            Quantity::RateLimitedAt => ("rate_limited_at".into(), Unit::Second),
+            Quantity::EndsAt => ("ends_at".into(), Unit::Second),
+            Quantity::Stops => ("stops".into(), Unit::Metre),
+            Quantity::Via(segment) => (format!("via_{}", segment + 1), Unit::Metre),
+            Quantity::Posture(of, i) => (format!("{}.{}", i + 1, of.name()), of.unit()),
+        };
+        Channel { quantity, name, unit }
+    }
+
+    /// The channel of a quantity of the `index`-th posture, which is called `posture`.
+    pub fn of_posture(quantity: PostureQuantity, index: usize, posture: &str) -> Channel {
+        let name = format!("{posture}.{}", quantity.name());
+        Channel { quantity: Quantity::Posture(quantity, index), name, unit: quantity.unit() }
+    }
+}

@@ -1,0 +1,258 @@
+//! Experiments: what is done, with which channels.
+
+use std::time::Duration;
+
+use armgen_runtime::clik::Integration;
+use armgen_runtime::task::Row;
+
+use super::{Channel, Expectation, JointQuantity, Law, Motion, PostureQuantity, Quantity, Robot};
+
+/// A valid experiment.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// Name of its file, without the ending.
+    pub name: String,
+    /// One line that says what it shows.
+    pub title: String,
+    /// Experiments of one group are drawn into one figure, too; several groups are separated by blanks.
+    pub group: Option<String>,
+    /// What is done.
+    pub body: Body,
+    /// What should come out.
+    pub expect: Vec<Expectation>,
+}
+
+/// What an experiment does.
+#[derive(Clone, Debug)]
+pub enum Body {
+    /// Manipulability at postures.
+    Postures(Postures),
+    /// A path as planned.
+    Path(Sampling),
+    /// Closed-loop inverse kinematics along a path.
+    Clik(ClikRun),
+    /// A controller along a path.
+    Control(ControlRun),
+}
+
+/// Postures to be judged.
+#[derive(Clone, Debug)]
+pub struct Postures {
+    /// Name and joint variables.
+    pub list: Vec<(String, Vec<f64>)>,
+    /// The two linear rows in which ellipsoids are drawn and measured.
+    pub plane: [Row; 2],
+    /// Further postures for a figure only: all combinations of values of the first two joints.
+    pub grid: Option<[Vec<f64>; 2]>,
+}
+
+/// A path and when to look at it.
+#[derive(Clone, Debug)]
+pub struct Sampling {
+    /// The path.
+    pub motion: Motion,
+    /// The sampling period.
+    pub period: Duration,
+    /// The end of the run.
+    pub duration: Duration,
+}
+
+/// A run of inverse kinematics.
+#[derive(Clone, Debug)]
+pub struct ClikRun {
+    /// The path.
+    pub sampling: Sampling,
+    /// Joint variables at the start.
+    pub start: Vec<f64>,
+    /// The rows that are followed.
+    pub rows: Vec<Row>,
+    /// The algorithm.
+    pub algorithm: Algorithm,
+    /// One per row.
+    pub gains: Vec<f64>,
+}
+
+/// The algorithms of inverse kinematics by their names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AlgorithmKind {
+    /// J^-1 (v_d + K e).
+    Inverse,
+    /// J' K e.
+    Transpose,
+    /// J^+ (v_d + K e) + (I - J^+ J) dq_0.
+    PseudoInverse,
+    /// J' (J J' + lambda^2 I)^-1 (v_d + K e).
+    DampedLeastSquares,
+    /// ddq = J^-1 (a_d + K_D de + K_P e - dJ dq).
+    SecondOrder,
+}
+
+impl AlgorithmKind {
+    /// All of them.
+    pub const ALL: [AlgorithmKind; 5] = [
+        AlgorithmKind::Inverse,
+        AlgorithmKind::Transpose,
+        AlgorithmKind::PseudoInverse,
+        AlgorithmKind::DampedLeastSquares,
+        AlgorithmKind::SecondOrder,
+    ];
+
+    /// Its name in the file.
+    pub const fn name(self) -> &'static str {
+        match self {
+            AlgorithmKind::Inverse => "inverse",
+            AlgorithmKind::Transpose => "transpose",
+            AlgorithmKind::PseudoInverse => "pseudo_inverse",
+            AlgorithmKind::DampedLeastSquares => "damped_least_squares",
+            AlgorithmKind::SecondOrder => "second_order",
+        }
+    }
+
+    /// The keys that it has beside its gains.
+    pub const fn keys(self) -> &'static [&'static str] {
+        match self {
+            AlgorithmKind::Inverse | AlgorithmKind::Transpose => &[],
+            AlgorithmKind::PseudoInverse => &["k_0", "objective"],
+            AlgorithmKind::DampedLeastSquares => &["damping", "threshold"],
+            AlgorithmKind::SecondOrder => &["k_d", "integration"],
+        }
+    }
+}
+
+/// An algorithm of inverse kinematics.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Algorithm {
+    /// The inverse.
+    Inverse,
+    /// The transpose.
+    Transpose,
+    /// The pseudo-inverse.
+    PseudoInverse {
+        /// Gain of the free motion.
+        k_0: f64,
+        /// The rows whose manipulability it climbs.
+        objective: Option<Vec<Row>>,
+    },
+    /// Damped least squares.
+    DampedLeastSquares {
+        /// lambda_0, the greatest damping.
+        damping: f64,
+        /// w_0, the manipulability below which it begins.
+        threshold: f64,
+    },
+    /// Second order; the gains are K_P.
+    SecondOrder {
+        /// K_D, one per row.
+        k_d: Vec<f64>,
+        /// How rates and positions are stepped.
+        integration: Integration,
+    },
+}
+
+/// A run of a controller.
+#[derive(Clone, Debug)]
+pub struct ControlRun {
+    /// The path.
+    pub sampling: Sampling,
+    /// Joint variables at the start.
+    pub start: Vec<f64>,
+    /// Parameters of the plant.
+    pub plant: Vec<f64>,
+    /// K_P and K_D of the second-order inverse kinematics that makes the joint reference, one per row of the task.
+    pub reference: (Vec<f64>, Vec<f64>),
+    /// The controller.
+    pub law: Law,
+    /// Samples between measurement and torque.
+    pub delay: usize,
+    /// Of the measurement.
+    pub noise: Noise,
+    /// Runge-Kutta steps a sample.
+    pub substeps: u32,
+    /// Whether arm and law run in continuous time.
+    pub continuous: bool,
+}
+
+/// Noise of a measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Noise {
+    /// Deviation of joint variables.
+    pub position: f64,
+    /// Deviation of rates.
+    pub rate: f64,
+    /// Where the random numbers begin.
+    pub seed: u32,
+}
+
+impl Body {
+    /// What it records over time.
+    pub fn channels(&self, robot: &Robot) -> Vec<Channel> {
+        let mut quantities = vec![Quantity::Time];
+        let joints = |of: JointQuantity| (0..robot.dof()).map(move |i| Quantity::Joint(of, i));
+        let tip = || (0..3).map(Quantity::Tip);
+        match self {
+            Body::Postures(_) => return Vec::new(),
+            Body::Path(_) => {
+                quantities.extend(tip());
+                quantities.extend([
+                    Quantity::Angle,
+                    Quantity::Speed,
+                    Quantity::Acceleration,
+                    Quantity::TurnRate,
+                    Quantity::TurnAcceleration,
+                    Quantity::Distance,
+                    Quantity::VelocityStep,
+                ]);
+            }
+            Body::Clik(run) => {
+                quantities.extend(joints(JointQuantity::Position));
+                quantities.extend(run.rows.iter().copied().map(Quantity::TaskError));
+                quantities.extend([Quantity::Manipulability, Quantity::FollowedManipulability]);
+                quantities.extend((run.algorithm == Algorithm::Transpose).then_some(Quantity::LoopGain));
+            }
+            Body::Control(run) => {
+                quantities.extend(joints(JointQuantity::Position).chain(joints(JointQuantity::Error)));
+                quantities.extend(robot.task.iter().copied().map(Quantity::TaskError));
+                quantities.extend(tip().chain(joints(JointQuantity::Effort)));
+                quantities.extend(run.law.kind.watched(robot));
+            }
+        }
+        quantities.into_iter().map(|quantity| Channel::new(quantity, robot)).collect()
+    }
+
+    /// The numbers of the whole run.
+    pub fn numbers(&self, robot: &Robot) -> Vec<Channel> {
+        let quantities = match self {
+            Body::Postures(postures) => {
+                let of = |(i, (name, _)): (usize, &(String, Vec<f64>))| {
+                    PostureQuantity::ALL.map(|quantity| Channel::of_posture(quantity, i, name))
+                };
+                return postures.list.iter().enumerate().flat_map(of).collect();
+            }
+            Body::Path(sampling) => {
+                let vias = sampling.motion.vias().into_iter().map(Quantity::Via);
+                [Quantity::Stops, Quantity::EndsAt].into_iter().chain(vias).collect()
+            }
+            Body::Clik(run) if matches!(run.algorithm, Algorithm::SecondOrder { .. }) => Vec::new(),
+            Body::Clik(_) => vec![Quantity::RateLimitedAt],
+            Body::Control(_) => {
+                vec![Quantity::SpectralRadius, Quantity::StablePeriod, Quantity::DelayedSpectralRadius, Quantity::LostAt]
+            }
+        };
+        quantities.into_iter().map(|quantity| Channel::new(quantity, robot)).collect()
+    }
+
+    /// When the run ends, s.
+    pub fn end(&self) -> f64 {
+        self.sampling().map_or(0.0, |sampling| sampling.duration.as_secs_f64())
+    }
+
+    /// The path, where there is one.
+    pub fn sampling(&self) -> Option<&Sampling> {
+        match self {
+            Body::Postures(_) => None,
+            Body::Path(sampling) => Some(sampling),
+            Body::Clik(run) => Some(&run.sampling),
+            Body::Control(run) => Some(&run.sampling),
+        }
+    }
+}

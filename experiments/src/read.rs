@@ -1,0 +1,222 @@
+//! Experiment files: text -> [`Experiment`], or every fault with its place.
+//!
+//! ```text
+//! values.rs        numbers, durations, lists and words under their keys
+//! postures.rs path.rs clik.rs control.rs expectation.rs     one part of a file each
+//! code.rs          kinds of faults
+//! ```
+//!
+//! Absent from here on: YAML, wrong lengths, gains that are not positive, paths that cannot be planned, quantities that do not exist.
+
+mod clik;
+mod code;
+mod control;
+mod expectation;
+mod path;
+mod postures;
+mod values;
+
+use std::path::Path;
+
+use armgen_codegen::diagnostic::{Code as Shared, Diagnostics};
+use armgen_codegen::document::excerpt;
+use armgen_codegen::document::reader::{self, first_key, optional, required, Fields, Key};
+use armgen_codegen::document::yaml::{self, Kind, Node};
+use armgen_codegen::source::{Source, Span};
+
+use crate::model::{Body, Experiment, Robot, Sampling};
+use values::{Allowed, Reader};
+
+pub use code::{Code, SHARED};
+pub use path::motion;
+
+/// The longest text that is read, bytes.
+pub const MAX_TEXT: usize = yaml::MAX_TEXT;
+/// Samples of a run: a minute at 30 kHz.
+const MAX_SAMPLES: u128 = 2_000_000;
+
+/// Gives the text of a file that an experiment names.
+pub type Open<'o> = &'o dyn Fn(&Path) -> std::io::Result<String>;
+
+/// What a file came to.
+#[derive(Debug)]
+pub enum Parsed {
+    /// It can be run.
+    Experiment(Box<Experiment>),
+    /// It is for this robot, another one.
+    OtherRobot(String),
+    /// It is faulty: each text, its own or that of its path, with what is wrong in it.
+    Faulty(Vec<(Source, Diagnostics)>),
+}
+
+/// Reads an experiment for this robot from its text; a path file is looked up beside `file`.
+pub fn experiment(file: &Path, source: &Source, robot: &Robot, open: Open<'_>) -> Parsed {
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(source, &mut diagnostics);
+    let mut reader = Reader { document: reader::Reader::new(&mut diagnostics), robot };
+    let begin = "begin with `robot:`, `title:` and `expect:`";
+    let mut experiment = None;
+    let mut of_path = None;
+    if let Some(root) = reader.document.root(source, root.as_ref(), "an experiment", begin) {
+        if let Some(place) = key_of_a_robot(root) {
+            reader.report(
+                Code::WrongFile,
+                place,
+                "this describes a robot, not an experiment",
+                "a key of robot descriptions",
+                "`armgen run` moves the robot that it was built with: put this text into robot.yaml, rebuild, and run it without a file",
+            );
+        } else if let Some(other) = other_robot(root, robot) {
+            return Parsed::OtherRobot(other);
+        } else {
+            let name = file.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+            let mut paths = Paths { file, open, faulty: &mut of_path };
+            experiment = reader.experiment(root, name, &mut paths);
+        }
+    }
+    diagnostics.sort();
+    match experiment {
+        Some(experiment) if of_path.is_none() && !diagnostics.has_errors() => Parsed::Experiment(Box::new(experiment)),
+        _ => {
+            let own = (!diagnostics.is_empty()).then(|| (source.clone(), diagnostics));
+            Parsed::Faulty(of_path.into_iter().chain(own).collect())
+        }
+    }
+}
+
+/// Path files beside an experiment's file.
+struct Paths<'p> {
+    file: &'p Path,
+    open: Open<'p>,
+    /// The text of a path that is faulty, and its faults.
+    faulty: &'p mut Option<(Source, Diagnostics)>,
+}
+
+/// The place of a key that only descriptions of robots have.
+fn key_of_a_robot(root: &Node) -> Option<Span> {
+    let Kind::Mapping(entries) = &root.kind else { return None };
+    entries.iter().find(|(key, _)| ["joints", "convention"].contains(&key.value.as_str())).map(|(key, _)| key.span)
+}
+
+fn other_robot(root: &Node, robot: &Robot) -> Option<String> {
+    let Kind::Mapping(entries) = &root.kind else { return None };
+    let (_, node) = entries.iter().find(|(key, _)| key.value == "robot")?;
+    match &node.kind {
+        Kind::Scalar(s) if s.text != robot.name && !s.is_nothing() => Some(excerpt(&s.text)),
+        _ => None,
+    }
+}
+
+const KEYS: [Key; 18] = [
+    required("robot", "robot: scara"),
+    required("title", "title: Inverse dynamics along a line"),
+    required("expect", "expect:` and below it one `- {quantity: ..., ...}"),
+    optional("group"),
+    optional("postures"),
+    optional("plane"),
+    optional("grid"),
+    optional("path"),
+    optional("start"),
+    optional("sampling"),
+    optional("duration"),
+    optional("task"),
+    optional("clik"),
+    optional("controller"),
+    optional("reference"),
+    optional("load"),
+    optional("sensor"),
+    optional("simulation"),
+];
+
+impl Reader<'_> {
+    fn experiment(&mut self, root: &Node, name: String, paths: &mut Paths<'_>) -> Option<Experiment> {
+        let fields = self.mapping(root, "an experiment", first_key(root), &KEYS)?;
+        let _ = self.word(&fields, "robot");
+        let title = self.word(&fields, "title").map_or_else(String::new, |word| word.value);
+        let group = self.word(&fields, "group").map(|word| word.value);
+        let expectations = self.expectations(&fields);
+        let body = self.body(&fields, paths)?;
+        let expect = self.resolve(expectations, &body);
+        Some(Experiment { name, title, group, body, expect })
+    }
+
+    fn body(&mut self, fields: &Fields<'_>, paths: &mut Paths<'_>) -> Option<Body> {
+        if fields.has("postures") {
+            let moving = [
+                "path",
+                "start",
+                "sampling",
+                "duration",
+                "task",
+                "clik",
+                "controller",
+                "reference",
+                "load",
+                "sensor",
+                "simulation",
+            ];
+            self.out_of_place(fields, &moving, "an experiment with `postures` moves nothing");
+            return self.postures(fields).map(Body::Postures);
+        }
+        self.out_of_place(fields, &["plane", "grid"], "only an experiment with `postures` has them");
+        let sampling = self.sampling(fields, paths);
+        match (fields.has("clik"), fields.has("controller")) {
+            (true, true) => {
+                let message = "an experiment has `clik` or `controller`, not both";
+                self.report(Code::Ambiguous, fields.place("controller"), message, "one too many", "make two experiments of it");
+                None
+            }
+            (false, false) => {
+                let moving = ["start", "task", "reference", "load", "sensor", "simulation"];
+                self.out_of_place(fields, &moving, "a path without `clik` or `controller` is only planned");
+                sampling.map(Body::Path)
+            }
+            (true, false) => {
+                self.out_of_place(fields, &["reference", "load", "sensor", "simulation"], "`clik` knows no dynamics");
+                self.clik(fields, sampling).map(Body::Clik)
+            }
+            (false, true) => {
+                self.out_of_place(fields, &["task"], "a controller follows the task of the robot");
+                self.control(fields, sampling).map(Body::Control)
+            }
+        }
+    }
+
+    fn sampling(&mut self, fields: &Fields<'_>, paths: &mut Paths<'_>) -> Option<Sampling> {
+        self.require(fields, "path", "the experiment", "path: paths/ghost.yaml");
+        self.require(fields, "sampling", "the experiment", "sampling: 0.001");
+        let period = self.seconds(fields, "sampling", Allowed::Positive);
+        let duration = self.seconds(fields, "duration", Allowed::Positive);
+        let word = self.word(fields, "path")?;
+        let path = paths.file.parent().unwrap_or(Path::new("")).join(&word.value);
+        let text = match (paths.open)(&path) {
+            Ok(text) => text,
+            Err(error) => {
+                let message = format!("the path {} cannot be read: {error}", path.display());
+                let help = "`path` is relative to the experiment's file";
+                self.report(Code::UnreadablePath, word.span, message, "no path there", help);
+                return None;
+            }
+        };
+        let source = Source::new(path.display().to_string(), text);
+        let motion = match motion(&source) {
+            Ok(motion) => motion,
+            Err(diagnostics) => {
+                *paths.faulty = Some((source, diagnostics));
+                return None;
+            }
+        };
+        let (duration, period) = (duration.unwrap_or(motion.trajectory.duration()), period?);
+        if duration.as_nanos() / period.as_nanos() > MAX_SAMPLES {
+            let help = "at most two million samples";
+            self.report(Shared::OutOfRange, fields.place("sampling"), "the run has too many samples", "too short", help);
+            return None;
+        }
+        Some(Sampling { motion, period, duration })
+    }
+
+    fn start(&mut self, fields: &Fields<'_>) -> Option<Vec<f64>> {
+        self.require(fields, "start", "the experiment", "start: [0, pi/2, ...]");
+        self.joints(fields, "start")
+    }
+}

@@ -1,0 +1,260 @@
+//! Path files: where the end effector goes, how it turns, under which time laws.
+
+use std::time::Duration;
+
+use armgen_codegen::diagnostic::{Code as Shared, Diagnostics};
+use armgen_codegen::document::reader::{self, first_key, optional, required, Fields};
+use armgen_codegen::document::yaml::{self, Node};
+use armgen_codegen::source::{Source, Span};
+use armgen_runtime::nalgebra::Matrix3;
+use armgen_runtime::trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, PlanFault, Segment, Turn};
+
+use super::values::{optionals, Allowed, Numbers, Reader};
+use super::Code;
+use crate::model::{Motion, Robot, Sheet};
+
+const LAW: [&str; 5] = ["duration", "acceleration_time", "law", "velocity", "acceleration"];
+const XYZ: &str = "x, y, z in m";
+
+/// Reads and plans the motion of a path's text.
+///
+/// # Errors
+/// Every fault with its place.
+pub fn motion(source: &Source) -> Result<Motion, Diagnostics> {
+    // A path is for every robot.
+    let robot = Robot { name: String::new(), joints: Vec::new(), parameters: Vec::new(), task: Vec::new() };
+    let mut diagnostics = Diagnostics::new();
+    let root = yaml::read(source, &mut diagnostics);
+    let mut reader = Reader { document: reader::Reader::new(&mut diagnostics), robot: &robot };
+    let root = reader.document.root(source, root.as_ref(), "a path", "begin with `start: [x, y, z]` and `segments:`");
+    let motion = root.and_then(|root| reader.motion(root));
+    diagnostics.sort();
+    motion.filter(|_| !diagnostics.has_errors()).ok_or(diagnostics)
+}
+
+/// Why a segment cannot be, in words, and what to do.
+fn explain(fault: PlanFault) -> (&'static str, &'static str) {
+    match fault {
+        PlanFault::NotFinite => ("a number is not finite", "write finite numbers"),
+        PlanFault::NoDuration => ("its duration is zero", "give it a duration"),
+        PlanFault::NoAccelerationTime => {
+            ("its acceleration time is zero: the acceleration would be infinite", "give an `acceleration_time`")
+        }
+        PlanFault::CruiseTimeNegative => (
+            "its cruise time, duration - 2 acceleration_time, is below zero",
+            "lengthen `duration` or shorten `acceleration_time`",
+        ),
+        PlanFault::AccelerationTooSmall => {
+            ("the acceleration is too small for length and duration", "at least 4 length / duration²")
+        }
+        PlanFault::VelocityOutOfRange => {
+            ("no trapezoid has this velocity, length and duration", "above length / duration, at most twice that")
+        }
+        PlanFault::LimitNotPositive => ("a limit is not positive", "write positive limits"),
+        PlanFault::TooLong => ("it would take longer than the clock can count", "raise the limits"),
+        PlanFault::ArcRadiusZero => ("the arc starts at its own centre", "move the centre"),
+        PlanFault::AxisZero => ("its axis has no direction", "for instance `axis: [0, 0, 1]`"),
+        PlanFault::ArcOffPlane => {
+            ("the start of the arc does not lie in its plane", "the plane goes through `centre`, at right angles to `axis`")
+        }
+        PlanFault::ArcEndMismatch => ("the arc does not end at the stated point", "centre, sweep and points must fit together"),
+        PlanFault::ArcPointsCollinear => ("the points of the arc lie on a line", "move the point between"),
+        PlanFault::NothingToAnticipate => {
+            ("the first segment has nothing before it that it could anticipate", "remove `anticipation`")
+        }
+        PlanFault::AnticipationTooLong => {
+            ("it would start before the previous segment does, or while the one before that is at work", "shorten `anticipation`")
+        }
+        PlanFault::OutOfReach => ("it leaves the reach of the arm", "move its points"),
+        PlanFault::NotARotation => ("`frame` is not a rotation", "three orthogonal rows of length 1, right-handed"),
+    }
+}
+
+/// The time laws that have a name.
+#[derive(Clone, Copy, PartialEq)]
+enum LawKind {
+    Trapezoidal,
+    Cubic,
+    Quintic,
+}
+
+impl Reader<'_> {
+    fn motion(&mut self, root: &Node) -> Option<Motion> {
+        let keys = [
+            required("start", "start: [0.5, 0, 0.1]"),
+            required("segments", "segments:` and below it one `- {line: ..., ...}"),
+            optional("frame"),
+            optional("turns"),
+            optional("sheet"),
+        ];
+        let fields = self.mapping(root, "a path", first_key(root), &keys)?;
+        let start = self.array::<3>(&fields, "start", XYZ, Allowed::Any);
+        let frame = self.frame(&fields);
+        let sheet = fields.get("sheet").and_then(|(at, node)| {
+            let fields = self.mapping(node, "`sheet`", at, &[required("top", "top: 0.01"), required("depth", "depth: 0")])?;
+            Some(Sheet { top: self.number(&fields, "top", Allowed::Any)?, depth: self.number(&fields, "depth", Allowed::Any)? })
+        });
+        let segments = self.elements(&fields, "segments", Self::segment);
+        let turns = self.elements(&fields, "turns", Self::turn);
+        if self.document.has_errors() {
+            return None;
+        }
+        let places: Vec<Span> = segments.iter().map(|(span, _)| *span).collect();
+        let path = match Path::plan(start?, segments.into_iter().map(|(_, s)| s).collect::<Vec<_>>()) {
+            Ok(path) => Some(path),
+            Err(error) => {
+                let at = places.get(error.segment.wrapping_sub(1)).copied().unwrap_or(fields.place("start"));
+                self.cannot(at, &format!("segment {}", error.segment), error.fault);
+                None
+            }
+        };
+        let places: Vec<Span> = turns.iter().map(|(span, _)| *span).collect();
+        let orientation = match OrientationProfile::plan(frame, turns.into_iter().map(|(_, t)| t).collect::<Vec<_>>()) {
+            Ok(orientation) => Some(orientation),
+            Err(error) => {
+                let at = places.get(error.segment.wrapping_sub(1)).copied().unwrap_or(fields.place("frame"));
+                self.cannot(at, &format!("turn {}", error.segment), error.fault);
+                None
+            }
+        };
+        Some(Motion { trajectory: OperationalTrajectory { path: path?, orientation: orientation? }, frame, sheet })
+    }
+
+    fn cannot(&mut self, at: Span, what: &str, fault: PlanFault) {
+        let (why, help) = explain(fault);
+        self.report(Code::Infeasible, at, format!("{what} cannot be planned: {why}"), "this one", help);
+    }
+
+    fn frame(&mut self, fields: &Fields<'_>) -> Matrix3<f64> {
+        let Some((at, node)) = fields.get("frame") else { return Matrix3::identity() };
+        let help = "write the rotation matrix row by row: `[[1, 0, 0], [0, 1, 0], [0, 0, 1]]`";
+        let Some(items) = self.items(node, at, "frame", help) else { return Matrix3::identity() };
+        if items.len() != 3 {
+            let label = format!("{} instead of 3", items.len());
+            self.report(Shared::WrongLength, node.span, "`frame` takes 3 rows", label, help);
+            return Matrix3::identity();
+        }
+        let wanted = Numbers { len: 3, each: "one row", allowed: Allowed::Any };
+        let rows: Vec<Vec<f64>> = items.iter().filter_map(|row| self.list(row, row.span, "frame", wanted)).collect();
+        if rows.len() == 3 {
+            Matrix3::from_fn(|i, k| rows[i][k])
+        } else {
+            Matrix3::identity()
+        }
+    }
+
+    fn elements<T>(
+        &mut self,
+        fields: &Fields<'_>,
+        name: &str,
+        read: impl Fn(&mut Self, &Node, Span) -> Option<T>,
+    ) -> Vec<(Span, T)> {
+        let Some((at, node)) = fields.get(name) else { return Vec::new() };
+        let Some(items) = self.items(node, at, name, "write one `- {...}` per element") else { return Vec::new() };
+        let mut all = Vec::new();
+        for item in items {
+            let place = first_key(item);
+            if let Some(element) = read(self, item, place) {
+                all.push((place, element));
+            }
+        }
+        all
+    }
+
+    fn time_law(&mut self, fields: &Fields<'_>) -> Option<Law<f64>> {
+        let duration = self.seconds(fields, "duration", Allowed::Positive);
+        let words = [("trapezoidal", LawKind::Trapezoidal), ("cubic", LawKind::Cubic), ("quintic", LawKind::Quintic)];
+        let kind = match fields.has("law") {
+            true => self.choice(fields, "law", &words)?.value,
+            false => LawKind::Trapezoidal,
+        };
+        let rise = self.seconds(fields, "acceleration_time", Allowed::Positive);
+        let velocity = self.number(fields, "velocity", Allowed::Positive);
+        let acceleration = self.number(fields, "acceleration", Allowed::Positive);
+        match (kind, duration, rise, velocity, acceleration) {
+            (LawKind::Trapezoidal, Some(duration), Some(acceleration_time), None, None) => {
+                Some(Law::Trapezoidal { duration, acceleration_time })
+            }
+            (LawKind::Trapezoidal, Some(duration), None, None, Some(acceleration)) => {
+                Some(Law::TrapezoidalByAcceleration { duration, acceleration })
+            }
+            (LawKind::Trapezoidal, Some(duration), None, Some(velocity), None) => {
+                Some(Law::TrapezoidalByVelocity { duration, velocity })
+            }
+            (LawKind::Trapezoidal, None, None, Some(velocity), Some(acceleration)) => {
+                Some(Law::TrapezoidalByLimits { velocity, acceleration })
+            }
+            (LawKind::Cubic, Some(duration), None, None, None) => Some(Law::Cubic { duration }),
+            (LawKind::Quintic, Some(duration), None, None, None) => Some(Law::Quintic { duration }),
+            _ => {
+                let help = "`duration` with `acceleration_time`, `velocity` or `acceleration`; `velocity` with `acceleration`; or `duration` with `law: cubic` or `law: quintic`";
+                self.report(Code::TimeLaw, fields.at(), "these keys make no time law", "no law", help);
+                None
+            }
+        }
+    }
+
+    fn segment(&mut self, node: &Node, at: Span) -> Option<Segment<f64>> {
+        let mut keys = optionals(&["line", "arc", "centre", "axis", "sweep", "through", "pause", "anticipation"]);
+        keys.extend(optionals(&LAW));
+        let fields = self.mapping(node, "a segment", at, &keys)?;
+        let anticipation = self.seconds(&fields, "anticipation", Allowed::Any).unwrap_or(Duration::ZERO);
+        let segment = if fields.has("line") {
+            Segment::line(self.array(&fields, "line", XYZ, Allowed::Any)?, self.time_law(&fields)?)
+        } else if fields.has("arc") {
+            self.arc(&fields)?
+        } else if fields.has("pause") {
+            Segment::pause(self.seconds(&fields, "pause", Allowed::Positive)?)
+        } else {
+            self.report(
+                Shared::MissingKey,
+                at,
+                "a segment is a `line`, an `arc` or a `pause`",
+                "none of them",
+                "for instance `{line: [0.5, 0, 0.1], duration: 1, acceleration_time: 0.2}`",
+            );
+            return None;
+        };
+        Some(segment.anticipating(anticipation))
+    }
+
+    fn arc(&mut self, fields: &Fields<'_>) -> Option<Segment<f64>> {
+        let to = self.array(fields, "arc", XYZ, Allowed::Any)?;
+        if fields.has("through") {
+            let via = self.array(fields, "through", XYZ, Allowed::Any)?;
+            return Some(Segment::arc_through(via, to, self.time_law(fields)?));
+        }
+        if !(fields.has("centre") && fields.has("sweep")) {
+            let help = "write `centre: [x, y, z], sweep: pi` (and `axis`, if not z0), or `through: [x, y, z]`";
+            let message = "an arc needs `centre` and `sweep`, or `through`";
+            self.report(Shared::MissingKey, fields.at(), message, "this arc", help);
+            return None;
+        }
+        let centre = self.array(fields, "centre", XYZ, Allowed::Any);
+        let sweep = self.number(fields, "sweep", Allowed::Any);
+        let axis = self.axis(fields)?;
+        Some(Segment::arc_to(centre?, axis, sweep?, to, self.time_law(fields)?))
+    }
+
+    /// The axis of an arc or a turn: z0 where none is given.
+    fn axis(&mut self, fields: &Fields<'_>) -> Option<[f64; 3]> {
+        match fields.has("axis") {
+            true => self.array(fields, "axis", "x, y, z", Allowed::Any),
+            false => Some([0.0, 0.0, 1.0]),
+        }
+    }
+
+    fn turn(&mut self, node: &Node, at: Span) -> Option<Turn<f64>> {
+        let mut keys = optionals(&["angle", "axis", "pause"]);
+        keys.extend(optionals(&LAW));
+        let fields = self.mapping(node, "a turn", at, &keys)?;
+        if fields.has("pause") {
+            return Some(Turn::pause(self.seconds(&fields, "pause", Allowed::Positive)?));
+        }
+        let example = "angle: pi, duration: 10, acceleration_time: 1";
+        self.require(&fields, "angle", "a turn", example);
+        let axis = self.axis(&fields);
+        let angle = self.number(&fields, "angle", Allowed::Any)?;
+        Some(Turn::about(axis?, angle, self.time_law(&fields)?))
+    }
+}

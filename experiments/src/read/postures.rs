@@ -1,0 +1,63 @@
+//! `postures`, `plane`, `grid`.
+
+use armgen_codegen::diagnostic::Code as Shared;
+use armgen_codegen::document::reader::{required, Fields};
+use armgen_codegen::source::Span;
+use armgen_runtime::task::Row;
+
+use super::values::{Allowed, Numbers, Reader};
+use crate::model::Postures;
+
+/// Postures of a grid.
+const MAX_POSTURES: usize = 10_000;
+
+const HELP: &str = "write one `- {name: ..., q: [...]}` per posture";
+
+impl Reader<'_> {
+    pub(super) fn postures(&mut self, fields: &Fields<'_>) -> Option<Postures> {
+        let (at, node) = fields.get("postures")?;
+        let items = self.items(node, at, "postures", HELP)?;
+        let keys = [required("name", "name: stretched"), required("q", "q: [0, pi/2, ...]")];
+        let mut list = Vec::new();
+        for item in items {
+            let fields = self.mapping(item, "a posture", item.span, &keys)?;
+            let name = self.word(&fields, "name")?;
+            list.push((name.value, self.joints(&fields, "q")?));
+        }
+        if list.is_empty() {
+            self.report(Shared::EmptyList, at, "`postures` names no posture", "empty", HELP);
+        }
+        let plane = match self.rows(fields, "plane") {
+            None => [Row::X, Row::Y],
+            Some(rows) => match <[Row; 2]>::try_from(rows) {
+                Ok(plane) if plane.iter().all(|row| !row.is_angular()) => plane,
+                _ => {
+                    let (message, help) = ("`plane` takes two linear rows", "for instance `plane: [x, y]`");
+                    self.report(Shared::WrongLength, fields.place("plane"), message, "here", help);
+                    return None;
+                }
+            },
+        };
+        let grid = fields.get("grid").and_then(|(at, _)| self.grid(fields, at));
+        Some(Postures { list, plane, grid })
+    }
+
+    fn grid(&mut self, fields: &Fields<'_>, at: Span) -> Option<[Vec<f64>; 2]> {
+        let (_, node) = fields.get("grid")?;
+        let keys = [required("first", "first: [0, pi/2]"), required("second", "second: [0.1, 0.2]")];
+        let fields = self.mapping(node, "`grid`", at, &keys)?;
+        let mut values = |name: &'static str| {
+            let (at, node) = fields.get(name)?;
+            let len = self.items(node, at, name, "write the values in brackets")?.len();
+            self.list(node, at, name, Numbers { len, each: "values of a joint", allowed: Allowed::Any })
+        };
+        let (first, second) = (values("first")?, values("second")?);
+        let postures = first.len() * second.len();
+        if postures > MAX_POSTURES {
+            let help = format!("at most {MAX_POSTURES} combinations of both");
+            self.report(Shared::OutOfRange, at, "the grid has too many postures", format!("{postures} combinations"), help);
+            return None;
+        }
+        Some([first, second])
+    }
+}

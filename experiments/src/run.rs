@@ -1,0 +1,60 @@
+//! Runs: what comes of an experiment on a robot.
+//!
+//! ```text
+//! instance.rs      one robot: its data, its functions, and the runs compiled for it
+//! postures.rs clik.rs control.rs      one kind of run each; path.rs needs no robot
+//! demonstration.rs for a robot without experiments: from posture to posture within its limits
+//! ```
+//!
+//! [`Arm`] is the border: the runs behind it are generic over the robot and its numbers of joints, rows and parameters, and are compiled
+//! where an [`Instance`] is made; whoever holds an `Arm` is compiled without the robot.
+
+mod clik;
+mod control;
+mod demonstration;
+mod instance;
+mod path;
+mod postures;
+
+pub use demonstration::Demonstration;
+pub use instance::{Functions, Instance};
+
+use crate::model::{Experiment, Record, Robot};
+
+/// A robot on which experiments run.
+pub trait Arm: Sync {
+    /// What is known of it.
+    fn robot(&self) -> &Robot;
+
+    /// What is known of a run before anything moves.
+    ///
+    /// # Errors
+    /// Why there is no run, in words.
+    fn prepare<'a>(&'a self, experiment: &'a Experiment) -> Result<Box<dyn Run + 'a>, String>;
+
+    /// A motion that shows the arm, whatever it is.
+    ///
+    /// # Errors
+    /// Why it cannot be run, in words.
+    fn demonstrate(&self) -> Result<Demonstration, String>;
+}
+
+/// A run that is prepared.
+pub trait Run: Send {
+    /// What has to be said before anything moves.
+    fn warning(&self) -> Option<String> {
+        None
+    }
+
+    /// Runs it.
+    fn run(self: Box<Self>) -> Record;
+}
+
+/// A run of which nothing is known beforehand.
+struct Unprepared<F>(F);
+
+impl<F: FnOnce() -> Record + Send> Run for Unprepared<F> {
+    fn run(self: Box<Self>) -> Record {
+        (self.0)()
+    }
+}

@@ -1,0 +1,102 @@
+//! One robot: its data and its functions, with the runs compiled for them.
+
+use armgen_runtime::nalgebra::SVector;
+use armgen_runtime::robot::Regressor;
+use armgen_runtime::task::{Row, Task};
+
+use super::{path, Arm, Demonstration, Run, Unprepared};
+use crate::model::{Body, Experiment, Robot};
+
+/// A robot of `N` joints, `M` rows of the task and `P` parameters: `R` as described, `W` with other parameters.
+#[derive(Clone, Debug)]
+pub struct Instance<R, W, const N: usize, const M: usize, const P: usize> {
+    pub(super) robot: Robot,
+    pub(super) nominal: R,
+    pub(super) with_parameters: fn([f64; P]) -> W,
+    pub(super) task: Task<M>,
+}
+
+/// What the runs ask of a robot: what every implementation of an emitted module in f64 has.
+pub trait Functions<const N: usize, const P: usize>: Regressor<N, P, Real = f64> + Sync {}
+
+impl<R: Regressor<N, P, Real = f64> + Sync, const N: usize, const P: usize> Functions<N, P> for R {}
+
+/// Numbers of a file as an array. The reader has counted them; what would be missing is NaN, which every constructor refuses.
+pub(super) fn sized<const K: usize>(values: &[f64]) -> [f64; K] {
+    std::array::from_fn(|i| values.get(i).copied().unwrap_or(f64::NAN))
+}
+
+impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
+    /// The robot `nominal`, of which `robot` is the data and `task` the rows of its task by their indices.
+    ///
+    /// # Panics
+    /// Where the rows of the task are none: the description of an emitted robot has been checked.
+    pub fn new(robot: Robot, task: [usize; M], nominal: R, with_parameters: fn([f64; P]) -> W) -> Self {
+        let task = Task::from_indices(task).expect("the description has been checked: no row stands twice");
+        let robot = Robot { task: task.rows().to_vec(), ..robot };
+        Instance { robot, nominal, with_parameters, task }
+    }
+
+    /// Joint variables of a file.
+    pub(super) fn joints(values: &[f64]) -> SVector<f64, N> {
+        sized(values).into()
+    }
+}
+
+/// The task of rows that have been checked.
+pub(super) fn task_of<const K: usize>(rows: &[Row]) -> Option<Task<K>> {
+    Task::new(<[Row; K]>::try_from(rows).ok()?).ok()
+}
+
+impl<R, W, const N: usize, const M: usize, const P: usize> Arm for Instance<R, W, N, M, P>
+where
+    R: Functions<N, P>,
+    W: Functions<N, P>,
+{
+    fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn prepare<'a>(&'a self, experiment: &'a Experiment) -> Result<Box<dyn Run + 'a>, String> {
+        let body = &experiment.body;
+        Ok(match body {
+            Body::Postures(postures) => Box::new(Unprepared(move || self.judge_postures(postures, body.numbers(&self.robot)))),
+            Body::Path(sampling) => Box::new(Unprepared(move || path::run(sampling, body, &self.robot))),
+            Body::Clik(run) => Box::new(Unprepared(move || self.follow(run, body))),
+            Body::Control(run) => self.prepare_control(run, experiment)?,
+        })
+    }
+
+    fn demonstrate(&self) -> Result<Demonstration, String> {
+        self.run_demonstration()
+    }
+}
+
+/// The robot of an emitted module, given by the path of the module, with its implementation of the traits of the runtime beside it.
+#[macro_export]
+macro_rules! instance {
+    ($($module:ident)::+) => {{
+        use $($module)::+ as emitted;
+        let joint = |i: usize| $crate::model::Joint {
+            name: emitted::JOINT_NAMES[i].into(),
+            revolute: emitted::JOINT_IS_REVOLUTE[i],
+            position: emitted::POSITION_LIMITS[i],
+            velocity: emitted::VELOCITY_LIMITS[i],
+            effort: emitted::EFFORT_LIMITS[i],
+        };
+        let parameter =
+            |(name, nominal): (&&str, f64)| $crate::model::Parameter { name: (*name).into(), nominal };
+        let robot = $crate::model::Robot {
+            name: emitted::NAME.into(),
+            joints: (0..emitted::DOF).map(joint).collect(),
+            parameters: emitted::PARAMETER_NAMES.iter().zip(emitted::NOMINAL_PARAMETERS).map(parameter).collect(),
+            task: Vec::new(),
+        };
+        $crate::run::Instance::<_, _, { emitted::DOF }, { emitted::TASK_ROWS }, { emitted::PARAMETERS }>::new(
+            robot,
+            emitted::TASK,
+            emitted::Nominal,
+            |parameters| emitted::WithParameters { parameters },
+        )
+    }};
+}

@@ -1,0 +1,151 @@
+//! Every experiment of the repository gives what is expected, on the robot that it is written for.
+
+mod common;
+
+use armgen_experiments::campaign::{in_parallel, Job};
+use armgen_experiments::model::{Experiment, JointQuantity, LawKind, Quantity};
+use armgen_experiments::run::Arm;
+use common::{experiment, files, folder, text_of};
+
+/// How many experiments and expectations there are: none gets lost unseen.
+const EXPERIMENTS: usize = 25;
+const EXPECTATIONS: usize = 189;
+
+fn all(arm: &dyn Arm) -> Vec<Experiment> {
+    let names = files(&folder());
+    names.iter().map(|name| experiment(name, &text_of(&folder(), name), arm.robot())).collect()
+}
+
+#[test]
+fn every_experiment_gives_what_is_expected() {
+    let arm = armgen_experiment_tests::scara();
+    let experiments = all(&arm);
+    assert_eq!(experiments.len(), EXPERIMENTS);
+    assert_eq!(experiments.iter().map(|e| e.expect.len()).sum::<usize>(), EXPECTATIONS);
+    assert!(experiments.iter().all(|e| !e.expect.is_empty()));
+    let mut jobs: Vec<Job<'_>> = experiments.iter().map(|experiment| Job::new(experiment, &arm)).collect();
+    in_parallel(&mut jobs, Job::prepare);
+    for job in &jobs {
+        let name = &job.experiment().name;
+        let unstable = name.ends_with("_delayed") || name.starts_with("adaptive_reported");
+        assert!(job.record().log().is_empty(), "{name} has not moved yet");
+        assert_eq!(job.warning().is_some(), unstable, "{name}: {:?}", job.warning());
+    }
+    in_parallel(&mut jobs, Job::run);
+    let mut lines = 0;
+    for job in &jobs {
+        let name = &job.experiment().name;
+        for line in job.lines() {
+            assert!(line.met, "{name}: {} is {}, expected {}", line.what, line.found, line.expected);
+            lines += 1;
+        }
+        assert!(!job.figures().is_empty(), "{name} is drawn");
+        for (file, text) in job.figures() {
+            assert!(file.starts_with(name.as_str()) && text.starts_with("<svg") && !text.contains("NaN"), "{file}");
+        }
+    }
+    assert_eq!(lines, EXPECTATIONS);
+}
+
+#[test]
+fn the_reported_adaptive_gains_are_called_unstable_before_anything_moves() {
+    let arm = armgen_experiment_tests::scara();
+    let experiment = experiment("adaptive_reported.yaml", &text_of(&folder(), "adaptive_reported.yaml"), arm.robot());
+    let mut job = Job::new(&experiment, &arm);
+    job.prepare();
+    assert!(job.record().log().is_empty());
+    assert_eq!(
+        job.warning().as_deref(),
+        Some("unstable when sampled at 1 ms: spectral radius 7.19; a period up to 0.2444 ms would hold")
+    );
+}
+
+/// `damping` and `threshold` mean what the page says: above the threshold the law is the inverse, below it errors stay.
+#[test]
+fn damping_begins_below_the_threshold() {
+    let arm = armgen_experiment_tests::scara();
+    let text = text_of(&folder(), "clik_inverse.yaml").replace("duration: 20", "duration: 2").replace("[0, 20]", "[0, 2]");
+    let run = |law: &str| {
+        let text = text.replace("algorithm: inverse", &format!("algorithm: {law}"));
+        let experiment = experiment("clik_inverse.yaml", &text, arm.robot());
+        let mut job = Job::new(&experiment, &arm);
+        job.run();
+        let errors = arm.robot().task.iter().flat_map(|row| job.record().values(Quantity::TaskError(*row)));
+        let largest = errors.map(f64::abs).reduce(f64::max).expect("there are samples");
+        assert!(largest > 0.0);
+        largest
+    };
+    let damped =
+        |damping: f64, threshold: f64| run(&format!("damped_least_squares\n  damping: {damping}\n  threshold: {threshold}"));
+    // w is 0.22 at the start.
+    let (inverse, above, below) = (run("inverse"), damped(0.5, 1e-3), damped(0.5, 0.5));
+    assert_eq!(inverse, above);
+    assert!(below > 10.0 * inverse, "{below} {inverse}");
+}
+
+#[test]
+fn what_is_not_as_expected_is_outside() {
+    let arm = armgen_experiment_tests::scara();
+    let text = text_of(&folder(), "manipulability.yaml");
+    let wrong = text.replacen("value: 0.25, tolerance: 6e-13", "value: 0.26, tolerance: 6e-13", 1);
+    let experiment = experiment("manipulability.yaml", &wrong, arm.robot());
+    let mut job = Job::new(&experiment, &arm);
+    job.run();
+    let (lines, met) = (job.lines(), job.lines().iter().filter(|line| line.met).count());
+    assert_eq!((lines.len(), met), (33, 32));
+}
+
+/// A law gives its torque whatever it is, and every gain that it says that it needs is used.
+#[test]
+fn every_law_moves_the_arm() {
+    let arm = armgen_experiment_tests::scara();
+    let head = text_of(&folder(), "adaptive_a.yaml");
+    let (head, _) = head.split_once("controller:").expect("a controller");
+    let head = head.replace("duration: 22", "duration: 0.2");
+    let gains = |kind: LawKind| {
+        match kind {
+        LawKind::PdGravity => "k_p: [1e5, 1e5, 1e5, 1e5]\n  k_d: [1e3, 1e3, 1e3, 1e3]",
+        LawKind::InverseDynamics => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]",
+        LawKind::Robust => {
+            "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  p_position: [1, 1, 1, 1]\n  p_velocity: [1, 1, 1, 1]\n  rho: 1\n  epsilon: 0.2"
+        }
+        LawKind::Adaptive => {
+            "lambda: [100, 100, 100, 100]\n  k_d: [1000, 500, 2000, 100]\n  k_pi: [10, 10, 0.01, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10]"
+        }
+        LawKind::OperationalSpace => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  k_i: [0, 0, 0, 0]",
+    }
+    };
+    for kind in LawKind::ALL {
+        let name = kind.name();
+        let text = |more: &str| {
+            let gains = gains(kind);
+            let expect = "expect:\n  - {quantity: eq_quill, peak: [0, 0.2], at_most: 0.1}\n";
+            format!("{head}controller:\n  law: {name}\n  {gains}\n{more}{expect}")
+        };
+        let run = |text: &str| {
+            let experiment = experiment("law.yaml", text, arm.robot());
+            let mut job = Job::new(&experiment, &arm);
+            job.run();
+            assert!(job.lines().iter().all(|line| line.met), "{name}: {:?}", job.lines());
+            assert_eq!(job.record().log().len(), 201, "{name}");
+            job.record().values(Quantity::Joint(JointQuantity::Effort, 2))
+        };
+        let free = run(&text(""));
+        assert!(free.iter().all(|tau| tau.is_finite()));
+        let limited = run(&text("  torque_limits: [1e3, 1e3, 120, 1e3]\n"));
+        assert!(limited.iter().all(|tau| tau.abs() <= 120.0), "{name} keeps the limit");
+        assert!(free.iter().any(|tau| tau.abs() > 120.0), "{name} would not without");
+    }
+}
+
+#[test]
+fn any_arm_can_show_itself() {
+    let arm = armgen_experiment_tests::scara();
+    let demonstration = arm.demonstrate().expect("it can be run");
+    assert_eq!(demonstration.fault, None);
+    assert!(demonstration.summary.iter().any(|line| line.contains("spectral radius")), "{:?}", demonstration.summary);
+    let log = demonstration.record.log();
+    assert!(log.len() > 1000 && log.rows().flatten().all(|x| x.is_finite()));
+    let figure = armgen_experiments::draw::demonstration(&demonstration.record, arm.robot());
+    assert!(figure.starts_with("<svg") && !figure.contains("NaN"));
+}
