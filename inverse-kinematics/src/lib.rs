@@ -19,6 +19,16 @@ macro_rules! blocks {
         include!("blocks/two_links.rs");
         include!("blocks/three_turns.rs");
         include!("blocks/circle_roots.rs");
+        include!("blocks/branches.rs");
+        include!("blocks/regional.rs");
+        include!("blocks/regional_one_prismatic.rs");
+        include!("blocks/regional_prismatic.rs");
+        include!("blocks/parallel_axes.rs");
+        include!("blocks/spherical_triple.rs");
+        include!("blocks/parallel_turns.rs");
+        include!("blocks/three_prismatic.rs");
+        include!("blocks/closure.rs");
+        include!("blocks/determinant.rs");
     };
 }
 

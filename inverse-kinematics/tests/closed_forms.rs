@@ -30,7 +30,7 @@ in_both_scalars! {
         for _ in 0..2000 {
             let (a, b, d) = (real(random, -1.0, 1.0), real(random, -1.0, 1.0), real(random, -1.5, 1.5));
             let r = length(a, b);
-            let found = line_and_circle(a, b, d, FEW);
+            let found = line_and_circle(a, b, d, FEW, 0.0);
             if (r - d.abs()).abs() < 1e-3 {
                 continue;
             }
@@ -52,7 +52,7 @@ in_both_scalars! {
     fn line_and_circle_keeps_its_digits_near_contact() {
         for k in 0..=16 {
             let d = 1.0 - tenth(k);
-            let found = line_and_circle(1.0, 0.0, d, 4.0 * UNIT_ROUNDOFF);
+            let found = line_and_circle(1.0, 0.0, d, 4.0 * UNIT_ROUNDOFF, 0.0);
             // 1 - d is exact.
             let s = ((1.0 - d) * (1.0 + d)).sqrt();
             if 1.0 - d > 4.0 * UNIT_ROUNDOFF {
@@ -62,7 +62,7 @@ in_both_scalars! {
             } else {
                 assert_eq!((found.count, found.double, found.points[0]), (1, true, [1.0, 0.0]), "10^-{k}");
             }
-            let beyond = line_and_circle(1.0, 0.0, -1.0 - tenth(k), 4.0 * UNIT_ROUNDOFF);
+            let beyond = line_and_circle(1.0, 0.0, -1.0 - tenth(k), 4.0 * UNIT_ROUNDOFF, 0.0);
             if tenth(k) > 8.0 * UNIT_ROUNDOFF {
                 assert_eq!(beyond.count, 0);
                 assert!((beyond.miss - tenth(k)).abs() <= 2.0 * UNIT_ROUNDOFF);
@@ -74,14 +74,14 @@ in_both_scalars! {
 
     #[test]
     fn line_and_circle_without_a_line() {
-        let found = line_and_circle(0.0, 0.0, 0.0, FEW);
+        let found = line_and_circle(0.0, 0.0, 0.0, FEW, 0.0);
         assert_eq!((found.count, found.free, found.double), (1, true, false));
-        let found = line_and_circle(0.0, FEW / 2.0, -FEW / 2.0, FEW);
+        let found = line_and_circle(0.0, FEW / 2.0, -FEW / 2.0, FEW, 0.0);
         assert_eq!((found.count, found.free), (1, true));
-        let found = line_and_circle(0.0, 0.0, 0.25, FEW);
+        let found = line_and_circle(0.0, 0.0, 0.25, FEW, 0.0);
         assert_eq!((found.count, found.free, found.miss), (0, false, 0.25));
         for (a, b, d) in [(Real::NAN, 0.0, 0.0), (1.0, Real::NAN, 0.0), (1.0, 0.0, Real::NAN), (0.0, 0.0, Real::INFINITY)] {
-            assert_eq!(line_and_circle(a, b, d, FEW).count, 0);
+            assert_eq!(line_and_circle(a, b, d, FEW, 0.0).count, 0);
         }
     }
 
@@ -167,7 +167,7 @@ in_both_scalars! {
             let [x, y] = point(random.angle());
             let distance = real(random, 0.0, 2.2);
             let p = [distance * x, distance * y];
-            let found = two_links(l1, l2, p, FEW);
+            let found = two_links(l1, l2, p, FEW, 0.0);
             let (outer, inner) = (l1 + l2 - distance, distance - (l1 - l2).abs());
             if outer.abs() < 1e-3 || inner.abs() < 1e-3 {
                 continue;
@@ -188,7 +188,7 @@ in_both_scalars! {
         for k in 0..=16 {
             for (l1, l2, edge) in [(0.5, 0.25, 0.75), (0.75, 0.25, 0.5)] {
                 let inside = if edge == 0.75 { edge - 0.25 * tenth(k) } else { edge + 0.25 * tenth(k) };
-                let found = two_links(l1, l2, [0.0, inside], 2.0 * UNIT_ROUNDOFF);
+                let found = two_links(l1, l2, [0.0, inside], 2.0 * UNIT_ROUNDOFF, 0.0);
                 let gap = (inside - edge).abs();
                 if gap > 2.0 * UNIT_ROUNDOFF {
                     // The product of four exact differences.
@@ -205,14 +205,14 @@ in_both_scalars! {
 
     #[test]
     fn two_links_without_a_length() {
-        let found = two_links(0.5, 0.5, [0.0, 0.0], FEW);
+        let found = two_links(0.5, 0.5, [0.0, 0.0], FEW, 0.0);
         assert_eq!((found.count, found.shoulder_free, found.elbow[0][0]), (1, true, -1.0));
-        let found = two_links(0.5, 0.0, [0.0, 0.5], FEW);
+        let found = two_links(0.5, 0.0, [0.0, 0.5], FEW, 0.0);
         assert!(found.count == 1 && found.elbow_free && !found.shoulder_free);
         assert!((found.shoulder[0][1] - 1.0).abs() <= FEW);
-        assert_eq!(two_links(0.5, 0.0, [0.0, 0.75], FEW).miss, 0.25);
-        assert_eq!(two_links(0.5, 0.25, [0.0, 0.0], FEW).miss, 0.25);
-        assert_eq!(two_links(0.5, 0.25, [Real::NAN, 0.0], FEW).count, 0);
+        assert_eq!(two_links(0.5, 0.0, [0.0, 0.75], FEW, 0.0).miss, 0.25);
+        assert_eq!(two_links(0.5, 0.25, [0.0, 0.0], FEW, 0.0).miss, 0.25);
+        assert_eq!(two_links(0.5, 0.25, [Real::NAN, 0.0], FEW, 0.0).count, 0);
     }
 
     fn about_x([c, s]: [Real; 2]) -> Frame {
@@ -248,7 +248,7 @@ in_both_scalars! {
             };
             let t = [point(random.angle()), point(random.angle()), point(random.angle())];
             let r = rotation(&t, alpha, beta);
-            let found = three_turns(&r, alpha, beta, FEW);
+            let found = three_turns(&r, alpha, beta, FEW, 0.0);
             assert_eq!(found.count, if found.double { 1 } else { 2 });
             assert!(!found.double || t[1][1].abs() < 8.0 * FEW.sqrt(), "{alpha:?} {beta:?} {t:?}");
             let near = |x: &[[Real; 2]; 3]| x.iter().flatten().zip(t.iter().flatten()).all(|(x, t)| (x - t).abs() < 16.0 * FEW.sqrt());
@@ -275,7 +275,7 @@ in_both_scalars! {
                     let t = [point(random.angle()), t2, point(random.angle())];
                     let r = rotation(&t, alpha, beta);
                     let noise = 4.0 * FEW;
-                    let found = three_turns(&r, alpha, beta, noise);
+                    let found = three_turns(&r, alpha, beta, noise, 0.0);
                     assert!(found.count > 0);
                     assert_eq!(found.count == 2, !(found.double || found.free));
                     let parallel = dot(cross(column(&r, 2), [0.0, 0.0, 1.0]), cross(column(&r, 2), [0.0, 0.0, 1.0])).sqrt() <= noise;
@@ -301,17 +301,17 @@ in_both_scalars! {
         let (alpha, beta) = (point(0.5), point(0.25));
         // The axes stand at 0.25 to 0.75 rad to each other.
         let r = |angle: f64| about_z(point(1.0), &about_x(point(angle)));
-        assert_eq!(three_turns(&r(0.5), alpha, beta, FEW).count, 2);
+        assert_eq!(three_turns(&r(0.5), alpha, beta, FEW, 0.0).count, 2);
         for (angle, limit) in [(0.125f64, 0.25f64), (1.0, 0.75)] {
-            let found = three_turns(&r(angle), alpha, beta, FEW);
+            let found = three_turns(&r(angle), alpha, beta, FEW, 0.0);
             assert_eq!(found.count, 0);
             assert!((found.miss - (angle.cos() - limit.cos()).abs() as Real).abs() <= FEW);
         }
         for edge in [0.25f64, 0.75] {
-            let found = three_turns(&r(edge), alpha, beta, FEW);
+            let found = three_turns(&r(edge), alpha, beta, FEW, 0.0);
             assert_eq!((found.count, found.double, found.free), (1, true, false));
             assert!(defect(&rotation(&found.turns[0], alpha, beta), &r(edge)) <= FEW);
         }
-        assert_eq!(three_turns(&[[Real::NAN; 4]; 3], alpha, beta, FEW).count, 0);
+        assert_eq!(three_turns(&[[Real::NAN; 4]; 3], alpha, beta, FEW, 0.0).count, 0);
     }
 }

@@ -15,6 +15,8 @@ pub struct CircleRoot {
     pub s: Real,
     /// A place at which |f| is so small that rounding decides between two roots and none; it stands for both.
     pub double: bool,
+    /// How far the noise may have moved it, rad.
+    pub error: Real,
 }
 
 /// The roots that [`circle_roots`] finds.
@@ -28,10 +30,15 @@ pub struct CircleRoots<const M: usize> {
     pub near: bool,
     /// The polynomial vanishes: all amplitudes are within the noise. No root is given.
     pub free: bool,
+    /// Minima of |f| that are not roots, but nearly: as flat as between two roots 2 [`SHALLOW`] apart. Rounding of what f
+    /// was computed from may make roots of them.
+    pub shallow: [CircleRoot; 4],
+    /// How many of `shallow` count.
+    pub shallow_count: usize,
     /// How often the function itself was asked for on an arc.
     pub anew: usize,
-    /// Within what the first and the last root are one with what is found beside them.
-    apart: [Real; 2],
+    /// Of the first and the last root: within what they are one with what is found beside them, and whether f rises there.
+    ends: [(Real, bool); 2],
 }
 
 /// How often one search may halve an arc, and how often it may ask for the function itself on an arc: many times what generic polynomials of
@@ -214,36 +221,67 @@ fn minimum(t: &[Real; 9]) -> Real {
 
 impl<const M: usize> CircleRoots<M> {
     /// Adds a root unless it is one that has been found: roots come in order along the circle, so only the last and the first can be it.
-    fn add(&mut self, root: CircleRoot, apart: Real) {
+    /// Two crossings that are one to rounding, up and down, are a double root.
+    fn add(&mut self, root: CircleRoot, apart: Real, rising: bool) {
         // Onto the circle: turn by turn it has been left by some rounding.
         let over = 1.5 - 0.5 * (root.c * root.c + root.s * root.s);
         let root = CircleRoot { c: root.c * over, s: root.s * over, ..root };
-        let same = |known: &CircleRoot, width: Real| (known.c - root.c).abs() + (known.s - root.s).abs() <= width;
-        let [of_first, of_last] = self.apart;
-        if let Some(last) = self.all.get_mut(self.count.wrapping_sub(1)) {
-            if same(last, apart.max(of_last)) {
-                last.double |= root.double;
-                self.apart[1] = apart.max(of_last);
+        self.near |= root.double;
+        let [first, last] = self.ends;
+        let places = [(self.count.wrapping_sub(1), last), (0, first)];
+        for (place, (known_apart, known_rising)) in places.into_iter().take(self.count) {
+            let width = apart.max(known_apart);
+            let Some(known) = self.all.get_mut(place) else { continue };
+            if (known.c - root.c).abs() + (known.s - root.s).abs() <= width {
+                known.double |= root.double || known_rising != rising;
+                self.near |= known.double;
+                self.ends[1].0 = width;
                 return;
-            }
-        }
-        if self.count > 1 {
-            if let Some(first) = self.all.first_mut() {
-                if same(first, apart.max(of_first)) {
-                    first.double |= root.double;
-                    return;
-                }
             }
         }
         if let Some(slot) = self.all.get_mut(self.count) {
             *slot = root;
+            self.ends[1] = (apart, rising);
             if self.count == 0 {
-                self.apart[0] = apart;
+                self.ends[0] = self.ends[1];
             }
-            self.apart[1] = apart;
             self.count += 1;
         } else {
             self.near = true;
+        }
+    }
+}
+
+/// What is found in an interval.
+enum Kind {
+    /// A root, at which the function rises or falls.
+    Crossing { rising: bool },
+    /// Two roots or none.
+    Contact,
+    /// No root, but nearly.
+    Shallow,
+}
+
+impl<const M: usize> CircleRoots<M> {
+    /// Adds what was found at (c, s), right to `apart` rad.
+    fn add_kind(&mut self, c: Real, s: Real, apart: Real, kind: Kind) {
+        let root = CircleRoot { c, s, double: !matches!(kind, Kind::Crossing { .. }), error: apart };
+        match kind {
+            Kind::Crossing { rising } => self.add(root, apart, rising),
+            Kind::Contact => self.add(root, apart, false),
+            Kind::Shallow => {
+                let known = self.shallow.iter().take(self.shallow_count);
+                let width = 8.0 * SHALLOW;
+                if known.into_iter().any(|known| (known.c - c).abs() + (known.s - s).abs() <= width) {
+                    return;
+                }
+                if let Some(slot) = self.shallow.get_mut(self.shallow_count) {
+                    *slot = root;
+                    self.shallow_count += 1;
+                } else {
+                    self.near = true;
+                }
+            }
         }
     }
 }
@@ -257,6 +295,8 @@ impl<const M: usize> CircleRoots<M> {
 /// - `exact(c, s)`: f itself, right relative to its largest value nearby; asked for at nine Chebyshev points of an arc of half width
 ///   <= pi/256 on which |f| stays below [`WEAK`] times the noise. There the noise is 1e-13 of the largest value (1000 u), and the
 ///   interpolation's remainder sum_k .. (kh)^9/(9! 2^8).
+/// - `floor`: how far rounding of what f is computed from may move f, wherever it is: added to the noise of `exact`. Where nobody knows it is 0,
+///   and `shallow` lists the places that may be roots all the same.
 /// - Two roots nearer than 16 sqrt(u) rad, or a minimum of |f| as flat as that: one root, `double`, and `near`.
 /// - All amplitudes within the noise, f = 0 included: `free`. A coefficient that is not finite: `near` without a root.
 /// - At most `HALVINGS` arcs are halved and `ANEW` interpolated; where that ends the search it says `near`.
@@ -264,10 +304,20 @@ pub fn circle_roots<const N: usize, const M: usize>(
     a: &[Real; N],
     b: &[Real; N],
     noise: Real,
+    floor: Real,
     mut exact: impl FnMut(Real, Real) -> Real,
 ) -> CircleRoots<M> {
-    let root = CircleRoot { c: 1.0, s: 0.0, double: false };
-    let mut found = CircleRoots { count: 0, all: [root; M], near: false, free: false, anew: 0, apart: [0.0; 2] };
+    let root = CircleRoot { c: 1.0, s: 0.0, double: false, error: 0.0 };
+    let mut found = CircleRoots {
+        count: 0,
+        all: [root; M],
+        near: false,
+        free: false,
+        shallow: [root; 4],
+        shallow_count: 0,
+        anew: 0,
+        ends: [(0.0, false); 2],
+    };
     let mut amplitude = 0.0;
     for (k, (a, b)) in a.iter().zip(b).enumerate() {
         amplitude += a.abs() + if k == 0 { 0.0 } else { b.abs() };
@@ -312,7 +362,13 @@ pub fn circle_roots<const N: usize, const M: usize>(
                 (c * cx - s * sx, s * cx + c * sx)
             };
             match judge(&t, remainder + noise) {
-                Interval::Empty => continue,
+                Interval::Empty => {
+                    if h <= SHALLOW {
+                        let (c, s) = turned(minimum(&t).clamp(-1.0, 1.0));
+                        found.add_kind(c, s, h, Kind::Shallow);
+                    }
+                    continue;
+                }
                 _ if largest(&t) < WEAK * noise && h <= 0.0123 && found.anew < ANEW => {
                     found.anew += 1;
                     let mut values = [0.0; 9];
@@ -325,11 +381,11 @@ pub fn circle_roots<const N: usize, const M: usize>(
                     let remainder = remainder / 256.0;
                     if remainder <= sqrt(UNIT_ROUNDOFF) * size || h <= shortest {
                         let t = interpolation(&values);
-                        let error = 1000.0 * UNIT_ROUNDOFF * size + remainder;
-                        roots_of_interpolation(&t, error, shortest / h, &mut halvings, &mut |x, width, double| {
+                        let error = 1000.0 * UNIT_ROUNDOFF * size + remainder + floor;
+                        let widths = [shortest / h, SHALLOW / h];
+                        roots_of_interpolation(&t, error, widths, &mut halvings, &mut |x, width, kind| {
                             let (c, s) = turned(x);
-                            found.near |= double;
-                            found.add(CircleRoot { c, s, double }, width * h + 8.0 * UNIT_ROUNDOFF);
+                            found.add_kind(c, s, width * h + 8.0 * UNIT_ROUNDOFF, kind);
                         });
                         continue;
                     }
@@ -350,15 +406,15 @@ pub fn circle_roots<const N: usize, const M: usize>(
                         let (cx, sx) = small_turn((-value / slope).clamp(-h, h));
                         (c, s) = (c * cx - s * sx, s * cx + c * sx);
                     }
-                    found.add(CircleRoot { c, s, double: false }, 4.0 * slack / slope.abs());
+                    let apart = 4.0 * slack / slope.abs();
+                    found.add_kind(c, s, apart, Kind::Crossing { rising: slope > 0.0 });
                     continue;
                 }
                 Interval::Open => {}
             }
             if h <= shortest || halvings == 0 || open + 2 > arcs.len() {
                 let (c, s) = turned(minimum(&t).clamp(-1.0, 1.0));
-                found.near = true;
-                found.add(CircleRoot { c, s, double: true }, 4.0 * h);
+                found.add_kind(c, s, 4.0 * h, Kind::Contact);
                 continue;
             }
             halvings -= 1;
@@ -368,6 +424,8 @@ pub fn circle_roots<const N: usize, const M: usize>(
             open += 2;
         }
     }
+    // They are even in number, each double one counted twice.
+    found.near |= found.count % 2 == 1;
     found
 }
 
@@ -387,14 +445,14 @@ fn interpolation(values: &[Real; 9]) -> [Real; 9] {
     t
 }
 
-/// The roots in [-1, 1] of a polynomial that is known up to `error`, handed to `found` with the width within which they are one, and
-/// whether they stand for two. Intervals are not halved below the half width `shortest`.
+/// The roots in [-1, 1] of a polynomial that is known up to `error`, handed to `found` with the width within which they are one. Intervals are
+/// not halved below the half width `shortest`; those without a root below `shallow` are next to a shallow minimum.
 fn roots_of_interpolation(
     t: &[Real; 9],
     error: Real,
-    shortest: Real,
+    [shortest, shallow]: [Real; 2],
     halvings: &mut usize,
-    found: &mut impl FnMut(Real, Real, bool),
+    found: &mut impl FnMut(Real, Real, Kind),
 ) {
     let mut intervals = [(0.0, 0.0); 32];
     let mut open = 1;
@@ -415,18 +473,23 @@ fn roots_of_interpolation(
             power *= width;
         }
         match judge(&local, error) {
-            Interval::Empty => continue,
+            Interval::Empty => {
+                if width <= shallow {
+                    found(x + width * minimum(&local).clamp(-1.0, 1.0), width, Kind::Shallow);
+                }
+                continue;
+            }
             Interval::Monotone => {
                 let (low, high) = (value_and_slope(&local, -1.0).0, value_and_slope(&local, 1.0).0);
                 if (low > 0.0) != (high > 0.0) || low.abs() <= error || high.abs() <= error {
-                    found(x + width * root_of_monotone(&local), 4.0 * width * error / local[1].abs(), false);
+                    found(x + width * root_of_monotone(&local), 4.0 * width * error / local[1].abs(), Kind::Crossing { rising: local[1] > 0.0 });
                 }
                 continue;
             }
             Interval::Open => {}
         }
         if width <= shortest || *halvings == 0 || open + 2 > intervals.len() {
-            found(x + width * minimum(&local).clamp(-1.0, 1.0), 4.0 * width, true);
+            found(x + width * minimum(&local).clamp(-1.0, 1.0), 4.0 * width, Kind::Contact);
             continue;
         }
         *halvings -= 1;

@@ -13,6 +13,8 @@ pub struct LineAndCircle {
     pub free: bool,
     /// The length by which line and circle miss each other, in the unit of a, b, d; 0 where there is a point.
     pub miss: Real,
+    /// How far rounding may have moved the points, rad.
+    pub error: Real,
 }
 
 /// Block 1, line and circle: a c + b s = d with c² + s² = 1.
@@ -21,31 +23,35 @@ pub struct LineAndCircle {
 /// (Paden 1986, subproblem 3; Elias, Wen 2025, subproblems 3 and 4).
 /// D is the product, not r² - d², so that its relative error stays small down to where r - |d| is `noise`.
 ///
-/// - `noise`: how far rounding may have moved d, a and b, >= 0. Caller's units are those of d.
+/// - `noise`: how far rounding may have moved d, a and b, >= 0, in the unit of d. `doubt`: how far d may be off besides, by errors of the angles
+///   that it was computed from.
 /// - r <= noise: with |d| <= noise every angle is a solution (`free`), else none, and the line misses by |d|.
-/// - |r - |d|| <= noise: `double`, the point of contact; the root w, which is below sqrt(2 noise/r), is dropped.
+/// - |r - |d|| <= noise + doubt: `double`, the point of contact; the root w, which is below sqrt(2 (noise + doubt)/r), is dropped.
 /// - r < |d|: none; `miss` is |d| - r. NaN in any argument: none.
 #[inline]
-pub fn line_and_circle(a: Real, b: Real, d: Real, noise: Real) -> LineAndCircle {
-    let mut found = LineAndCircle { count: 0, points: [[1.0, 0.0]; 2], double: false, free: false, miss: 0.0 };
+pub fn line_and_circle(a: Real, b: Real, d: Real, noise: Real, doubt: Real) -> LineAndCircle {
+    let mut found = LineAndCircle { count: 0, points: [[1.0, 0.0]; 2], double: false, free: false, miss: 0.0, error: 0.0 };
     let r = length(a, b);
     let gap = r - d.abs();
-    if gap > noise && r > noise {
+    let slack = noise + doubt;
+    if gap > slack && r > noise {
         let over = 1.0 / r;
         let (x, y) = (a * over, b * over);
         let along = d * over;
-        let w = sqrt(gap * (r + d.abs())) * over;
+        let w = sqrt(gap * (r + d.abs()));
+        found.error = slack / w;
+        let w = w * over;
         found.count = 2;
         found.points = [[x * along - y * w, y * along + x * w], [x * along + y * w, y * along - x * w]];
+    } else if r > noise && gap.abs() <= slack {
+        found.count = 1;
+        found.double = true;
+        found.error = sqrt(2.0 * slack / r);
+        let over = if d < 0.0 { -1.0 / r } else { 1.0 / r };
+        found.points = [[a * over, b * over]; 2];
     } else if gap.abs() <= noise {
         found.count = 1;
-        if r > noise {
-            let over = if d < 0.0 { -1.0 / r } else { 1.0 / r };
-            found.points = [[a * over, b * over]; 2];
-            found.double = true;
-        } else {
-            found.free = true;
-        }
+        found.free = true;
     } else {
         found.miss = -gap;
     }

@@ -10,6 +10,10 @@ pub const UNIT_ROUNDOFF: Real = 0.5 * Real::EPSILON;
 /// About u^-0.38: roots of a polynomial larger than that keep more than a third of the digits.
 pub const WEAK: Real = 1e3;
 
+/// An arc below this half width, rad, that had to be halved so far and is then seen to have no root is next to a minimum that nearly is one.
+/// Rounding of a pose by u moves a double root by sqrt(u) times a factor that depends on the arm and is seldom beyond 100.
+pub const SHALLOW: Real = 4e-3;
+
 /// The square root, correctly rounded.
 #[inline]
 pub fn sqrt(x: Real) -> Real {

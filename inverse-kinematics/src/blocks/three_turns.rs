@@ -24,10 +24,11 @@ pub struct ThreeTurns {
 /// t1 then takes the third column of Rx(alpha) Rz(t2) Rx(beta) to that of R, and t3 is what is left of R, so that R is met even
 /// where t1 and t3 are badly determined.
 ///
-/// - `r`: its rotation is R. `alpha`, `beta`: (cos, sin). `noise`: how far rounding may have moved R's entries.
+/// - `r`: its rotation is R. `alpha`, `beta`: (cos, sin). `noise`: how far rounding may have moved R's entries. `doubt`: how far they may be
+///   off besides, by errors of angles that they were computed from; what misses by no more is met at the end of the range.
 /// - h <= noise with axes that can be parallel: `free`. D1 or D2 within its noise of 0: `double`. Negative: none, `miss` = -D.
 #[inline]
-pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real) -> ThreeTurns {
+pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, doubt: Real) -> ThreeTurns {
     let mut found = ThreeTurns { count: 0, turns: [[[1.0, 0.0]; 3]; 2], double: false, free: false, miss: 0.0 };
     let ([ca, sa], [cb, sb]) = (alpha, beta);
     let (z, h) = (r[2][2], length(r[0][2], r[1][2]));
@@ -45,6 +46,7 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real) ->
     let (d1, zero1) = difference(ca * cb + sa * sb, sa * cb - ca * sb);
     let (d2, zero2) = difference(ca * cb - sa * sb, sa * cb + ca * sb);
     let (d1, d2) = if sa * sb > 0.0 { (d1, -d2) } else { (-d1, d2) };
+    let (zero1, zero2) = (zero1 || (d1 < 0.0 && d1 >= -doubt), zero2 || (d2 < 0.0 && d2 >= -doubt));
     let double = zero1 || zero2;
     if !(double || (d1 > 0.0 && d2 > 0.0)) {
         found.miss = if d1 < d2 { -d1 } else { -d2 };

@@ -24,11 +24,12 @@ pub struct TwoLinks {
 /// cos q2 = (|p|² - l1² - l2²)/(2 l1 l2); (2 l1 l2 sin q2)² = (l1 + l2 - |p|)(l1 + l2 + |p|)(|p| - |l1 - l2|)(|p| + |l1 - l2|), a product,
 /// so that the sine keeps its digits near the stretched and the folded arm. q1 by block 2.
 ///
-/// - `noise`: how far rounding may have moved |p|, l1 and l2, >= 0.
-/// - |p| within noise of l1 + l2 or of |l1 - l2|: `double`.
+/// - `noise`: how far rounding may have moved |p|, l1 and l2, >= 0. `doubt`: how far p may be off besides, by errors of the angles that it was
+///   computed from.
+/// - |p| within noise + doubt of l1 + l2 or of |l1 - l2|: `double`.
 /// - p = 0 and l1 = l2: `shoulder_free`. l1 or l2 within noise of 0 and |p| right: `elbow_free`.
 #[inline]
-pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real) -> TwoLinks {
+pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real, doubt: Real) -> TwoLinks {
     let mut found = TwoLinks {
         count: 0,
         shoulder: [[1.0, 0.0]; 2],
@@ -40,17 +41,18 @@ pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real) -> TwoLinks {
     };
     let distance = length(p[0], p[1]);
     let (outer, inner) = (l1 + l2 - distance, distance - (l1 - l2).abs());
-    if !(outer >= -noise && inner >= -noise) {
+    let slack = noise + doubt;
+    if !(outer >= -slack && inner >= -slack) {
         found.miss = if outer < inner { -outer } else { -inner };
         return found;
     }
     if !(l1 > noise && l2 > noise) {
         found.count = 1;
         found.elbow_free = true;
-    } else if outer <= noise {
+    } else if outer <= slack {
         found.count = 1;
         found.double = true;
-    } else if inner <= noise {
+    } else if inner <= slack {
         found.count = 1;
         found.double = true;
         found.elbow = [[-1.0, 0.0]; 2];

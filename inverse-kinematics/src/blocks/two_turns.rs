@@ -44,7 +44,7 @@ pub fn two_turns(k1: Vector, p: Vector, k2: Vector, p2: Vector, noise: Real) -> 
         [v[0] - along * k[0], v[1] - along * k[1], v[2] - along * k[2]]
     };
     let (x2, y2) = (across(k2, p2), cross(k2, p2));
-    let line = line_and_circle(dot(k1, x2), dot(k1, y2), dot(k1, p) - dot(k1, k2) * dot(k2, p2), noise);
+    let line = line_and_circle(dot(k1, x2), dot(k1, y2), dot(k1, p) - dot(k1, k2) * dot(k2, p2), noise, 0.0);
     (found.double, found.second_free, found.miss) = (line.double, line.free, line.miss);
     let (x1, y1) = (across(k1, p), cross(k1, p));
     for (i, point) in line.points.iter().enumerate().take(line.count) {

@@ -1,5 +1,5 @@
 //! What several tests need: random numbers with a fixed seed, and each test in both scalars.
-#![allow(dead_code)]
+#![allow(dead_code, unreachable_pub)]
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 pub struct Random(pub u64);

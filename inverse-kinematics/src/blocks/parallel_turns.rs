@@ -1,0 +1,38 @@
+// Four joints whose revolute axes are all parallel.
+
+/// All revolute axes parallel (SCARA and planar arms): J1 L1 J2 L2 J3 L3 J4 L4 = 1, joint 4 revolute, the axes of all revolute joints of 1 to
+/// 3 parallel to that of joint 4, at most 2 of them.
+///
+/// The origin of joint 4 does not feel it: block 6, as `regional`, brings L3 0 to what L4⁻¹ makes of the origin; then q4 is what is left of
+/// the turn.
+///
+/// - `links`: L1 to L4. `prismatic`: the kinds of joints 1 to 3. `regional(L1, L2, w, p)`: the case of block 6 that holds for L1 and L2.
+/// - At most 4 solutions; `signs` of block 6. A rotation that a turn about axis 4 cannot complete: none, `miss` is the defect of the tilted
+///   entries (no unit), more than [`ROUNDING`].
+#[inline]
+pub fn parallel_turns(
+    links: &[Frame; 4],
+    prismatic: [bool; 3],
+    regional: impl Fn(&Frame, &Frame, Vector, Vector) -> Branches<3, 4>,
+) -> Branches<4, 4> {
+    let [l1, l2, l3, l4] = links;
+    let mut found = Branches::new();
+    let back = inverse(l4);
+    let arm = regional(l1, l2, column(l3, 3), column(&back, 3));
+    (found.miss, found.near) = (arm.miss, arm.near);
+    for branch in arm.found() {
+        let [q1, q2, q3] = branch.joints;
+        let [p1, p2, p3] = prismatic;
+        let chain = compose(l2, &joint_then(p3, q3, l3));
+        let chain = joint_then(p1, q1, &compose(l1, &joint_then(p2, q2, &chain)));
+        let rest = compose(&inverse(&chain), &back);
+        let tilt = length(length(rest[0][2], rest[1][2]), length(rest[2][0], rest[2][1]));
+        if !(tilt <= ROUNDING && rest[2][2] > 0.0) {
+            found.missed(if rest[2][2] > 0.0 { tilt } else { 1.0 - rest[2][2] });
+            continue;
+        }
+        let q4 = turn([1.0, 0.0], [rest[0][0], rest[1][0]], 0.0).value;
+        found.add(Branch { joints: [q1, q2, q3, q4], signs: branch.signs, double: branch.double, error: branch.error, free: branch.free });
+    }
+    found
+}

@@ -1,0 +1,175 @@
+//! Block 6 in all its cases, with made-up arms: the original posture is found, every posture reaches, counts are even.
+
+#[macro_use]
+mod common;
+
+in_both_scalars! {
+    fn real(random: &mut Random, low: f64, high: f64) -> Real {
+        random.between(low, high) as Real
+    }
+
+    fn point(angle: f64) -> [Real; 2] {
+        [angle.cos() as Real, angle.sin() as Real]
+    }
+
+    /// Tz(d) Tx(a) Rx(alpha).
+    fn link(d: Real, a: Real, [c, s]: [Real; 2]) -> Frame {
+        [[1.0, 0.0, 0.0, a], [0.0, c, -s, 0.0], [0.0, s, c, d]]
+    }
+
+    fn any(random: &mut Random) -> Frame {
+        let l = link(real(random, -0.5, 0.5), real(random, -0.5, 0.5), point(random.angle()));
+        let l = joint_then(false, point(random.angle()), &l);
+        compose(&l, &joint_then(false, point(random.angle()), &link(real(random, -0.3, 0.3), 0.0, point(random.angle()))))
+    }
+
+    /// A link whose axes are parallel, at right angles, or neither; lengths may be 0.
+    fn parallel(random: &mut Random) -> Frame {
+        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
+        link(real(random, -0.3, 0.3), sign * real(random, 0.2, 0.6), [if random.below(2) == 0 { 1.0 } else { -1.0 }, 0.0])
+    }
+
+    fn crossing(random: &mut Random) -> Frame {
+        let alpha = if random.below(2) == 0 { [0.0, 1.0] } else { point(random.between(0.4, 2.7)) };
+        link(real(random, -0.3, 0.3), 0.0, alpha)
+    }
+
+    fn square(random: &mut Random) -> Frame {
+        link(real(random, -0.3, 0.3), real(random, -0.3, 0.3), [0.0, if random.below(2) == 0 { 1.0 } else { -1.0 }])
+    }
+
+    fn vector(random: &mut Random) -> Vector {
+        [real(random, -0.5, 0.5), real(random, -0.5, 0.5), real(random, -0.5, 0.5)]
+    }
+
+    type Block = fn(&Frame, &Frame, Vector, Vector) -> Branches<3, 4>;
+
+    fn reached(kinds: [bool; 3], a: &Frame, b: &Frame, w: Vector, q: &[[Real; 2]; 3]) -> Vector {
+        let [p1, p2, p3] = kinds;
+        let f = joint_then(p1, q[0], &compose(a, &joint_then(p2, q[1], &compose(b, &joint_then(p3, q[2], &IDENTITY)))));
+        transform(&f, w)
+    }
+
+    fn distance(u: Vector, v: Vector) -> Real {
+        let d = minus(u, v);
+        dot(d, d).sqrt()
+    }
+
+    /// 2000 postures of made-up arms. Returns the worst position error of a posture that is not double.
+    fn check(seed: u64, kinds: [bool; 3], block: Block, arm: fn(&mut Random) -> (Frame, Frame), most: usize) -> Real {
+        let random = &mut Random(seed);
+        let mut worst: Real = 0.0;
+        let (mut lost, mut odd, mut doubtful) = (0, 0, 0);
+        let mut largest = 0;
+        for _ in 0..2000 {
+            let (a, b) = arm(random);
+            let w = vector(random);
+            let q = kinds.map(|p| if p { [real(random, -0.5, 0.5), 0.0] } else { point(random.angle()) });
+            let p = reached(kinds, &a, &b, w, &q);
+            let found = block(&a, &b, w, p);
+            assert!(found.count <= most && found.found().iter().all(|b| b.free == 0), "{found:?}");
+            largest = largest.max(found.count);
+            for branch in found.found() {
+                let error = distance(reached(kinds, &a, &b, w, &branch.joints), p);
+                if !branch.double {
+                    worst = worst.max(error);
+                }
+            }
+            let same = |b: &Branch<3>| {
+                let off = b.joints.iter().flatten().zip(q.iter().flatten()).fold(0.0, |m: Real, (x, y)| m.max((x - y).abs()));
+                off < 1e4 * UNIT_ROUNDOFF.sqrt()
+            };
+            if found.near || found.found().iter().any(|b| b.double) {
+                doubtful += 1;
+                continue;
+            }
+            lost += usize::from(!found.found().iter().any(same));
+            odd += usize::from(most > 1 && found.count % 2 == 1);
+        }
+        assert_eq!((lost, odd), (0, 0), "lost, odd");
+        let coarse = UNIT_ROUNDOFF > 1e-10;
+        assert!(doubtful <= if coarse { 150 } else { 1 }, "{doubtful} doubtful");
+        assert_eq!(largest, most);
+        println!("worst position error {worst:e}, doubtful {doubtful}");
+        worst
+    }
+
+    const R: bool = false;
+    const P: bool = true;
+
+    /// Errors of closed forms; those of block R with D = 2 before they are polished.
+    const CLOSED: Real = 5000.0 * UNIT_ROUNDOFF;
+
+    const POLISHED: Real = if UNIT_ROUNDOFF > 1e-10 { 0.05 } else { 1e-9 };
+
+    #[test]
+    fn elbow_arm() {
+        assert!(check(1, [R, R, R], regional_elbow, |r| (any(r), parallel(r)), 4) < CLOSED);
+    }
+
+    #[test]
+    fn crossing_axes() {
+        assert!(check(2, [R, R, R], regional_crossing, |r| (crossing(r), any(r)), 4) < POLISHED);
+    }
+
+    #[test]
+    fn general_regional_arm() {
+        assert!(check(3, [R, R, R], regional_general, |r| (any(r), any(r)), 4) < POLISHED);
+    }
+
+    #[test]
+    fn slide_then_elbow() {
+        fn tilted(r: &mut Random) -> Frame {
+            let f = link(0.1, 0.2, point(r.between(-1.2, 1.2)));
+            compose(&f, &joint_then(false, point(r.angle()), &IDENTITY))
+        }
+        assert!(check(4, [P, R, R], regional_slide_elbow, |r| (tilted(r), parallel(r)), 2) < CLOSED);
+    }
+
+    #[test]
+    fn slide_across() {
+        assert!(check(5, [P, R, R], regional_slide_across, |r| (square(r), any(r)), 4) < CLOSED);
+    }
+
+    #[test]
+    fn slide_then_general() {
+        assert!(check(6, [P, R, R], regional_slide, |r| (any(r), any(r)), 4) < POLISHED);
+    }
+
+    #[test]
+    fn slide_between_parallel_axes() {
+        // A any tilt up to 1.2 rad, and back again.
+        let arm = |r: &mut Random| {
+            let (t, tilt) = (r.angle(), r.between(-1.2, 1.2));
+            let a = joint_then(false, point(t), &link(0.1, real(r, 0.1, 0.4), point(tilt)));
+            let turned = joint_then(false, point(r.angle()), &link(0.2, 0.0, point(0.0)));
+            let b = compose(&link(0.0, real(r, 0.0, 0.3), point(-tilt)), &turned);
+            (a, if r.below(2) == 0 { b } else { compose(&b, &link(0.0, 0.0, [-1.0, 0.0])) })
+        };
+        assert!(check(7, [R, P, R], regional_mid_slide_elbow, arm, 2) < CLOSED);
+    }
+
+    #[test]
+    fn slide_between_at_right_angles() {
+        assert!(check(8, [R, P, R], regional_mid_slide_across, |r| (square(r), any(r)), 4) < CLOSED);
+    }
+
+    #[test]
+    fn slide_between() {
+        assert!(check(9, [R, P, R], regional_mid_slide, |r| (any(r), any(r)), 4) < POLISHED);
+    }
+
+    #[test]
+    fn two_slides() {
+        assert!(check(10, [P, P, R], regional_plane_then_turn, |r| (link(0.1, 0.2, point(r.between(0.4, 2.7))), any(r)), 2) < CLOSED);
+        assert!(check(11, [P, R, P], regional_slide_turn_slide, |r| (any(r), any(r)), 2) < POLISHED);
+    }
+
+    #[test]
+    fn three_slides() {
+        fn tilted(r: &mut Random) -> Frame {
+            joint_then(false, point(r.between(0.5, 2.5)), &link(0.1, 0.2, point(r.between(0.5, 2.5))))
+        }
+        assert!(check(12, [P, P, P], regional_slides, |r| (tilted(r), tilted(r)), 1) < 100.0 * CLOSED);
+    }
+}
