@@ -65,7 +65,7 @@ fn measure(what: &str, selection: Selection, folder: &Path) -> Row {
     let (manipulator, _) =
         valid.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)));
     let module = Model::new(manipulator).module(&Options { trig: Trig::Std, functions: selection, ..Options::default() });
-    let text = emit::rust::print(&module, &emit::rust::Origin::of(&source));
+    let text = emit::rust::print(&module, &emit::rust::Origin::of(&source), &emit::rust::Notes::default());
     let generation = processor_time(OWN) - started;
     let operations = module.functions.iter().map(|function| {
         let cost = Cost::of(function);

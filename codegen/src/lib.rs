@@ -32,7 +32,7 @@ use std::sync::OnceLock;
 use derive::parameters::ParameterVector;
 use diagnostic::Diagnostics;
 use emit::c::CFace;
-use emit::rust::Origin;
+use emit::rust::{Notes, Origin};
 use exact::Number;
 use manipulator::Manipulator;
 use program::{Module, Options};
@@ -40,7 +40,7 @@ use ring::field::Field;
 use source::Source;
 
 /// The text of an emitted module and of the trait implementation that goes with it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Generated {
     /// The module: free functions over arrays.
     pub module: String,
@@ -52,6 +52,16 @@ pub struct Generated {
     pub constants: BTreeMap<String, Vec<Number>>,
     /// Functions that this arm does not have: name and reason.
     pub absent: Vec<(String, String)>,
+    /// What the texts print.
+    program: Module,
+    origin: Origin,
+}
+
+impl Generated {
+    /// Prints the module again, with notes in its documentation.
+    pub fn annotate(&mut self, notes: &Notes) {
+        self.module = emit::rust::print(&self.program, &self.origin, notes);
+    }
 }
 
 /// A valid arm with what its equations are formed in.
@@ -107,11 +117,13 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
     }
     let origin = Origin::of(source);
     let generated = Generated {
-        module: emit::rust::print(&module, &origin),
+        module: emit::rust::print(&module, &origin, &Notes::default()),
         runtime: emit::rust::print_runtime(&module, &origin),
         c: emit::c::print(&module, &origin),
         constants: module.constants(),
-        absent: module.absent,
+        absent: module.absent.clone(),
+        program: module,
+        origin,
     };
     (Some(generated), diagnostics)
 }

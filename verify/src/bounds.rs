@@ -12,6 +12,7 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::emit::rust::Notes;
 use armgen_codegen::manipulator::{JointKind, Manipulator};
 
 use crate::arithmetic::wide::Wide;
@@ -358,9 +359,11 @@ pub fn two_digits(bound: f64) -> String {
 }
 
 /// The box in words, for the head of a module; the numbers are those of [`domain`].
-pub const BOX: &str = "// Box of the rounding errors: q within POSITION_LIMITS (where these are infinite: pi rad or 1 m to either side), dq and dqr within\n\
-    // VELOCITY_LIMITS (4 rad/s, 1 m/s), ddq and ddqr up to 10 rad/s^2 or m/s^2, tau within EFFORT_LIMITS (200 N m, 200 N), pi within a fifth of\n\
-    // NOMINAL_PARAMETERS; arguments exact, sines and cosines within one unit in the last place.\n";
+const BOX: [&str; 3] = [
+    "Box of the rounding errors: q within POSITION_LIMITS (where these are infinite: pi rad or 1 m to either side), dq and dqr within",
+    "VELOCITY_LIMITS (4 rad/s, 1 m/s), ddq and ddqr up to 10 rad/s^2 or m/s^2, tau within EFFORT_LIMITS (200 N m, 200 N), pi within a fifth of",
+    "NOMINAL_PARAMETERS; arguments exact, sines and cosines within one unit in the last place.",
+];
 
 /// What the documentation of a function says of its bound.
 fn sentence(bound: &Bound) -> String {
@@ -390,22 +393,10 @@ fn sentence(bound: &Bound) -> String {
     }
 }
 
-/// The text of a module with the bounds in its documentation.
-pub fn document(text: &str, bounds: &BTreeMap<String, Bound>) -> String {
-    let mut lines: Vec<String> = Vec::new();
-    let mut head = true;
-    for line in text.lines() {
-        if head && line.is_empty() {
-            head = false;
-            lines.push(format!("//\n{}", BOX.trim_end()));
-        }
-        let name = line.strip_prefix("pub fn ").and_then(|rest| rest.split('(').next());
-        if let Some(bound) = name.and_then(|name| bounds.get(name)) {
-            let attributes = lines.iter().rev().take_while(|line| line.starts_with("#[")).count();
-            let at = lines.len() - attributes;
-            lines.insert(at, format!("///\n/// {}", sentence(bound)));
-        }
-        lines.push(line.to_string());
+/// What the documentation of a module says of the bounds of its functions.
+pub fn notes(bounds: &BTreeMap<String, Bound>) -> Notes {
+    Notes {
+        head: BOX.map(String::from).to_vec(),
+        functions: bounds.iter().map(|(name, bound)| (name.clone(), sentence(bound))).collect(),
     }
-    lines.join("\n") + "\n"
 }

@@ -163,7 +163,7 @@ pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(),
     let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
     let module = Module::read(&generated.module)?;
     let bounds = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));
-    generated.module = bounds::document(&generated.module, &bounds);
+    generated.annotate(&bounds::notes(&bounds));
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use armgen_codegen::manipulator::{self, Manipulator};
 use armgen_codegen::program::Scalar;
 use armgen_verify::arithmetic::wide::Wide;
 use armgen_verify::arithmetic::{Element, Stream};
-use armgen_verify::bounds::{document, domain_of, draw, literal_errors, of, of_function, two_digits};
+use armgen_verify::bounds::{domain_of, draw, literal_errors, notes, of, of_function, two_digits};
 use armgen_verify::claims::Claims;
 use armgen_verify::companion::{companion, LaneArguments, Table, LANES};
 use armgen_verify::errors::{Run, Seen, Subject};
@@ -86,9 +86,10 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
     ] {
         assert_eq!(two_digits(bound), text);
     }
-    let (text, module, claims, manipulator) = robot("scara", Scalar::F64);
-    let bounds = of(&manipulator, &module, &claims);
-    let documented = document(&text, &bounds);
+    let mut generated = common::generate(&common::source("scara"), Scalar::F64);
+    let (_, module, claims, manipulator) = robot("scara", Scalar::F64);
+    generated.annotate(&notes(&of(&manipulator, &module, &claims)));
+    let documented = generated.module;
     let stated = documented.lines().filter(|line| line.starts_with("/// Rounding error: ")).count();
     assert_eq!(stated, module.functions.len());
     let head: Vec<&str> = documented.lines().take_while(|line| line.starts_with("//")).collect();
@@ -197,14 +198,15 @@ fn lanes_return_the_bounds_of_the_companion() {
 fn accelerations_solve_the_equations_within_a_bound() {
     for path in common::paths() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
-        let (text, module, claims, manipulator) = robot(&name, Scalar::F64);
+        let (_, module, claims, manipulator) = robot(&name, Scalar::F64);
         let bounds = of(&manipulator, &module, &claims);
         for function in ["forward_dynamics", "forward_dynamics_with"] {
             let bound = &bounds[function];
             assert!(bound.residual.is_some() || bound.largest().is_finite(), "{name} {function}");
         }
         if bounds["forward_dynamics"].residual.is_some() {
-            assert!(document(&text, &bounds).contains("/// Rounding error: ddq is that of torques off by at most "), "{name}");
+            let note = &notes(&bounds).functions["forward_dynamics"];
+            assert!(note.starts_with("Rounding error: ddq is that of torques off by at most "), "{name}");
         }
     }
     let (_, module, claims, manipulator) = robot("everything", Scalar::F64);

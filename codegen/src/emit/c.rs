@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use proc_macro2::TokenStream;
 
-use super::rust::{argument_text, header as origin_of, Origin};
+use super::rust::{argument_text, head, Origin};
 use super::{documentation, literal::literal};
 use crate::equations::Shape;
 use crate::exact::Number;
@@ -88,7 +88,7 @@ fn header(module: &Module, origin: &Origin) -> String {
         Scalar::F32 => "float",
     };
     let mut text = String::new();
-    let lines: Vec<String> = origin_of(origin).lines().map(|line| line.trim_start_matches('/').trim().to_string()).collect();
+    let lines: Vec<String> = head(origin, &[]).lines().map(|line| line.trim_start_matches('/').trim().to_string()).collect();
     text += &comment("", lines);
     let braces = |entries: Vec<String>| format!("{{{}}}", entries.join(", "));
     let number = |value: &Option<Number>, infinite: &str| match value {
@@ -234,7 +234,7 @@ fn constant(value: &Number, scalar: Scalar) -> String {
 }
 
 fn wrappers(module: &Module, origin: &Origin) -> String {
-    let mut text = origin_of(origin);
+    let mut text = head(origin, &[]);
     text += "// For C. Each wrapper believes what its declaration in the header says: that its pointers lead to arrays of these lengths.\n";
     for function in functions(module) {
         text += "\n";
