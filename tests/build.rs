@@ -6,7 +6,12 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use signatures::{listed, of_module, of_robot};
+
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
+
+#[path = "src/signatures.rs"]
+mod signatures;
 
 /// The robots that are emitted in single precision too.
 const NARROW: [&str; 4] = ["everything", "puma560", "scara", "scara4"];
@@ -20,6 +25,7 @@ const BATCHES: [(&str, &str, Trig, Scalar, usize); 4] = [
 ];
 
 fn main() {
+    let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("a build script has it"));
     let mut modules = String::new();
     let mut list = String::new();
     for folder in ["../robots", "robots"] {
@@ -33,10 +39,11 @@ fn main() {
                     writeln!(modules, "    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));").expect("text");
                 }
                 modules.push_str("}\n");
-                let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("a build script has it"));
-                let text = std::fs::read_to_string(out.join(format!("{module}.rs"))).expect("it was just written");
-                let optional = if text.contains("pub fn operational_inertia(") { ", operational_inertia" } else { "" };
-                writeln!(list, "    emitted!({module}, \"{path}\"{optional}),").expect("text");
+                let text = |file: String| std::fs::read_to_string(out.join(file)).expect("it was just written");
+                let functions = listed(&of_module(&text(format!("{module}.rs"))));
+                let [nominal, with] =
+                    ["Nominal", "WithParameters"].map(|robot| listed(&of_robot(&text(format!("{module}_runtime.rs")), robot)));
+                writeln!(list, "    emitted!({module}, \"{path}\"; [{functions}] [{nominal}] [{with}]),").expect("text");
             };
             Robot::new(&path).generate();
             add(&stem);
@@ -48,12 +55,15 @@ fn main() {
         }
     }
     // With functions for many states, for `tests/batches.rs`.
+    let mut batches = String::new();
     for (robot, module, trig, scalar, lanes) in BATCHES {
         Robot::new(robot).trig(trig).scalar(scalar).batch(lanes).file_stem(module).generate();
+        let text = std::fs::read_to_string(out.join(format!("{module}.rs"))).expect("it was just written");
+        writeln!(batches, "check!({module}: {});", listed(&of_module(&text))).expect("text");
     }
+    std::fs::write(out.join("batches.rs"), batches).expect("OUT_DIR can be written");
     let text =
         format!("{modules}\n/// Every emitted module, in the order of the files.\npub static ALL: &[Emitted] = &[\n{list}];\n");
-    let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("a build script has it"));
     std::fs::write(out.join("emitted.rs"), text).expect("OUT_DIR can be written");
 }
 

@@ -81,11 +81,11 @@ pub(crate) fn selection(names: &[String]) -> Option<Selection> {
     if names.is_empty() {
         return Some(Selection::ALL);
     }
-    Selection::named(names).map_err(|message| terminal::error(&message)).ok()
+    Selection::named(names).map_err(|unknown| terminal::error(&unknown.to_string())).ok()
 }
 
 /// Whether the arm has every function that was asked for; those that it does not have, and why, go to standard error.
-pub(crate) fn all_there(robot: &str, absent: &[(String, String)], selection: Selection) -> bool {
+pub(crate) fn all_there(robot: &str, absent: &[(String, String)], selection: &Selection) -> bool {
     if selection.is_all() {
         return true;
     }

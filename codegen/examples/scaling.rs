@@ -54,7 +54,7 @@ struct Row {
     operations: Vec<(String, usize)>,
 }
 
-fn measure(what: &str, selection: Selection, folder: &Path) -> Row {
+fn measure(what: &str, selection: &Selection, folder: &Path) -> Row {
     let text = match what.parse() {
         Ok(joints) => chain(joints),
         Err(_) => std::fs::read_to_string(what).unwrap_or_else(|error| panic!("{what}: {error}")),
@@ -64,7 +64,10 @@ fn measure(what: &str, selection: Selection, folder: &Path) -> Row {
     let (valid, diagnostics) = manipulator::read(&source);
     let (manipulator, _) =
         valid.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)));
-    let module = Model::new(manipulator).module(&Options { trig: Trig::Std, functions: selection, ..Options::default() });
+    let module = armgen_codegen::program::module(
+        &Model::new(manipulator),
+        &Options { trig: Trig::Std, functions: selection.clone(), ..Options::default() },
+    );
     let text = emit::rust::print(&module, &emit::rust::Origin::of(&source), &emit::rust::Notes::default());
     let generation = processor_time(OWN) - started;
     let operations = module.functions.iter().map(|function| {
@@ -135,7 +138,7 @@ fn main() {
     let mut rows = Vec::new();
     println!("joints  generation s (CPU)  peak MiB  text KiB  compile s (CPU)  operations in all");
     for robot in robots {
-        let row = measure(&robot, selection, &folder);
+        let row = measure(&robot, &selection, &folder);
         let total: usize = row.operations.iter().map(|(_, count)| count).sum();
         let compilation = row.compilation.map_or("-".into(), |time| format!("{:.2}", time.as_secs_f64()));
         println!(

@@ -127,9 +127,9 @@ impl Robot {
         let bytes = std::fs::read(&self.description).map_err(|e| format!("error: cannot read {path}: {e}"))?;
         let text = String::from_utf8(bytes).map_err(|e| format!("error: {path} is not UTF-8: {e}"))?;
         let source = Source::new(path.to_string(), text);
-        let mut options = self.options;
+        let mut options = self.options.clone();
         if !self.functions.is_empty() {
-            options.functions = Selection::named(&self.functions).map_err(|message| format!("error: {message}"))?;
+            options.functions = Selection::named(&self.functions).map_err(|unknown| format!("error: {unknown}"))?;
         }
         let (generated, diagnostics) = crate::generate(&source, &options);
         let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;

@@ -1,24 +1,22 @@
-//! From a valid manipulator to its equations: one quantity a file, the formula on top.
+//! From a valid manipulator to its equations: what is emitted, one concept a file, in `quantities`; beside it what they share.
 
 pub mod arm;
 pub mod base;
 mod columns;
-pub mod coriolis;
-pub mod derivatives;
+pub mod constants;
+pub mod derivation;
 pub mod determinant;
-pub mod energy;
 pub mod factors;
-pub mod forward_dynamics;
-pub mod gravity;
-pub mod inertia;
-pub mod kinematics;
-pub mod momentum;
+pub mod model;
 pub mod newton_euler;
-pub mod operational_inertia;
 pub mod parameters;
 pub mod passes;
 pub mod plan;
-pub mod regressor;
+pub mod quantities;
+pub mod quantity;
+
+pub use derivation::Derivation;
+pub use model::Model;
 
 use crate::manipulator::{Manipulator, RegressorChoice};
 use crate::ring::field::Field;

@@ -13,9 +13,9 @@ pub use crate::derive::plan::{Pass, Passes};
 pub use crate::manipulator::Scalar;
 pub use cost::Cost;
 pub use schedule::{module, Options};
-pub use selection::Selection;
+pub use selection::{Selection, UnknownFunctions};
 
-use crate::equations::{Argument, Quantity};
+use crate::catalogue::{Argument, Quantity, Sizes};
 use crate::exact::Number;
 use crate::ring::Symbol;
 
@@ -80,7 +80,7 @@ pub struct Output {
 #[derive(Clone, Debug)]
 pub struct Function {
     /// What it computes.
-    pub quantity: Quantity,
+    pub quantity: &'static Quantity,
     /// Whether it takes the parameters at run time.
     pub with_parameters: bool,
     /// Arguments in order.
@@ -96,12 +96,7 @@ pub struct Function {
 impl Function {
     /// Its name in the emitted module.
     pub fn name(&self) -> String {
-        let name = self.quantity.name();
-        if self.with_parameters {
-            format!("{name}_with")
-        } else {
-            name.into()
-        }
+        self.quantity.function_name(self.with_parameters)
     }
 }
 
@@ -139,6 +134,16 @@ pub struct Module {
 }
 
 impl Module {
+    /// What the dimensions of its functions are.
+    pub fn sizes(&self) -> Sizes {
+        Sizes {
+            dof: self.joints.len(),
+            parameters: self.parameters.len(),
+            base_parameters: self.base_set.len(),
+            task: self.task.len(),
+        }
+    }
+
     /// A constant that the scalar cannot hold: products of numbers that each fit may not.
     pub fn out_of_range(&self) -> Option<&Number> {
         let operands = self

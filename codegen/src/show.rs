@@ -25,26 +25,27 @@ mod text;
 
 use std::collections::BTreeSet;
 
+use crate::catalogue::quantities::regressor::{derivative_by_parameter, regressor, KNOWN_TORQUE, REGRESSOR};
+use crate::catalogue::{self, Length, Part, Quantity, Typeset};
 use crate::derive::arm::Arm;
+use crate::derive::derivation::{Derivation, CLOSED_FORM_TERMS};
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterKind, View};
-use crate::derive::regressor::{derivative_by_parameter, regressor};
 use crate::derive::{self, determinant::Factor};
-use crate::equations::{Derivation, Quantity, Shape, CLOSED_FORM_TERMS};
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::Model;
 
 /// What can be asked for by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Item {
     /// A function of the emitted module.
-    Plain(Quantity),
+    Plain(&'static Quantity),
     /// Its form with the parameters as arguments.
-    With(Quantity),
-    /// The frame of one link, by index.
-    LinkFrame(usize),
+    With(&'static Quantity),
+    /// Of a function that returns a list of matrices one of these, by index: the frame of a link.
+    Element(&'static Quantity, usize),
     /// The determinant of the task Jacobian.
     Determinant,
 }
@@ -114,10 +115,9 @@ pub struct Formulas {
 }
 
 impl Item {
-    /// All that is shown where nothing is asked for: every function but `equations_of_motion`, which only gathers three others, and the
-    /// determinant.
+    /// All that is shown where nothing is asked for: every function but those that only gather others, and the determinant.
     pub fn all() -> Vec<Item> {
-        let functions = Quantity::ALL.iter().filter(|q| **q != Quantity::EquationsOfMotion).map(|&q| Item::Plain(q));
+        let functions = catalogue::quantities().filter(|quantity| quantity.gathers.is_empty()).map(Item::Plain);
         functions.chain([Item::Determinant]).collect()
     }
 
@@ -126,37 +126,42 @@ impl Item {
         if name == DETERMINANT {
             return vec![Item::Determinant];
         }
-        if let Some(number) = name.strip_prefix("link_frame_").and_then(|n| n.parse::<usize>().ok()) {
-            return if (1..=dof).contains(&number) { vec![Item::LinkFrame(number - 1)] } else { Vec::new() };
+        let element = |quantity: &'static Quantity| {
+            let number = name.strip_prefix(element_of(quantity)?.name)?.strip_prefix('_')?.parse::<usize>().ok()?;
+            (1..=dof).contains(&number).then_some(Item::Element(quantity, number - 1))
+        };
+        if let Some(item) = catalogue::quantities().find_map(element) {
+            return vec![item];
         }
-        let (plain, with) = name.strip_suffix("_with").map_or((name, false), |plain| (plain, true));
-        let Some(&quantity) = Quantity::ALL.iter().find(|q| q.name() == plain && (!with || q.has_parameters())) else {
-            return Vec::new();
-        };
-        let parts: &[Quantity] = match &quantity {
-            Quantity::EquationsOfMotion => &[Quantity::InertiaMatrix, Quantity::CoriolisMatrix, Quantity::Gravity],
-            other => std::slice::from_ref(other),
-        };
-        parts.iter().map(|&q| if with { Item::With(q) } else { Item::Plain(q) }).collect()
+        let Some((quantity, with)) = catalogue::named(name) else { return Vec::new() };
+        let parts = if quantity.gathers.is_empty() { &[quantity][..] } else { quantity.gathers };
+        parts.iter().map(|&quantity| if with { Item::With(quantity) } else { Item::Plain(quantity) }).collect()
     }
 
-    /// Every name that [`Item::named`] knows, but those of single frames.
+    /// Every name that [`Item::named`] knows, but those of single matrices of a list.
     pub fn names() -> Vec<String> {
-        let plain = Quantity::ALL.iter().map(|q| q.name().to_string());
-        let with = Quantity::ALL.iter().filter(|q| q.has_parameters()).map(|q| format!("{}_with", q.name()));
-        plain.chain(with).chain([DETERMINANT.to_string()]).collect()
+        let forms = [false, true].into_iter().flat_map(|with| catalogue::functions().filter(move |(_, form)| *form == with));
+        forms.map(|(quantity, with)| quantity.function_name(with)).chain([DETERMINANT.to_string()]).collect()
     }
-}
 
-impl Item {
+    /// What the names of single matrices of a list begin with, before an underscore and a number from 1 to that of the joints.
+    pub fn lists() -> Vec<&'static str> {
+        catalogue::quantities().filter_map(element_of).map(|element| element.name).collect()
+    }
+
     fn name(self) -> String {
         match self {
-            Item::Plain(quantity) => quantity.name().into(),
-            Item::With(quantity) => format!("{}_with", quantity.name()),
-            Item::LinkFrame(i) => format!("link_frame_{}", i + 1),
+            Item::Plain(quantity) => quantity.name.into(),
+            Item::With(quantity) => quantity.function_name(true),
+            Item::Element(quantity, i) => format!("{}_{}", element_of(quantity).map_or(quantity.name, |of| of.name), i + 1),
             Item::Determinant => DETERMINANT.into(),
         }
     }
+}
+
+/// One matrix of a function that returns a list of them.
+fn element_of(quantity: &Quantity) -> Option<catalogue::Element> {
+    quantity.result.iter().find_map(|part| part.element)
 }
 
 impl Sheet {
@@ -260,55 +265,57 @@ fn shown(model: &Model, item: Item, reading: Reading) -> Result<Vec<Shown>, Stri
         (_, Reading::Nominal) => View::Nominal,
         (_, Reading::Symbolic) => View::Symbolic,
     };
-    let dof = model.manipulator.dof();
+    let missing = |quantity: &Quantity, with| (quantity.missing)(model, with).map_or(Ok(()), Err);
     Ok(match item {
         Item::Determinant => vec![determinant(model, view)?],
-        Item::Plain(Quantity::LinkFrames) => {
-            let derivation = Quantity::LinkFrames.by_recursion(model, view);
-            (0..dof).map(|i| frame(model, &derivation, i)).collect()
+        Item::Plain(quantity) => {
+            missing(quantity, false)?;
+            let of_names = [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
+            let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
+            parts(model, quantity, quantity.name, &derivation.unwrap_or_else(|| quantity.by_recursion(model, view)))
         }
-        Item::LinkFrame(i) => vec![frame(model, &Quantity::LinkFrames.by_recursion(model, view), i)],
-        Item::Plain(quantity @ (Quantity::Regressor | Quantity::KnownTorque)) if reading == Reading::Symbolic => {
-            let derivation = symbolic_regressor(model, quantity).unwrap_or_else(|| quantity.by_recursion(model, view));
-            vec![matrix(model, quantity, quantity.name().into(), derivation)]
+        Item::Element(quantity, i) => {
+            missing(quantity, false)?;
+            let all = parts(model, quantity, quantity.name, &quantity.by_recursion(model, view));
+            all.into_iter().skip(i).take(1).collect()
         }
-        Item::Plain(quantity) if quantity.missing(model).is_some() => return Err(quantity.missing(model).unwrap_or_default()),
-        Item::Plain(quantity @ (Quantity::InverseDynamicsDerivatives | Quantity::ForwardDynamicsDerivatives)) => {
-            let derivation = quantity.by_recursion(model, view);
-            derivatives(quantity)
-                .iter()
-                .zip(derivation.entries.chunks(dof * dof))
-                .map(|((by, text, latex), entries)| {
-                    let part = Derivation { entries: entries.to_vec(), ..derivation.clone() };
-                    let mut shown = matrix(model, Quantity::InertiaMatrix, format!("{}_{by}", quantity.name()), part);
-                    shown.symbol = [(*text).into(), (*latex).into()];
-                    shown.letter = letter(quantity);
-                    shown
-                })
-                .collect()
-        }
-        Item::Plain(quantity) => vec![matrix(model, quantity, quantity.name().into(), quantity.by_recursion(model, view))],
         Item::With(quantity) => {
-            let mut shown = matrix(model, quantity, format!("{}_with", quantity.name()), quantity.by_recursion(model, view));
-            shown.parameters = model.parameters.entries.iter().map(|entry| entry.name.clone()).collect();
-            vec![shown]
+            missing(quantity, true)?;
+            let mut all = parts(model, quantity, &quantity.function_name(true), &quantity.by_recursion(model, view));
+            for shown in &mut all {
+                shown.parameters = model.parameters.entries.iter().map(|entry| entry.name.clone()).collect();
+            }
+            all
         }
     })
 }
 
-/// The matrices of a quantity that has several: by what the derivative is, and its symbol in plain text and in LaTeX.
-fn derivatives(quantity: Quantity) -> &'static [(&'static str, &'static str, &'static str)] {
-    match quantity {
-        Quantity::InverseDynamicsDerivatives => {
-            &[("q", "dtau/dq", "\\partial\\tau/\\partial q"), ("dq", "dtau/d(dq)", "\\partial\\tau/\\partial\\dot q")]
+/// The matrices of a quantity: of each part of its result, or of each element of a list.
+fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation) -> Vec<Shown> {
+    let sizes = model.sizes();
+    let mut entries = derivation.entries.as_slice();
+    let mut all = Vec::new();
+    for part in quantity.result {
+        let (own, rest) = entries.split_at(part.len(&sizes));
+        entries = rest;
+        let of = |entries: &[ExprId]| Derivation { entries: entries.to_vec(), ..derivation.clone() };
+        match part.element {
+            Some(element) => {
+                let size = part.rows().of(&sizes) * part.columns().of(&sizes);
+                all.extend(own.chunks(size).enumerate().map(|(i, entries)| {
+                    let i = i + 1;
+                    let symbol = [format!("{}_{i}(q)", element.letter), format!("{}_{{{i}}}(q)", element.letter)];
+                    matrix(model, part, format!("{}_{i}", element.name), symbol, of(entries))
+                }));
+            }
+            None => {
+                let Typeset { text, latex } = part.symbol;
+                let name = if part.name == Part::RESULT { name.to_owned() } else { format!("{name}_{}", part.name) };
+                all.push(matrix(model, part, name, [text.into(), latex.into()], of(own)));
+            }
         }
-        Quantity::ForwardDynamicsDerivatives => &[
-            ("q", "d(ddq)/dq", "\\partial\\ddot q/\\partial q"),
-            ("dq", "d(ddq)/d(dq)", "\\partial\\ddot q/\\partial\\dot q"),
-            ("tau", "B^-1", "B^{-1}"),
-        ],
-        _ => &[],
     }
+    all
 }
 
 /// The determinant with its factors; its closed form if that is not too long.
@@ -339,29 +346,20 @@ fn names(model: &Model) -> Vec<String> {
     model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect()
 }
 
-fn frame(model: &Model, frames: &Derivation, i: usize) -> Shown {
-    let derivation = Derivation { entries: frames.entries[16 * i..16 * (i + 1)].to_vec(), ..frames.clone() };
-    let mut shown = matrix(model, Quantity::LinkFrames, format!("link_frame_{}", i + 1), derivation);
-    shown.symbol = [format!("T_{}(q)", i + 1), format!("T_{{{}}}(q)", i + 1)];
-    shown
-}
-
-fn matrix(model: &Model, quantity: Quantity, name: String, derivation: Derivation) -> Shown {
-    let (rows, columns) = quantity.shape().rows_columns(&model.sizes());
-    debug_assert_eq!(derivation.entries.len(), rows * columns);
-    let (text, latex) = quantity.symbol();
+fn matrix(model: &Model, part: &Part, name: String, symbol: [String; 2], derivation: Derivation) -> Shown {
+    let sizes = model.sizes();
+    let columns_of = match part.columns() {
+        Length::Parameters => Some(&model.parameters),
+        Length::BaseParameters => Some(model.base_parameters()),
+        _ => None,
+    };
     Shown {
         name,
-        symbol: [text.into(), latex.into()],
-        letter: letter(quantity),
-        rows,
-        columns,
-        column_names: match quantity.shape() {
-            Shape::Regressor => Some(&model.parameters),
-            Shape::BaseRegressor => Some(model.base_parameters()),
-            _ => None,
-        }
-        .map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
+        symbol,
+        letter: [part.letter.text, part.letter.latex],
+        rows: part.rows().of(&sizes),
+        columns: part.columns().of(&sizes),
+        column_names: columns_of.map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
         content: match derivation.closed_forms() {
             Some(forms) => Content::Closed(forms),
             None => Content::Program(Box::new(derivation)),
@@ -374,7 +372,7 @@ fn matrix(model: &Model, quantity: Quantity, name: String, derivation: Derivatio
 /// Y or the known rest with all names of the description as symbols: Y_k = ∂tau/∂name_k, and the rest is tau - Y pi.
 ///
 /// None where the rest of a base parameter set is asked for: its combinations hold the description's numbers.
-fn symbolic_regressor(model: &Model, quantity: Quantity) -> Option<Derivation> {
+fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> {
     let (manipulator, vector) = (&model.manipulator, &model.parameters);
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, manipulator, View::Symbolic);
@@ -391,10 +389,10 @@ fn symbolic_regressor(model: &Model, quantity: Quantity) -> Option<Derivation> {
             let pi = all.iter().map(|&p| View::Symbolic.standard(&mut pool, manipulator, p)).collect();
             (regressor(&mut pool, &arm, vector), pi)
         }
-        ParameterKind::Base(_) if quantity == Quantity::Regressor => (regressor(&mut pool, &arm, vector), Vec::new()),
+        ParameterKind::Base(_) if *quantity == REGRESSOR => (regressor(&mut pool, &arm, vector), Vec::new()),
         ParameterKind::Base(_) => return None,
     };
-    let entries = if quantity == Quantity::Regressor {
+    let entries = if *quantity == REGRESSOR {
         y.concat()
     } else {
         let tau = inverse_dynamics(&mut pool, &arm, &motion);
@@ -411,30 +409,6 @@ fn symbolic_regressor(model: &Model, quantity: Quantity) -> Option<Derivation> {
 
 fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit())
-}
-
-fn letter(quantity: Quantity) -> [&'static str; 2] {
-    match quantity {
-        Quantity::DirectKinematics | Quantity::LinkFrames => ["t", "t"],
-        Quantity::GeometricJacobian => ["j", "j"],
-        Quantity::GeometricJacobianDot => ["dj", "\\dot j"],
-        Quantity::InertiaMatrix | Quantity::EquationsOfMotion => ["b", "b"],
-        Quantity::CoriolisMatrix => ["c", "c"],
-        Quantity::Gravity => ["g", "g"],
-        Quantity::Friction => ["f", "f"],
-        Quantity::InverseDynamics => ["tau", "\\tau"],
-        Quantity::ForwardDynamics => ["ddq", "\\ddot q"],
-        Quantity::Regressor => ["y", "y"],
-        Quantity::KnownTorque => ["tau_known", "\\tau_0"],
-        Quantity::KineticEnergy => ["T", "\\mathcal T"],
-        Quantity::PotentialEnergy => ["U", "\\mathcal U"],
-        Quantity::Momentum => ["p", "p"],
-        Quantity::CoriolisTransposeTimes => ["c", "c"],
-        Quantity::BaseRegressor => ["y_b", "y_b"],
-        Quantity::OperationalInertia => ["b_a", "b_A"],
-        Quantity::InverseDynamicsDerivatives => ["dtau", "\\partial\\tau"],
-        Quantity::ForwardDynamicsDerivatives => ["dddq", "\\partial\\ddot q"],
-    }
 }
 
 /// Breaks a formula in front of the plus and minus signs of its outermost sum, into pieces of at most `width` as `measure` counts it;

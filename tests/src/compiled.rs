@@ -8,8 +8,9 @@ use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::{Arc, Mutex};
 
-use crate::functions::{Arguments, Functions, OPTIONAL};
+use crate::functions::{Arguments, Functions};
 use crate::project::Project;
+use crate::signatures::{listed, of_module};
 
 /// The arm `index` of a running program.
 pub struct Compiled {
@@ -67,9 +68,7 @@ impl Compiled {
         for (i, module) in modules.iter().enumerate() {
             project.write(&format!("src/arm{i}.rs"), module);
             writeln!(main, "#[allow(dead_code)]\nmod arm{i};").expect("text");
-            let optional =
-                if functions(module).iter().any(|name| name == OPTIONAL) { format!(", {OPTIONAL}") } else { String::new() };
-            writeln!(table, "    answers!(arm{i}{optional}),").expect("text");
+            writeln!(table, "    answers!(arm{i}; {}),", listed(&of_module(module))).expect("text");
         }
         writeln!(main, "\nconst ARMS: &[fn(&str, &Arguments) -> Vec<f64>] = &[\n{table}];").expect("text");
         project.write("src/main.rs", &main);
@@ -96,7 +95,7 @@ impl Compiled {
                     parameter_names,
                     nominal,
                     nominal_base: numbers(&asked("nominal_base")),
-                    functions: functions(&modules[index]),
+                    functions: of_module(&modules[index]).into_iter().map(|(name, _)| name).collect(),
                 }
             })
             .collect()
@@ -109,12 +108,6 @@ fn names(module: &str) -> Vec<String> {
     let (_, rest) = rest.split_once('=').expect("a constant has a value");
     let (list, _) = rest.split_once(';').expect("an item ends");
     list.split('"').skip(1).step_by(2).map(ToOwned::to_owned).collect()
-}
-
-/// The functions of a module, read from its text.
-fn functions(module: &str) -> Vec<String> {
-    let name = |rest: &str| rest.split('(').next().unwrap_or_default().to_owned();
-    module.split("\npub fn ").skip(1).map(name).collect()
 }
 
 fn numbers(line: &str) -> Vec<f64> {

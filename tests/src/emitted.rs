@@ -1,10 +1,12 @@
 //! The emitted modules, compiled into this crate as a user compiles one into theirs, and each as [`Functions`].
 
-use armgen_runtime::nalgebra::{RealField, SMatrix, SVector};
-use armgen_runtime::robot::{Kinematics, Regressor};
+use armgen_runtime::nalgebra::{SMatrix, SVector, Scalar};
+#[allow(clippy::wildcard_imports)] // all traits that a robot may have
+use armgen_runtime::robot::*;
 
-use crate::answers::{array, Flat, Float};
+use crate::answers::{array as numbers, Flat, Float};
 use crate::functions::{Arguments, Functions};
+use crate::signatures;
 
 /// An emitted module.
 #[derive(Clone, Copy)]
@@ -84,7 +86,8 @@ impl Functions for ThroughTraits {
     }
 
     fn has(&self, function: &str) -> bool {
-        self.0.runtime_text.contains(&format!("fn {}(", function.trim_end_matches("_with")))
+        let (method, robot) = function.strip_suffix("_with").map_or((function, "Nominal"), |method| (method, "WithParameters"));
+        signatures::of_robot(self.0.runtime_text, robot).iter().any(|(name, _)| name == method)
     }
 
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64> {
@@ -99,48 +102,42 @@ pub fn emitted(name: &str) -> &'static Emitted {
     ALL.iter().find(|robot| robot.module == name).unwrap_or_else(|| panic!("no emitted module `{name}`"))
 }
 
-fn flat_matrix<T: RealField + Into<f64> + Copy, const R: usize, const C: usize>(m: &SMatrix<T, R, C>) -> Vec<f64> {
-    (0..R).flat_map(|i| (0..C).map(move |j| m[(i, j)].into())).collect()
-}
-
-/// Calls a method of the traits.
-fn through<T, R, const N: usize, const P: usize>(robot: &R, function: &str, a: &Arguments) -> Vec<f64>
-where
-    T: RealField + Float + Into<f64>,
-    R: Regressor<N, P> + Kinematics<N, Real = T>,
-{
-    let vector = |values: &[f64]| -> SVector<T, N> { SVector::from(array::<T, N>(values)) };
-    match function {
-        "parameters" => flat_matrix(&robot.parameters()),
-        "direct_kinematics" => flat_matrix(&robot.direct_kinematics(&vector(&a.q))),
-        "link_frames" => robot.link_frames(&vector(&a.q)).iter().flat_map(flat_matrix).collect(),
-        "geometric_jacobian" => flat_matrix(&robot.geometric_jacobian(&vector(&a.q))),
-        "geometric_jacobian_dot" => flat_matrix(&robot.geometric_jacobian_dot(&vector(&a.q), &vector(&a.dq))),
-        "inertia_matrix" => flat_matrix(&robot.inertia_matrix(&vector(&a.q))),
-        "coriolis_matrix" => flat_matrix(&robot.coriolis_matrix(&vector(&a.q), &vector(&a.dq))),
-        "gravity" => flat_matrix(&robot.gravity(&vector(&a.q))),
-        "friction" => flat_matrix(&robot.friction(&vector(&a.dq))),
-        "equations_of_motion" => {
-            let terms = robot.equations_of_motion(&vector(&a.q), &vector(&a.dq));
-            [flat_matrix(&terms.inertia), flat_matrix(&terms.coriolis), flat_matrix(&terms.gravity)].concat()
-        }
-        "inverse_dynamics" => flat_matrix(&robot.inverse_dynamics(&vector(&a.q), &vector(&a.dq), &vector(&a.ddq))),
-        "forward_dynamics" => flat_matrix(&robot.forward_dynamics(&vector(&a.q), &vector(&a.dq), &vector(&a.tau))),
-        "regressor" => flat_matrix(&robot.regressor(&vector(&a.q), &vector(&a.dq), &vector(&a.dqr), &vector(&a.ddqr))),
-        "known_torque" => flat_matrix(&robot.known_torque(&vector(&a.q), &vector(&a.dq), &vector(&a.dqr), &vector(&a.ddqr))),
-        "kinetic_energy" => vec![robot.kinetic_energy(&vector(&a.q), &vector(&a.dq)).into()],
-        "potential_energy" => vec![robot.potential_energy(&vector(&a.q)).into()],
-        _ => panic!("the traits have no `{function}`"),
+impl<T: Flat + Scalar + Copy, const R: usize, const C: usize> Flat for SMatrix<T, R, C> {
+    fn flat(self) -> Vec<f64> {
+        (0..R).flat_map(|i| (0..C).flat_map(move |j| self[(i, j)].flat())).collect()
     }
 }
 
-/// The table entry of an emitted module: `emitted!(module, path, function, ..)` with those functions of q that not every module has.
+impl<T: Flat + Scalar + Copy, const N: usize> Flat for EquationsOfMotion<T, N> {
+    fn flat(self) -> Vec<f64> {
+        [self.inertia.flat(), self.coriolis.flat(), self.gravity.flat()].concat()
+    }
+}
+
+/// The vector that a method of the traits takes.
+fn vector<T: Float + Scalar, const N: usize>(values: &[f64]) -> SVector<T, N> {
+    SVector::from(numbers::<T, N>(values))
+}
+
+/// The value of a method of the traits, by its name: `ask!(robot, function, arguments; method(argument, ..), ..)`.
+macro_rules! ask {
+    ($robot:expr, $name:ident, $a:ident; $($method:ident($($argument:ident),*)),*) => {{
+        let robot = $robot;
+        match $name {
+            $(stringify!($method) => robot.$method($(&vector(&$a.$argument)),*).flat(),)*
+            _ => panic!("the traits have no `{}`", $name),
+        }
+    }};
+}
+
+/// The table entry of an emitted module: its name and the path of its description; its functions, and the methods that the traits of the
+/// runtime have for `Nominal` and for `WithParameters`.
 macro_rules! emitted {
-    ($module:ident, $path:literal $(, $optional:ident)*) => {{
+    ($module:ident, $path:literal; [$($functions:tt)*] [$($nominal:tt)*] [$($with:tt)*]) => {{
         fn traits(function: &str, a: &Arguments) -> Vec<f64> {
             match function.strip_suffix("_with") {
-                None => through(&$module::Nominal, function, a),
-                Some(function) => through(&$module::WithParameters { parameters: array(&a.pi) }, function, a),
+                None => ask!($module::Nominal, function, a; $($nominal)*),
+                Some(function) => ask!($module::WithParameters { parameters: numbers(&a.pi) }, function, a; $($with)*),
             }
         }
         Emitted {
@@ -152,7 +149,7 @@ macro_rules! emitted {
             narrow: size_of::<$module::Real>() == 4,
             dof: $module::DOF,
             parameter_names: &$module::PARAMETER_NAMES,
-            free: answers!($module $(, $optional)*),
+            free: answers!($module; $($functions)*),
             traits,
         }
     }};

@@ -1,5 +1,7 @@
 //! The functions of a robot, whoever computes them: emitted code, the traits of the runtime, or a program interpreted.
 
+use armgen_codegen::catalogue;
+
 /// Arguments of all functions; each takes those that it needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Arguments {
@@ -35,7 +37,7 @@ pub trait Functions {
         Vec::new()
     }
 
-    /// Whether there is a function: the traits of the runtime do not have all of them, and not every arm has an operational inertia.
+    /// Whether there is a function: the traits of the runtime do not have all of them, and not every arm has all.
     fn has(&self, function: &str) -> bool;
 
     /// The value of a function by its name in the emitted module, row by row; of functions with several results one after the other.
@@ -44,39 +46,14 @@ pub trait Functions {
     fn call(&self, function: &str, arguments: &Arguments) -> Vec<f64>;
 }
 
-/// The functions of every emitted module, in its order; `operational_inertia` only where the arm can do its task.
-pub const FUNCTIONS: [&str; 30] = [
-    "direct_kinematics",
-    "link_frames",
-    "geometric_jacobian",
-    "geometric_jacobian_dot",
-    "inertia_matrix",
-    "inertia_matrix_with",
-    "coriolis_matrix",
-    "coriolis_matrix_with",
-    "gravity",
-    "gravity_with",
-    "friction",
-    "friction_with",
-    "equations_of_motion",
-    "equations_of_motion_with",
-    "inverse_dynamics",
-    "inverse_dynamics_with",
-    "forward_dynamics",
-    "forward_dynamics_with",
-    "regressor",
-    "known_torque",
-    "kinetic_energy",
-    "kinetic_energy_with",
-    "potential_energy",
-    "potential_energy_with",
-    "momentum",
-    "coriolis_transpose_times",
-    "base_regressor",
-    "operational_inertia",
-    "inverse_dynamics_derivatives",
-    "forward_dynamics_derivatives",
-];
+/// Names of all functions that can be emitted, in the order of the module, but for those that this one says it does not have.
+pub fn expected(absent: &[String]) -> Vec<String> {
+    let names = catalogue::functions().map(|(quantity, with)| quantity.function_name(with));
+    names.filter(|name| !absent.contains(name)).collect()
+}
 
-/// The function that not every arm has.
-pub const OPTIONAL: &str = "operational_inertia";
+/// The functions that a module says it does not have, in its head.
+pub fn absent(text: &str) -> Vec<String> {
+    let name = |line: &str| Some(line.strip_prefix("// There is no `")?.split_once('`')?.0.to_owned());
+    text.lines().filter_map(name).collect()
+}

@@ -28,7 +28,9 @@ impl Interpreted {
         let source = Source::new("robot.yaml", text);
         let (valid, diagnostics) = manipulator::read(&source);
         match valid {
-            Some((manipulator, _)) => Ok(Interpreted { module: Model::new(manipulator).module(options) }),
+            Some((manipulator, _)) => {
+                Ok(Interpreted { module: armgen_codegen::program::module(&Model::new(manipulator), options) })
+            }
             None => Err(diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)),
         }
     }
@@ -94,7 +96,7 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
         Operand::Constant(value) => return value.to_f64(),
         Operand::Input(symbol) => *symbol,
     };
-    use armgen_codegen::equations::Argument;
+    use armgen_codegen::catalogue::Argument;
     let given = |argument: Argument, vector: &[f64], i: u16| {
         assert!(function.arguments.contains(&argument), "{} does not take {argument:?}", function.name());
         vector[usize::from(i)]

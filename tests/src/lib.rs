@@ -31,5 +31,6 @@ pub mod project;
 pub mod random;
 pub mod reference;
 pub mod shown;
+pub mod signatures;
 pub mod technical_project;
 pub mod trigonometry;

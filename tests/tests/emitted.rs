@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use armgen_tests::emitted::{emitted, Emitted, ALL};
-use armgen_tests::functions::{Arguments, Functions, FUNCTIONS, OPTIONAL};
+use armgen_tests::functions::{absent, expected, Arguments, Functions};
 use armgen_tests::judge::{judge, Tolerance};
 use armgen_tests::oracle::{times, Description};
 use armgen_tests::precision::{agree, DIFFERENCES, FORWARD_RESIDUAL, ORACLE, REFERENCE, SINGLE, SINGLE_RESIDUAL};
@@ -91,8 +91,7 @@ fn nothing_is_left_out() {
                 _ => None,
             })
             .collect();
-        let expected: Vec<&str> = FUNCTIONS.into_iter().filter(|&name| name != OPTIONAL || robot.has(name)).collect();
-        assert_eq!(functions, expected, "{}", robot.module);
+        assert_eq!(functions, expected(&absent(robot.text)), "{}", robot.module);
         assert_eq!(robot.narrow, robot.module.ends_with("_f32"));
     }
     let modules: BTreeSet<&str> = ALL.iter().map(|robot| robot.module).collect();
@@ -212,8 +211,8 @@ impl Functions for Planted<'_> {
 fn planted_errors_are_seen() {
     for robot in ["scara", "scara4", "base_set"].map(emitted) {
         let text = robot.description();
-        for function in FUNCTIONS.into_iter().filter(|function| robot.has(function)) {
-            let planted = Planted { robot, function };
+        for function in expected(&absent(robot.text)) {
+            let planted = Planted { robot, function: &function };
             let judged = std::panic::catch_unwind(|| judge("planted", &planted, &text, 3, tolerance(robot)));
             assert!(judged.is_err(), "{}: an error in {function} is not seen", robot.module);
         }

@@ -24,7 +24,8 @@ const FUNCTIONS: [&str; 9] = [
 
 fn without(robot: &str, without: Passes) -> Interpreted {
     let functions = Selection::named(FUNCTIONS).expect("they are emitted functions");
-    Interpreted::with_options(&description(robot), &Options { without, functions, ..Options::default() }).expect("valid")
+    Interpreted::with_options(&description(robot), &Options { without, functions: functions.clone(), ..Options::default() })
+        .expect("valid")
 }
 
 fn arguments(sample: &Sample) -> Arguments {

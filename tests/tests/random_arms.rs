@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use armgen_codegen::program::{Options, Pass, Passes};
-use armgen_tests::functions::{Functions, FUNCTIONS, OPTIONAL};
+use armgen_tests::functions::expected;
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::judge::{judge, Tolerance};
 use armgen_tests::precision::{FORWARD_RESIDUAL, ORACLE};
@@ -52,7 +52,7 @@ fn check_without(seed: u64, without: Passes, how: &str) {
     let robot = Interpreted::with_options(&text, &Options { without, ..Options::default() })
         .unwrap_or_else(|faults| panic!("seed {seed}{how}:\n{faults}\n{text}"));
     let names: Vec<String> = robot.module.functions.iter().map(|f| f.name()).collect();
-    let expected: Vec<&str> = FUNCTIONS.into_iter().filter(|&name| name != OPTIONAL || robot.has(name)).collect();
-    assert_eq!(names, expected);
+    let absent: Vec<String> = robot.module.absent.iter().map(|(name, _)| name.clone()).collect();
+    assert_eq!(names, expected(&absent));
     judge(&format!("arm {seed}{how}"), &robot, &text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
 }

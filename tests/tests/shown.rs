@@ -1,5 +1,8 @@
 //! What `show` prints is the arm: every formula, closed or in steps, read back as text and compared with the program that is emitted.
 
+use std::ops::Range;
+
+use armgen_codegen::catalogue::{self, Part, Sizes};
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::{manipulator, source::Source, Model};
 use armgen_tests::formula;
@@ -54,10 +57,35 @@ task: [z]
 regressor: standard
 ";
 
+/// The function whose result a matrix is shown of, and where its entries stand there.
+fn place(shown: &str, sizes: &Sizes) -> Option<(String, Range<usize>)> {
+    for (quantity, with) in catalogue::functions() {
+        let (function, mut start) = (quantity.function_name(with), 0);
+        for part in quantity.result {
+            let all = start..start + part.len(sizes);
+            start = all.end;
+            match part.element {
+                Some(element) => {
+                    let number = shown.strip_prefix(element.name).and_then(|rest| rest.strip_prefix('_')?.parse::<usize>().ok());
+                    if let Some(number) = number {
+                        let size = part.rows().of(sizes) * part.columns().of(sizes);
+                        let first = all.start + (number - 1) * size;
+                        return Some((function, first..first + size));
+                    }
+                }
+                None if part.name == Part::RESULT && shown == function => return Some((function, all)),
+                None if shown == format!("{function}_{}", part.name) => return Some((function, all)),
+                None => {}
+            }
+        }
+    }
+    None
+}
+
 fn check(what: &str, text: &str) {
     let model = Model::new(manipulator::read(&Source::new("robot.yaml", text)).0.unwrap_or_else(|| panic!("{what}\n{text}")).0);
     let program = Interpreted::new(text).expect("it has been read");
-    let dof = program.dof();
+    let (dof, sizes) = (program.dof(), model.sizes());
     let described: Vec<(String, f64)> =
         model.manipulator.parameters.iter().map(|p| (p.name.clone(), p.nominal.to_f64())).collect();
     let arguments: Vec<(String, f64)> = program.parameter_names().into_iter().zip(program.nominal()).collect();
@@ -85,24 +113,12 @@ fn check(what: &str, text: &str) {
             names.extend(of.iter().cloned());
             let value = |text: &str| formula::evaluate(&formula::parse(text)?, &names);
             let found = quantity.value(&names).unwrap_or_else(|error| panic!("{what}: {error}")).concat();
-            let expected = match (quantity.name.strip_prefix("link_frame_"), quantity.name.as_str()) {
-                (Some(number), _) => {
-                    let i: usize = number.parse().expect("a number");
-                    program.call("link_frames", &a)[16 * (i - 1)..16 * i].to_vec()
-                }
-                (None, "determinant") => {
-                    let factors =
-                        quantity.factors.iter().flatten().map(|text| value(text).unwrap_or_else(|e| panic!("{what}: {e}")));
-                    vec![factors.product()]
-                }
-                // The matrices of one function, by what the derivative is.
-                (None, name) => match name.rsplit_once("_derivatives_") {
-                    Some((function, by)) => {
-                        let place = ["q", "dq", "tau"].iter().position(|known| *known == by).expect("a known matrix");
-                        program.call(&format!("{function}_derivatives"), &a)[place * dof * dof..][..dof * dof].to_vec()
-                    }
-                    None => program.call(name, &a),
-                },
+            let expected = if quantity.name == "determinant" {
+                let factors = quantity.factors.iter().flatten().map(|text| value(text).unwrap_or_else(|e| panic!("{what}: {e}")));
+                vec![factors.product()]
+            } else {
+                let (function, entries) = place(&quantity.name, &sizes).unwrap_or_else(|| panic!("{what}: of no function"));
+                program.call(&function, &a)[entries].to_vec()
             };
             agree(&what, &found, &expected, ORACLE);
         }

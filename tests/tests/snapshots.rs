@@ -9,10 +9,10 @@
 
 use std::fmt::Write;
 
+use armgen_codegen::catalogue;
 use armgen_codegen::derive::parameters::View;
-use armgen_codegen::equations::{Quantity, Shape};
 use armgen_codegen::manipulator;
-use armgen_codegen::program::{Cost, Options};
+use armgen_codegen::program::{module, Cost, Options};
 use armgen_codegen::ring::field::Element;
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::source::Source;
@@ -45,7 +45,7 @@ fn snapshot(robot: &Emitted, what: &str, text: &str) {
 fn costs() {
     for robot in robots() {
         let mut table = format!("{:32}{:>6}{:>6}{:>6}{:>6}{:>8}  derived by\n", "", "mul", "add", "div", "neg", "sincos");
-        for function in model(robot).module(&Options::default()).functions {
+        for function in module(&model(robot), &Options::default()).functions {
             let Cost { mul, add, div, neg, sincos } = Cost::of(&function);
             let (name, method) = (function.name(), function.method);
             writeln!(table, "{name:32}{mul:6}{add:6}{div:6}{neg:6}{sincos:8}  {method}").expect("text");
@@ -65,22 +65,18 @@ fn meanings() {
             0 => "0".to_owned(),
             value => format!("{:08x}", (value >> 32) ^ (value & 0xffff_ffff)),
         };
-        for quantity in Quantity::ALL {
-            for with in [false, true] {
-                if with && !quantity.has_parameters() {
-                    continue;
-                }
-                if quantity.missing(&model).is_some() {
-                    continue;
-                }
-                let view = if with { View::Vector(&model.parameters) } else { View::Nominal };
-                let derivation = quantity.by_recursion(&model, view);
-                let columns = match quantity.shape() {
-                    Shape::EquationsOfMotion | Shape::Vector => model.manipulator.dof(),
-                    shape => shape.rows_columns(&model.sizes()).1.max(1),
-                };
-                writeln!(text, "\n{}{}", quantity.name(), if with { "_with" } else { "" }).expect("text");
-                for row in derivation.entries.chunks(columns) {
+        let sizes = model.sizes();
+        for (quantity, with) in catalogue::functions().filter(|(quantity, with)| (quantity.missing)(&model, *with).is_none()) {
+            let view = if with { View::Vector(&model.parameters) } else { View::Nominal };
+            let derivation = quantity.by_recursion(&model, view);
+            writeln!(text, "\n{}", quantity.function_name(with)).expect("text");
+            let mut entries = derivation.entries.as_slice();
+            for part in quantity.result {
+                let (own, rest) = entries.split_at(part.len(&sizes));
+                entries = rest;
+                // A vector stands in a row.
+                let columns = if part.lengths.len() == 1 { part.rows() } else { part.columns() };
+                for row in own.chunks(columns.of(&sizes).max(1)) {
                     let row: Vec<String> = row.iter().map(|&entry| hex(derivation.pool.fingerprint(entry))).collect();
                     writeln!(text, "  {}", row.join(" ")).expect("text");
                 }

@@ -12,7 +12,7 @@ use crate::arithmetic::tower::Tower;
 use crate::arithmetic::{Arithmetic, Element};
 use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::claims::{Claims, Resolved};
-use crate::contract::Promise;
+use crate::contract::{self, Promise};
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
@@ -148,7 +148,8 @@ impl Sizes {
             return Err("the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
         }
         let program = &function.program;
-        let places = promise.shape.places(self.joints, self.parameters, self.base.unwrap_or(0), self.task);
+        let sizes = contract::Sizes { n: self.joints, p: self.parameters, b: self.base.unwrap_or(0), m: self.task };
+        let places = promise.returned.places(&sizes);
         if program.outputs.iter().map(|o| &o.place).ne(&places) {
             return Err(format!("its result does not have the {} entries that it should", places.len()));
         }

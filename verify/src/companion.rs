@@ -19,7 +19,7 @@ use std::fmt::Write;
 
 use crate::bounds::{is_power_of_two, literal_errors};
 use crate::claims::Claims;
-use crate::contract::{Promise, Shape};
+use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::float::Arguments;
 use crate::program::{Angle, Argument, Program, Step};
@@ -327,10 +327,11 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
         arguments.insert(0, "pi: &[Real; PARAMETERS]".into());
     }
     let given: Vec<&str> = program.arguments.iter().map(|a| argument(*a)).collect();
-    let n = match module.constants.get("DOF") {
-        Some((_, Constant::Integer(n))) => *n as usize,
-        _ => 1,
+    let constant = |name: &str| match module.constants.get(name) {
+        Some((_, Constant::Integer(value))) => *value as usize,
+        _ => 0,
     };
+    let sizes = Sizes { n: constant("DOF"), p: constant("PARAMETERS"), b: constant("BASE_PARAMETERS"), m: constant("TASK_ROWS") };
     let angle = |sum: &Sum| {
         let terms: Vec<String> = sum.terms.iter().map(|(joint, factor)| format!("({joint}, {factor}.0)")).collect();
         let [turn, off] = [sum.turn, sum.off].map(|value| number(value, module.real));
@@ -340,13 +341,15 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
     let rows: Vec<String> = table.rows.iter().map(|row| row_text(row, module.real)).collect();
     let entries: Vec<String> = table.entries.iter().map(ToString::to_string).collect();
     let results: Vec<String> = (0..entries.len()).map(|i| format!("e[{i}]")).collect();
+    let value = promise.returned.value(&results, &sizes);
+    let value = if results.is_empty() { format!("{{ let _ = e; {value} }}") } else { value };
     let name = &program.name;
     let _ = write!(
         text,
         "/// Running error bound of `{name}`, entry by entry.\n#[allow(clippy::all, dead_code)]\n#[rustfmt::skip]\npub fn {name}_error_bound({}) -> {} {{\n    static \
          STEPS: [Step; {}] = [{}];\n    static ANGLES: [Angle<'static>; {}] = [{}];\n    static ENTRIES: [u32; {}] = [{}];\n    let e = bounds::<_, _, {}>(&STEPS, &ANGLES, &ENTRIES, &Given {{ {}, ..NONE }});\n    {}\n}}\n\n",
         arguments.join(", "),
-        promise.shape.rust().replace(';', "; ").replace(',', ", "),
+        promise.returned.rust().replace(';', "; ").replace(',', ", "),
         rows.len(),
         rows.join(", "),
         angles.len(),
@@ -355,44 +358,6 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
         entries.join(", "),
         if table.sensitive { rows.len() } else { 0 },
         given.join(", "),
-        nested(promise.shape, &results, n),
+        value,
     );
-}
-
-fn row(entries: &[String]) -> String {
-    format!("[{}]", entries.join(", "))
-}
-
-fn matrix(entries: &[String], columns: usize) -> String {
-    if columns == 0 {
-        return row(&[]);
-    }
-    row(&entries.chunks(columns).map(row).collect::<Vec<_>>())
-}
-
-fn nested(shape: Shape, entries: &[String], n: usize) -> String {
-    let square = n * n;
-    match shape {
-        Shape::Scalar => entries[0].clone(),
-        Shape::Vector => row(entries),
-        Shape::Frame => matrix(entries, 4),
-        Shape::Frames => row(&entries.chunks(16).map(|frame| matrix(frame, 4)).collect::<Vec<_>>()),
-        Shape::Jacobian | Shape::Square => matrix(entries, n),
-        Shape::Regressor | Shape::BaseRegressor if entries.is_empty() => format!("{{ let _ = e; [[]; {n}] }}"),
-        Shape::Regressor | Shape::BaseRegressor => matrix(entries, entries.len() / n),
-        Shape::EquationsOfMotion => format!(
-            "EquationsOfMotion {{ inertia: {}, coriolis: {}, gravity: {} }}",
-            matrix(&entries[..square], n),
-            matrix(&entries[square..2 * square], n),
-            row(&entries[2 * square..])
-        ),
-        Shape::Task => matrix(entries, (entries.len() as f64).sqrt() as usize),
-        Shape::TwoSquares => format!("({}, {})", matrix(&entries[..square], n), matrix(&entries[square..], n)),
-        Shape::ThreeSquares => format!(
-            "({}, {}, {})",
-            matrix(&entries[..square], n),
-            matrix(&entries[square..2 * square], n),
-            matrix(&entries[2 * square..], n)
-        ),
-    }
 }

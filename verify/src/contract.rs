@@ -1,34 +1,69 @@
-//! What an emitted module promises: its functions with their arguments and results.
+//! What an emitted module promises of a function: its arguments and its result. Which functions there are says [`reference`](crate::reference).
 
 use crate::program::Argument;
 
-/// Shape of a result, in terms of the n joints, the p parameters, the b base parameters and the m rows of the task.
+/// A dimension of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// A number.
-    Scalar,
-    /// n entries.
-    Vector,
-    /// 4 x 4.
-    Frame,
-    /// n times 4 x 4.
-    Frames,
-    /// 6 x n.
-    Jacobian,
-    /// n x n.
-    Square,
-    /// n x p.
-    Regressor,
-    /// n x b, of the base parameters.
-    BaseRegressor,
-    /// n x n, n x n, n.
-    EquationsOfMotion,
-    /// m x m.
+pub enum Length {
+    /// The n joints.
+    Dof,
+    /// The p parameters.
+    Parameters,
+    /// The b base parameters.
+    BaseParameters,
+    /// The m rows of the task.
     Task,
-    /// A pair of n x n.
-    TwoSquares,
-    /// Three of n x n.
-    ThreeSquares,
+    /// That number.
+    Of(usize),
+}
+
+/// The sizes of an arm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// Joints.
+    pub n: usize,
+    /// Parameters.
+    pub p: usize,
+    /// Base parameters.
+    pub b: usize,
+    /// Rows of the task.
+    pub m: usize,
+}
+
+impl Length {
+    fn of(self, sizes: &Sizes) -> usize {
+        match self {
+            Length::Dof => sizes.n,
+            Length::Parameters => sizes.p,
+            Length::BaseParameters => sizes.b,
+            Length::Task => sizes.m,
+            Length::Of(value) => value,
+        }
+    }
+
+    fn rust(self) -> String {
+        match self {
+            Length::Dof => "DOF".into(),
+            Length::Parameters => "PARAMETERS".into(),
+            Length::BaseParameters => "BASE_PARAMETERS".into(),
+            Length::Task => "TASK_ROWS".into(),
+            Length::Of(value) => value.to_string(),
+        }
+    }
+}
+
+/// Dimensions of an array, outermost first; none of a number.
+pub type Array = &'static [Length];
+
+/// What a function returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Returned {
+    /// An array or a number.
+    One(Array),
+    /// Several, one after the other.
+    List(&'static [Array]),
+    /// Several in fields of a type of that name.
+    Fields(&'static str, &'static [(&'static str, Array)]),
 }
 
 /// A function that a module has or may have.
@@ -39,115 +74,72 @@ pub struct Promise {
     /// Its arguments.
     pub arguments: &'static [&'static str],
     /// Its result.
-    pub shape: Shape,
+    pub returned: Returned,
     /// Whether every module has it.
     pub required: bool,
     /// Whether there is a form `_with` parameters at run time.
     pub parameters: bool,
 }
 
-const fn promise(name: &'static str, arguments: &'static [&'static str], shape: Shape, parameters: bool) -> Promise {
-    Promise { name, arguments, shape, required: true, parameters }
-}
-
-const fn extra(name: &'static str, arguments: &'static [&'static str], shape: Shape) -> Promise {
-    Promise { name, arguments, shape, required: false, parameters: false }
-}
-
-/// All functions that the checker knows.
-pub const PROMISES: [Promise; 21] = [
-    promise("direct_kinematics", &["q"], Shape::Frame, false),
-    promise("link_frames", &["q"], Shape::Frames, false),
-    promise("geometric_jacobian", &["q"], Shape::Jacobian, false),
-    promise("geometric_jacobian_dot", &["q", "dq"], Shape::Jacobian, false),
-    promise("inertia_matrix", &["q"], Shape::Square, true),
-    promise("coriolis_matrix", &["q", "dq"], Shape::Square, true),
-    promise("gravity", &["q"], Shape::Vector, true),
-    promise("friction", &["dq"], Shape::Vector, true),
-    promise("equations_of_motion", &["q", "dq"], Shape::EquationsOfMotion, true),
-    promise("inverse_dynamics", &["q", "dq", "ddq"], Shape::Vector, true),
-    promise("forward_dynamics", &["q", "dq", "tau"], Shape::Vector, true),
-    promise("regressor", &["q", "dq", "dqr", "ddqr"], Shape::Regressor, false),
-    promise("known_torque", &["q", "dq", "dqr", "ddqr"], Shape::Vector, false),
-    promise("kinetic_energy", &["q", "dq"], Shape::Scalar, true),
-    promise("potential_energy", &["q"], Shape::Scalar, true),
-    extra("momentum", &["q", "dq"], Shape::Vector),
-    extra("coriolis_transpose_times", &["q", "dq"], Shape::Vector),
-    extra("base_regressor", &["q", "dq", "ddq"], Shape::BaseRegressor),
-    extra("operational_inertia", &["q"], Shape::Task),
-    extra("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Shape::TwoSquares),
-    extra("forward_dynamics_derivatives", &["q", "dq", "tau"], Shape::ThreeSquares),
-];
-
-impl Shape {
+impl Returned {
     /// The type in Rust, without blanks.
-    pub fn rust(self) -> &'static str {
+    pub fn rust(self) -> String {
+        let array =
+            |lengths: Array| lengths.iter().rev().fold("Real".to_string(), |of, length| format!("[{of};{}]", length.rust()));
         match self {
-            Shape::Scalar => "Real",
-            Shape::Vector => "[Real;DOF]",
-            Shape::Frame => "[[Real;4];4]",
-            Shape::Frames => "[[[Real;4];4];DOF]",
-            Shape::Jacobian => "[[Real;DOF];6]",
-            Shape::Square => "[[Real;DOF];DOF]",
-            Shape::Regressor => "[[Real;PARAMETERS];DOF]",
-            Shape::BaseRegressor => "[[Real;BASE_PARAMETERS];DOF]",
-            Shape::EquationsOfMotion => "EquationsOfMotion",
-            Shape::Task => "[[Real;TASK_ROWS];TASK_ROWS]",
-            Shape::TwoSquares => "([[Real;DOF];DOF],[[Real;DOF];DOF])",
-            Shape::ThreeSquares => "([[Real;DOF];DOF],[[Real;DOF];DOF],[[Real;DOF];DOF])",
+            Returned::One(lengths) => array(lengths),
+            Returned::List(all) => format!("({})", all.iter().map(|lengths| array(lengths)).collect::<Vec<_>>().join(",")),
+            Returned::Fields(name, _) => name.into(),
+        }
+    }
+
+    /// Each array and what Rust writes after the result to have it.
+    fn arrays(self) -> Vec<(String, Array)> {
+        match self {
+            Returned::One(lengths) => vec![(String::new(), lengths)],
+            Returned::List(all) => all.iter().enumerate().map(|(i, lengths)| (format!(".{i}"), *lengths)).collect(),
+            Returned::Fields(_, all) => all.iter().map(|(name, lengths)| (format!(".{name}"), *lengths)).collect(),
         }
     }
 
     /// Places of the entries, in order.
-    pub fn places(self, n: usize, p: usize, b: usize, m: usize) -> Vec<String> {
-        let matrix = |name: &str, rows: usize, columns: usize| -> Vec<String> {
-            (0..rows).flat_map(|i| (0..columns).map(move |j| format!("{name}[{i}][{j}]"))).collect()
-        };
-        let vector = |name: &str| -> Vec<String> { (0..n).map(|i| format!("{name}[{i}]")).collect() };
+    pub fn places(self, sizes: &Sizes) -> Vec<String> {
+        fn within(place: &str, lengths: &[Length], sizes: &Sizes) -> Vec<String> {
+            let Some((outer, inner)) = lengths.split_first() else { return vec![place.into()] };
+            (0..outer.of(sizes)).flat_map(|i| within(&format!("{place}[{i}]"), inner, sizes)).collect()
+        }
+        self.arrays().iter().flat_map(|(place, lengths)| within(place, lengths, sizes)).collect()
+    }
+
+    /// The value in Rust whose entries are these.
+    pub fn value(self, entries: &[String], sizes: &Sizes) -> String {
+        fn array(lengths: &[Length], entries: &mut std::slice::Iter<'_, String>, sizes: &Sizes) -> String {
+            let Some((outer, inner)) = lengths.split_first() else { return entries.next().cloned().unwrap_or_default() };
+            let rows: Vec<String> = (0..outer.of(sizes)).map(|_| array(inner, entries, sizes)).collect();
+            format!("[{}]", rows.join(", "))
+        }
+        let mut entries = entries.iter();
+        let values: Vec<String> = self.arrays().iter().map(|(_, lengths)| array(lengths, &mut entries, sizes)).collect();
         match self {
-            Shape::Scalar => vec![String::new()],
-            Shape::Vector => vector(""),
-            Shape::Frame => matrix("", 4, 4),
-            Shape::Frames => (0..n).flat_map(|i| matrix(&format!("[{i}]"), 4, 4)).collect(),
-            Shape::Jacobian => matrix("", 6, n),
-            Shape::Square => matrix("", n, n),
-            Shape::Regressor => matrix("", n, p),
-            Shape::BaseRegressor => matrix("", n, b),
-            Shape::EquationsOfMotion => [matrix(".inertia", n, n), matrix(".coriolis", n, n), vector(".gravity")].concat(),
-            Shape::Task => matrix("", m, m),
-            Shape::TwoSquares => [matrix(".0", n, n), matrix(".1", n, n)].concat(),
-            Shape::ThreeSquares => [matrix(".0", n, n), matrix(".1", n, n), matrix(".2", n, n)].concat(),
+            Returned::One(_) => values.concat(),
+            Returned::List(_) => format!("({})", values.join(", ")),
+            Returned::Fields(name, fields) => {
+                let fields: Vec<String> =
+                    fields.iter().zip(values).map(|((field, _), value)| format!("{field}: {value}")).collect();
+                format!("{name} {{ {} }}", fields.join(", "))
+            }
         }
     }
 }
 
 impl Promise {
-    /// The promise of a function's name, and whether it is the form with parameters.
-    pub fn of(name: &str) -> Option<(&'static Promise, bool)> {
-        let plain = PROMISES.iter().find(|p| p.name == name).map(|p| (p, false));
-        let base = name.strip_suffix("_with");
-        plain.or_else(|| PROMISES.iter().find(|p| p.parameters && Some(p.name) == base).map(|p| (p, true)))
-    }
-
-    /// Names of all functions that a module must have.
-    pub fn required() -> Vec<String> {
-        let mut names = Vec::new();
-        for promise in PROMISES.iter().filter(|p| p.required) {
-            names.push(promise.name.to_string());
-            if promise.parameters {
-                names.push(format!("{}_with", promise.name));
-            }
-        }
-        names
-    }
-
     /// The signature in Rust, without blanks.
     pub fn signature(&self, with_parameters: bool) -> String {
         let mut arguments: Vec<String> = self.arguments.iter().map(|name| format!("{name}:&[Real;DOF]")).collect();
         if with_parameters {
             arguments.insert(0, "pi:&[Real;PARAMETERS]".into());
         }
-        format!("({})->{}", arguments.join(","), self.shape.rust())
+        format!("({})->{}", arguments.join(","), self.returned.rust())
     }
 
     /// Length of an argument.

@@ -5,12 +5,12 @@ use crate::arithmetic::dual::Dual;
 use crate::arithmetic::prime::{Prime, Residue};
 use crate::arithmetic::Element;
 use crate::checker::{with_parameters, Checker, Point};
-use crate::contract::PROMISES;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::Formula;
 use crate::program::Program;
 use crate::reader::Module;
+use crate::reference::PROMISES;
 use crate::report::{FunctionReport, IdentityReport};
 
 /// The functions of a module with the exact values of their literals, at one point.

@@ -1,4 +1,4 @@
-//! What every function must return at one random state, from the equations.
+//! The functions that the checker knows: what each takes and returns, and what it must return at one random state, from the equations.
 
 use std::collections::BTreeMap;
 
@@ -6,6 +6,7 @@ use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::{Arithmetic, Element};
+use crate::contract::{Array, Length, Promise, Returned};
 use crate::equations::arm::Arm;
 use crate::equations::lagrange::{
     accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, times_vector,
@@ -17,6 +18,78 @@ use crate::equations::parameters::{
 use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::equations::vector::solve;
+
+const N: Length = Length::Dof;
+const SQUARE: Array = &[N, N];
+const VECTOR: Array = &[N];
+const FRAME: Array = &[Length::Of(4), Length::Of(4)];
+const JACOBIAN: Array = &[Length::Of(6), N];
+
+const fn promise(name: &'static str, arguments: &'static [&'static str], returned: Returned) -> Promise {
+    Promise { name, arguments, returned, required: true, parameters: false }
+}
+
+impl Promise {
+    const fn with_parameters(self) -> Promise {
+        Promise { parameters: true, ..self }
+    }
+
+    /// Not of every module.
+    const fn optional(self) -> Promise {
+        Promise { required: false, ..self }
+    }
+}
+
+/// All functions that the checker knows. Written apart from the generator's catalogue; a test compares the two.
+pub const PROMISES: [Promise; 21] = [
+    promise("direct_kinematics", &["q"], Returned::One(FRAME)),
+    promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
+    promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)),
+    promise("geometric_jacobian_dot", &["q", "dq"], Returned::One(JACOBIAN)),
+    promise("inertia_matrix", &["q"], Returned::One(SQUARE)).with_parameters(),
+    promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
+    promise("gravity", &["q"], Returned::One(VECTOR)).with_parameters(),
+    promise("friction", &["dq"], Returned::One(VECTOR)).with_parameters(),
+    promise(
+        "equations_of_motion",
+        &["q", "dq"],
+        Returned::Fields("EquationsOfMotion", &[("inertia", SQUARE), ("coriolis", SQUARE), ("gravity", VECTOR)]),
+    )
+    .with_parameters(),
+    promise("inverse_dynamics", &["q", "dq", "ddq"], Returned::One(VECTOR)).with_parameters(),
+    promise("forward_dynamics", &["q", "dq", "tau"], Returned::One(VECTOR)).with_parameters(),
+    promise("regressor", &["q", "dq", "dqr", "ddqr"], Returned::One(&[N, Length::Parameters])),
+    promise("known_torque", &["q", "dq", "dqr", "ddqr"], Returned::One(VECTOR)),
+    promise("kinetic_energy", &["q", "dq"], Returned::One(&[])).with_parameters(),
+    promise("potential_energy", &["q"], Returned::One(&[])).with_parameters(),
+    promise("momentum", &["q", "dq"], Returned::One(VECTOR)).optional(),
+    promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)).optional(),
+    promise("base_regressor", &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])).optional(),
+    promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).optional(),
+    promise("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])).optional(),
+    promise("forward_dynamics_derivatives", &["q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])).optional(),
+];
+
+impl Promise {
+    /// The promise of a function's name, and whether it is the form with parameters.
+    pub fn of(name: &str) -> Option<(&'static Promise, bool)> {
+        let plain = PROMISES.iter().find(|p| p.name == name).map(|p| (p, false));
+        let base = name.strip_suffix("_with");
+        plain.or_else(|| PROMISES.iter().find(|p| p.parameters && Some(p.name) == base).map(|p| (p, true)))
+    }
+
+    /// Names of all functions that a module must have.
+    pub fn required() -> Vec<String> {
+        let mut names = Vec::new();
+        for promise in PROMISES.iter().filter(|p| p.required) {
+            names.push(promise.name.to_string());
+            if promise.parameters {
+                names.push(format!("{}_with", promise.name));
+            }
+        }
+        names
+    }
+}
 
 /// Values of all functions by name.
 pub type Values<E> = BTreeMap<String, Vec<E>>;

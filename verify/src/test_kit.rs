@@ -10,7 +10,7 @@ use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Arithmetic, Element, Stream};
-use crate::contract::{Promise, PROMISES};
+use crate::contract::Promise;
 use crate::enclosure::Float;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
@@ -18,6 +18,7 @@ use crate::float::Arguments;
 use crate::formula::Formula;
 use crate::program::Inputs;
 use crate::reader::Module;
+use crate::reference::PROMISES;
 use crate::reference::{BaseParameters, Reference, Wanted};
 
 /// Floats of 256 bits as an arithmetic.

@@ -14,8 +14,11 @@ pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String], withou
         Ok(model) => model,
         Err(code) => return code,
     };
-    let module = model.module(&Options { functions, without: without.into_iter().collect(), ..Options::default() });
-    if !input::all_there(&module.name, &module.absent, functions) {
+    let module = armgen_codegen::program::module(
+        &model,
+        &Options { functions: functions.clone(), without: without.into_iter().collect(), ..Options::default() },
+    );
+    if !input::all_there(&module.name, &module.absent, &functions) {
         return FAULTY;
     }
     let costs: Vec<(String, Cost, &str)> =

@@ -87,13 +87,13 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         Err(code) => return code,
     };
     let without = choices.without.iter().copied().collect();
-    let options = Options { scalar, trig, without, batch: choices.batch.map(usize::from), functions };
+    let options = Options { scalar, trig, without, batch: choices.batch.map(usize::from), functions: functions.clone() };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
     let mut generated = match input::told(&source, generated, &diagnostics, input::Warnings::Counted) {
         Ok(generated) => generated,
         Err(code) => return code,
     };
-    if !input::all_there(source.name(), &generated.absent, functions) {
+    if !input::all_there(source.name(), &generated.absent, &functions) {
         return FAULTY;
     }
     // The bounds are those of one state at a time.

@@ -46,9 +46,11 @@ fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
             let meant = did_you_mean(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
                 .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
             let known: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();
+            let lists: Vec<String> = Item::lists().iter().map(|of| format!("{of}_1 to {of}_{dof}")).collect();
             return Err(format!(
-                "there is no quantity `{name}`\n  {meant}known are\n  {},\n  link_frame_1 to link_frame_{dof}",
-                known.join(",\n  ")
+                "there is no quantity `{name}`\n  {meant}known are\n  {},\n  {}",
+                known.join(",\n  "),
+                lists.join(", ")
             ));
         }
         items.extend(named);

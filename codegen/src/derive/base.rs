@@ -10,7 +10,7 @@ use super::newton_euler::Motion;
 use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
 use super::passes::turn_last_link;
 use super::plan::Plan;
-use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
+use super::quantities::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::{Number, Rational};
 use crate::manipulator::{JointKind, Manipulator};
 use crate::ring::field::{scramble, Element, Field};

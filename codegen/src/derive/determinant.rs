@@ -12,8 +12,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::arm::Arm;
-use super::kinematics::geometric_jacobian;
 use super::parameters::View;
+use super::quantities::kinematics::geometric_jacobian;
 use crate::exact::{Angle, Number, Rational};
 use crate::ring::normal_form::{Factors, NormalForm, Wave};
 use crate::ring::print::{Notation, Printer};

@@ -1,11 +1,22 @@
 //! Identities between the equations, exact in the prime field, for arms with everything in them.
 
 use super::arm::Arm;
+use super::constants::field_of;
 use super::newton_euler::{friction, inverse_dynamics, newton_euler, Motion};
 use super::parameters::{ParameterVector, View};
 use super::plan::Plan;
+use super::quantities::base_regressor::BASE_REGRESSOR;
+use super::quantities::coriolis::CORIOLIS_MATRIX;
+use super::quantities::gravity::GRAVITY;
+use super::quantities::inertia::INERTIA_MATRIX;
+use super::quantities::inverse_dynamics::INVERSE_DYNAMICS;
+use super::quantities::kinematics::DIRECT_KINEMATICS;
+use super::quantities::operational_inertia::OPERATIONAL_INERTIA;
+use super::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
+use super::quantities::*;
+use super::quantity::Setting;
 use super::*;
-use crate::equations::{field_of, Quantity};
+use crate::catalogue;
 use crate::manipulator::Manipulator;
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::source::Source;
@@ -153,7 +164,7 @@ fn grouping_changes_nothing() {
             let (a, b) =
                 (gravity::gravity(pool, arm, &mut Plan::default()), gravity::gravity(pool, &grouped, &mut Plan::default()));
             assert_equal(pool, &a, &b);
-            let (a, b) = (energy::kinetic_energy(pool, arm), energy::kinetic_energy(pool, &grouped));
+            let (a, b) = (kinetic_energy::kinetic_energy(pool, arm), kinetic_energy::kinetic_energy(pool, &grouped));
             assert_equal(pool, &[a], &[b]);
         }
     });
@@ -214,12 +225,13 @@ fn reduced_arms() -> Vec<Manipulator> {
 fn every_way_of_a_plan_leads_to_the_same_expressions() {
     for manipulator in arms().into_iter().take(1).chain(reduced_arms()) {
         let model = crate::Model::new(manipulator);
-        for quantity in Quantity::ALL.into_iter().filter(|q| {
-            !matches!(q, Quantity::Regressor | Quantity::KnownTorque | Quantity::BaseRegressor) && q.missing(&model).is_none()
-        }) {
+        let of_parameters = [&REGRESSOR, &KNOWN_TORQUE, &BASE_REGRESSOR];
+        let there = |quantity: &&catalogue::Quantity| (quantity.missing)(&model, false).is_none();
+        for quantity in catalogue::quantities().filter(|quantity| !of_parameters.contains(quantity)).filter(there) {
             let mut pool = Pool::new(model.field.clone());
             let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
-            let plain = quantity.entries(&mut pool, &arm, &model, &mut Plan::default());
+            let setting = Setting { model: &model, view: View::Nominal };
+            let plain = (quantity.recursion.entries)(&mut pool, &arm, &mut Plan::default(), &setting);
             for seed in 0..8 {
                 let found = quantity.by_plan(&model, View::Nominal, Plan::scattered(seed), 0);
                 for (k, (&a, &b)) in plain.iter().zip(&found.entries).enumerate() {
@@ -227,7 +239,7 @@ fn every_way_of_a_plan_leads_to_the_same_expressions() {
                         pool.fingerprint(a),
                         found.pool.fingerprint(b),
                         "{} {k} of {} by plan {seed}",
-                        quantity.name(),
+                        quantity.name,
                         model.manipulator.name
                     );
                 }
@@ -241,14 +253,14 @@ fn every_way_leads_to_the_same_regressor() {
     for manipulator in reduced_arms() {
         for choice in [RegressorChoice::Standard, RegressorChoice::Base] {
             let model = crate::Model::new(Manipulator { regressor: choice, ..manipulator.clone() });
-            for quantity in [Quantity::Regressor, Quantity::KnownTorque] {
+            for quantity in [&REGRESSOR, &KNOWN_TORQUE] {
                 let fingerprints = |plan| {
                     let found = quantity.by_plan(&model, View::Nominal, plan, 0);
                     found.entries.iter().map(|&e| found.pool.fingerprint(e)).collect::<Vec<_>>()
                 };
                 let plain = fingerprints(Plan::default());
                 for seed in 0..8 {
-                    assert_eq!(fingerprints(Plan::scattered(seed)), plain, "{} by plan {seed}", quantity.name());
+                    assert_eq!(fingerprints(Plan::scattered(seed)), plain, "{} by plan {seed}", quantity.name);
                 }
             }
         }
@@ -260,7 +272,7 @@ fn a_searched_and_optimised_program_computes_the_same_without_any_pass() {
     for manipulator in arms().into_iter().take(1).chain(reduced_arms()) {
         let model = crate::Model::new(manipulator);
         let fingerprints = |without| {
-            let quantities = [Quantity::InertiaMatrix, Quantity::CoriolisMatrix, Quantity::Gravity, Quantity::InverseDynamics];
+            let quantities = [&INERTIA_MATRIX, &CORIOLIS_MATRIX, &GRAVITY, &INVERSE_DYNAMICS];
             quantities.map(|quantity| {
                 let found = quantity.by_search(&model, View::Nominal, without, 20_000);
                 found.entries.iter().map(|&e| found.pool.fingerprint(e)).collect::<Vec<_>>()
@@ -307,7 +319,7 @@ fn newton_euler_is_lagrange() {
 #[test]
 fn gravity_is_the_gradient_of_the_potential() {
     check(|pool, arm, _| {
-        let potential = gravity::potential_energy(pool, arm);
+        let potential = potential_energy::potential_energy(pool, arm);
         let gradient: Vec<ExprId> = (0..arm.dof() as u16).map(|i| pool.partial_derivative(&[potential], i)[0]).collect();
         let g = gravity::gravity(pool, arm, &mut Plan::default());
         assert_equal(pool, &g, &gradient);
@@ -317,7 +329,7 @@ fn gravity_is_the_gradient_of_the_potential() {
 #[test]
 fn kinetic_energy_is_half_the_quadratic_form() {
     check(|pool, arm, _| {
-        let energy = energy::kinetic_energy(pool, arm);
+        let energy = kinetic_energy::kinetic_energy(pool, arm);
         let b = inertia::inertia_matrix(pool, arm, &mut Plan::default());
         let rates = arm.symbols(pool, Symbol::Rate);
         let momentum = times(pool, &b, &rates);
@@ -423,7 +435,7 @@ fn friction_opposes_and_sits_in_inverse_dynamics() {
 fn closed_forms_are_the_same_expressions() {
     for manipulator in arms() {
         let model = crate::Model::new(manipulator);
-        for quantity in [Quantity::DirectKinematics, Quantity::InertiaMatrix, Quantity::Gravity] {
+        for quantity in [&DIRECT_KINEMATICS, &INERTIA_MATRIX, &GRAVITY] {
             let recursion = quantity.by_recursion(&model, View::Nominal);
             for closed in recursion.by_closed_form() {
                 for (&a, &b) in closed.entries.iter().zip(&recursion.entries) {
@@ -541,7 +553,7 @@ fn momentum_and_coriolis_transposed_are_those_of_the_matrices() {
         let (changing, centrifugal) = (times(pool, &b_rate, &rates), times(pool, &c, &rates));
         let difference: Vec<ExprId> = changing.iter().zip(&centrifugal).map(|(&a, &b)| pool.sub(a, b)).collect();
         assert_equal(pool, &found, &difference);
-        let energy = energy::kinetic_energy(pool, arm);
+        let energy = kinetic_energy::kinetic_energy(pool, arm);
         let gradient: Vec<ExprId> = (0..arm.dof() as u16).map(|i| pool.partial_derivative(&[energy], i)[0]).collect();
         assert_equal(pool, &found, &gradient);
     });
@@ -645,7 +657,7 @@ fn a_task_that_the_arm_cannot_do_has_no_operational_inertia() {
         let rows = ["type: revolute, a: 1, alpha: 0, d: 0, theta: 0"; 3];
         let source = Source::new("arm.yaml", arm_text(&rows, task));
         let model = crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0);
-        Quantity::OperationalInertia.missing(&model)
+        (OPERATIONAL_INERTIA.missing)(&model, false)
     };
     assert_eq!(missing("task: [x, y, rz]\n"), None);
     assert_eq!(missing("task: [x, rz]\n"), None);

@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 
 use super::rust::{self, argument, usize_literal};
 use super::{documentation, sincos};
-use crate::equations::Shape;
+use crate::catalogue::{Length, Part, Quantity, Sizes};
 use crate::program::{Function, Module};
 
 const BLOCKS: &str = include_str!("batch/blocks.rs");
@@ -23,20 +23,7 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));
     let of_slices = module.functions.iter().map(|f| of_slices(module, f));
     let sines = rust::asks_for_sines(module).then(|| sincos::of_lanes(module));
-    let terms = rust::returns(module, Shape::EquationsOfMotion).then(|| {
-        quote! {
-            /// The terms of the equation of motion of a block.
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct EquationsOfMotion {
-                /// Inertia matrix B(q).
-                pub inertia: [[Lanes; DOF]; DOF],
-                /// Coriolis and centrifugal matrix C(q, dq).
-                pub coriolis: [[Lanes; DOF]; DOF],
-                /// Gravity term g(q).
-                pub gravity: [Lanes; DOF],
-            }
-        }
-    });
+    let structures = rust::structures(module, true);
     let blocks = syn::parse_file(BLOCKS).expect("the text to take in is a Rust file").items;
     quote! {
         /// The functions for `LANES` states at a time, side by side: `q[joint][lane]`, `b[row][column][lane]`. The result is written into the last argument.
@@ -47,7 +34,7 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
             pub const LANES: usize = #width;
             /// A number for each state of a block.
             pub type Lanes = [Real; LANES];
-            #terms
+            #(#structures)*
             #(#of_blocks)*
             #sines
         }
@@ -66,7 +53,7 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
 fn of_block(module: &Module, function: &Function) -> TokenStream {
     let name = format_ident!("{}", function.name());
     let documentation = documentation(module, function);
-    let dof = module.joints.len();
+    let sizes = module.sizes();
     let arguments = function.arguments.iter().map(|&a| {
         let (name, length) = argument(a);
         quote!(#name: &[Lanes; #length])
@@ -75,13 +62,12 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
     let (sine_lines, names) = sincos::lines_of_lanes(module, &rust::symbols(function));
     let inputs = used.iter().map(|&a| {
         let (name, _) = argument(a);
-        let length = if name == "pi" { module.parameters.len() } else { dof };
-        let entries = (0..length).map(usize_literal).map(|i| quote!(#name[#i][k]));
+        let entries = (0..a.length().of(&sizes)).map(usize_literal).map(|i| quote!(#name[#i][k]));
         quote!(let #name = [#(#entries),*];)
     });
     let (lines, entries) = super::body::whole(module, function);
-    let places = places(function.quantity.shape(), dof, entries.len());
-    let kind = block_of(function.quantity.shape());
+    let places = places(function.quantity, &sizes);
+    let kind = block_of(function.quantity);
     quote! {
         #(#[doc = #documentation])*
         #[allow(clippy::all)]
@@ -105,49 +91,50 @@ fn documentation(module: &Module, function: &Function) -> Vec<String> {
 }
 
 /// The type of a block of results.
-fn block_of(shape: Shape) -> TokenStream {
-    match shape {
-        Shape::Scalar => quote!(Lanes),
-        Shape::Vector => quote!([Lanes; DOF]),
-        Shape::Frame => quote!([[Lanes; 4]; 4]),
-        Shape::Frames => quote!([[[Lanes; 4]; 4]; DOF]),
-        Shape::Jacobian => quote!([[Lanes; DOF]; 6]),
-        Shape::Square => quote!([[Lanes; DOF]; DOF]),
-        Shape::Regressor => quote!([[Lanes; PARAMETERS]; DOF]),
-        Shape::BaseRegressor => quote!([[Lanes; BASE_PARAMETERS]; DOF]),
-        Shape::Task => quote!([[Lanes; TASK_ROWS]; TASK_ROWS]),
-        Shape::Squares(count) => {
-            let types = (0..count).map(|_| quote!([[Lanes; DOF]; DOF]));
-            quote!((#(#types),*))
-        }
-        Shape::EquationsOfMotion => quote!(EquationsOfMotion),
-    }
+fn block_of(quantity: &Quantity) -> TokenStream {
+    rust::of_parts(quantity, |part| rust::part_type(part, &quote!(Lanes)), |name| quote!(#name))
 }
 
 /// Where the entries of a result stand in a block, in the order of the entries.
-fn places(shape: Shape, dof: usize, count: usize) -> Vec<TokenStream> {
-    let matrix = |field: TokenStream, rows: usize, columns: usize| -> Vec<TokenStream> {
-        let indices = (0..rows * columns).map(|i| (usize_literal(i / columns), usize_literal(i % columns)));
-        indices.map(|(row, column)| quote!(#field [#row][#column])).collect()
-    };
-    let vector = |field: TokenStream| (0..dof).map(usize_literal).map(move |i| quote!(#field [#i])).collect::<Vec<_>>();
-    match shape {
-        Shape::Scalar => vec![quote!()],
-        Shape::Vector => vector(quote!()),
-        Shape::Frame => matrix(quote!(), 4, 4),
-        Shape::Frames => (0..dof).map(usize_literal).flat_map(|link| matrix(quote!([#link]), 4, 4)).collect(),
-        Shape::Jacobian => matrix(quote!(), 6, dof),
-        Shape::Square => matrix(quote!(), dof, dof),
-        Shape::Regressor | Shape::BaseRegressor => matrix(quote!(), dof, count / dof),
-        Shape::Task => matrix(quote!(), count.isqrt(), count.isqrt()),
-        Shape::Squares(squares) => {
-            let field = |i: u8| usize_literal(usize::from(i));
-            (0..squares).map(field).flat_map(|field| matrix(quote!(.#field), dof, dof)).collect()
-        }
-        Shape::EquationsOfMotion => {
-            [matrix(quote!(.inertia), dof, dof), matrix(quote!(.coriolis), dof, dof), vector(quote!(.gravity))].concat()
-        }
+fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
+    fn indices(lengths: &[Length], sizes: &Sizes) -> Vec<TokenStream> {
+        let Some((outer, inner)) = lengths.split_first() else { return vec![quote!()] };
+        let inner = indices(inner, sizes);
+        let of_row = |row| inner.iter().map(move |rest| quote!([#row] #rest));
+        (0..outer.of(sizes)).map(usize_literal).flat_map(of_row).collect()
     }
+    let parts = quantity.result.iter().zip(rust::accesses(quantity));
+    parts.flat_map(|(part, access)| indices(part.lengths, sizes).into_iter().map(move |at| quote!(#access #at))).collect()
+}
+
+/// A block of zeros.
+fn zeros(quantity: &Quantity) -> TokenStream {
+    let zeros = |part: &Part| {
+        part.lengths.iter().rev().fold(quote!([0.0; LANES]), |of, &length| {
+            let length = rust::length(length);
+            quote!([#of; #length])
+        })
+    };
+    rust::of_parts(quantity, zeros, |name| {
+        let value = rust::with_fields(name, quantity, zeros);
+        quote!(lanes::#value)
+    })
+}
+
+/// The lines that hand lane `k` of a block to the result of a state.
+fn scattered(quantity: &Quantity) -> TokenStream {
+    let lines = quantity.result.iter().zip(rust::accesses(quantity)).map(|(part, access)| {
+        let flat: TokenStream = part.lengths.iter().skip(1).map(|_| quote!(.as_flattened())).collect();
+        let flat_mut: TokenStream = part.lengths.iter().skip(1).map(|_| quote!(.as_flattened_mut())).collect();
+        // A result that is one array is a reference already.
+        let reference = (!access.is_empty()).then(|| quote!(&mut));
+        match part.lengths.len() {
+            0 => quote!(scatter(k, &[block #access], core::slice::from_mut(#reference result #access));),
+            1 => quote!(scatter(k, &block #access, #reference result #access);),
+            _ => quote!(scatter(k, block #access #flat, result #access #flat_mut);),
+        }
+    });
+    quote!(#(#lines)*)
 }
 
 fn of_slices(module: &Module, function: &Function) -> TokenStream {
@@ -158,41 +145,8 @@ fn of_slices(module: &Module, function: &Function) -> TokenStream {
         let (name, length) = argument(a);
         quote!(#name: &[[Real; #length]])
     });
-    let shape = function.quantity.shape();
-    let of_one = rust::type_of(shape);
-    let (zero, scatter) = match shape {
-        Shape::Scalar => (quote!([0.0; LANES]), quote!(scatter(k, &[block], core::slice::from_mut(result));)),
-        Shape::Vector => (quote!([[0.0; LANES]; DOF]), quote!(scatter(k, &block, result);)),
-        Shape::Frame => (quote!([[[0.0; LANES]; 4]; 4]), flat()),
-        Shape::Frames => (
-            quote!([[[[0.0; LANES]; 4]; 4]; DOF]),
-            quote!(scatter(k, block.as_flattened().as_flattened(), result.as_flattened_mut().as_flattened_mut());),
-        ),
-        Shape::Jacobian => (quote!([[[0.0; LANES]; DOF]; 6]), flat()),
-        Shape::Square => (quote!([[[0.0; LANES]; DOF]; DOF]), flat()),
-        Shape::Regressor => (quote!([[[0.0; LANES]; PARAMETERS]; DOF]), flat()),
-        Shape::BaseRegressor => (quote!([[[0.0; LANES]; BASE_PARAMETERS]; DOF]), flat()),
-        Shape::Task => (quote!([[[0.0; LANES]; TASK_ROWS]; TASK_ROWS]), flat()),
-        Shape::Squares(count) => {
-            let zeros = (0..count).map(|_| quote!([[[0.0; LANES]; DOF]; DOF]));
-            let fields = (0..count).map(|i| usize_literal(usize::from(i)));
-            let scattered =
-                fields.map(|field| quote!(scatter(k, block.#field.as_flattened(), result.#field.as_flattened_mut());));
-            (quote!((#(#zeros),*)), quote!(#(#scattered)*))
-        }
-        Shape::EquationsOfMotion => (
-            quote!(lanes::EquationsOfMotion {
-                inertia: [[[0.0; LANES]; DOF]; DOF],
-                coriolis: [[[0.0; LANES]; DOF]; DOF],
-                gravity: [[0.0; LANES]; DOF],
-            }),
-            quote! {
-                scatter(k, block.inertia.as_flattened(), result.inertia.as_flattened_mut());
-                scatter(k, block.coriolis.as_flattened(), result.coriolis.as_flattened_mut());
-                scatter(k, &block.gravity, &mut result.gravity);
-            },
-        ),
-    };
+    let of_one = rust::type_of(function.quantity);
+    let (zero, scatter) = (zeros(function.quantity), scattered(function.quantity));
     let lengths = names.iter().skip(1).map(|n| quote!(.min(#n.len())));
     let first = &names[0];
     let chunks = names.iter().skip(1).map(|n| quote!(.zip(#n.chunks(LANES))));
@@ -210,8 +164,4 @@ fn of_slices(module: &Module, function: &Function) -> TokenStream {
             }
         }
     }
-}
-
-fn flat() -> TokenStream {
-    quote!(scatter(k, block.as_flattened(), result.as_flattened_mut());)
 }

@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 use super::literal::literal;
 use super::rust::{argument, argument_of, input, usize_literal};
 use super::sincos::name_of;
-use crate::equations::Argument;
+use crate::catalogue::Argument;
 use crate::program::{Function, Module, Operand, Operation, Step};
 use crate::ring::Symbol;
 

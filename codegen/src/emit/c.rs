@@ -8,9 +8,9 @@ use std::fmt::Write;
 
 use proc_macro2::TokenStream;
 
-use super::rust::{argument_text, head, Origin};
+use super::rust::{accesses, head, Origin};
 use super::{documentation, literal::literal};
-use crate::equations::Shape;
+use crate::catalogue::{Length, Quantity};
 use crate::exact::Number;
 use crate::program::{Function, Module, Scalar};
 
@@ -28,42 +28,27 @@ pub fn print(module: &Module, origin: &Origin) -> CFace {
     CFace { header: header(module, origin), wrappers: wrappers(module, origin) }
 }
 
-/// An output of a function: its name in C, the field of the result that it is if the result has several, and its shape in Rust's order,
-/// outermost first; no shape for a number.
+/// An output of a function: its name in C, what Rust writes after the result to have it, and its dimensions, outermost first.
 struct Out {
     name: &'static str,
-    field: Option<&'static str>,
-    shape: Vec<&'static str>,
+    access: String,
+    lengths: &'static [Length],
 }
 
-fn outs(shape: Shape) -> Vec<Out> {
-    let out = |name, shape: &[&'static str]| Out { name, field: None, shape: shape.to_vec() };
-    let part = |name, field, shape: &[&'static str]| Out { name, field: Some(field), shape: shape.to_vec() };
-    match shape {
-        Shape::Scalar => vec![],
-        Shape::Vector => vec![out("result", &["DOF"])],
-        Shape::Frame => vec![out("result", &["4", "4"])],
-        Shape::Frames => vec![out("result", &["DOF", "4", "4"])],
-        Shape::Jacobian => vec![out("result", &["6", "DOF"])],
-        Shape::Square => vec![out("result", &["DOF", "DOF"])],
-        Shape::Regressor => vec![out("result", &["DOF", "PARAMETERS"])],
-        Shape::EquationsOfMotion => {
-            let square = |name| part(name, name, &["DOF", "DOF"]);
-            vec![square("inertia"), square("coriolis"), part("gravity", "gravity", &["DOF"])]
-        }
-        Shape::BaseRegressor => vec![out("result", &["DOF", "BASE_PARAMETERS"])],
-        Shape::Task => vec![out("result", &["TASK_ROWS", "TASK_ROWS"])],
-        Shape::Squares(count) => {
-            let names = [("by_q", "0"), ("by_dq", "1"), ("by_tau", "2")];
-            names.iter().take(usize::from(count)).map(|&(name, field)| part(name, field, &["DOF", "DOF"])).collect()
-        }
+/// The outputs that a function writes; none where it returns a number.
+fn outs(quantity: &Quantity) -> Vec<Out> {
+    if quantity.result.iter().all(|part| part.lengths.is_empty()) && quantity.result.len() == 1 {
+        return Vec::new();
     }
+    let parts = quantity.result.iter().zip(accesses(quantity));
+    let out = |access: TokenStream| access.to_string().replace(' ', "");
+    parts.map(|(part, access)| Out { name: part.name, access: out(access), lengths: part.lengths }).collect()
 }
 
 /// The functions that C can have: it has no arrays of length zero, as a robot without parameters would need.
 fn functions(module: &Module) -> impl Iterator<Item = &Function> {
     let without = module.parameters.is_empty();
-    module.functions.iter().filter(move |f| !(without && (f.with_parameters || f.quantity.shape() == Shape::Regressor)))
+    module.functions.iter().filter(move |f| !(without && (f.with_parameters || f.quantity.has_length(Length::Parameters))))
 }
 
 /// The robot's name as the beginning of C's names: letters that C may not have are spelled out.
@@ -72,11 +57,11 @@ fn prefix(module: &Module) -> String {
     module.name.chars().map(spelled).collect()
 }
 
-/// `DOF` of Rust as the macro of the header; a number stays a number.
-fn macro_of(prefix: &str, length: &str) -> String {
-    match length.parse::<u32>() {
-        Ok(_) => length.into(),
-        Err(_) => format!("{prefix}_{length}"),
+/// A dimension: the macro of the header that holds it, or the number.
+fn macro_of(prefix: &str, length: Length) -> String {
+    match length {
+        Length::Fixed(value) => value.to_string(),
+        named => format!("{prefix}_{}", named.constant()),
     }
 }
 
@@ -156,14 +141,11 @@ fn header(module: &Module, origin: &Origin) -> String {
         let mut arguments: Vec<String> = function
             .arguments
             .iter()
-            .map(|&a| {
-                let (argument, length) = argument_text(a);
-                format!("const {name}_real {argument}[{}]", macro_of(&upper, length))
-            })
+            .map(|&a| format!("const {name}_real {}[{}]", a.name(), macro_of(&upper, a.length())))
             .collect();
-        let outs = outs(function.quantity.shape());
+        let outs = outs(function.quantity);
         arguments.extend(outs.iter().map(|out| {
-            let shape: String = out.shape.iter().map(|length| format!("[{}]", macro_of(&upper, length))).collect();
+            let shape: String = out.lengths.iter().map(|&length| format!("[{}]", macro_of(&upper, length))).collect();
             format!("{name}_real {}{shape}", out.name)
         }));
         let returns = if outs.is_empty() { format!("{name}_real") } else { "void".into() };
@@ -245,9 +227,10 @@ fn wrappers(module: &Module, origin: &Origin) -> String {
 
 fn wrapper(robot: &str, function: &Function) -> String {
     let name = function.name();
-    let arguments: Vec<(&str, &str)> = function.arguments.iter().map(|&a| argument_text(a)).collect();
-    let outs = outs(function.quantity.shape());
-    let shape = |out: &Out| out.shape.iter().rev().fold("Real".to_string(), |of, length| format!("[{of}; {length}]"));
+    let arguments: Vec<(&str, String)> = function.arguments.iter().map(|&a| (a.name(), a.length().constant())).collect();
+    let outs = outs(function.quantity);
+    let shape =
+        |out: &Out| out.lengths.iter().rev().fold("Real".to_string(), |of, length| format!("[{of}; {}]", length.constant()));
     let mut parameters: Vec<String> = arguments.iter().map(|(name, length)| format!("{name}: *const [Real; {length}]")).collect();
     parameters.extend(outs.iter().map(|out| format!("{}: *mut {}", out.name, shape(out))));
     let references: Vec<String> = arguments.iter().map(|(name, _)| format!("&*{name}")).collect();
@@ -280,10 +263,7 @@ fn wrapper(robot: &str, function: &Function) -> String {
         outs => {
             let _ = writeln!(text, "    let value = unsafe {{ {call} }};");
             let _ = writeln!(text, "    // SAFETY: the caller promises that each result points to an array of this shape; no reference to an argument is left.");
-            let write = |out: &Out| match out.field {
-                None => format!("{}.write(value);", out.name),
-                Some(field) => format!("{}.write(value.{field});", out.name),
-            };
+            let write = |out: &Out| format!("{}.write(value{});", out.name, out.access);
             let _ = writeln!(text, "    unsafe {{");
             for out in outs {
                 let _ = writeln!(text, "        {}", write(out));

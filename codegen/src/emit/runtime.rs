@@ -3,8 +3,8 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::rust::argument;
-use crate::equations::{Argument, Quantity, Shape};
+use super::rust::{accesses, argument, length, of_parts, with_fields};
+use crate::catalogue::{self, Argument, Length, Part, Quantity};
 use crate::program::Module;
 
 /// Two robots over the functions of the module, in scope by `use super::*` or by standing beside it: `Nominal`, the robot of the description,
@@ -39,39 +39,21 @@ pub(super) fn implementation(module: &Module) -> TokenStream {
     }
 }
 
-/// Methods of the trait `Kinematics`.
-const KINEMATICS: [Quantity; 4] =
-    [Quantity::DirectKinematics, Quantity::LinkFrames, Quantity::GeometricJacobian, Quantity::GeometricJacobianDot];
-/// Methods of the trait `Dynamics`.
-const DYNAMICS: [Quantity; 9] = [
-    Quantity::InertiaMatrix,
-    Quantity::CoriolisMatrix,
-    Quantity::Gravity,
-    Quantity::Friction,
-    Quantity::EquationsOfMotion,
-    Quantity::InverseDynamics,
-    Quantity::ForwardDynamics,
-    Quantity::KineticEnergy,
-    Quantity::PotentialEnergy,
-];
-/// Methods of the trait `Regressor`.
-const REGRESSOR: [Quantity; 2] = [Quantity::Regressor, Quantity::KnownTorque];
+/// The methods of a trait.
+fn methods(interface: &str) -> impl Iterator<Item = &'static Quantity> + use<'_> {
+    catalogue::quantities().filter(move |quantity| quantity.interface == Some(interface))
+}
 
 /// Functions that the implementation calls and the module does not have.
 pub(super) fn missing(module: &Module) -> Vec<String> {
-    let all = KINEMATICS.into_iter().chain(DYNAMICS).chain(REGRESSOR);
-    let needed = all.flat_map(|quantity| {
-        let with = quantity.has_parameters().then_some((quantity, true));
-        std::iter::once((quantity, false)).chain(with)
-    });
+    let needed = catalogue::functions().filter(|(quantity, _)| quantity.interface.is_some());
     let has = |(quantity, with)| module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with));
-    let name = |(quantity, with): (Quantity, bool)| format!("{}{}", quantity.name(), if with { "_with" } else { "" });
-    needed.filter(|&function| !has(function)).map(name).collect()
+    needed.filter(|&function| !has(function)).map(|(quantity, with)| quantity.function_name(with)).collect()
 }
 
 fn traits(robot: &TokenStream, with_parameters: bool) -> TokenStream {
-    let of = |quantities: &[Quantity]| quantities.iter().map(|&q| method(q, with_parameters)).collect::<Vec<_>>();
-    let (kinematics, dynamics, regressor) = (of(&KINEMATICS), of(&DYNAMICS), of(&REGRESSOR));
+    let of = |interface: &str| methods(interface).map(|q| method(q, with_parameters)).collect::<Vec<_>>();
+    let (kinematics, dynamics, regressor) = (of("Kinematics"), of("Dynamics"), of("Regressor"));
     let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     quote! {
         impl armgen_runtime::robot::Kinematics<DOF> for #robot {
@@ -92,16 +74,16 @@ fn traits(robot: &TokenStream, with_parameters: bool) -> TokenStream {
     }
 }
 
-fn method(quantity: Quantity, with_parameters: bool) -> TokenStream {
-    let name = format_ident!("{}", quantity.name());
-    let run_time = with_parameters && quantity.has_parameters();
-    let called = if run_time { format_ident!("{}_with", quantity.name()) } else { name.clone() };
-    let arguments = quantity.arguments().iter().map(|&a| {
+fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
+    let name = format_ident!("{}", quantity.name);
+    let run_time = with_parameters && quantity.has_parameters;
+    let called = format_ident!("{}", quantity.function_name(run_time));
+    let arguments = quantity.arguments.iter().map(|&a| {
         let (name, _) = argument(a);
         quote!(#name: &armgen_runtime::nalgebra::SVector<Real, DOF>)
     });
     let mut passed: Vec<TokenStream> = quantity
-        .arguments()
+        .arguments
         .iter()
         .map(|&a| {
             let (name, _) = argument(a);
@@ -113,41 +95,61 @@ fn method(quantity: Quantity, with_parameters: bool) -> TokenStream {
         passed.insert(0, quote!(&self.parameters));
     }
     let call = quote!(#called(#(#passed),*));
-    let (returns, value) = match quantity.shape() {
-        Shape::Scalar => (quote!(Real), call),
-        Shape::Vector => {
-            (quote!(armgen_runtime::nalgebra::SVector<Real, DOF>), quote!(armgen_runtime::nalgebra::SVector::from(#call)))
-        }
-        Shape::Frame => (quote!(armgen_runtime::nalgebra::Matrix4<Real>), quote!(armgen_runtime::robot::matrix(&#call))),
-        Shape::Frames => (
-            quote!([armgen_runtime::nalgebra::Matrix4<Real>; DOF]),
-            quote!(#call.map(|frame| armgen_runtime::robot::matrix(&frame))),
-        ),
-        Shape::Jacobian => {
-            (quote!(armgen_runtime::nalgebra::SMatrix<Real, 6, DOF>), quote!(armgen_runtime::robot::matrix(&#call)))
-        }
-        Shape::Square => {
-            (quote!(armgen_runtime::nalgebra::SMatrix<Real, DOF, DOF>), quote!(armgen_runtime::robot::matrix(&#call)))
-        }
-        Shape::Regressor => {
-            (quote!(armgen_runtime::nalgebra::SMatrix<Real, DOF, PARAMETERS>), quote!(armgen_runtime::robot::matrix(&#call)))
-        }
-        Shape::BaseRegressor | Shape::Task | Shape::Squares(_) => unreachable!("the traits have no method of this shape"),
-        Shape::EquationsOfMotion => (
-            quote!(armgen_runtime::robot::EquationsOfMotion<Real, DOF>),
+    let returns = of_parts(quantity, part_type, |name| quote!(armgen_runtime::robot::#name<Real, DOF>));
+    let value = match quantity.result {
+        [part] => converted(part, &call),
+        parts => {
+            let mut terms = parts.iter().zip(accesses(quantity)).map(|(part, access)| converted(part, &quote!(terms #access)));
+            let mut part = |_: &Part| terms.next().expect("a term for each part");
+            let all = match quantity.structure {
+                Some(named) => {
+                    let value = with_fields(&format_ident!("{}", named.name), quantity, part);
+                    quote!(armgen_runtime::robot::#value)
+                }
+                None => of_parts(quantity, &mut part, |_| quote!()),
+            };
             quote! {{
                 let terms = #call;
-                armgen_runtime::robot::EquationsOfMotion {
-                    inertia: armgen_runtime::robot::matrix(&terms.inertia),
-                    coriolis: armgen_runtime::robot::matrix(&terms.coriolis),
-                    gravity: armgen_runtime::nalgebra::SVector::from(terms.gravity),
-                }
-            }},
-        ),
+                #all
+            }}
+        }
     };
     quote! {
         fn #name(&self, #(#arguments),*) -> #returns {
             #value
         }
+    }
+}
+
+/// The type of a part of a result in the runtime.
+fn part_type(part: &Part) -> TokenStream {
+    let of_matrix = |rows: Length, columns: Length| match (rows, columns) {
+        (Length::Fixed(4), Length::Fixed(4)) => quote!(armgen_runtime::nalgebra::Matrix4<Real>),
+        (rows, columns) => {
+            let (rows, columns) = (length(rows), length(columns));
+            quote!(armgen_runtime::nalgebra::SMatrix<Real, #rows, #columns>)
+        }
+    };
+    match *part.lengths {
+        [] => quote!(Real),
+        [entries] => {
+            let entries = length(entries);
+            quote!(armgen_runtime::nalgebra::SVector<Real, #entries>)
+        }
+        [rows, columns] => of_matrix(rows, columns),
+        [count, rows, columns, ..] => {
+            let (matrix, count) = (of_matrix(rows, columns), length(count));
+            quote!([#matrix; #count])
+        }
+    }
+}
+
+/// A part of a result of the module as the runtime's type.
+fn converted(part: &Part, value: &TokenStream) -> TokenStream {
+    match part.lengths.len() {
+        0 => value.clone(),
+        1 => quote!(armgen_runtime::nalgebra::SVector::from(#value)),
+        2 => quote!(armgen_runtime::robot::matrix(&#value)),
+        _ => quote!(#value.map(|frame| armgen_runtime::robot::matrix(&frame))),
     }
 }

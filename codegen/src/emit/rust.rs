@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote, ToTokens};
 use sha2::{Digest, Sha256};
 
 use super::body::{self, Body};
 use super::literal::literal;
 use super::{batch, documentation, runtime, sincos};
-use crate::equations::{Argument, Shape};
+use crate::catalogue::{Argument, Length, Part, Quantity, Sizes};
 use crate::exact::Number;
 use crate::program::{Function, Module, Operand, Scalar};
 use crate::ring::Symbol;
@@ -155,7 +155,7 @@ fn constants(module: &Module) -> TokenStream {
         meanings.splice(2..2, base_note());
     }
     let base = base_constants(module);
-    let equations_of_motion = equations_of_motion(module);
+    let structures = structures(module, false);
     quote! {
         /// Name of the robot.
         #[allow(dead_code)]
@@ -194,7 +194,7 @@ fn constants(module: &Module) -> TokenStream {
         #[allow(dead_code, clippy::all)]
         pub const NOMINAL_PARAMETERS: [Real; PARAMETERS] = [#(#nominal),*];
         #base
-        #equations_of_motion
+        #(#structures)*
     }
 }
 
@@ -236,14 +236,9 @@ pub(super) fn own_base_note(module: &Module) -> Vec<String> {
     first.into_iter().map(String::from).chain(turned.into_iter().flatten()).chain([String::new()]).collect()
 }
 
-/// Whether a function of the module returns this.
-pub(super) fn returns(module: &Module, shape: Shape) -> bool {
-    module.functions.iter().any(|function| function.quantity.shape() == shape)
-}
-
 /// The base parameters, for the function that has them.
 fn base_constants(module: &Module) -> Option<TokenStream> {
-    if !returns(module, Shape::BaseRegressor) {
+    if !module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters)) {
         return None;
     }
     let count = usize_literal(module.base_set.len());
@@ -267,42 +262,44 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
     })
 }
 
-/// The type that `equations_of_motion` returns, if there is such a function.
-fn equations_of_motion(module: &Module) -> Option<TokenStream> {
-    if !returns(module, Shape::EquationsOfMotion) {
-        return None;
-    }
-    Some(quote! {
-        /// The terms of the equation of motion at one state.
-        #[allow(dead_code)]
-        #[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct EquationsOfMotion {
-            /// Inertia matrix B(q): symmetric, positive definite.
-            pub inertia: [[Real; DOF]; DOF],
-            /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.
-            pub coriolis: [[Real; DOF]; DOF],
-            /// Gravity term g(q), on the left of the equation of motion.
-            pub gravity: [Real; DOF],
-        }
-    })
+/// The types that hold the parts of results, each once; those of functions for many states are of a block.
+pub(super) fn structures(module: &Module, of_blocks: bool) -> Vec<TokenStream> {
+    let mut quantities: Vec<&Quantity> = module.functions.iter().map(|function| function.quantity).collect();
+    quantities.dedup();
+    let structure = |quantity: &Quantity| {
+        let structure = quantity.structure?;
+        let name = format_ident!("{}", structure.name);
+        let entry = if of_blocks { quote!(Lanes) } else { quote!(Real) };
+        let title = format!(" {} {}.", structure.title, if of_blocks { "of a block" } else { "at one state" });
+        let fields = quantity.result.iter().map(|part| {
+            let [words, rest] = part.meaning;
+            let (field, kind) = (format_ident!("{}", part.name), part_type(part, &entry));
+            let meaning = if of_blocks { format!(" {words}.") } else { format!(" {words}{rest}.") };
+            quote!(#[doc = #meaning] pub #field: #kind)
+        });
+        let allowed = (!of_blocks).then(|| quote!(#[allow(dead_code)]));
+        Some(quote! {
+            #[doc = #title]
+            #allowed
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct #name {
+                #(#fields,)*
+            }
+        })
+    };
+    quantities.into_iter().filter_map(structure).collect()
 }
 
 /// The name of an argument and its array length.
-pub(super) fn argument(argument: Argument) -> (Ident, Ident) {
-    let (name, length) = argument_text(argument);
-    (Ident::new(name, Span::call_site()), Ident::new(length, Span::call_site()))
+pub(super) fn argument(argument: Argument) -> (Ident, TokenStream) {
+    (format_ident!("{}", argument.name()), length(argument.length()))
 }
 
-/// The name of an argument and its array length, as text.
-pub(super) fn argument_text(argument: Argument) -> (&'static str, &'static str) {
-    match argument {
-        Argument::Pi => ("pi", "PARAMETERS"),
-        Argument::Q => ("q", "DOF"),
-        Argument::Dq => ("dq", "DOF"),
-        Argument::Ddq => ("ddq", "DOF"),
-        Argument::Dqr => ("dqr", "DOF"),
-        Argument::Ddqr => ("ddqr", "DOF"),
-        Argument::Tau => ("tau", "DOF"),
+/// A dimension: the constant that holds it, or the number.
+pub(super) fn length(length: Length) -> TokenStream {
+    match length {
+        Length::Fixed(value) => usize_literal(value).into_token_stream(),
+        named => format_ident!("{}", named.constant()).into_token_stream(),
     }
 }
 
@@ -352,8 +349,7 @@ fn function(module: &Module, function: &Function, note: Option<&String>) -> Toke
     let (_, ignored) = used_and_ignored(function);
     let sines = sincos::lines(module, &symbols);
     let Body { parts, lines, entries } = body::body(module, function);
-    let (returns, result) =
-        (type_of(function.quantity.shape()), result(function.quantity.shape(), &entries, module.joints.len()));
+    let (returns, result) = (type_of(function.quantity), result(function.quantity, &entries, &module.sizes()));
     quote! {
         #(#[doc = #documentation])*
         #[allow(dead_code, clippy::all)]
@@ -397,56 +393,73 @@ pub(super) fn symbols(function: &Function) -> Vec<Symbol> {
 }
 
 /// The type of a result.
-pub(super) fn type_of(shape: Shape) -> TokenStream {
-    match shape {
-        Shape::Scalar => quote!(Real),
-        Shape::Vector => quote!([Real; DOF]),
-        Shape::Frame => quote!([[Real; 4]; 4]),
-        Shape::Frames => quote!([[[Real; 4]; 4]; DOF]),
-        Shape::Jacobian => quote!([[Real; DOF]; 6]),
-        Shape::Square => quote!([[Real; DOF]; DOF]),
-        Shape::Regressor => quote!([[Real; PARAMETERS]; DOF]),
-        Shape::BaseRegressor => quote!([[Real; BASE_PARAMETERS]; DOF]),
-        Shape::Task => quote!([[Real; TASK_ROWS]; TASK_ROWS]),
-        Shape::EquationsOfMotion => quote!(EquationsOfMotion),
-        Shape::Squares(count) => {
-            let types = (0..count).map(|_| quote!([[Real; DOF]; DOF]));
-            quote!((#(#types),*))
+pub(super) fn type_of(quantity: &Quantity) -> TokenStream {
+    of_parts(quantity, |part| part_type(part, &quote!(Real)), |name| quote!(#name))
+}
+
+/// The type of a part of a result: its entries in arrays, outermost first.
+pub(super) fn part_type(part: &Part, entry: &TokenStream) -> TokenStream {
+    part.lengths.iter().rev().fold(entry.clone(), |of, &dimension| {
+        let dimension = length(dimension);
+        quote!([#of; #dimension])
+    })
+}
+
+/// A result: its only part, the structure of its parts by `structure` of that name, or a list of them.
+pub(super) fn of_parts(
+    quantity: &Quantity,
+    mut part: impl FnMut(&Part) -> TokenStream,
+    structure: impl FnOnce(&Ident) -> TokenStream,
+) -> TokenStream {
+    match (quantity.result, quantity.structure) {
+        ([one], _) => part(one),
+        (_, Some(named)) => structure(&format_ident!("{}", named.name)),
+        (parts, None) => {
+            let parts = parts.iter().map(part);
+            quote!((#(#parts),*))
         }
     }
 }
 
-fn result(shape: Shape, entries: &[TokenStream], dof: usize) -> TokenStream {
-    let matrix = |entries: &[TokenStream], rows: usize| {
-        let columns = entries.len() / rows;
-        let rows = (0..rows).map(|row| {
-            let row = &entries[row * columns..(row + 1) * columns];
-            quote!([#(#row),*])
-        });
-        quote!([#(#rows),*])
-    };
-    match shape {
-        Shape::Scalar => entries[0].clone(),
-        Shape::Vector => quote!([#(#entries),*]),
-        Shape::Frame => matrix(entries, 4),
-        Shape::Frames => {
-            let frames = entries.chunks(16).map(|frame| matrix(frame, 4));
-            quote!([#(#frames),*])
+/// A structure whose parts are these.
+pub(super) fn with_fields(name: &Ident, quantity: &Quantity, part: impl FnMut(&Part) -> TokenStream) -> TokenStream {
+    let fields = quantity.result.iter().map(|part| format_ident!("{}", part.name));
+    let parts = quantity.result.iter().map(part);
+    quote!(#name { #(#fields: #parts),* })
+}
+
+/// How each part of a result is written after the result: nothing for the only one, `.inertia` in a structure, `.0` in a list.
+pub(super) fn accesses(quantity: &Quantity) -> Vec<TokenStream> {
+    match (quantity.result, quantity.structure) {
+        ([_], _) => vec![quote!()],
+        (parts, Some(_)) => {
+            let fields = parts.iter().map(|part| format_ident!("{}", part.name));
+            fields.map(|field| quote!(.#field)).collect()
         }
-        Shape::Jacobian => matrix(entries, 6),
-        Shape::Square | Shape::Regressor | Shape::BaseRegressor => matrix(entries, dof),
-        Shape::Task => matrix(entries, entries.len().isqrt()),
-        Shape::Squares(_) => {
-            let squares = entries.chunks(dof * dof).map(|square| matrix(square, dof));
-            quote!((#(#squares),*))
-        }
-        Shape::EquationsOfMotion => {
-            let (inertia, rest) = entries.split_at(dof * dof);
-            let (coriolis, gravity) = rest.split_at(dof * dof);
-            let (inertia, coriolis) = (matrix(inertia, dof), matrix(coriolis, dof));
-            quote!(EquationsOfMotion { inertia: #inertia, coriolis: #coriolis, gravity: [#(#gravity),*] })
-        }
+        (parts, None) => (0..parts.len()).map(usize_literal).map(|field| quote!(.#field)).collect(),
     }
+}
+
+/// The value of a result from its entries.
+fn result(quantity: &Quantity, entries: &[TokenStream], sizes: &Sizes) -> TokenStream {
+    let mut rest = entries;
+    let mut part = |part: &Part| {
+        let (own, others) = rest.split_at(part.len(sizes));
+        rest = others;
+        nested(part.lengths, own, sizes)
+    };
+    match (quantity.result, quantity.structure) {
+        ([_, _, ..], Some(named)) => with_fields(&format_ident!("{}", named.name), quantity, part),
+        _ => of_parts(quantity, &mut part, |_| quote!()),
+    }
+}
+
+fn nested(lengths: &[Length], entries: &[TokenStream], sizes: &Sizes) -> TokenStream {
+    let Some((outer, inner)) = lengths.split_first() else { return entries[0].clone() };
+    let count = outer.of(sizes);
+    let each = entries.len() / count.max(1);
+    let rows = (0..count).map(|i| nested(inner, &entries[i * each..(i + 1) * each], sizes));
+    quote!([#(#rows),*])
 }
 
 /// Whether any function needs a sine or a cosine.

@@ -6,16 +6,17 @@ use std::sync::OnceLock;
 
 use super::optimise::optimise;
 use super::{Cost, Function, Module, Operand, Operation, Output, Selection, Step, Trig};
+use crate::catalogue::{self, Argument, Length, Quantity};
+use crate::derive::derivation::{Derivation, DIVISION};
 use crate::derive::parameters::{nominal, ParameterKind, ParameterVector, View};
 use crate::derive::plan::{Pass, Passes};
-use crate::equations::{Argument, Derivation, Quantity, DIVISION};
 use crate::exact::Number;
 use crate::manipulator::{JointKind, Scalar};
 use crate::ring::{ExprId, Node, Pool};
 use crate::Model;
 
 /// Choices of generation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
     /// The scalar type behind `Real`.
     pub scalar: Scalar,
@@ -38,22 +39,20 @@ const EFFORT: usize = 500_000;
 /// The module of an arm.
 pub fn module(model: &Model, options: &Options) -> Module {
     let (mut wanted, mut absent) = (Vec::new(), Vec::new());
-    for quantity in Quantity::ALL {
-        for with_parameters in [false, true] {
-            if with_parameters && !quantity.has_parameters() || !options.functions.contains(quantity, with_parameters) {
-                continue;
-            }
-            match quantity.missing(model) {
-                Some(reason) => absent.push((quantity.name().to_string(), reason)),
-                None => wanted.push((quantity, with_parameters)),
-            }
+    for (quantity, with_parameters) in catalogue::functions() {
+        if !options.functions.contains(quantity, with_parameters) {
+            continue;
+        }
+        match (quantity.missing)(model, with_parameters) {
+            Some(reason) => absent.push((quantity.function_name(with_parameters), reason)),
+            None => wanted.push((quantity, with_parameters)),
         }
     }
     let functions = side_by_side(&wanted, |&(quantity, with_parameters)| function(model, quantity, with_parameters, options));
     let listed = |vector: &ParameterVector| {
         vector.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect::<Vec<_>>()
     };
-    let base = options.functions.contains(Quantity::BaseRegressor, false);
+    let base = wanted.iter().any(|(quantity, _)| quantity.has_length(Length::BaseParameters));
     let manipulator = &model.manipulator;
     Module {
         name: manipulator.name.clone(),
@@ -105,7 +104,7 @@ fn side_by_side<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Syn
 }
 
 /// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.
-fn function(model: &Model, quantity: Quantity, with_parameters: bool, options: &Options) -> Function {
+fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, options: &Options) -> Function {
     let view = if with_parameters { View::Vector(&model.parameters) } else { View::Nominal };
     let without = options.without;
     let recursion = quantity.by_search(model, view, without, EFFORT);
@@ -124,9 +123,9 @@ fn function(model: &Model, quantity: Quantity, with_parameters: bool, options: &
         .expect("there is at least the recursion")
 }
 
-fn lower(quantity: Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
+fn lower(quantity: &'static Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
     let (steps, outputs) = steps(&derivation.pool, &derivation.entries);
-    let mut arguments = quantity.arguments().to_vec();
+    let mut arguments = quantity.arguments.to_vec();
     if with_parameters {
         arguments.insert(0, Argument::Pi);
     }

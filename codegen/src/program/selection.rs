@@ -1,15 +1,33 @@
 //! Which functions of a module are wanted.
 
+use std::collections::BTreeSet;
+use std::fmt;
+
+use crate::catalogue::{self, Quantity};
 use crate::document::did_you_mean;
-use crate::equations::Quantity;
 
 /// A choice of functions: all of them unless some are named.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Selection(Option<u64>);
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Selection(Option<BTreeSet<String>>);
 
-fn bit(quantity: Quantity, with_parameters: bool) -> u64 {
-    1 << (2 * quantity as u32 + u32::from(with_parameters))
+/// Names that no emitted function has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownFunctions {
+    /// The names, in the order in which they were given.
+    pub names: Vec<String>,
 }
+
+impl fmt::Display for UnknownFunctions {
+    /// A line for each name, with what comes close.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, name) in self.names.iter().enumerate() {
+            write!(f, "{}{}", if i > 0 { "\n" } else { "" }, complaint(name))?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for UnknownFunctions {}
 
 impl Selection {
     /// All functions.
@@ -17,51 +35,31 @@ impl Selection {
 
     /// The functions of the names.
     ///
-    /// Errors: names that no emitted function has, each with what comes close.
-    pub fn named<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Selection, String> {
-        let mut set = 0;
-        let mut unknown = Vec::new();
-        for name in names {
-            let name = name.as_ref();
-            match Selection::of(name) {
-                Some(bit) => set |= bit,
-                None => unknown.push(complaint(name)),
-            }
+    /// # Errors
+    /// Names that no emitted function has.
+    pub fn named<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Selection, UnknownFunctions> {
+        let names = names.into_iter().map(|name| name.as_ref().to_owned());
+        let (known, unknown): (Vec<String>, Vec<String>) = names.partition(|name| catalogue::named(name).is_some());
+        if unknown.is_empty() {
+            Ok(Selection(Some(known.into_iter().collect())))
+        } else {
+            Err(UnknownFunctions { names: unknown })
         }
-        match unknown.as_slice() {
-            [] => Ok(Selection(Some(set))),
-            _ => Err(unknown.join("\n")),
-        }
-    }
-
-    fn of(name: &str) -> Option<u64> {
-        let (plain, with) = name.strip_suffix("_with").map_or((name, false), |plain| (plain, true));
-        let quantity = Quantity::ALL.into_iter().find(|q| q.name() == plain && (!with || q.has_parameters()))?;
-        Some(bit(quantity, with))
     }
 
     /// Whether a function is wanted.
-    pub fn contains(self, quantity: Quantity, with_parameters: bool) -> bool {
-        self.0.is_none_or(|set| set & bit(quantity, with_parameters) != 0)
+    pub fn contains(&self, quantity: &Quantity, with_parameters: bool) -> bool {
+        self.0.as_ref().is_none_or(|names| names.contains(&quantity.function_name(with_parameters)))
     }
 
     /// Whether all functions are wanted, because none is named.
-    pub fn is_all(self) -> bool {
+    pub fn is_all(&self) -> bool {
         self.0.is_none()
     }
 }
 
-/// Names of all functions that can be emitted, in the order of the module.
-fn names() -> Vec<String> {
-    let each = Quantity::ALL.into_iter().flat_map(|quantity| {
-        let with = quantity.has_parameters().then(|| format!("{}_with", quantity.name()));
-        std::iter::once(quantity.name().to_string()).chain(with)
-    });
-    each.collect()
-}
-
 fn complaint(name: &str) -> String {
-    let names = names();
+    let names: Vec<String> = catalogue::functions().map(|(quantity, with)| quantity.function_name(with)).collect();
     let words: Vec<&str> = names.iter().map(String::as_str).collect();
     // Not every function has a form with the parameters at run time.
     let plain = name.strip_suffix("_with").and_then(|plain| words.iter().copied().find(|&word| word == plain));
@@ -74,22 +72,25 @@ fn complaint(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::catalogue::quantities::derivatives::FORWARD_DYNAMICS_DERIVATIVES;
+    use crate::catalogue::quantities::gravity::GRAVITY;
+    use crate::catalogue::quantities::inertia::INERTIA_MATRIX;
 
     #[test]
     fn names_choose_and_unknown_ones_are_answered() {
         let chosen = Selection::named(["gravity", "inertia_matrix_with"]).unwrap();
-        assert!(chosen.contains(Quantity::Gravity, false) && chosen.contains(Quantity::InertiaMatrix, true));
-        assert!(!chosen.contains(Quantity::Gravity, true) && !chosen.contains(Quantity::InertiaMatrix, false));
-        assert!(Selection::ALL.contains(Quantity::ForwardDynamicsDerivatives, false));
+        assert!(chosen.contains(&GRAVITY, false) && chosen.contains(&INERTIA_MATRIX, true));
+        assert!(!chosen.contains(&GRAVITY, true) && !chosen.contains(&INERTIA_MATRIX, false));
+        assert!(Selection::ALL.contains(&FORWARD_DYNAMICS_DERIVATIVES, false));
+        let complaint = |names: &[&str]| Selection::named(names).unwrap_err().to_string();
         assert_eq!(
-            Selection::named(["gravty", "regressor_with"]).unwrap_err(),
+            complaint(&["gravty", "regressor_with"]),
             "there is no function `gravty`: do you mean `gravity`?\nthere is no function `regressor_with`: do you mean `regressor`?"
         );
-        assert!(Selection::named(["xyzzy"])
-            .unwrap_err()
-            .starts_with("there is no function `xyzzy`; there are direct_kinematics, "));
-        for name in names() {
-            assert!(Selection::named([name]).is_ok());
+        assert!(complaint(&["xyzzy"]).starts_with("there is no function `xyzzy`; there are direct_kinematics, "));
+        for (quantity, with) in catalogue::functions() {
+            let chosen = Selection::named([quantity.function_name(with)]).unwrap();
+            assert!(catalogue::functions().all(|other| chosen.contains(other.0, other.1) == (other == (quantity, with))));
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::Formulas;
-use crate::equations::Derivation;
+use crate::derive::Derivation;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Node};
 

@@ -85,8 +85,8 @@ pub(crate) fn turn_last_link(pool: &mut Pool, arm: &mut Arm) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::derive::constants::field_of;
     use crate::derive::newton_euler::{inverse_dynamics, Motion};
-    use crate::equations::field_of;
     use crate::exact::Number;
     use crate::source::Source;
 
@@ -116,7 +116,8 @@ mod tests {
             let plain = inverse_dynamics(&mut pool, &arm, &motion);
             let other = inverse_dynamics(&mut pool, &turned, &motion);
             assert!(plain.iter().zip(&other).all(|(&a, &b)| pool.equal(a, b)), "theta: {theta}");
-            let tips = [&arm, &turned].map(|arm| crate::derive::kinematics::direct_kinematics(&mut pool, arm).concat());
+            let tips =
+                [&arm, &turned].map(|arm| crate::derive::quantities::kinematics::direct_kinematics(&mut pool, arm).concat());
             assert!(tips[0].iter().zip(&tips[1]).all(|(&a, &b)| pool.equal(a, b)), "theta: {theta}");
         }
     }

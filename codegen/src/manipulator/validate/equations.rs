@@ -11,13 +11,13 @@ use std::ops::Range;
 
 use super::{Places, Role, Scalar};
 use crate::derive::arm::Arm;
+use crate::derive::constants::find_field;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterVector, View};
 use crate::derive::plan::Plan;
-use crate::derive::regressor::derivative_by_parameter;
-use crate::derive::{inertia, kinematics};
+use crate::derive::quantities::regressor::derivative_by_parameter;
+use crate::derive::quantities::{inertia, kinematics};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::equations::find_field;
 use crate::exact::Number;
 use crate::manipulator::{Manipulator, ParameterId, RegressorChoice};
 use crate::ring::field::{Element, Field};

@@ -294,7 +294,7 @@ fn roots_of_motors_and_friction_are_in_the_field() {
         "    friction: {coulomb: sqrt(7)}\n",
     ] {
         let (arm, _) = valid(&arm(&[("", edit)]));
-        let mut field = crate::equations::field_of(&arm);
+        let mut field = crate::derive::constants::field_of(&arm);
         let root = field.number(&n(7, 1).sqrt().expect("positive"));
         assert_eq!(field.mul(root, root), field.from_u64(7), "{edit}");
     }
@@ -350,7 +350,7 @@ fn long_sums_stay_sums_in_the_equations() {
     ["a", "b"].iter().for_each(|letter| (0..60).for_each(|i| parameters += &format!("  {letter}{i}: 1\n")));
     let body = format!("{{mass: {}, com: [{}, 0.1, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}", sum("a"), sum("b"));
     let (arm, _) = valid(&arm(&[("parameters: {}\n", &parameters), ("{mass: 2}", &body)]));
-    let mut pool = Pool::new(crate::equations::field_of(&arm));
+    let mut pool = Pool::new(crate::derive::constants::field_of(&arm));
     Arm::new(&mut pool, &arm, View::Symbolic);
     assert!(pool.len() < 1000, "{} nodes", pool.len());
 }

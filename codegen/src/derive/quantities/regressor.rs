@@ -11,18 +11,76 @@
 //! where n(I) is the moment of Euler's equation, linear in the six inertias (the book, Sect. 7.2.2). A parameter of 1 alone has a wrench (f, n)
 //! with many zeros; z · n and v · f may be formed in the frame of any link between j and the body.
 
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use std::collections::BTreeMap;
 
-use super::arm::Arm;
 use super::inertia::{along, wrench_outward};
-use super::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
-use super::parameters::{ParameterKind, ParameterVector, StandardParameter, FLAT_IXX, FLAT_IYY};
-use super::plan::{Pass, Plan};
+use crate::derive::arm::Arm;
+use crate::derive::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
+use crate::derive::parameters::{ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
+use crate::derive::plan::{Pass, Plan};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
+/// In the order of the emitted module.
+pub(super) static DECLARED: [&Quantity; 2] = [&REGRESSOR, &KNOWN_TORQUE];
+
+/// Y(q, dq, dqr, ddqr): the derivative of tau by the parameters.
+pub static REGRESSOR: Quantity = Quantity {
+    name: "regressor",
+    symbol: Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"),
+    arguments: &[Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
+    result: &[Part::whole(Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"), Typeset::plain("y"), &[Length::Dof, Length::Parameters], "Y pi is a torque")],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Regressor Y(q, dq, dqr, ddqr): the dynamics as a linear function of the parameters.",
+        "B(q) ddqr + C(q, dq) dqr + F + g(q) = Y pi + tau_known             (Siciliano et al., Sects. 7.2.2 and 8.5.4)",
+        "`y[joint][parameter]`, parameters in the order of {PARAMETER_NAMES}. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
+         With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
+    ),
+    recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(Use::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Regressor"),
+};
+
+/// tau_known(q, dq, dqr, ddqr): what is left of tau without the parameters.
+pub static KNOWN_TORQUE: Quantity = Quantity {
+    name: "known_torque",
+    symbol: Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
+    arguments: &[Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
+    result: &[Part::whole(
+        Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
+        Typeset::new("tau_known", "\\tau_0"),
+        &[Length::Dof],
+        "N m or N",
+    )],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "The torque of what is not among the parameters: tau_known of the regressor's equation.",
+        "tau_known = B(q) ddqr + C(q, dq) dqr + F + g(q) - Y pi",
+        "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
+    ),
+    recursion: Recursion {
+        view: |model, _| View::Known(&model.parameters),
+        ..Recursion::new(Use::Plain, |pool, arm, _, _| {
+            let motion = Motion::with_reference(pool, arm);
+            inverse_dynamics(pool, arm, &motion)
+        })
+    },
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Regressor"),
+};
+
+/// Where searches for the plan of a regressor start: its wrenches stop at their links, by twists; and two links further in, where axes meet.
+pub(super) static STARTS: [usize; 2] = [0, 5];
+
 /// Forks of the regressor, apart from those of the columns of B.
-const REGRESSOR: usize = 1 << 17;
+const FORKS: usize = 1 << 17;
 
 /// Y, for an arm whose parameter vector are symbols (named parameters) or for the standard parameters of any arm.
 pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
@@ -231,9 +289,9 @@ fn link_columns(
     }
     // Each frame of the path in either form, except the last, where nothing is left.
     let ways = 2 * path.len() - 1;
-    let forces = (plan.way(Pass::Meeting, REGRESSOR + 2 * place, ways) + plan.start()) % ways;
+    let forces = (plan.way(Pass::Meeting, FORKS + 2 * place, ways) + plan.start()) % ways;
     // Couples go as far as forces (way 0), so that one set of twists will do, or stop elsewhere.
-    let couples = match plan.way(Pass::Meeting, REGRESSOR + 2 * place + 1, path.len()) {
+    let couples = match plan.way(Pass::Meeting, FORKS + 2 * place + 1, path.len()) {
         0 => (forces / 2).min(path.len().saturating_sub(2)),
         way => way - 1,
     };

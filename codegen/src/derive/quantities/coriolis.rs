@@ -27,12 +27,38 @@
 //! A rotor of inertia I_m about a, ratio k, on the parent of joint j, adds I_m k a to n and ½ I_m k ω × a to N and to E; and what
 //! carries spinning rotors feels the spin s = Σ I_m k dq a: ½ z × s in N, its opposite in E.
 
-use super::arm::{symmetric, Arm, Body, Joint};
-use super::columns::{origin_rate, Column, Rate, Ways};
 use super::inertia::composite_bodies;
-use super::plan::Plan;
+use crate::derive::arm::{symmetric, Arm, Body, Joint};
+use crate::derive::columns::{origin_rate, Column, Rate, Ways};
+use crate::derive::passes::Use;
+use crate::derive::plan::Plan;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::{Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
+
+/// C(q, dq).
+pub static CORIOLIS_MATRIX: Quantity = Quantity {
+    name: "coriolis_matrix",
+    symbol: Typeset::new("C(q, dq)", "C(q, \\dot q)"),
+    arguments: &[Argument::Q, Argument::Dq],
+    result: &[Part::whole(
+        Typeset::new("C(q, dq)", "C(q, \\dot q)"),
+        Typeset::plain("c"),
+        &[Length::Dof, Length::Dof],
+        "as B, per s",
+    )],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation::new(
+        "Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric.",
+        "C_ij = sum_k 1/2 (dB_ij/dq_k + dB_ik/dq_j - dB_jk/dq_i) dq_k       (Siciliano et al., eq. 7.45)",
+        "`c[row][column]`, on the left of the equation of motion: C dq is part of the torque.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| coriolis_matrix(pool, arm, plan).concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Dynamics"),
+};
 
 /// What moves in a composite body, in its joint frame and relative to it.
 #[derive(Clone, Copy)]

@@ -31,16 +31,95 @@
 //! ∂ddq/∂q = -B^-1 ∂tau/∂q,   ∂ddq/∂dq = -B^-1 ∂tau/∂dq,   ∂ddq/∂tau = B^-1            at ddq = B^-1 (tau - C dq - F - g)
 //! ```
 
-use super::arm::{symmetric, Arm, Body};
-use super::columns::origin_rate;
 use super::coriolis::{self, Flow};
-use super::factors::Factors;
 use super::gravity::gravity;
 use super::inertia::{along, composite_bodies, wrench_outward};
-use super::newton_euler::{friction, link_motions, wrenches, LinkMotion, Motion};
-use super::plan::Plan;
+use crate::derive::arm::{symmetric, Arm, Body};
+use crate::derive::columns::origin_rate;
+use crate::derive::factors::Factors;
+use crate::derive::newton_euler::{friction, link_motions, wrenches, LinkMotion, Motion};
+use crate::derive::passes::Use;
+use crate::derive::plan::Plan;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
+
+/// In the order of the emitted module.
+pub(super) static DECLARED: [&Quantity; 2] = [&INVERSE_DYNAMICS_DERIVATIVES, &FORWARD_DYNAMICS_DERIVATIVES];
+
+/// ∂tau/∂q and ∂tau/∂dq.
+pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
+    name: "inverse_dynamics_derivatives",
+    symbol: Typeset::new("dtau/dq, dtau/d(dq)", "\\partial\\tau/\\partial q, \\partial\\tau/\\partial\\dot q"),
+    arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
+    result: &[
+        Part {
+            name: "by_q",
+            meaning: ["Derivatives by joint variables", ""],
+            ..Part::whole(Typeset::new("dtau/dq", "\\partial\\tau/\\partial q"), Typeset::new("dtau", "\\partial\\tau"), &[Length::Dof, Length::Dof], "N m or N, per rad or m")
+        },
+        Part {
+            name: "by_dq",
+            meaning: ["Derivatives by rates", ""],
+            ..Part::whole(Typeset::new("dtau/d(dq)", "\\partial\\tau/\\partial\\dot q"), Typeset::new("dtau", "\\partial\\tau"), &[Length::Dof, Length::Dof], "N m or N, per rad/s or m/s")
+        },
+    ],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Derivatives of the torques of {inverse_dynamics} by joint variables and by rates.",
+        "(dtau/dq, dtau/d(dq)) at (q, dq, ddq);  dtau/d(ddq) = B(q)         (Singh, Russell and Wensing 2022)",
+        "two matrices `m[joint of tau][joint of q or dq]`; units of tau per rad or m, and per rad/s or m/s. Coulomb friction counts as constant: its \
+         derivative is taken as 0, at rest too.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| {
+        let motion = Motion::plain(pool, arm);
+        let (by_q, by_dq) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
+        [by_q, by_dq].concat().concat()
+    }),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: None,
+};
+
+/// ∂ddq/∂q, ∂ddq/∂dq and B^-1.
+pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
+    name: "forward_dynamics_derivatives",
+    symbol: Typeset::new("d(ddq)/dq, d(ddq)/d(dq), B^-1", "\\partial\\ddot q/\\partial q, \\partial\\ddot q/\\partial\\dot q, B^{-1}"),
+    arguments: &[Argument::Q, Argument::Dq, Argument::Tau],
+    result: &[
+        Part {
+            name: "by_q",
+            meaning: ["Derivatives by joint variables", ""],
+            ..Part::whole(Typeset::new("d(ddq)/dq", "\\partial\\ddot q/\\partial q"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per rad or m")
+        },
+        Part {
+            name: "by_dq",
+            meaning: ["Derivatives by rates", ""],
+            ..Part::whole(Typeset::new("d(ddq)/d(dq)", "\\partial\\ddot q/\\partial\\dot q"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per rad/s or m/s")
+        },
+        Part {
+            name: "by_tau",
+            meaning: ["Derivatives by torques", ", the inverse of B"],
+            ..Part::whole(Typeset::new("B^-1", "B^{-1}"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per N m or N")
+        },
+    ],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Derivatives of the accelerations of {forward_dynamics} by joint variables, by rates and by torques.",
+        "(-B^-1 dtau/dq, -B^-1 dtau/d(dq), B^-1) at ddq = forward_dynamics(q, dq, tau)  (Carpentier and Mansard 2018)",
+        "three matrices `m[joint of ddq][joint of q, dq or tau]`; units of ddq per rad or m, per rad/s or m/s, and per N m or N. The third is the \
+         inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| {
+        let (by_q, by_dq, inverse) = forward_dynamics_derivatives(pool, arm, plan);
+        [by_q, by_dq, inverse].concat().concat()
+    }),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: None,
+};
 
 type Rows = Vec<Vec<ExprId>>;
 

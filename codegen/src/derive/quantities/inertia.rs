@@ -9,12 +9,35 @@
 //!
 //! The rotor of joint i adds I_m k² on the diagonal and, as it rides on the parent link, the moment I_m k z_m there: this couples the joints.
 
-use super::arm::{Arm, Body};
-use super::columns::{Column, Ways};
-use super::plan::Plan;
+use crate::derive::arm::{Arm, Body};
+use crate::derive::columns::{Column, Ways};
+use crate::derive::passes::Use;
+use crate::derive::plan::Plan;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::manipulator::JointKind;
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool};
+
+/// B(q).
+pub static INERTIA_MATRIX: Quantity = Quantity {
+    name: "inertia_matrix",
+    symbol: Typeset::plain("B(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part::whole(Typeset::plain("B(q)"), Typeset::plain("b"), &[Length::Dof, Length::Dof], "kg m², kg m, kg")],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation { result_with: Some("`b[row][column]`, symmetric, positive definite where {pi} is physically possible, all entries filled; kg m² between revolute joints, kg m between a revolute and a \
+         prismatic one, kg between prismatic ones. J_Pi and J_Oi are the Jacobians of the centre of mass of link i, I_i is about it."), ..Documentation::new(
+        "Inertia matrix B(q) of links and rotors.",
+        "B(q) = sum_i (m_i J_Pi' J_Pi + J_Oi' R_i I_i R_i' J_Oi) + rotors  (Siciliano et al., eq. 7.32)",
+        "`b[row][column]`, symmetric and positive definite, all entries filled; kg m² between revolute joints, kg m between a revolute and a \
+         prismatic one, kg between prismatic ones. J_Pi and J_Oi are the Jacobians of the centre of mass of link i, I_i is about it.",
+    ) },
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| inertia_matrix(pool, arm, plan).concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Dynamics"),
+};
 
 /// For each joint the body of all links that it carries, in its joint frame (Walker and Orin 1982).
 pub fn composite_bodies(pool: &mut Pool, arm: &Arm) -> Vec<Body> {

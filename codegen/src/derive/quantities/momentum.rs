@@ -16,10 +16,53 @@
 //!
 //! The rotor of joint i has I_m k dq_i z_m beside what turns with its link, and p_i holds I_m k (k dq_i + z_m · ω).
 
-use super::arm::{symmetric, Arm};
 use super::inertia::{along, wrench_outward};
+use crate::derive::arm::{symmetric, Arm};
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
+
+/// In the order of the emitted module.
+pub(super) static DECLARED: [&Quantity; 2] = [&MOMENTUM, &CORIOLIS_TRANSPOSE_TIMES];
+
+/// B(q) dq.
+pub static MOMENTUM: Quantity = Quantity {
+    name: "momentum",
+    symbol: Typeset::new("B dq", "B(q) \\dot q"),
+    arguments: &[Argument::Q, Argument::Dq],
+    result: &[Part::whole(Typeset::new("B dq", "B(q) \\dot q"), Typeset::plain("p"), &[Length::Dof], "N m s or N s")],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Generalised momentum B(q) dq, for a momentum observer.",
+        "p = B(q) dq = dT/d(dq)                                            (De Luca and Mattone 2003)",
+        "a momentum, N m s (revolute) or N s (prismatic), for each joint.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| momentum(pool, arm)),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: None,
+};
+
+/// C(q, dq)' dq.
+pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
+    name: "coriolis_transpose_times",
+    symbol: Typeset::new("C' dq", "C^T(q, \\dot q) \\dot q"),
+    arguments: &[Argument::Q, Argument::Dq],
+    result: &[Part::whole(Typeset::new("C' dq", "C^T(q, \\dot q) \\dot q"), Typeset::plain("c"), &[Length::Dof], "N m or N")],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "C(q, dq)' dq with C by Christoffel symbols, for a momentum observer.",
+        "C' dq = dT/dq = (dB/dt) dq - C dq,  dp/dt = tau + C' dq - F - g    (De Luca and Mattone 2003)",
+        "a torque, N m (revolute), or a force, N (prismatic), for each joint, on the right of the equation of dp/dt.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: None,
+};
 
 /// Velocities of a link, and the momentum of all that it carries, in its joint frame.
 struct State {

@@ -6,9 +6,105 @@
 //! dz_i/dt = omega_i × z_i,   d(p_e - p_i)/dt = v_e - v_i
 //! ```
 
-use super::arm::Arm;
+use crate::derive::arm::Arm;
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Element, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::{Matrix, Vector, IDENTITY, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
+
+/// In the order of the emitted module.
+pub(super) static DECLARED: [&Quantity; 4] = [&DIRECT_KINEMATICS, &LINK_FRAMES, &GEOMETRIC_JACOBIAN, &GEOMETRIC_JACOBIAN_DOT];
+
+/// T_e(q).
+pub static DIRECT_KINEMATICS: Quantity = Quantity {
+    name: "direct_kinematics",
+    symbol: Typeset::plain("T_e(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part::whole(Typeset::plain("T_e(q)"), Typeset::plain("t"), &[Length::Fixed(4), Length::Fixed(4)], "1, m")],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "End-effector frame in the base frame, T_e(q).",
+        "T_e = A_1(q_1) ... A_n(q_n) T_tool                                (Siciliano et al., Sect. 2.8)",
+        "the 4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
+         frame, the last column is its origin in m.",
+    ),
+    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Kinematics"),
+};
+
+/// T_i(q) of every link.
+pub static LINK_FRAMES: Quantity = Quantity {
+    name: "link_frames",
+    symbol: Typeset::plain("T_i(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part {
+        element: Some(Element { name: "link_frame", letter: "T" }),
+        ..Part::whole(Typeset::plain("T_i(q)"), Typeset::plain("t"), &[Length::Dof, Length::Fixed(4), Length::Fixed(4)], "1, m")
+    }],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Frame of every link in the base frame, T_i(q).",
+        "T_i = A_1(q_1) ... A_i(q_i)                                       (Siciliano et al., Sect. 2.8)",
+        "a 4 x 4 homogeneous transformation for each link, `t[link][row][column]`, the frames as the description's convention defines them; \
+         translations in m.",
+    ),
+    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| link_frames(pool, arm).concat().concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Kinematics"),
+};
+
+/// J(q).
+pub static GEOMETRIC_JACOBIAN: Quantity = Quantity {
+    name: "geometric_jacobian",
+    symbol: Typeset::plain("J(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part::whole(
+        Typeset::plain("J(q)"),
+        Typeset::plain("j"),
+        &[Length::Fixed(6), Length::Dof],
+        "m or 1 above, 1 below",
+    )],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Geometric Jacobian J(q) of the end effector, in the base frame.",
+        "(v_e, omega_e) = J(q) dq                                          (Siciliano et al., Sect. 3.1)",
+        "`j[row][joint]`, 6 rows: three linear (velocity of the end-effector frame's origin, m/s), then three angular (rad/s).",
+    ),
+    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| geometric_jacobian(pool, arm).concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Kinematics"),
+};
+
+/// dJ/dt(q, dq).
+pub static GEOMETRIC_JACOBIAN_DOT: Quantity = Quantity {
+    name: "geometric_jacobian_dot",
+    symbol: Typeset::new("dJ/dt(q, dq)", "\\dot J(q, \\dot q)"),
+    arguments: &[Argument::Q, Argument::Dq],
+    result: &[Part::whole(
+        Typeset::new("dJ/dt(q, dq)", "\\dot J(q, \\dot q)"),
+        Typeset::new("dj", "\\dot j"),
+        &[Length::Fixed(6), Length::Dof],
+        "as J, per s",
+    )],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Time derivative of the geometric Jacobian along dq.",
+        "d/dt (v_e, omega_e) = J ddq + (dJ/dt) dq",
+        "`j[row][joint]`, 6 rows: three linear, then three angular, in the base frame.",
+    ),
+    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| geometric_jacobian_dot(pool, arm).concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Kinematics"),
+};
 
 /// Frames in the base frame.
 #[derive(Clone, Debug)]

@@ -4,9 +4,30 @@
 //! T = Σ_i ½ m v·v + v·(omega × h) + ½ omega' (tr(S) 1 - S) omega + rotors                   (the book, Sect. 7.1.1)
 //! ```
 
-use super::arm::{symmetric, Arm};
+use crate::derive::arm::{symmetric, Arm};
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
+
+/// T(q, dq).
+pub static KINETIC_ENERGY: Quantity = Quantity {
+    name: "kinetic_energy",
+    symbol: Typeset::new("T(q, dq)", "\\mathcal T(q, \\dot q)"),
+    arguments: &[Argument::Q, Argument::Dq],
+    result: &[Part::whole(Typeset::new("T(q, dq)", "\\mathcal T(q, \\dot q)"), Typeset::new("T", "\\mathcal T"), &[], "J")],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation::new(
+        "Kinetic energy of links and rotors.",
+        "T = 1/2 dq' B(q) dq                                               (Siciliano et al., eq. 7.31)",
+        "an energy, J.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| vec![kinetic_energy(pool, arm)]),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Dynamics"),
+};
 
 /// T(q, dq), J.
 pub fn kinetic_energy(pool: &mut Pool, arm: &Arm) -> ExprId {

@@ -1,4 +1,4 @@
-//! The gravity term g(q) = ∂U/∂q and the potential energy U(q).
+//! The gravity term g(q) = ∂U/∂q.
 //!
 //! ```text
 //! U = -Σ_i m_i g0' p_li,   g_i = ∂U/∂q_i                                              (the book, eqs. 7.36, 7.39)
@@ -6,14 +6,37 @@
 //!
 //! Joint i carries the composite mass m and first moment h: g_i = -z·(h × g0) (revolute) or -m z·g0 (prismatic), in its own frame.
 
-use super::arm::Arm;
-use super::kinematics::frames;
-use super::plan::{Pass, Plan};
+use crate::derive::arm::Arm;
+use crate::derive::passes::Use;
+use crate::derive::plan::{Pass, Plan};
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 
+/// g(q).
+pub static GRAVITY: Quantity = Quantity {
+    name: "gravity",
+    symbol: Typeset::plain("g(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation {
+        names_gravity: true,
+        ..Documentation::new(
+            "Gravity term g(q) on the left of the equation of motion: the torque that holds the arm at rest.",
+            "g(q) = dU/dq                                                      (Siciliano et al., eq. 7.39)",
+            "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
+        )
+    },
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| gravity(pool, arm, plan)),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Dynamics"),
+};
+
 /// Forks of g, apart from those of the columns of B.
-const GRAVITY: usize = 1 << 16;
+const FORKS: usize = 1 << 16;
 
 /// Mass and first moment of all that each joint carries, in its joint frame.
 fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
@@ -44,24 +67,11 @@ pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
         direction.push(own);
         let (mass, mut h) = composite[i];
         let mut meets = own;
-        if plan.way(Pass::Meeting, GRAVITY + i, 2) == 1 {
+        if plan.way(Pass::Meeting, FORKS + i, 2) == 1 {
             h = joint.about_axis(pool, &h);
             meets = hat;
         }
         g.push(if joint.is_revolute() { pool.dot(&[h[1], -h[0]], &[meets[0], meets[1]]) } else { -pool.mul(mass, meets[2]) });
     }
     g
-}
-
-/// U(q), J: zero where all masses, rotors included, lie at the origin of the base frame.
-pub fn potential_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
-    let frames = frames(pool, arm);
-    let mut total = arm.base_moment;
-    for (joint, (rotation, origin)) in arm.joints.iter().zip(&frames.joints) {
-        let turned = pool.transform(rotation, &joint.body.first);
-        let weighted = pool.scale(joint.body.mass, origin);
-        let first = pool.add_vectors(&turned, &weighted);
-        total = pool.add_vectors(&total, &first);
-    }
-    -pool.dot3(&arm.gravity, &total)
 }

@@ -1,0 +1,44 @@
+//! The exact constants of a description, and the field in which expressions of its arm have their fingerprints.
+
+use super::passes;
+use crate::exact::Number;
+use crate::manipulator::Manipulator;
+use crate::ring::field::Field;
+
+/// A field in which the constants of a valid arm have their roots, and the angle by which its last link may be turned its sine and cosine.
+pub fn field_of(manipulator: &Manipulator) -> Field {
+    let plain = find_field(manipulator).expect("validation refuses an arm without a field");
+    let turn = passes::of_last_link(&plain, manipulator);
+    turn.and_then(|turn| Field::with_turn(&constants(manipulator), turn)).unwrap_or(plain)
+}
+
+/// A field in which the constants of an arm have their roots: all of them, wherever the equations may meet them. `None` if their
+/// different roots are too many for any field that is tried, which validation reports.
+pub fn find_field(manipulator: &Manipulator) -> Option<Field> {
+    Field::with_roots_of(&constants(manipulator))
+}
+
+/// All exact constants of a description.
+fn constants(manipulator: &Manipulator) -> Vec<Number> {
+    let mut numbers = Vec::new();
+    for joint in &manipulator.joints {
+        for placement in [&joint.placement, &joint.link_frame, &manipulator.tool] {
+            numbers.extend(placement.rotation.iter().flatten().cloned());
+            numbers.extend(placement.translation.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        }
+        let bodies = [Some(&joint.link), manipulator.payload.as_ref()];
+        for body in bodies.into_iter().flatten() {
+            let all = std::iter::once(&body.mass).chain(&body.com).chain(&body.inertia);
+            numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        }
+        if let Some(motor) = &joint.motor {
+            numbers.extend(motor.axis.iter().cloned());
+            let all = motor.position.iter().chain([&motor.ratio, &motor.mass]).chain(&motor.inertia).chain(&motor.viscous);
+            numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        }
+        numbers.extend(joint.viscous.iter().chain(&joint.coulomb).flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+    }
+    numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
+    numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+    numbers
+}

@@ -1,0 +1,101 @@
+//! Expressions of a quantity's entries in a pool, and the closed form, which is another derivation of the same.
+//!
+//! A quantity may have several derivations, each in a pool of its own: a recursion over the links and, where it stays short, the closed
+//! form. All give the same expressions, which their fingerprints prove; which one is emitted is a matter of cost alone.
+
+use crate::ring::normal_form::{Arrangement, NormalForm};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// One derivation of a quantity: its entries, row by row, in a pool.
+#[derive(Clone)]
+pub struct Derivation {
+    /// The expressions.
+    pub pool: Pool,
+    /// Entries, row by row.
+    pub entries: Vec<ExprId>,
+    /// How it was derived, in a few words.
+    pub method: &'static str,
+    /// For each joint the one before it whose axis is parallel to its own, and whether it points the other way.
+    pub parallel: Vec<Option<(u16, bool)>>,
+}
+
+/// A division counts like so many additions.
+pub const DIVISION: usize = 4;
+
+/// And a pair of sine and cosine.
+pub const PAIR: usize = 16;
+
+/// A closed form is tried up to so many terms an entry, on the way and at the end.
+pub const CLOSED_FORM_TERMS: usize = 300;
+
+impl Derivation {
+    /// The closed form of every entry, if none is too long.
+    pub fn closed_forms(&self) -> Option<Vec<NormalForm>> {
+        self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)
+    }
+
+    /// The derivations from the closed form, if there is one: one for each order in which its products can be formed, and the same in
+    /// the rates of links with parallel axes about these.
+    pub fn by_closed_form(&self) -> Vec<Derivation> {
+        let Some(forms) = self.closed_forms() else { return Vec::new() };
+        let derivation = |forms: &[NormalForm], arrangement, meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId| {
+            let mut pool = Pool::new(self.pool.field().clone());
+            let entries = forms.iter().map(|form| pool.from_normal_form_in(form, arrangement, meaning)).collect();
+            Derivation { pool, entries, method: "closed form", parallel: self.parallel.clone() }
+        };
+        let mut all: Vec<Derivation> = Arrangement::ALL
+            .iter()
+            .map(|&arrangement| derivation(&forms, arrangement, &mut |pool, symbol| pool.symbol(symbol)))
+            .collect();
+        if let Some(forms) = self.forms_in_absolute_rates() {
+            all.extend(
+                Arrangement::ALL
+                    .iter()
+                    .map(|&arrangement| derivation(&forms, arrangement, &mut |pool, symbol| self.absolute(pool, symbol))),
+            );
+        }
+        all
+    }
+
+    /// The closed forms in which the rate and the acceleration of a joint stand for those of its link about the axis that it shares with
+    /// links before it: dq_i -> ±(w_i - w_p). Squares of sums of rates then stay squares.
+    fn forms_in_absolute_rates(&self) -> Option<Vec<NormalForm>> {
+        if self.parallel.iter().all(Option::is_none) {
+            return None;
+        }
+        let mut pool = Pool::new(self.pool.field().clone());
+        let entries = self.pool.rewritten(&self.entries, &mut pool, &mut |pool, symbol| {
+            let own = pool.symbol(symbol);
+            let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else {
+                return own;
+            };
+            let before = pool.symbol(rate(before));
+            pool.sub(own, before).signed(opposite)
+        });
+        (entries != self.entries || pool.len() != self.pool.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
+    }
+
+    /// The joint before that of a symbol whose axis is parallel.
+    fn before(&self, symbol: Symbol) -> Option<(u16, bool)> {
+        self.parallel.get(usize::from(symbol.index())).copied().flatten()
+    }
+
+    /// What such a rate is: w_i = w_p ± dq_i.
+    fn absolute(&self, pool: &mut Pool, symbol: Symbol) -> ExprId {
+        let own = pool.symbol(symbol);
+        let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else { return own };
+        let before = self.absolute(pool, rate(before));
+        pool.add(before, own.signed(opposite))
+    }
+}
+
+/// The kind of a rate or an acceleration.
+fn moving(symbol: Symbol) -> Option<fn(u16) -> Symbol> {
+    match symbol {
+        Symbol::Rate(_) => Some(Symbol::Rate),
+        Symbol::Acceleration(_) => Some(Symbol::Acceleration),
+        Symbol::ReferenceRate(_) => Some(Symbol::ReferenceRate),
+        Symbol::ReferenceAcceleration(_) => Some(Symbol::ReferenceAcceleration),
+        _ => None,
+    }
+}

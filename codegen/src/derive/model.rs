@@ -1,0 +1,46 @@
+//! A valid arm with what all its derivations share.
+
+use std::sync::OnceLock;
+
+use super::parameters::ParameterVector;
+use super::quantity::Sizes;
+use super::{base, constants, parameter_vector};
+use crate::manipulator::Manipulator;
+use crate::ring::field::Field;
+
+/// A valid arm with what its equations are formed in.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The arm.
+    pub manipulator: Manipulator,
+    /// The field of the fingerprints.
+    pub field: Field,
+    /// The parameter vector that its `regressor` chooses.
+    pub parameters: ParameterVector,
+    /// Its base parameters, found when first asked for.
+    base: OnceLock<ParameterVector>,
+}
+
+impl Model {
+    /// The model of a valid arm.
+    pub fn new(manipulator: Manipulator) -> Model {
+        let field = constants::field_of(&manipulator);
+        let parameters = parameter_vector(&manipulator, &field);
+        Model { manipulator, field, parameters, base: OnceLock::new() }
+    }
+
+    /// The base parameters, the masses of rotors among their values.
+    pub fn base_parameters(&self) -> &ParameterVector {
+        self.base.get_or_init(|| base::base_parameters_with_rotors(&self.manipulator, &self.field))
+    }
+
+    /// What the dimensions of the quantities depend on.
+    pub fn sizes(&self) -> Sizes {
+        Sizes {
+            dof: self.manipulator.dof(),
+            parameters: self.parameters.len(),
+            base_parameters: self.base_parameters().len(),
+            task: self.manipulator.task.len(),
+        }
+    }
+}

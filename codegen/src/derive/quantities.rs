@@ -1,0 +1,38 @@
+//! The quantities of an arm, one concept a file: the formula on top, the declaration of each emitted function, its derivation.
+
+pub mod base_regressor;
+pub mod coriolis;
+pub mod derivatives;
+pub mod equations_of_motion;
+pub mod forward_dynamics;
+pub mod friction;
+pub mod gravity;
+pub mod inertia;
+pub mod inverse_dynamics;
+pub mod kinematics;
+pub mod kinetic_energy;
+pub mod momentum;
+pub mod operational_inertia;
+pub mod potential_energy;
+pub mod regressor;
+
+use super::quantity::Quantity;
+
+/// All quantities, file by file, in the order of the emitted module.
+pub(crate) static DECLARED: [&[&Quantity]; 15] = [
+    &kinematics::DECLARED,
+    &[&inertia::INERTIA_MATRIX],
+    &[&coriolis::CORIOLIS_MATRIX],
+    &[&gravity::GRAVITY],
+    &[&friction::FRICTION],
+    &[&equations_of_motion::EQUATIONS_OF_MOTION],
+    &[&inverse_dynamics::INVERSE_DYNAMICS],
+    &[&forward_dynamics::FORWARD_DYNAMICS],
+    &regressor::DECLARED,
+    &[&kinetic_energy::KINETIC_ENERGY],
+    &[&potential_energy::POTENTIAL_ENERGY],
+    &momentum::DECLARED,
+    &[&base_regressor::BASE_REGRESSOR],
+    &[&operational_inertia::OPERATIONAL_INERTIA],
+    &derivatives::DECLARED,
+];

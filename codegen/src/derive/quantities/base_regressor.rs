@@ -1,0 +1,29 @@
+//! The regressor of the base parameters, Y_b(q, dq, ddq): columns of full rank, from `base.rs`.
+
+use super::regressor::STARTS;
+use crate::derive::base;
+use crate::derive::parameters::View;
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+
+/// Y_b(q, dq, ddq).
+pub static BASE_REGRESSOR: Quantity = Quantity {
+    name: "base_regressor",
+    symbol: Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"),
+    arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
+    result: &[Part::whole(Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"), Typeset::plain("y_b"), &[Length::Dof, Length::BaseParameters], "Y_b pi_b is a torque")],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Regressor Y_b(q, dq, ddq) of the base parameters: columns of full rank.",
+        "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = Y_b pi_b                  (Gautier and Khalil 1990)",
+        "`y[joint][base parameter]`, parameters in the order of {BASE_PARAMETER_NAMES}: those of the links in their joint frames, inertias of rotors, \
+         viscous and Coulomb friction, as far as the description gives them and they are not 0 at its values. Masses of rotors are part of the links \
+         that carry them. With {NOMINAL_BASE_PARAMETERS} it is the torque of {inverse_dynamics}. For identification take {regressor} with \
+         `regressor: base` in the description: it has all base parameters, zero or not.",
+    ),
+    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::settle, starts: &STARTS, ..Recursion::new(Use::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: None,
+};

@@ -1,0 +1,51 @@
+//! B, C and g at one state, from one recursion over the columns of B and C.
+
+use super::coriolis::{inertia_and_coriolis, CORIOLIS_MATRIX};
+use super::gravity::{gravity, GRAVITY};
+use super::inertia::INERTIA_MATRIX;
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Structure, Typeset};
+
+/// B, C and g together.
+pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
+    name: "equations_of_motion",
+    symbol: Typeset::plain("B, C, g"),
+    arguments: &[Argument::Q, Argument::Dq],
+    result: &[
+        Part {
+            name: "inertia",
+            meaning: ["Inertia matrix B(q)", ": symmetric, positive definite"],
+            ..Part::whole(Typeset::plain("B(q)"), Typeset::plain("b"), &[Length::Dof, Length::Dof], "kg m², kg m, kg")
+        },
+        Part {
+            name: "coriolis",
+            meaning: ["Coriolis and centrifugal matrix C(q, dq)", " by Christoffel symbols: dB/dt - 2C is skew-symmetric"],
+            ..Part::whole(
+                Typeset::new("C(q, dq)", "C(q, \\dot q)"),
+                Typeset::plain("c"),
+                &[Length::Dof, Length::Dof],
+                "as B, per s",
+            )
+        },
+        Part {
+            name: "gravity",
+            meaning: ["Gravity term g(q)", ", on the left of the equation of motion"],
+            ..Part::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")
+        },
+    ],
+    structure: Some(Structure { name: "EquationsOfMotion", title: "The terms of the equation of motion" }),
+    has_parameters: true,
+    documentation: Documentation::new(
+        "B(q), C(q, dq) and g(q) at one state, sharing their work.",
+        "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                        (Siciliano et al., eq. 7.42)",
+        "the three terms as the functions of their own return them.",
+    ),
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| {
+        let (b, c) = inertia_and_coriolis(pool, arm, plan);
+        let g = gravity(pool, arm, plan);
+        [b.concat(), c.concat(), g].concat()
+    }),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[&INERTIA_MATRIX, &CORIOLIS_MATRIX, &GRAVITY],
+    interface: Some("Dynamics"),
+};

@@ -1,0 +1,47 @@
+//! Forward dynamics: ddq = B^-1 (tau - C dq - F - g), by factors of B.
+
+use super::inertia::inertia_matrix;
+use crate::derive::arm::Arm;
+use crate::derive::factors::Factors;
+use crate::derive::newton_euler::{inverse_dynamics, Motion};
+use crate::derive::passes::Use;
+use crate::derive::plan::Plan;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::ring::{ExprId, Pool, Symbol};
+
+/// ddq(q, dq, tau).
+pub static FORWARD_DYNAMICS: Quantity = Quantity {
+    name: "forward_dynamics",
+    symbol: Typeset::new("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
+    arguments: &[Argument::Q, Argument::Dq, Argument::Tau],
+    result: &[Part::whole(
+        Typeset::new("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
+        Typeset::new("ddq", "\\ddot q"),
+        &[Length::Dof],
+        "rad/s² or m/s²",
+    )],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation {
+        failure: ["cannot fail", "not finite where B is singular"],
+        ..Documentation::new(
+            "Accelerations that torques cause, friction included.",
+            "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.6)",
+            "an acceleration for each joint, rad/s² (revolute) or m/s² (prismatic).",
+        )
+    },
+    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan)),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Dynamics"),
+};
+
+/// ddq(q, dq, tau).
+pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
+    let b = inertia_matrix(pool, arm, plan);
+    let motion = Motion::unaccelerated(pool, arm);
+    let bias = inverse_dynamics(pool, arm, &motion);
+    let tau = arm.symbols(pool, Symbol::Torque);
+    let right: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sub(tau[i], bias[i])).collect();
+    Factors::new(pool, &b).solve(pool, &right)
+}

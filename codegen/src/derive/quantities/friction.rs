@@ -1,0 +1,32 @@
+//! The friction torque F(dq), rotors included, as Newton and Euler's equations take it in.
+//!
+//! ```text
+//! F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i)                                       (the book, eq. 7.42)
+//! ```
+
+use crate::derive::newton_euler;
+use crate::derive::passes::Use;
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::ring::Symbol;
+
+/// F(dq).
+pub static FRICTION: Quantity = Quantity {
+    name: "friction",
+    symbol: Typeset::new("F(dq)", "F(\\dot q)"),
+    arguments: &[Argument::Dq],
+    result: &[Part::whole(Typeset::new("F(dq)", "F(\\dot q)"), Typeset::plain("f"), &[Length::Dof], "N m or N")],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation::new(
+        "Friction torque F(dq) on the left of the equation of motion: it has the sign of dq.",
+        "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
+        "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
+    ),
+    recursion: Recursion::new(Use::Plain, |pool, arm, _, _| {
+        let rates = arm.symbols(pool, Symbol::Rate);
+        newton_euler::friction(pool, arm, &rates)
+    }),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("Dynamics"),
+};

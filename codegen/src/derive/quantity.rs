@@ -1,0 +1,397 @@
+//! What a quantity is: the declaration of an emitted function, language-free, and its derivation by recursion over the links.
+//!
+//! Each is declared once, in the file of its derivation (`quantities/`). Whoever prints, counts, documents or tests functions does so for
+//! every [`Quantity`], by what it says of itself, and knows none by name.
+//!
+//! Texts of documentation hold links in braces: `{gravity}` is a function, `{q}` an argument, `{PARAMETER_NAMES}` a constant of the module,
+//! each written as a language writes it. What stands between back quotes is code, the same everywhere.
+
+use super::arm::Arm;
+use super::derivation::{Derivation, DIVISION, PAIR};
+use super::model::Model;
+use super::parameters::View;
+use super::passes::{self, Use};
+use super::plan::{Pass, Passes, Plan};
+use crate::ring::{ExprId, Pool};
+
+/// A function of the emitted module.
+pub struct Quantity {
+    /// Its name in the emitted module.
+    pub name: &'static str,
+    /// Its symbol.
+    pub symbol: Typeset,
+    /// Arguments of the plain function, in order.
+    pub arguments: &'static [Argument],
+    /// What it returns.
+    pub result: &'static [Part],
+    /// The type that holds the parts where these have one, instead of a mere list of them.
+    pub structure: Option<Structure>,
+    /// Whether there is a form `_with` the parameters at run time.
+    pub has_parameters: bool,
+    /// What is said of it.
+    pub documentation: Documentation,
+    /// Its derivation.
+    pub recursion: Recursion,
+    /// Why an arm does not have the function, or its form with parameters at run time, if it does not.
+    pub missing: fn(&Model, bool) -> Option<String>,
+    /// Other quantities that it only gathers, if it does.
+    pub gathers: &'static [&'static Quantity],
+    /// The trait of the runtime that it is a method of.
+    pub interface: Option<&'static str>,
+}
+
+/// A symbol in plain text and in LaTeX.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Typeset {
+    /// In plain text.
+    pub text: &'static str,
+    /// In LaTeX.
+    pub latex: &'static str,
+}
+
+impl Typeset {
+    /// A symbol that LaTeX writes as plain text does.
+    pub const fn plain(text: &'static str) -> Typeset {
+        Typeset { text, latex: text }
+    }
+
+    /// A symbol.
+    pub const fn new(text: &'static str, latex: &'static str) -> Typeset {
+        Typeset { text, latex }
+    }
+}
+
+/// A number, a vector, a matrix or a list of matrices that a function returns.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its name, [`Part::RESULT`] where it is all that is returned.
+    pub name: &'static str,
+    /// Its symbol.
+    pub symbol: Typeset,
+    /// The letter of an entry.
+    pub letter: Typeset,
+    /// Its dimensions, outermost first; none for a number. The last two are those of matrices.
+    pub lengths: &'static [Length],
+    /// Unit of the entries.
+    pub unit: &'static str,
+    /// Of a list of matrices, one of them.
+    pub element: Option<Element>,
+    /// What it is where it is one of several: its first words, and the rest of the sentence.
+    pub meaning: [&'static str; 2],
+}
+
+/// One matrix of a list: what its name and its symbol begin with, before its number.
+#[derive(Clone, Copy, Debug)]
+pub struct Element {
+    /// Its name: `link_frame` of `link_frame_1`.
+    pub name: &'static str,
+    /// Its letter: `T` of `T_1(q)`.
+    pub letter: &'static str,
+}
+
+/// The name of a type that holds the parts of a result, and what that is.
+#[derive(Clone, Copy, Debug)]
+pub struct Structure {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub title: &'static str,
+}
+
+/// A dimension of a result or of an argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// Number of joints.
+    Dof,
+    /// Number of parameters.
+    Parameters,
+    /// Number of base parameters.
+    BaseParameters,
+    /// Number of rows of the task.
+    Task,
+    /// That number.
+    Fixed(usize),
+}
+
+/// What the dimensions of an arm's quantities depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// Number of joints.
+    pub dof: usize,
+    /// Number of parameters.
+    pub parameters: usize,
+    /// Number of base parameters.
+    pub base_parameters: usize,
+    /// Number of rows of the task.
+    pub task: usize,
+}
+
+/// An argument of an emitted function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Argument {
+    /// The parameter vector.
+    Pi,
+    /// Joint variables.
+    Q,
+    /// Joint rates.
+    Dq,
+    /// Joint accelerations.
+    Ddq,
+    /// Reference rates.
+    Dqr,
+    /// Reference accelerations.
+    Ddqr,
+    /// Joint torques.
+    Tau,
+}
+
+/// What is said of a function.
+#[derive(Clone, Copy, Debug)]
+pub struct Documentation {
+    /// What it is.
+    pub title: &'static str,
+    /// The formula and its source.
+    pub formula: &'static str,
+    /// The result with its frame, unit and sign, after "Returns".
+    pub result: &'static str,
+    /// The same of the form with parameters at run time, where that differs.
+    pub result_with: Option<&'static str>,
+    /// What can fail, and what can in the form with parameters at run time.
+    pub failure: [&'static str; 2],
+    /// Whether it depends on the acceleration of free fall directly, so that this is said.
+    pub names_gravity: bool,
+}
+
+/// The derivation of a quantity by recursion over the links.
+pub struct Recursion {
+    /// The entries of all parts, row by row, for an arm in a pool.
+    pub entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>,
+    /// What the derivation may do to the arm where its parameters are numbers.
+    pub rewriting: Use,
+    /// How the parameters enter, where the quantity decides that.
+    pub view: for<'a> fn(&'a Model, View<'a>) -> View<'a>,
+    /// What is done to the arm before all else.
+    pub prepare: fn(&mut Pool, &mut Arm),
+    /// Passes that it cannot use.
+    pub without: &'static [Pass],
+    /// Where searches for its plan start.
+    pub starts: &'static [usize],
+}
+
+/// What a derivation is for.
+#[derive(Clone, Copy)]
+pub struct Setting<'a> {
+    /// The arm and its parameters.
+    pub model: &'a Model,
+    /// How the parameters enter.
+    pub view: View<'a>,
+}
+
+impl Documentation {
+    const CANNOT_FAIL: &'static str = "cannot fail";
+
+    /// Of a function that cannot fail and that the acceleration of free fall does not enter by itself.
+    pub const fn new(title: &'static str, formula: &'static str, result: &'static str) -> Documentation {
+        Documentation {
+            title,
+            formula,
+            result,
+            result_with: None,
+            failure: [Documentation::CANNOT_FAIL; 2],
+            names_gravity: false,
+        }
+    }
+}
+
+impl Recursion {
+    /// A derivation without anything out of the ordinary.
+    pub const fn new(rewriting: Use, entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>) -> Recursion {
+        fn as_asked<'a>(_: &'a Model, view: View<'a>) -> View<'a> {
+            view
+        }
+        Recursion { entries, rewriting, view: as_asked, prepare: |_, _| (), without: &[], starts: &[0] }
+    }
+}
+
+impl Part {
+    /// The name of a part that is the whole result.
+    pub const RESULT: &'static str = "result";
+
+    /// A part that is the whole result.
+    pub const fn whole(symbol: Typeset, letter: Typeset, lengths: &'static [Length], unit: &'static str) -> Part {
+        Part { name: Part::RESULT, symbol, letter, lengths, unit, element: None, meaning: [""; 2] }
+    }
+
+    /// Number of entries.
+    pub fn len(&self, sizes: &Sizes) -> usize {
+        self.lengths.iter().map(|length| length.of(sizes)).product()
+    }
+
+    /// Number of columns, 1 of a number or a vector.
+    pub fn columns(&self) -> Length {
+        match self.lengths {
+            [.., _, columns] => *columns,
+            _ => Length::Fixed(1),
+        }
+    }
+
+    /// Number of rows of one matrix, 1 of a number.
+    pub fn rows(&self) -> Length {
+        match self.lengths {
+            [.., rows, _] | [rows] => *rows,
+            [] => Length::Fixed(1),
+        }
+    }
+}
+
+impl Length {
+    /// Its value for an arm.
+    pub fn of(self, sizes: &Sizes) -> usize {
+        match self {
+            Length::Dof => sizes.dof,
+            Length::Parameters => sizes.parameters,
+            Length::BaseParameters => sizes.base_parameters,
+            Length::Task => sizes.task,
+            Length::Fixed(value) => value,
+        }
+    }
+
+    /// The constant of the emitted module that holds it, or the number.
+    pub fn constant(self) -> String {
+        match self {
+            Length::Dof => "DOF".into(),
+            Length::Parameters => "PARAMETERS".into(),
+            Length::BaseParameters => "BASE_PARAMETERS".into(),
+            Length::Task => "TASK_ROWS".into(),
+            Length::Fixed(value) => value.to_string(),
+        }
+    }
+}
+
+impl Argument {
+    /// All of them.
+    pub const ALL: [Argument; 7] =
+        [Argument::Pi, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Argument::Pi => "pi",
+            Argument::Q => "q",
+            Argument::Dq => "dq",
+            Argument::Ddq => "ddq",
+            Argument::Dqr => "dqr",
+            Argument::Ddqr => "ddqr",
+            Argument::Tau => "tau",
+        }
+    }
+
+    /// Its length.
+    pub fn length(self) -> Length {
+        match self {
+            Argument::Pi => Length::Parameters,
+            _ => Length::Dof,
+        }
+    }
+
+    /// What it is, with its unit.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Argument::Pi => "the parameters in the order of {PARAMETER_NAMES}, SI units.",
+            Argument::Q => "joint variables, rad (revolute) or m (prismatic).",
+            Argument::Dq => "joint rates, rad/s or m/s.",
+            Argument::Ddq => "joint accelerations, rad/s² or m/s².",
+            Argument::Dqr => "reference rates, rad/s or m/s.",
+            Argument::Ddqr => "reference accelerations, rad/s² or m/s².",
+            Argument::Tau => "joint torques (forces) on the joint side of the gears, N m or N.",
+        }
+    }
+}
+
+impl PartialEq for Quantity {
+    fn eq(&self, other: &Quantity) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Quantity {}
+
+impl std::fmt::Debug for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Quantity {
+    /// Every arm has it.
+    pub const NEVER_MISSING: fn(&Model, bool) -> Option<String> = |_, _| None;
+
+    /// The name of the function, or of its form with parameters at run time.
+    pub fn function_name(&self, with_parameters: bool) -> String {
+        format!("{}{}", self.name, if with_parameters { "_with" } else { "" })
+    }
+
+    /// Whether a result has such a dimension.
+    pub fn has_length(&self, length: Length) -> bool {
+        self.result.iter().any(|part| part.lengths.contains(&length))
+    }
+
+    /// The forms that it has: without parameters at run time, and perhaps with them.
+    pub fn forms(&self) -> &'static [bool] {
+        if self.has_parameters {
+            &[false, true]
+        } else {
+            &[false]
+        }
+    }
+
+    /// The entries by recursion over the links, in a pool of their own.
+    pub fn by_recursion(&self, model: &Model, view: View<'_>) -> Derivation {
+        self.by_plan(model, view, Plan::default(), 0)
+    }
+
+    /// The entries by recursion over the links, in the ways that cost least, as far as `effort` (counted in nodes) goes.
+    pub fn by_search(&self, model: &Model, view: View<'_>, without: Passes, effort: usize) -> Derivation {
+        self.by_plan(model, view, Plan::new(without), effort)
+    }
+
+    pub(crate) fn by_plan(&self, model: &Model, view: View<'_>, mut plan: Plan, effort: usize) -> Derivation {
+        let Recursion { entries, rewriting, view: own_view, prepare, without, starts } = self.recursion;
+        let setting = Setting { model, view: own_view(model, view) };
+        let rewriting = match (rewriting, setting.view) {
+            (Use::Dynamics, View::Nominal) => Use::Dynamics,
+            (Use::Dynamics, _) => Use::Plain,
+            (other, _) => other,
+        };
+        let mut pool = Pool::new(model.field.clone());
+        let mut arm = Arm::new(&mut pool, &model.manipulator, setting.view);
+        prepare(&mut pool, &mut arm);
+        let derive = |pool: &mut Pool, plan: &mut Plan| {
+            let mut arm = arm.clone();
+            passes::rewrite(pool, &mut arm, plan, rewriting);
+            entries(pool, &arm, plan, &setting)
+        };
+        without.iter().for_each(|&pass| plan.keep_off(pass));
+        passes::suit(&pool, &arm, &mut plan);
+        if effort > 0 {
+            let (sketch, mut nodes) = (pool.sketch(), 0);
+            plan = plan.search_from(starts, effort, &mut |plan| {
+                let mut pool = sketch.clone();
+                pool.reserve(nodes);
+                let entries = derive(&mut pool, plan);
+                nodes = pool.len();
+                let pairs = pool.angles(&entries).len();
+                (pool.operations(&entries, DIVISION) + PAIR * pairs, pool.len())
+            });
+        }
+        let entries = derive(&mut pool, &mut plan);
+        let grouped = rewriting == Use::Dynamics && plan.has(Pass::Grouping);
+        let parallel = arm.parallel_axes();
+        Derivation {
+            pool,
+            entries,
+            parallel,
+            method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" },
+        }
+    }
+}
