@@ -10,6 +10,7 @@ use signatures::{listed, of_module, of_robot};
 
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
 
+#[allow(unreachable_pub)]
 #[path = "src/signatures.rs"]
 mod signatures;
 
@@ -38,7 +39,7 @@ fn main() {
                 for file in [format!("{module}.rs"), format!("{module}_runtime.rs")] {
                     writeln!(modules, "    include!(concat!(env!(\"OUT_DIR\"), \"/{file}\"));").expect("text");
                 }
-                modules.push_str("}\n");
+                write!(modules, "}}\nflat!({module});\n").expect("text");
                 let text = |file: String| std::fs::read_to_string(out.join(file)).expect("it was just written");
                 let functions = listed(&of_module(&text(format!("{module}.rs"))));
                 let [nominal, with] =

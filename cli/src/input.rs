@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use armgen_codegen::catalogue::Absent;
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::manipulator::{self, Manipulator, Scalar};
 use armgen_codegen::program::Selection;
@@ -85,12 +86,12 @@ pub(crate) fn selection(names: &[String]) -> Option<Selection> {
 }
 
 /// Whether the arm has every function that was asked for; those that it does not have, and why, go to standard error.
-pub(crate) fn all_there(robot: &str, absent: &[(String, String)], selection: &Selection) -> bool {
+pub(crate) fn all_there(robot: &str, absent: &[Absent], selection: &Selection) -> bool {
     if selection.is_all() {
         return true;
     }
-    for (name, reason) in absent {
-        terminal::error(&format!("{robot} has no `{name}`: {reason}"));
+    for Absent { function, reason } in absent {
+        terminal::error(&format!("{robot} has no `{function}`: {reason}"));
     }
     absent.is_empty()
 }

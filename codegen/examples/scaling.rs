@@ -68,7 +68,7 @@ fn measure(what: &str, selection: &Selection, folder: &Path) -> Row {
         &Model::new(manipulator),
         &Options { trig: Trig::Std, functions: selection.clone(), ..Options::default() },
     );
-    let text = emit::rust::print(&module, &emit::rust::Origin::of(&source), &emit::rust::Notes::default());
+    let text = emit::rust::print(&module, &emit::Origin::of(&source), &emit::Notes::default());
     let generation = processor_time(OWN) - started;
     let operations = module.functions.iter().map(|function| {
         let cost = Cost::of(function);

@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 use crate::diagnostic::Colour;
 pub use crate::program::{Pass, Scalar, Trig};
 
+use crate::catalogue::Absent;
 use crate::program::{Options, Selection};
 use crate::source::Source;
 
@@ -133,8 +134,8 @@ impl Robot {
         }
         let (generated, diagnostics) = crate::generate(&source, &options);
         let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
-        if let (false, Some((name, reason))) = (options.functions.is_all(), generated.absent.first()) {
-            return Err(format!("error: {path} has no `{name}`: {reason}"));
+        if let (false, Some(Absent { function, reason })) = (options.functions.is_all(), generated.absent.first()) {
+            return Err(format!("error: {path} has no `{function}`: {reason}"));
         }
         for warning in diagnostics.iter() {
             let place = source.place(warning.span().range().start);

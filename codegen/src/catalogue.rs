@@ -3,7 +3,7 @@
 
 pub use crate::derive::quantities;
 pub use crate::derive::quantity::{
-    Argument, Documentation, Element, Length, Part, Quantity, Recursion, Setting, Sizes, Structure, Typeset,
+    Absent, Argument, Documentation, Element, Length, Part, Quantity, Recursion, Setting, Sizes, Structure, Typeset,
 };
 
 use quantities::DECLARED;

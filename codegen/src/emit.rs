@@ -1,11 +1,9 @@
-//! From programs to text. Absent from here on: mathematics.
+//! From programs to text, a folder for each language. Absent from here on: mathematics.
 
 pub mod c;
 pub mod rust;
 
-mod batch;
-mod body;
 mod documentation;
-mod literal;
-mod runtime;
-mod sincos;
+mod origin;
+
+pub use origin::{Notes, Origin};

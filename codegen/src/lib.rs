@@ -28,10 +28,11 @@ pub mod source;
 
 use std::collections::BTreeMap;
 
+use catalogue::Absent;
 pub use derive::Model;
 use diagnostic::Diagnostics;
 use emit::c::CFace;
-use emit::rust::{Notes, Origin};
+use emit::{Notes, Origin};
 use exact::Number;
 use program::{Module, Options};
 use source::Source;
@@ -47,8 +48,8 @@ pub struct Generated {
     pub c: CFace,
     /// The exact constants behind the literals of the module, by function.
     pub constants: BTreeMap<String, Vec<Number>>,
-    /// Functions that this arm does not have: name and reason.
-    pub absent: Vec<(String, String)>,
+    /// Functions that this arm does not have.
+    pub absent: Vec<Absent>,
     /// What the texts print.
     program: Module,
     origin: Origin,

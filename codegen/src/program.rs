@@ -5,6 +5,7 @@
 
 mod constants;
 mod cost;
+pub mod listing;
 mod optimise;
 mod schedule;
 mod selection;
@@ -15,7 +16,8 @@ pub use cost::Cost;
 pub use schedule::{module, Options};
 pub use selection::{Selection, UnknownFunctions};
 
-use crate::catalogue::{Argument, Quantity, Sizes};
+use crate::catalogue::{Absent, Argument, Quantity, Sizes};
+pub use crate::derive::parameters::Parameter;
 use crate::exact::Number;
 use crate::ring::Symbol;
 
@@ -100,29 +102,42 @@ impl Function {
     }
 }
 
+/// A joint of the emitted module; limits that are not given are infinite.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// Whether it turns.
+    pub is_revolute: bool,
+    /// Lowest and highest q.
+    pub position: [Option<Number>; 2],
+    /// Highest |dq|.
+    pub velocity: Option<Number>,
+    /// Highest |tau|.
+    pub effort: Option<Number>,
+}
+
 /// All that the emitted module holds.
 #[derive(Clone, Debug)]
 pub struct Module {
     /// Name of the robot.
     pub name: String,
-    /// Joints: name and whether it is revolute.
-    pub joints: Vec<(String, bool)>,
+    /// Joints, base to tip.
+    pub joints: Vec<Joint>,
     /// Acceleration of free fall in the base frame, m/s².
     pub gravity: [Number; 3],
-    /// Limits by joint, infinite where not given: lowest q, highest q, highest |dq|, highest |tau|.
-    pub limits: Vec<[Option<Number>; 4]>,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
-    /// Parameters: name, nominal value, meaning.
-    pub parameters: Vec<(String, Number, String)>,
+    /// Parameters.
+    pub parameters: Vec<Parameter>,
     /// Whether the parameters are a base set: combinations in joint frames.
     pub base_parameters: bool,
-    /// Base parameters: name, nominal value, exact combination of standard parameters; none if no function needs them.
-    pub base_set: Vec<(String, Number, String)>,
+    /// Base parameters, their meanings exact combinations of standard parameters; none if no function needs them.
+    pub base_set: Vec<Parameter>,
     /// Functions in order.
     pub functions: Vec<Function>,
-    /// Functions that this arm does not have: name and reason.
-    pub absent: Vec<(String, String)>,
+    /// Functions that this arm does not have.
+    pub absent: Vec<Absent>,
     /// The scalar.
     pub scalar: Scalar,
     /// Where sines and cosines come from.
@@ -154,7 +169,7 @@ impl Module {
             Operand::Constant(value) => Some(value),
             Operand::Step(_) | Operand::Input(_) => None,
         });
-        let parameters = self.parameters.iter().chain(&self.base_set).map(|(_, value, _)| value);
+        let parameters = self.parameters.iter().chain(&self.base_set).map(|parameter| &parameter.nominal);
         constants.chain(parameters).find(|value| !self.scalar.holds(value))
     }
 }

@@ -26,7 +26,7 @@ mod text;
 use std::collections::BTreeSet;
 
 use crate::catalogue::quantities::regressor::{derivative_by_parameter, regressor, KNOWN_TORQUE, REGRESSOR};
-use crate::catalogue::{self, Length, Part, Quantity, Typeset};
+use crate::catalogue::{self, Absent, Length, Part, Quantity, Typeset};
 use crate::derive::arm::Arm;
 use crate::derive::derivation::{Derivation, CLOSED_FORM_TERMS};
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
@@ -69,8 +69,8 @@ pub struct Sheet {
     pub robot: String,
     /// The quantities, in the order of the emitted module.
     pub quantities: Vec<Shown>,
-    /// What there is not, and why.
-    pub absent: Vec<(String, String)>,
+    /// Functions that the arm does not have.
+    pub absent: Vec<Absent>,
 }
 
 /// One matrix.
@@ -172,7 +172,7 @@ impl Sheet {
         for &item in items {
             match shown(model, item, reading) {
                 Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),
-                Err(reason) => sheet.absent.push((item.name(), reason)),
+                Err(reason) => sheet.absent.push(Absent { function: item.name(), reason }),
             }
         }
         sheet.absent.dedup();

@@ -66,14 +66,20 @@ macro_rules! call {
     };
 }
 
-/// The function that answers for a module: `answers!(module; function(argument, ..), ..)` with all of its functions.
-macro_rules! answers {
-    ($module:ident; $($function:ident($($argument:ident),*)),*) => {{
+/// Makes the type of a module's `equations_of_motion` numbers in order.
+macro_rules! flat {
+    ($module:ident) => {
         impl Flat for $module::EquationsOfMotion {
             fn flat(self) -> Vec<f64> {
                 [self.inertia.flat(), self.coriolis.flat(), self.gravity.flat()].concat()
             }
         }
+    };
+}
+
+/// The function that answers for a module: `answers!(module; function(argument, ..), ..)` with all of its functions.
+macro_rules! answers {
+    ($module:ident; $($function:ident($($argument:ident),*)),*) => {{
         fn answer(function: &str, a: &Arguments) -> Vec<f64> {
             match function {
                 "dof" => vec![$module::DOF as f64],

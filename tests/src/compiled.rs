@@ -67,7 +67,7 @@ impl Compiled {
         let (mut main, mut table) = (MAIN.to_owned(), String::new());
         for (i, module) in modules.iter().enumerate() {
             project.write(&format!("src/arm{i}.rs"), module);
-            writeln!(main, "#[allow(dead_code)]\nmod arm{i};").expect("text");
+            writeln!(main, "#[allow(dead_code)]\nmod arm{i};\nflat!(arm{i});").expect("text");
             writeln!(table, "    answers!(arm{i}; {}),", listed(&of_module(module))).expect("text");
         }
         writeln!(main, "\nconst ARMS: &[fn(&str, &Arguments) -> Vec<f64>] = &[\n{table}];").expect("text");

@@ -42,15 +42,15 @@ impl Functions for Interpreted {
     }
 
     fn parameter_names(&self) -> Vec<String> {
-        self.module.parameters.iter().map(|(name, ..)| name.clone()).collect()
+        self.module.parameters.iter().map(|parameter| parameter.name.clone()).collect()
     }
 
     fn nominal(&self) -> Vec<f64> {
-        self.module.parameters.iter().map(|(_, value, _)| value.to_f64()).collect()
+        self.module.parameters.iter().map(|parameter| parameter.nominal.to_f64()).collect()
     }
 
     fn nominal_base(&self) -> Vec<f64> {
-        self.module.base_set.iter().map(|(_, value, _)| value.to_f64()).collect()
+        self.module.base_set.iter().map(|parameter| parameter.nominal.to_f64()).collect()
     }
 
     fn has(&self, function: &str) -> bool {

@@ -52,7 +52,7 @@ fn check_without(seed: u64, without: Passes, how: &str) {
     let robot = Interpreted::with_options(&text, &Options { without, ..Options::default() })
         .unwrap_or_else(|faults| panic!("seed {seed}{how}:\n{faults}\n{text}"));
     let names: Vec<String> = robot.module.functions.iter().map(|f| f.name()).collect();
-    let absent: Vec<String> = robot.module.absent.iter().map(|(name, _)| name.clone()).collect();
+    let absent: Vec<String> = robot.module.absent.iter().map(|absent| absent.function.clone()).collect();
     assert_eq!(names, expected(&absent));
     judge(&format!("arm {seed}{how}"), &robot, &text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
 }

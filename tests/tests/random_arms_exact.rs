@@ -153,7 +153,7 @@ fn certify(seed: u64, seen: &mut Seen) {
     let certifying = processor_time() - start - generating;
     assert!(report.passed(), "seed {seed}: {}\n{text}", report.first_fault().unwrap_or_default());
     let certified: Vec<&str> = report.functions.iter().map(|function| function.name.as_str()).collect();
-    let absent: Vec<String> = generated.absent.iter().map(|(name, _)| name.clone()).collect();
+    let absent: Vec<String> = generated.absent.iter().map(|absent| absent.function.clone()).collect();
     assert_eq!(certified, expected(&absent), "seed {seed}");
     let untried: Vec<_> = report.identities.iter().filter_map(|i| i.holds.as_ref().err().map(|why| (&i.name, why))).collect();
     let (manipulator, _) = manipulator::read(&source).0.expect("it was generated from");

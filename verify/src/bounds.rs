@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::emit::rust::Notes;
+use armgen_codegen::emit::Notes;
 use armgen_codegen::manipulator::{JointKind, Manipulator};
 
 use crate::arithmetic::wide::Wide;

@@ -1,5 +1,6 @@
 //! `armgen show`: the equations for people and for programs.
 
+use armgen_codegen::catalogue::Absent;
 use std::path::Path;
 
 use armgen_codegen::document::did_you_mean;
@@ -22,7 +23,7 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: Sh
     };
     let sheet = Sheet::new(&model, &items, if symbolic { Reading::Symbolic } else { Reading::Nominal });
     if format == ShowFormat::Json && !quantities.is_empty() {
-        for (name, reason) in &sheet.absent {
+        for Absent { function: name, reason } in &sheet.absent {
             terminal::note(&format!("{name}: {reason}"));
         }
     }

@@ -7,7 +7,7 @@
 
 use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
-use super::parameters::{Entry, ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
+use super::parameters::{Parameter, ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
 use super::passes::turn_last_link;
 use super::plan::Plan;
 use super::quantities::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
@@ -373,7 +373,7 @@ fn grouped(manipulator: &Manipulator, field: &Field, rest: Rest, own: bool) -> P
     let motion = Motion::with_reference(&mut pool, &arm);
     let y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns, &mut Plan::default());
     let dependence = dependence(&pool, &y);
-    let mut base: Vec<(StandardParameter, Entry)> = dependence
+    let mut base: Vec<(StandardParameter, Parameter)> = dependence
         .independent
         .iter()
         .map(|&column| {
@@ -478,11 +478,11 @@ fn shown(number: &Number) -> String {
 }
 
 /// A base parameter: named like the standard parameter that it is, with an R where it stands in the joint frame or others are regrouped into it.
-fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Entry {
+fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients: &[Number]) -> Parameter {
     let mut nominal = Number::zero();
     let mut meaning = String::new();
     let mut name = format!("{}R", parameter.name());
-    let parts: Vec<(&Entry, &Number)> = standard.entries.iter().zip(coefficients).filter(|(_, k)| !k.is_zero()).collect();
+    let parts: Vec<(&Parameter, &Number)> = standard.entries.iter().zip(coefficients).filter(|(_, k)| !k.is_zero()).collect();
     for (entry, k) in &parts {
         nominal = &nominal + &(*k * &entry.nominal);
         let negative = k.leads_negative();
@@ -513,7 +513,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
             meaning = entry.meaning.clone();
         }
     }
-    Entry { name, nominal, meaning }
+    Parameter { name, nominal, meaning }
 }
 
 /// Columns are kept in this order: friction, then links from the base outwards; within a link inertia about the axis first. Rotors are told

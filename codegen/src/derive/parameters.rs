@@ -163,14 +163,14 @@ fn stays_short(body: &Body) -> bool {
 #[derive(Clone, Debug)]
 pub struct ParameterVector {
     /// One entry per column.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<Parameter>,
     /// What an entry stands for.
     pub kind: ParameterKind,
 }
 
-/// An entry of the parameter vector.
+/// An entry of a parameter vector.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct Parameter {
     /// Its name.
     pub name: String,
     /// Its value in the description.
@@ -272,7 +272,7 @@ impl ParameterVector {
             .iter()
             .map(|id| {
                 let parameter = &manipulator.parameters[id.0 as usize];
-                Entry {
+                Parameter {
                     name: parameter.name.clone(),
                     nominal: parameter.nominal.clone(),
                     meaning: format!("parameter of the description, {}", parameter.nominal.to_f64()),
@@ -287,7 +287,7 @@ impl ParameterVector {
         let columns = StandardParameter::all(manipulator);
         let entries = columns
             .iter()
-            .map(|&p| Entry { name: p.name(), nominal: p.nominal(manipulator), meaning: p.meaning(manipulator) })
+            .map(|&p| Parameter { name: p.name(), nominal: p.nominal(manipulator), meaning: p.meaning(manipulator) })
             .collect();
         ParameterVector { entries, kind: ParameterKind::Standard(columns) }
     }

@@ -145,6 +145,15 @@ pub enum Argument {
     Tau,
 }
 
+/// A function that an arm does not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Absent {
+    /// Its name.
+    pub function: String,
+    /// Why.
+    pub reason: String,
+}
+
 /// What is said of a function.
 #[derive(Clone, Copy, Debug)]
 pub struct Documentation {

@@ -1,52 +1,133 @@
-//! The documentation of emitted functions: formula, arguments, result, frames, units and signs, cost. Written for readers who never saw the
-//! generator.
+//! The documentation of emitted functions, in no language: formula, arguments, result, frames, units and signs, cost. Written for readers
+//! who never saw the generator. Each language writes the [`Block`]s as its comments are written, and its own names for the links.
 
-use crate::catalogue::{Argument, Documentation};
+use crate::catalogue::{self, Argument, Documentation};
 use crate::exact::Number;
-use crate::program::{Cost, Function, Operand};
+use crate::program::listing::decimal;
+use crate::program::{Cost, Function, Module, Operand, Parameter};
 
-/// A text with its links as Rust writes them.
-fn linked(text: &str) -> String {
-    text.replace(['{', '}'], "`")
+/// A piece of documentation; between two there is an empty line.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Block {
+    /// Running text, line by line, with links.
+    Text(Vec<String>),
+    /// A formula, with links.
+    Formula(&'static str),
+    /// Lines as they stand.
+    Verbatim(Vec<String>),
+    /// Items, with links.
+    List(Vec<String>),
+    /// Names and what they mean, as they stand.
+    Table(Vec<(String, String)>),
 }
 
-fn argument(argument: Argument) -> String {
-    format!("`{}`: {}", argument.name(), linked(argument.meaning()))
+/// What a link leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Link<'a> {
+    /// A function of the module.
+    Function(&'a str),
+    /// An argument of the function.
+    Argument(&'a str),
+    /// A constant of the module.
+    Constant(&'a str),
 }
 
-/// The documentation of a function, line by line; `gravity` is the acceleration of free fall.
-pub(super) fn function(function: &Function, gravity: &[Number; 3]) -> Vec<String> {
+impl Block {
+    pub(super) fn text(line: impl Into<String>) -> Block {
+        Block::Text(vec![line.into()])
+    }
+}
+
+/// A text with its links as a language writes them.
+pub(super) fn linked(text: &str, write: &dyn Fn(Link<'_>) -> String) -> String {
+    let mut result = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, (name, after))) =
+        rest.split_once('{').and_then(|(before, after)| Some((before, after.split_once('}')?)))
+    {
+        let link = if catalogue::named(name).is_some() {
+            Link::Function(name)
+        } else if Argument::ALL.iter().any(|argument| argument.name() == name) {
+            Link::Argument(name)
+        } else {
+            Link::Constant(name)
+        };
+        result += before;
+        result += &write(link);
+        rest = after;
+    }
+    result + rest
+}
+
+/// The documentation of a function.
+pub(super) fn function(function: &Function, module: &Module) -> Vec<Block> {
     let Documentation { title, formula, result, result_with, failure, names_gravity } = function.quantity.documentation;
     let (result, failure) = match function.with_parameters {
         false => (result, failure[0]),
         true => (result_with.unwrap_or(result), failure[1]),
     };
-    let mut lines = vec![format!(" {}", linked(title))];
+    let mut blocks = vec![Block::text(title)];
     if names_gravity {
-        let [x, y, z] = gravity.each_ref().map(Number::to_f64);
-        lines.extend([String::new(), format!(" The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")]);
+        let [x, y, z] = module.gravity.each_ref().map(Number::to_f64);
+        blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
     }
     if function.with_parameters {
-        lines.extend([
-            String::new(),
-            " The parameters are given at run time; what is not among them is as in the description.".into(),
-        ]);
+        blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
     }
-    let blank = || String::new();
-    lines.extend([blank(), " ```text".into(), format!(" {formula}"), " ```".into(), blank()]);
-    lines.extend(function.arguments.iter().map(|&a| format!(" - {}", argument(a))));
-    lines.push(format!(" - Returns {}", linked(result)));
+    blocks.push(Block::Formula(formula));
+    let arguments = function.arguments.iter().map(|a| format!("{{{}}}: {}", a.name(), a.meaning()));
+    blocks.push(Block::List(arguments.chain([format!("Returns {result}")]).collect()));
     if let Some(joint) = turned_joint(function) {
-        lines.extend([
-            blank(),
-            format!(" Inside, the last link has axes whose x axis points to its centre of mass, seen along the joint axis: q{joint} and a constant angle."),
-        ]);
+        blocks.push(Block::text(format!(
+            "Inside, the last link has axes whose x axis points to its centre of mass, seen along the joint axis: q{joint} and a constant angle."
+        )));
     }
-    lines.extend([
-        blank(),
-        format!(" Cost: {}. Derived by {}. Allocates nothing, {failure}.", cost(&Cost::of(function)), function.method),
-    ]);
-    lines
+    let cost = cost(&Cost::of(function));
+    blocks.push(Block::text(format!("Cost: {cost}. Derived by {}. Allocates nothing, {failure}.", function.method)));
+    blocks
+}
+
+/// What a name of a base parameter means.
+pub(super) fn base_note() -> Block {
+    Block::Text(
+        [
+            "A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's, grouped with all",
+            "that cannot be told from it. Beside it stands its value in the standard parameters, of links in their own frames, inertia about",
+            "their origins; SI units; a factor of more than 60 characters as the nearest float.",
+        ]
+        .map(String::from)
+        .to_vec(),
+    )
+}
+
+/// What a name of a base parameter of `base_regressor` means.
+pub(super) fn own_base_note(module: &Module) -> Block {
+    let first = [
+        "A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where",
+        "that comes nearest to the axis before, grouped with all that cannot be told from it. Links of revolute joints have Izz = Ixx + Iyy there.",
+        "Beside it stands its value in the standard parameters, of links in their own frames, inertia about their origins; SI units; a factor",
+        "of more than 60 characters as the nearest float.",
+        "Those that are 0 there, at the values of the description, have no column: for identification take `regressor: base`, which has all.",
+    ];
+    let turned = module.turn.as_ref().map(|turn| {
+        let angle = decimal(turn, module.scalar);
+        [
+            format!("The x axis of the last link stands {angle} rad after the joint variable, about the joint axis; seen along that, the centre"),
+            "of mass of the link, payload included, lies on it: its mcy is 0.".to_string(),
+        ]
+    });
+    Block::Text(first.into_iter().map(String::from).chain(turned.into_iter().flatten()).collect())
+}
+
+/// Parameters and what they mean.
+pub(super) fn meanings(parameters: &[Parameter]) -> Block {
+    Block::Table(parameters.iter().map(|parameter| (parameter.name.clone(), parameter.meaning.clone())).collect())
+}
+
+/// The rows of a table, names padded to one width.
+pub(super) fn rows(table: &[(String, String)]) -> impl Iterator<Item = String> + use<'_> {
+    let width = table.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    table.iter().map(move |(name, meaning)| format!("{name:width$}  {meaning}"))
 }
 
 /// The joint whose variable a function turns by a constant angle, counted from 1.
@@ -61,7 +142,7 @@ fn turned_joint(function: &Function) -> Option<u16> {
 }
 
 /// Operations in words.
-pub(super) fn cost(cost: &Cost) -> String {
+fn cost(cost: &Cost) -> String {
     let count = |n: usize, one: &str, many: &str| match n {
         0 => None,
         1 => Some(format!("1 {one}")),
@@ -80,5 +161,32 @@ pub(super) fn cost(cost: &Cost) -> String {
         "none, the result is constant".into()
     } else {
         parts.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_link_leads_somewhere() {
+        const CONSTANTS: [&str; 4] = ["PARAMETER_NAMES", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS", "TASK"];
+        let shown = |link: Link<'_>| match link {
+            Link::Function(name) => format!("<{name}()>"),
+            Link::Argument(name) => format!("<{name}>"),
+            Link::Constant(name) => {
+                assert!(CONSTANTS.contains(&name), "{name} is no constant of the module");
+                format!("<{name}>")
+            }
+        };
+        for quantity in catalogue::quantities() {
+            let Documentation { title, formula, result, result_with, .. } = quantity.documentation;
+            for text in [title, formula, result].into_iter().chain(result_with) {
+                let text = linked(text, &shown);
+                assert!(!text.contains(['{', '}']), "{text}");
+            }
+        }
+        assert_eq!(linked("{gravity} of {q} and `m[i][j]`", &shown), "<gravity()> of <q> and `m[i][j]`");
+        assert_eq!(linked("a { that is no link", &shown), "a { that is no link");
     }
 }

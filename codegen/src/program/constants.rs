@@ -25,9 +25,9 @@ impl Module {
             }
             constants.insert(function.name(), list);
         }
-        let nominal = self.parameters.iter().map(|(_, value, _)| value.clone());
+        let nominal = self.parameters.iter().map(|parameter| parameter.nominal.clone());
         constants.insert("NOMINAL_PARAMETERS".into(), nominal.collect());
-        let nominal = self.base_set.iter().map(|(_, value, _)| value.clone());
+        let nominal = self.base_set.iter().map(|parameter| parameter.nominal.clone());
         constants.insert("NOMINAL_BASE_PARAMETERS".into(), nominal.collect());
         constants
     }

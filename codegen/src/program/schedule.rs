@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::OnceLock;
 
 use super::optimise::optimise;
-use super::{Cost, Function, Module, Operand, Operation, Output, Selection, Step, Trig};
-use crate::catalogue::{self, Argument, Length, Quantity};
+use super::{Cost, Function, Joint, Module, Operand, Operation, Output, Selection, Step, Trig};
+use crate::catalogue::{self, Absent, Argument, Length, Quantity};
 use crate::derive::derivation::{Derivation, DIVISION};
-use crate::derive::parameters::{nominal, ParameterKind, ParameterVector, View};
+use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::derive::plan::{Pass, Passes};
 use crate::exact::Number;
-use crate::manipulator::{JointKind, Scalar};
+use crate::manipulator::{self, JointKind, Scalar};
 use crate::ring::{ExprId, Node, Pool};
 use crate::Model;
 
@@ -44,38 +44,37 @@ pub fn module(model: &Model, options: &Options) -> Module {
             continue;
         }
         match (quantity.missing)(model, with_parameters) {
-            Some(reason) => absent.push((quantity.function_name(with_parameters), reason)),
+            Some(reason) => absent.push(Absent { function: quantity.function_name(with_parameters), reason }),
             None => wanted.push((quantity, with_parameters)),
         }
     }
     let functions = side_by_side(&wanted, |&(quantity, with_parameters)| function(model, quantity, with_parameters, options));
-    let listed = |vector: &ParameterVector| {
-        vector.entries.iter().map(|e| (e.name.clone(), e.nominal.clone(), e.meaning.clone())).collect::<Vec<_>>()
-    };
     let base = wanted.iter().any(|(quantity, _)| quantity.has_length(Length::BaseParameters));
     let manipulator = &model.manipulator;
     Module {
         name: manipulator.name.clone(),
-        joints: manipulator.joints.iter().map(|j| (j.name.clone(), j.kind == JointKind::Revolute)).collect(),
+        joints: manipulator.joints.iter().map(joint).collect(),
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
-        limits: manipulator
-            .joints
-            .iter()
-            .map(|joint| {
-                let [low, high] = joint.limits.position.clone().map_or([None, None], |p| p.map(Some));
-                [low, high, joint.limits.velocity.clone(), joint.limits.effort.clone()]
-            })
-            .collect(),
         task: manipulator.task_rows(),
-        parameters: listed(&model.parameters),
+        parameters: model.parameters.entries.clone(),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
-        base_set: if base { listed(model.base_parameters()) } else { Vec::new() },
+        base_set: if base { model.base_parameters().entries.clone() } else { Vec::new() },
         functions,
         absent,
         scalar: options.scalar,
         trig: options.trig,
         turn: model.field.turn().map(|turn| turn.angle.clone()),
         batch: options.batch.filter(|&lanes| lanes > 0),
+    }
+}
+
+fn joint(joint: &manipulator::Joint) -> Joint {
+    Joint {
+        name: joint.name.clone(),
+        is_revolute: joint.kind == JointKind::Revolute,
+        position: joint.limits.position.clone().map_or([None, None], |limits| limits.map(Some)),
+        velocity: joint.limits.velocity.clone(),
+        effort: joint.limits.effort.clone(),
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! A matrix that fits a line is a `bmatrix`; of another each entry that is not zero gets a line, broken where it is long.
 
+use crate::catalogue::Absent;
 use std::fmt::Write;
 
 use super::text::zero;
@@ -24,7 +25,7 @@ impl Sheet {
         for shown in &self.quantities {
             write!(text, "\n% {}\n{}", shown.name, shown.latex()).expect("writing to a string");
         }
-        for (name, reason) in &self.absent {
+        for Absent { function: name, reason } in &self.absent {
             write!(text, "\n% {name}: {reason}\n").expect("writing to a string");
         }
         text

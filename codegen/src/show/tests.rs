@@ -1,6 +1,7 @@
 //! What is shown of small arms, in each notation.
 
 use super::*;
+use crate::catalogue::Absent;
 use crate::manipulator;
 use crate::source::Source;
 
@@ -137,7 +138,10 @@ fn a_determinant_that_does_not_exist_says_why() {
     assert!(sheet.quantities.is_empty());
     assert_eq!(
         sheet.absent,
-        [("determinant".into(), "the task has 6 rows and the arm 1 joints: its Jacobian is not square".into())]
+        [Absent {
+            function: "determinant".into(),
+            reason: "the task has 6 rows and the arm 1 joints: its Jacobian is not square".into()
+        }]
     );
     assert_eq!(sheet.text(), "determinant: the task has 6 rows and the arm 1 joints: its Jacobian is not square\n");
 }

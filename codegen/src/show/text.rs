@@ -1,5 +1,6 @@
 //! For a terminal: matrices that fit as tables, others one line per entry that is not zero.
 
+use crate::catalogue::Absent;
 use std::fmt::Write;
 
 use super::{break_sum, Formulas, Sheet, Shown};
@@ -12,7 +13,7 @@ impl Sheet {
     /// The sheet as plain text.
     pub fn text(&self) -> String {
         let mut parts: Vec<String> = self.quantities.iter().map(Shown::text).collect();
-        parts.extend(self.absent.iter().map(|(name, reason)| format!("{name}: {reason}\n")));
+        parts.extend(self.absent.iter().map(|Absent { function, reason }| format!("{function}: {reason}\n")));
         parts.join("\n")
     }
 }

@@ -1,7 +1,7 @@
 //! The emitted text, as it stands in an emitted module.
 
 pub(crate) mod f64 {
-    include!("../../src/emit/sincos/fast_f64.rs");
+    include!("../../src/emit/rust/sincos/fast_f64.rs");
 
     pub(crate) const RANGE: f64 = SIN_COS_RANGE;
 
@@ -21,7 +21,7 @@ pub(crate) mod f64 {
 }
 
 pub(crate) mod f32 {
-    include!("../../src/emit/sincos/fast_f32.rs");
+    include!("../../src/emit/rust/sincos/fast_f32.rs");
 
     pub(crate) const RANGE: f32 = SIN_COS_RANGE;
 

@@ -30,7 +30,7 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
     has_parameters: false,
     documentation: Documentation { failure: ["not finite where J is singular"; 2], ..Documentation::new(
         "Inertia of the end effector along and about the rows of the task, in the base frame.",
-        "B_A(q) = (J B(q)^-1 J')^-1, J the rows `TASK` of the geometric Jacobian (Siciliano et al., Sect. 7.8)",
+        "B_A(q) = (J B(q)^-1 J')^-1, J the rows {TASK} of the geometric Jacobian (Siciliano et al., Sect. 7.8)",
         "`b[row][column]` in the order of {TASK}, symmetric; kg, kg m, kg m². Positive definite where those rows of J are independent; at a singular \
          configuration it is infinite, and its entries are not finite or, by rounding, very large.",
     ) },

@@ -10,9 +10,10 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::rust::{self, argument, usize_literal};
-use super::{documentation, sincos};
+use super::signature::{self, argument, length as length_of, usize_literal};
+use super::{body, documentation, sincos};
 use crate::catalogue::{Length, Part, Quantity, Sizes};
+use crate::emit::documentation::{self as common, Block};
 use crate::program::{Function, Module};
 
 const BLOCKS: &str = include_str!("batch/blocks.rs");
@@ -22,8 +23,8 @@ pub(super) fn modules(module: &Module, lanes: usize) -> TokenStream {
     let width = usize_literal(lanes);
     let of_blocks = module.functions.iter().map(|f| of_block(module, f));
     let of_slices = module.functions.iter().map(|f| of_slices(module, f));
-    let sines = rust::asks_for_sines(module).then(|| sincos::of_lanes(module));
-    let structures = rust::structures(module, true);
+    let sines = super::asks_for_sines(module).then(|| sincos::of_lanes(module));
+    let structures = signature::structures(module, true);
     let blocks = syn::parse_file(BLOCKS).expect("the text to take in is a Rust file").items;
     quote! {
         /// The functions for `LANES` states at a time, side by side: `q[joint][lane]`, `b[row][column][lane]`. The result is written into the last argument.
@@ -58,14 +59,14 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
         let (name, length) = argument(a);
         quote!(#name: &[Lanes; #length])
     });
-    let (used, ignored) = rust::used_and_ignored(function);
-    let (sine_lines, names) = sincos::lines_of_lanes(module, &rust::symbols(function));
-    let inputs = used.iter().map(|&a| {
+    let ignored = signature::ignored(function);
+    let (sine_lines, names) = sincos::lines_of_lanes(module, function);
+    let inputs = function.used_arguments().into_iter().map(|a| {
         let (name, _) = argument(a);
         let entries = (0..a.length().of(&sizes)).map(usize_literal).map(|i| quote!(#name[#i][k]));
         quote!(let #name = [#(#entries),*];)
     });
-    let (lines, entries) = super::body::whole(module, function);
+    let (lines, entries) = body::whole(module, function);
     let places = places(function.quantity, &sizes);
     let kind = block_of(function.quantity);
     quote! {
@@ -85,14 +86,14 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
 }
 
 fn documentation(module: &Module, function: &Function) -> Vec<String> {
-    let mut lines: Vec<String> = documentation::function(function, &module.gravity).into_iter().take(1).collect();
-    lines.extend([String::new(), format!(" As `{}` of one state.", function.name())]);
-    lines
+    let title = common::function(function, module).into_iter().take(1);
+    let blocks: Vec<Block> = title.chain([Block::text(format!("As {{{}}} of one state.", function.name()))]).collect();
+    documentation::lines(&blocks)
 }
 
 /// The type of a block of results.
 fn block_of(quantity: &Quantity) -> TokenStream {
-    rust::of_parts(quantity, |part| rust::part_type(part, &quote!(Lanes)), |name| quote!(#name))
+    signature::of_parts(quantity, |part| signature::part_type(part, &quote!(Lanes)), |name| quote!(#name))
 }
 
 /// Where the entries of a result stand in a block, in the order of the entries.
@@ -103,7 +104,7 @@ fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
         let of_row = |row| inner.iter().map(move |rest| quote!([#row] #rest));
         (0..outer.of(sizes)).map(usize_literal).flat_map(of_row).collect()
     }
-    let parts = quantity.result.iter().zip(rust::accesses(quantity));
+    let parts = quantity.result.iter().zip(signature::accesses(quantity));
     parts.flat_map(|(part, access)| indices(part.lengths, sizes).into_iter().map(move |at| quote!(#access #at))).collect()
 }
 
@@ -111,19 +112,19 @@ fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
 fn zeros(quantity: &Quantity) -> TokenStream {
     let zeros = |part: &Part| {
         part.lengths.iter().rev().fold(quote!([0.0; LANES]), |of, &length| {
-            let length = rust::length(length);
+            let length = length_of(length);
             quote!([#of; #length])
         })
     };
-    rust::of_parts(quantity, zeros, |name| {
-        let value = rust::with_fields(name, quantity, zeros);
+    signature::of_parts(quantity, zeros, |name| {
+        let value = signature::with_fields(name, quantity, zeros);
         quote!(lanes::#value)
     })
 }
 
 /// The lines that hand lane `k` of a block to the result of a state.
 fn scattered(quantity: &Quantity) -> TokenStream {
-    let lines = quantity.result.iter().zip(rust::accesses(quantity)).map(|(part, access)| {
+    let lines = quantity.result.iter().zip(signature::accesses(quantity)).map(|(part, access)| {
         let flat: TokenStream = part.lengths.iter().skip(1).map(|_| quote!(.as_flattened())).collect();
         let flat_mut: TokenStream = part.lengths.iter().skip(1).map(|_| quote!(.as_flattened_mut())).collect();
         // A result that is one array is a reference already.
@@ -145,7 +146,7 @@ fn of_slices(module: &Module, function: &Function) -> TokenStream {
         let (name, length) = argument(a);
         quote!(#name: &[[Real; #length]])
     });
-    let of_one = rust::type_of(function.quantity);
+    let of_one = signature::type_of(function.quantity);
     let (zero, scatter) = (zeros(function.quantity), scattered(function.quantity));
     let lengths = names.iter().skip(1).map(|n| quote!(.min(#n.len())));
     let first = &names[0];

@@ -6,14 +6,12 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::exact::Number;
+use crate::program::listing::decimal;
 use crate::program::Scalar;
 
 /// A literal, with a minus sign in front where the value is negative.
 pub(super) fn literal(value: &Number, scalar: Scalar) -> TokenStream {
-    let text = match scalar {
-        Scalar::F64 => format!("{:?}", value.to_f64()),
-        Scalar::F32 => format!("{:?}", value.to_f32()),
-    };
+    let text = decimal(value, scalar);
     let (negative, digits) = text.strip_prefix('-').map_or((false, text.as_str()), |digits| (true, digits));
     let literal = Literal::from_str(digits).expect("a finite float prints as a literal: the range is checked in validation");
     if negative {

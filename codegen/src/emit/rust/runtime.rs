@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::rust::{accesses, argument, length, of_parts, with_fields};
+use super::signature::{accesses, argument, length, of_parts, with_fields};
 use crate::catalogue::{self, Argument, Length, Part, Quantity};
 use crate::program::Module;
 

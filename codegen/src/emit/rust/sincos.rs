@@ -5,95 +5,44 @@
 //! a processor that reads a vector from numbers that were just written one by one waits for all the writes, longer than the sines take.
 //! One or two angles gain nothing from vectors and are asked for alone.
 
-use std::collections::BTreeMap;
-
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote, ToTokens};
 use syn::Item;
 
 use super::literal::literal;
-use super::rust::usize_literal;
-use crate::program::{Module, Scalar, Trig};
-use crate::ring::{AngleSum, Symbol};
+use super::signature::{self, usize_literal};
+use crate::program::listing::{angles, Angle, Name};
+use crate::program::{Function, Module, Scalar, Trig};
+use crate::ring::Symbol;
 
 const FAST_F64: &str = include_str!("sincos/fast_f64.rs");
 const FAST_F32: &str = include_str!("sincos/fast_f32.rs");
 
-/// The name of a sine or a cosine: `s2`, `c2`, `s2_3` of q2 + q3, `c1_2_less_4` of q1 + q2 - q4, `s7_turned` of q7 and a constant angle.
-pub(super) fn name_of(symbol: Symbol) -> Ident {
-    match symbol {
-        Symbol::Cosine(i) => format_ident!("c{}", i + 1),
-        Symbol::SineOf(sum) => format_ident!("s{}", of_sum(sum)),
-        Symbol::CosineOf(sum) => format_ident!("c{}", of_sum(sum)),
-        other => format_ident!("s{}", other.index() + 1),
-    }
-}
-
-fn of_sum(sum: AngleSum) -> String {
-    let mut text = String::new();
-    for (k, (i, minus)) in sum.terms().enumerate() {
-        let first = minus && (sum.plus.count_ones() as usize == k);
-        text += if first {
-            "_less_"
-        } else if k > 0 {
-            "_"
-        } else {
-            ""
-        };
-        text += &(i + 1).to_string();
-    }
-    if sum.turned {
-        text += "_turned";
-    }
-    text
-}
-
 /// An angle that a function asks for, and the names of its sine and cosine.
 struct Asked {
     angle: Angle,
+    /// The literal that it adds, with its sign.
+    turn: Option<TokenStream>,
     sine: TokenStream,
     cosine: TokenStream,
 }
 
-/// The angles that a function asks for: sums, then single ones. `turn` is what turned sums add.
+/// The angles that a function asks for. `turn` is what turned sums add.
 fn asked(symbols: &[Symbol], turn: Option<&TokenStream>) -> Vec<Asked> {
-    let mut sums: BTreeMap<AngleSum, (bool, bool)> = BTreeMap::new();
-    let mut single: BTreeMap<u16, (bool, bool)> = BTreeMap::new();
-    for &symbol in symbols {
-        match symbol {
-            Symbol::Sine(i) => single.entry(i).or_default().0 = true,
-            Symbol::Cosine(i) => single.entry(i).or_default().1 = true,
-            Symbol::SineOf(sum) => sums.entry(sum).or_default().0 = true,
-            Symbol::CosineOf(sum) => sums.entry(sum).or_default().1 = true,
-            _ => {}
-        }
-    }
-    let name = |symbol: Symbol, used: bool| if used { name_of(symbol).to_token_stream() } else { quote!(_) };
-    let of_sum = |(sum, (sine, cosine)): (AngleSum, (bool, bool))| Asked {
-        angle: Angle { terms: sum.terms().collect(), turn: turn.filter(|_| sum.turned).cloned() },
-        sine: name(Symbol::SineOf(sum), sine),
-        cosine: name(Symbol::CosineOf(sum), cosine),
+    let name = |name: Option<Name>| name.map_or(quote!(_), |name| signature::name(name).into_token_stream());
+    let one = |angle: Angle| Asked {
+        turn: turn.filter(|_| angle.turned).cloned(),
+        sine: name(angle.sine),
+        cosine: name(angle.cosine),
+        angle,
     };
-    let of_one = |(i, (sine, cosine))| Asked {
-        angle: Angle { terms: vec![(i, false)], turn: None },
-        sine: name(Symbol::Sine(i), sine),
-        cosine: name(Symbol::Cosine(i), cosine),
-    };
-    sums.into_iter().map(of_sum).chain(single.into_iter().map(of_one)).collect()
+    angles(symbols).into_iter().map(one).collect()
 }
 
-/// A joint variable, or a sum of some and a constant angle.
-struct Angle {
-    /// The joints, and whether their variables are taken away.
-    terms: Vec<(u16, bool)>,
-    /// A literal, with its sign.
-    turn: Option<TokenStream>,
-}
-
-impl Angle {
+impl Asked {
     /// `+ q[2]`, `- q[3]`, `+ 0.7`: what follows the first joint variable.
     fn more(&self) -> Vec<(bool, TokenStream)> {
-        let joints = self.terms.iter().skip(1).map(|&(i, minus)| (minus, entry(i)));
+        let joints = self.angle.terms.iter().skip(1).map(|&(i, minus)| (minus, entry(i)));
         let turn = self.turn.iter().map(|literal| {
             let mut tokens = literal.clone().into_iter().peekable();
             let minus = tokens.next_if(|token| token.to_string() == "-").is_some();
@@ -113,7 +62,7 @@ impl Angle {
 
     /// `q[1]`
     fn first(&self) -> TokenStream {
-        entry(self.terms[0].0)
+        entry(self.angle.terms[0].0)
     }
 }
 
@@ -128,12 +77,12 @@ fn turn_of(module: &Module) -> Option<TokenStream> {
 }
 
 /// The lines that give `s1`, `c1` and so on for the angles among the symbols of a function.
-pub(super) fn lines(module: &Module, symbols: &[Symbol]) -> Vec<TokenStream> {
-    let asked = asked(symbols, turn_of(module).as_ref());
+pub(super) fn lines(module: &Module, function: &Function) -> Vec<TokenStream> {
+    let asked = asked(&function.symbols(), turn_of(module).as_ref());
     match module.trig {
         Trig::Libm | Trig::Std => {
-            let line = |Asked { angle, sine, cosine }: &Asked| {
-                let angle = angle.text();
+            let line = |asked: &Asked| {
+                let (angle, sine, cosine) = (asked.text(), &asked.sine, &asked.cosine);
                 quote!(let (#sine, #cosine) = sin_cos(#angle);)
             };
             asked.iter().map(line).collect()
@@ -149,8 +98,8 @@ fn together(asked: &[Asked]) -> Vec<TokenStream> {
     for group in asked.chunks(8) {
         let (lanes, function) = match group.len() {
             1 | 2 => {
-                lines.extend(group.iter().map(|Asked { angle, sine, cosine }| {
-                    let angle = angle.text();
+                lines.extend(group.iter().map(|asked| {
+                    let (angle, sine, cosine) = (asked.text(), &asked.sine, &asked.cosine);
                     quote!(let (#sine, #cosine) = sin_cos_one(#angle);)
                 }));
                 continue;
@@ -164,21 +113,20 @@ fn together(asked: &[Asked]) -> Vec<TokenStream> {
             quote!([#(#names),*])
         };
         let (sines, cosines) = (names(|asked| &asked.sine), names(|asked| &asked.cosine));
-        let last = &group[group.len() - 1].angle;
-        let arguments = (0..lanes).map(|lane| group.get(lane).map_or_else(|| last.first(), |asked| asked.angle.text()));
+        let last = &group[group.len() - 1];
+        let arguments = (0..lanes).map(|lane| group.get(lane).map_or_else(|| last.first(), Asked::text));
         lines.push(quote!(let (#sines, #cosines) = #function(#count, #(#arguments),*);));
     }
     lines
 }
 
 /// The lines that give `s1`, `c1` and so on as arrays of lanes, and those in the loop over lanes `k` that give the numbers.
-pub(super) fn lines_of_lanes(module: &Module, symbols: &[Symbol]) -> (Vec<TokenStream>, Vec<TokenStream>) {
+pub(super) fn lines_of_lanes(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let (mut before, mut inside) = (Vec::new(), Vec::new());
     let turn = turn_of(module);
-    for Asked { angle, sine, cosine } in asked(symbols, turn.as_ref()) {
-        let first = angle.first();
-        let lanes = angle.terms.len();
-        let added: Vec<TokenStream> = angle
+    for asked in asked(&function.symbols(), turn.as_ref()) {
+        let (first, lanes) = (asked.first(), asked.angle.terms.len());
+        let added: Vec<TokenStream> = asked
             .more()
             .into_iter()
             .enumerate()
@@ -191,6 +139,7 @@ pub(super) fn lines_of_lanes(module: &Module, symbols: &[Symbol]) -> (Vec<TokenS
                 }
             })
             .collect();
+        let Asked { sine, cosine, .. } = asked;
         if added.is_empty() {
             before.push(quote!(let (#sine, #cosine) = sin_cos_lanes(&#first);));
         } else {
@@ -274,6 +223,7 @@ fn fast(scalar: Scalar, functions: &[Vec<Symbol>]) -> TokenStream {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ring::AngleSum;
 
     #[track_caller]
     fn check(symbols: &[Symbol], expected: &[&str]) {

@@ -1,0 +1,150 @@
+//! The header.
+
+use std::fmt::Write;
+
+use super::{functions, prefix, returns_a_number};
+use crate::catalogue::Length;
+use crate::emit::documentation::{self, linked, rows, Block, Link};
+use crate::emit::origin::Origin;
+use crate::exact::Number;
+use crate::program::listing::decimal;
+use crate::program::{Joint, Module, Scalar};
+
+/// A dimension: the macro of the header that holds it, or the number.
+fn macro_of(prefix: &str, length: Length) -> String {
+    match length {
+        Length::Fixed(value) => value.to_string(),
+        named => format!("{prefix}_{}", named.constant()),
+    }
+}
+
+pub(super) fn header(module: &Module, origin: &Origin) -> String {
+    let name = prefix(module);
+    let upper = name.to_uppercase();
+    let real = match module.scalar {
+        Scalar::F64 => "double",
+        Scalar::F32 => "float",
+    };
+    let mut text = String::new();
+    let link = |link: Link<'_>| match link {
+        Link::Function(function) => format!("`{name}_{function}`"),
+        Link::Argument(argument) => format!("`{argument}`"),
+        Link::Constant(constant) => format!("`{upper}_{constant}`"),
+    };
+    text += &comment(&[Block::Verbatim(origin.head(&[]))], &link);
+    let braces = |entries: Vec<String>| format!("{{{}}}", entries.join(", "));
+    let number = |value: &Option<Number>, infinite: &str| match value {
+        Some(value) => constant(value, module.scalar),
+        None => infinite.into(),
+    };
+    let joint = |joint: &Joint| format!("\"{}\"", joint.name);
+    let limits =
+        |of: fn(&Joint) -> &Option<Number>| braces(module.joints.iter().map(|joint| number(of(joint), "INFINITY")).collect());
+    let position = |joint: &Joint| {
+        let [low, high] = &joint.position;
+        braces(vec![number(low, "-INFINITY"), number(high, "INFINITY")])
+    };
+    let positions = module.joints.iter().map(position);
+    let guard = format!("ARMGEN_{upper}_H");
+    let _ = write!(
+        text,
+        "#ifndef {guard}\n#define {guard}\n\n\
+         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
+         /* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
+         /* Number of joints, of parameters, and of rows of the operational space. */\n\
+         #define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n#define {upper}_TASK_ROWS {}\n\n",
+        module.joints.len(),
+        module.parameters.len(),
+        module.task.len(),
+    );
+    if !module.task.is_empty() {
+        let rows = module.task.iter().map(ToString::to_string).collect();
+        let _ = writeln!(
+            text,
+            "/* Rows of the geometric Jacobian in the operational space: 0 1 2 velocity along, 3 4 5 angular velocity about x y z. */\n\
+             #define {upper}_TASK {}\n",
+            braces(rows)
+        );
+    }
+    text += "/* Initialisers of arrays. Limits are rad or m, per s, N m or N; infinite (math.h) where the description gives none. */\n";
+    let _ = writeln!(text, "#define {upper}_JOINT_NAMES {}", braces(module.joints.iter().map(joint).collect()));
+    let _ = writeln!(text, "#define {upper}_POSITION_LIMITS {}", braces(positions.collect()));
+    let _ = writeln!(text, "#define {upper}_VELOCITY_LIMITS {}", limits(|joint| &joint.velocity));
+    let _ = writeln!(text, "#define {upper}_EFFORT_LIMITS {}", limits(|joint| &joint.effort));
+    if !module.parameters.is_empty() {
+        let names = module.parameters.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
+        let nominal = module.parameters.iter().map(|parameter| constant(&parameter.nominal, module.scalar)).collect();
+        let _ = writeln!(text, "#define {upper}_PARAMETER_NAMES {}", braces(names));
+        let _ = writeln!(text, "#define {upper}_NOMINAL_PARAMETERS {}", braces(nominal));
+        text += "\n";
+        let title = Block::text("The parameters, in the order of the columns of the regressor:");
+        text += &comment(&[title, documentation::meanings(&module.parameters)], &link);
+    }
+    if !module.base_set.is_empty() {
+        let names = module.base_set.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
+        let nominal = module.base_set.iter().map(|parameter| constant(&parameter.nominal, module.scalar)).collect();
+        let _ = writeln!(text, "\n#define {upper}_BASE_PARAMETERS {}", module.base_set.len());
+        let _ = writeln!(text, "#define {upper}_BASE_PARAMETER_NAMES {}", braces(names));
+        let _ = writeln!(text, "#define {upper}_NOMINAL_BASE_PARAMETERS {}", braces(nominal));
+        text += "\n";
+        let title = Block::text(format!("The base parameters, in the order of the columns of {name}_base_regressor:"));
+        let blocks = [title, documentation::own_base_note(module), documentation::meanings(&module.base_set)];
+        text += &comment(&blocks, &link);
+    }
+    text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
+    for function in functions(module) {
+        text += "\n";
+        text += &comment(&documentation::function(function, module), &link);
+        let mut arguments: Vec<String> = function
+            .arguments
+            .iter()
+            .map(|&a| format!("const {name}_real {}[{}]", a.name(), macro_of(&upper, a.length())))
+            .collect();
+        let returned = returns_a_number(function.quantity);
+        if !returned {
+            arguments.extend(function.quantity.result.iter().map(|part| {
+                let shape: String = part.lengths.iter().map(|&length| format!("[{}]", macro_of(&upper, length))).collect();
+                format!("{name}_real {}{shape}", part.name)
+            }));
+        }
+        let returns = if returned { format!("{name}_real") } else { "void".into() };
+        let _ = writeln!(text, "{returns} {name}_{}(\n    {});", function.name(), arguments.join(",\n    "));
+    }
+    text += "\n#ifdef __cplusplus\n}\n#endif\n\n";
+    let _ = writeln!(text, "#endif");
+    text
+}
+
+/// A block comment.
+fn comment(blocks: &[Block], link: &dyn Fn(Link<'_>) -> String) -> String {
+    let mut text = String::new();
+    let mut put = |line: &str| {
+        let line = line.trim_end().replace("*/", "* /");
+        text += if text.is_empty() { "/*" } else { " *" };
+        text += if line.is_empty() { "" } else { " " };
+        text += &line;
+        text += "\n";
+    };
+    for (i, block) in blocks.iter().enumerate() {
+        if i > 0 {
+            put("");
+        }
+        match block {
+            Block::Text(lines) => lines.iter().for_each(|line| put(&linked(line, link))),
+            Block::Formula(formula) => put(&linked(formula, link)),
+            Block::Verbatim(lines) => lines.iter().for_each(|line| put(line)),
+            Block::List(items) => items.iter().for_each(|item| put(&format!("- {}", linked(item, link)))),
+            Block::Table(table) => rows(table).for_each(|row| put(&row)),
+        }
+    }
+    text + " */\n"
+}
+
+/// A number as C reads it back to the same float.
+fn constant(value: &Number, scalar: Scalar) -> String {
+    let digits = decimal(value, scalar);
+    match scalar {
+        Scalar::F64 => digits,
+        Scalar::F32 => format!("{digits}f"),
+    }
+}

@@ -1,0 +1,477 @@
+//! A function as lines to print, in no language: what is written alike in all of them.
+//!
+//! A step that is used once stands inside the step that uses it, as long as the line stays short; every other has a line and a name,
+//! `t1`, `t2` and so on. Brackets stand where the order of operations needs them and nowhere else, so that the same line means the same
+//! operations in the same order wherever `+ - * /` bind as usual.
+//!
+//! A compiler takes more than twice the time for twice the straight line: scheduling, vectorising and the choice of registers look at a
+//! block as a whole. A body of more than [`LONG`] lines therefore is taken apart into several functions, each of which takes the values
+//! that it needs and returns those that later ones need; names stay what they would be in one piece.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Function, Operand, Operation, Scalar, Step};
+use crate::catalogue::Argument;
+use crate::exact::Number;
+use crate::ring::{AngleSum, Symbol};
+
+/// Steps with one use are written inside the step that uses them, up to so many operands in a line.
+const OPERANDS_IN_A_LINE: usize = 6;
+
+/// A body of more lines than this is taken apart.
+const LONG: usize = 4000;
+
+/// Lines in a part.
+const PART: usize = 1500;
+
+/// A name that lines use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Name {
+    /// An argument of the function.
+    Argument(Argument),
+    /// A sine or cosine.
+    Angle(Symbol),
+    /// A line.
+    Step(usize),
+}
+
+/// The right-hand side of a line, or an entry of the result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Expression {
+    /// An entry of an argument, a sine or cosine, or the sign of a rate.
+    Input(Symbol),
+    /// A constant, with its sign.
+    Constant(Number),
+    /// A line before.
+    Step(usize),
+    /// An operation.
+    Operation(Operation, Box<Expression>, Box<Expression>),
+    /// What is inside, negated.
+    Negation(Box<Expression>),
+    /// What is inside, in brackets.
+    Brackets(Box<Expression>),
+}
+
+/// A line: its number and its value.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// The number of its name.
+    pub name: usize,
+    /// What it is.
+    pub value: Expression,
+}
+
+/// A piece of a long body: a function of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Part {
+    /// The arguments of the function that it uses.
+    pub arguments: Vec<Argument>,
+    /// The values that it takes.
+    pub taken: Vec<Name>,
+    /// Its lines.
+    pub lines: Vec<Line>,
+    /// The values that it returns.
+    pub given: Vec<Name>,
+}
+
+/// The lines of a function in one piece.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Listing {
+    /// The lines.
+    pub lines: Vec<Line>,
+    /// The entries of the result, in order.
+    pub entries: Vec<Expression>,
+}
+
+/// An angle whose sine or cosine a function uses: a sum of joint variables, and perhaps the constant angle of the module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Angle {
+    /// The joints, and whether their variables are taken away.
+    pub terms: Vec<(u16, bool)>,
+    /// Whether the constant angle is added.
+    pub turned: bool,
+    /// The name of its sine, where that is used.
+    pub sine: Option<Name>,
+    /// The name of its cosine, where that is used.
+    pub cosine: Option<Name>,
+}
+
+impl Argument {
+    /// The argument that a symbol is an entry of, or a function of an entry of.
+    pub fn of(symbol: Symbol) -> Argument {
+        match symbol {
+            Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) | Symbol::Position(_) => Argument::Q,
+            Symbol::Rate(_) | Symbol::RateSign(_) => Argument::Dq,
+            Symbol::Acceleration(_) => Argument::Ddq,
+            Symbol::ReferenceRate(_) => Argument::Dqr,
+            Symbol::ReferenceAcceleration(_) => Argument::Ddqr,
+            Symbol::Torque(_) => Argument::Tau,
+            Symbol::Parameter(_) => Argument::Pi,
+        }
+    }
+}
+
+impl Name {
+    fn of(symbol: Symbol) -> Name {
+        if symbol.angle().is_some() {
+            Name::Angle(symbol)
+        } else {
+            Name::Argument(Argument::of(symbol))
+        }
+    }
+
+    /// The name: `q`, `t12`; of a sine or cosine `s2`, `c2`, `s2_3` of q2 + q3, `c1_2_less_4` of q1 + q2 - q4, `s7_turned` of q7 and the
+    /// constant angle.
+    pub fn text(self) -> String {
+        match self {
+            Name::Argument(argument) => argument.name().into(),
+            Name::Angle(Symbol::Cosine(i)) => format!("c{}", i + 1),
+            Name::Angle(Symbol::SineOf(sum)) => format!("s{}", of_sum(sum)),
+            Name::Angle(Symbol::CosineOf(sum)) => format!("c{}", of_sum(sum)),
+            Name::Angle(other) => format!("s{}", other.index() + 1),
+            Name::Step(i) => format!("t{i}"),
+        }
+    }
+}
+
+fn of_sum(sum: AngleSum) -> String {
+    let mut text = String::new();
+    for (k, (i, minus)) in sum.terms().enumerate() {
+        let first = minus && (sum.plus.count_ones() as usize == k);
+        text += if first {
+            "_less_"
+        } else if k > 0 {
+            "_"
+        } else {
+            ""
+        };
+        text += &(i + 1).to_string();
+    }
+    if sum.turned {
+        text += "_turned";
+    }
+    text
+}
+
+impl Function {
+    /// The symbols that it uses, in order.
+    pub fn symbols(&self) -> Vec<Symbol> {
+        let operands = self.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(self.outputs.iter().map(|o| &o.operand));
+        let mut symbols: Vec<Symbol> = operands
+            .filter_map(|operand| match operand {
+                Operand::Input(symbol) => Some(*symbol),
+                Operand::Step(_) | Operand::Constant(_) => None,
+            })
+            .collect();
+        symbols.sort_unstable();
+        symbols.dedup();
+        symbols
+    }
+
+    /// The arguments that its lines use, in order: those of which only sines and cosines are used not among them.
+    pub fn used_arguments(&self) -> Vec<Argument> {
+        let symbols = self.symbols();
+        let used = |a: Argument| symbols.iter().any(|&s| Argument::of(s) == a && s.angle().is_none());
+        self.arguments.iter().copied().filter(|&a| used(a)).collect()
+    }
+
+    /// The arguments that nothing of it uses, in order.
+    pub fn unused_arguments(&self) -> Vec<Argument> {
+        let symbols = self.symbols();
+        self.arguments.iter().copied().filter(|&a| !symbols.iter().any(|&s| Argument::of(s) == a)).collect()
+    }
+}
+
+/// The angles whose sines and cosines are among the symbols of a function: sums, then single joint variables.
+pub fn angles(symbols: &[Symbol]) -> Vec<Angle> {
+    let mut sums: BTreeMap<AngleSum, Angle> = BTreeMap::new();
+    let mut single: BTreeMap<u16, Angle> = BTreeMap::new();
+    let of_sum = |sum: AngleSum| Angle { terms: sum.terms().collect(), turned: sum.turned, sine: None, cosine: None };
+    let of_one = |i: u16| Angle { terms: vec![(i, false)], turned: false, sine: None, cosine: None };
+    for &symbol in symbols {
+        let name = Some(Name::Angle(symbol));
+        match symbol {
+            Symbol::Sine(i) => single.entry(i).or_insert_with(|| of_one(i)).sine = name,
+            Symbol::Cosine(i) => single.entry(i).or_insert_with(|| of_one(i)).cosine = name,
+            Symbol::SineOf(sum) => sums.entry(sum).or_insert_with(|| of_sum(sum)).sine = name,
+            Symbol::CosineOf(sum) => sums.entry(sum).or_insert_with(|| of_sum(sum)).cosine = name,
+            _ => {}
+        }
+    }
+    sums.into_values().chain(single.into_values()).collect()
+}
+
+/// The shortest decimal that reads back as the float nearest to a number, with its sign.
+pub fn decimal(value: &Number, scalar: Scalar) -> String {
+    match scalar {
+        Scalar::F64 => format!("{:?}", value.to_f64()),
+        Scalar::F32 => format!("{:?}", value.to_f32()),
+    }
+}
+
+impl Expression {
+    /// The expression as an operand of an operation, in brackets where it needs them.
+    fn inside(self, outer: Operation, right: bool) -> Expression {
+        use Operation::{Add, Divide, Multiply, Subtract};
+        let bare = match (&self, outer) {
+            (Expression::Operation(Add | Subtract, ..), Multiply | Divide) => false,
+            (Expression::Operation(Multiply | Divide, ..), Add | Subtract) => true,
+            (Expression::Operation(..), _) => !right,
+            _ => true,
+        };
+        if bare {
+            self
+        } else {
+            Expression::Brackets(Box::new(self))
+        }
+    }
+
+    /// Whether it begins with a sign: with a constant below 0.
+    fn is_signed(&self) -> bool {
+        match self {
+            Expression::Constant(value) => value.to_f64().is_sign_negative(),
+            Expression::Operation(_, left, _) => left.is_signed(),
+            Expression::Negation(_) => true,
+            Expression::Input(_) | Expression::Step(_) | Expression::Brackets(_) => false,
+        }
+    }
+
+    fn negated(self) -> Expression {
+        // `--x` is a decrement in some languages, and compilers of others warn of it.
+        let bare = !matches!(self, Expression::Operation(Operation::Add | Operation::Subtract, ..)) && !self.is_signed();
+        Expression::Negation(Box::new(if bare { self } else { Expression::Brackets(Box::new(self)) }))
+    }
+
+    fn collect_names(&self, names: &mut BTreeSet<Name>) {
+        match self {
+            Expression::Input(symbol) => {
+                names.insert(Name::of(*symbol));
+            }
+            Expression::Step(i) => {
+                names.insert(Name::Step(*i));
+            }
+            Expression::Constant(_) => {}
+            Expression::Operation(_, left, right) => {
+                left.collect_names(names);
+                right.collect_names(names);
+            }
+            Expression::Negation(inner) | Expression::Brackets(inner) => inner.collect_names(names),
+        }
+    }
+}
+
+fn names<'a>(expressions: impl Iterator<Item = &'a Expression>) -> BTreeSet<Name> {
+    let mut names = BTreeSet::new();
+    expressions.for_each(|expression| expression.collect_names(&mut names));
+    names
+}
+
+/// An expression in the making, and how many operands it has.
+#[derive(Clone)]
+struct Made {
+    expression: Expression,
+    operands: usize,
+}
+
+impl Listing {
+    /// The lines of a function.
+    pub fn of(function: &Function) -> Listing {
+        let mut uses = vec![0usize; function.steps.len()];
+        let operands = function.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(function.outputs.iter().map(|o| &o.operand));
+        for operand in operands {
+            if let Operand::Step(i) = operand {
+                uses[*i as usize] += 1;
+            }
+        }
+        let mut lines = Vec::new();
+        let mut made: Vec<Made> = Vec::with_capacity(function.steps.len());
+        let operand = |made: &[Made], operand: &Operand| match operand {
+            Operand::Step(i) => made[*i as usize].clone(),
+            Operand::Input(symbol) => Made { expression: Expression::Input(*symbol), operands: 1 },
+            Operand::Constant(value) => Made { expression: Expression::Constant(value.clone()), operands: 1 },
+        };
+        for (Step { operation, left, right }, uses) in function.steps.iter().zip(uses) {
+            let (left, right) = (operand(&made, left), operand(&made, right));
+            let operands = left.operands + right.operands;
+            let (left, right) = (left.expression.inside(*operation, false), right.expression.inside(*operation, true));
+            let expression = Expression::Operation(*operation, Box::new(left), Box::new(right));
+            made.push(if uses == 1 && operands <= OPERANDS_IN_A_LINE {
+                Made { expression, operands }
+            } else {
+                let name = lines.len() + 1;
+                lines.push(Line { name, value: expression });
+                Made { expression: Expression::Step(name), operands: 1 }
+            });
+        }
+        let entries = function.outputs.iter().map(|output| {
+            let value = operand(&made, &output.operand).expression;
+            if output.negated {
+                value.negated()
+            } else {
+                value
+            }
+        });
+        let entries = entries.collect();
+        Listing { lines, entries }
+    }
+
+    /// The lines of a long body in parts; none where it is not long.
+    pub fn parts(&self) -> Vec<Part> {
+        if self.lines.len() <= LONG {
+            return Vec::new();
+        }
+        // Where each name is used last: beyond the last part for what the result needs.
+        let values = |chunk: &[Line]| names(chunk.iter().map(|line| &line.value));
+        let mut last_use: BTreeMap<Name, usize> = BTreeMap::new();
+        for (part, chunk) in self.lines.chunks(PART).enumerate() {
+            last_use.extend(values(chunk).into_iter().map(|name| (name, part)));
+        }
+        last_use.extend(names(self.entries.iter()).into_iter().map(|name| (name, usize::MAX)));
+        let part = |(part, chunk): (usize, &[Line])| {
+            let own: BTreeSet<Name> = chunk.iter().map(|line| Name::Step(line.name)).collect();
+            let needed: BTreeSet<Name> = values(chunk).difference(&own).copied().collect();
+            let given = own.iter().filter(|name| last_use.get(name).is_some_and(|&last| last > part)).copied().collect();
+            let argument = |name: &Name| match name {
+                Name::Argument(argument) => Some(*argument),
+                Name::Angle(_) | Name::Step(_) => None,
+            };
+            Part {
+                arguments: needed.iter().filter_map(argument).collect(),
+                taken: needed.iter().filter(|name| argument(name).is_none()).copied().collect(),
+                lines: chunk.to_vec(),
+                given,
+            }
+        };
+        self.lines.chunks(PART).enumerate().map(part).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalogue::quantities::gravity::GRAVITY;
+    use crate::program::Output;
+
+    /// An expression as most languages write it.
+    fn text(expression: &Expression) -> String {
+        match expression {
+            Expression::Input(symbol) => format!("{}{}", Argument::of(*symbol).name(), symbol.index() + 1),
+            Expression::Constant(value) => decimal(value, Scalar::F64),
+            Expression::Step(i) => Name::Step(*i).text(),
+            Expression::Operation(operation, left, right) => {
+                let sign = match operation {
+                    Operation::Add => '+',
+                    Operation::Subtract => '-',
+                    Operation::Multiply => '*',
+                    Operation::Divide => '/',
+                };
+                format!("{} {sign} {}", text(left), text(right))
+            }
+            Expression::Negation(inner) => format!("-{}", text(inner)),
+            Expression::Brackets(inner) => format!("({})", text(inner)),
+        }
+    }
+
+    fn rate(i: u16) -> Operand {
+        Operand::Input(Symbol::Rate(i))
+    }
+
+    /// The lines and entries of steps and outputs.
+    #[track_caller]
+    fn check(steps: &[(Operand, Operation, Operand)], outputs: &[(Operand, bool)], lines: &[&str], entries: &[&str]) {
+        let step = |(left, operation, right): &(Operand, Operation, Operand)| Step {
+            operation: *operation,
+            left: left.clone(),
+            right: right.clone(),
+        };
+        let function = Function {
+            quantity: &GRAVITY,
+            with_parameters: false,
+            arguments: vec![Argument::Dq],
+            steps: steps.iter().map(step).collect(),
+            outputs: outputs.iter().map(|(operand, negated)| Output { operand: operand.clone(), negated: *negated }).collect(),
+            method: "hand",
+        };
+        let listing = Listing::of(&function);
+        let found: Vec<String> = listing.lines.iter().map(|line| format!("t{} = {}", line.name, text(&line.value))).collect();
+        assert_eq!(found, lines);
+        assert_eq!(listing.entries.iter().map(text).collect::<Vec<_>>(), entries);
+    }
+
+    #[test]
+    fn brackets_stand_where_the_order_of_operations_needs_them() {
+        use Operation::{Add, Divide, Multiply, Subtract};
+        let sum = (rate(0), Add, rate(1));
+        for (outer, right, expected) in [
+            (Add, false, "dq1 + dq2 + dq3"),
+            (Add, true, "dq3 + (dq1 + dq2)"),
+            (Subtract, false, "dq1 + dq2 - dq3"),
+            (Subtract, true, "dq3 - (dq1 + dq2)"),
+            (Multiply, false, "(dq1 + dq2) * dq3"),
+            (Divide, true, "dq3 / (dq1 + dq2)"),
+        ] {
+            let (inner, other) = (Operand::Step(0), rate(2));
+            let (left, right) = if right { (other, inner) } else { (inner, other) };
+            check(&[sum.clone(), (left, outer, right)], &[(Operand::Step(1), false)], &[], &[expected]);
+        }
+        let product = (rate(0), Multiply, rate(1));
+        for (outer, right, expected) in [
+            (Subtract, true, "dq3 - dq1 * dq2"),
+            (Multiply, false, "dq1 * dq2 * dq3"),
+            (Multiply, true, "dq3 * (dq1 * dq2)"),
+            (Divide, true, "dq3 / (dq1 * dq2)"),
+        ] {
+            let (inner, other) = (Operand::Step(0), rate(2));
+            let (left, right) = if right { (other, inner) } else { (inner, other) };
+            check(&[product.clone(), (left, outer, right)], &[(Operand::Step(1), false)], &[], &[expected]);
+        }
+    }
+
+    #[test]
+    fn what_is_used_twice_has_a_line_and_no_sign_follows_a_sign() {
+        use Operation::{Add, Multiply};
+        let minus_two = || Operand::Constant(Number::from(-2));
+        check(
+            &[(rate(0), Multiply, rate(0)), (Operand::Step(0), Add, rate(1)), (minus_two(), Multiply, Operand::Step(0))],
+            &[(Operand::Step(0), true), (Operand::Step(1), true), (Operand::Step(2), true), (minus_two(), false)],
+            &["t1 = dq1 * dq1"],
+            &["-t1", "-(t1 + dq2)", "-(-2.0 * t1)", "-2.0"],
+        );
+    }
+
+    #[test]
+    fn a_long_body_hands_on_what_later_parts_need() {
+        use Operation::Add;
+        // Each step is used twice, and the first by the result.
+        let count = 2 * PART + LONG;
+        let mut steps = vec![(rate(0), Add, rate(1))];
+        for i in 1..count as u32 {
+            steps.push((Operand::Step(i - 1), Add, Operand::Step(i - 1)));
+        }
+        let step = |(left, operation, right): &(Operand, Operation, Operand)| Step {
+            operation: *operation,
+            left: left.clone(),
+            right: right.clone(),
+        };
+        let outputs = [0, count as u32 - 1].map(|i| Output { operand: Operand::Step(i), negated: false });
+        let function = Function {
+            quantity: &GRAVITY,
+            with_parameters: false,
+            arguments: vec![Argument::Dq],
+            steps: steps.iter().map(step).collect(),
+            outputs: outputs.to_vec(),
+            method: "hand",
+        };
+        let listing = Listing::of(&function);
+        let parts = listing.parts();
+        assert_eq!(parts.iter().map(|part| part.lines.len()).sum::<usize>(), listing.lines.len());
+        assert_eq!((parts[0].arguments.as_slice(), parts[0].taken.as_slice()), (&[Argument::Dq][..], &[][..]));
+        assert_eq!(parts[0].given, [Name::Step(1), Name::Step(PART)]);
+        for (before, part) in parts.iter().zip(&parts[1..]) {
+            assert!(part.arguments.is_empty());
+            assert_eq!(part.taken, [Name::Step(before.lines[PART - 1].name)]);
+        }
+        let last = parts.last().expect("parts");
+        assert_eq!(last.given, [Name::Step(last.lines[last.lines.len() - 1].name)]);
+    }
+}
