@@ -73,12 +73,14 @@ impl Robot {
     }
 
     /// Leaves a pass out, of those that make the functions cheaper; may be called for several.
+    #[must_use]
     pub fn without(mut self, pass: Pass) -> Robot {
         self.options.without.insert(pass);
         self
     }
 
     /// Adds the modules `lanes` and `batch`: the functions for many states, so many at a time. 8 serve f64 on every present processor, 16 serve f32.
+    #[must_use]
     pub fn batch(mut self, lanes: usize) -> Robot {
         self.options.batch = Some(lanes);
         self
@@ -86,6 +88,7 @@ impl Robot {
 
     /// The functions of the module by their names, `["gravity", "inertia_matrix_with"]`, say; all unless some are chosen. A name that no
     /// function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
+    #[must_use]
     pub fn functions<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Robot {
         self.functions = names.into_iter().map(Into::into).collect();
         self
