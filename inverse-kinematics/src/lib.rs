@@ -29,17 +29,19 @@ macro_rules! blocks {
         include!("blocks/three_prismatic.rs");
         include!("blocks/closure.rs");
         include!("blocks/determinant.rs");
+        include!("blocks/arrangement.rs");
+        include!("blocks/general.rs");
     };
 }
 
 /// The blocks in double precision.
-#[allow(clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
+#[allow(clippy::approx_constant, clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
 pub mod f64 {
     blocks!("f64");
 }
 
 /// The blocks in single precision.
-#[allow(clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
+#[allow(clippy::approx_constant, clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
 pub mod f32 {
     blocks!("f32");
 }

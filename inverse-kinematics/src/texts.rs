@@ -40,6 +40,9 @@ texts! {
     "spherical_triple" needs ["frame", "three_turns", "branches"],
     "parallel_turns" needs ["frame", "turn", "branches"],
     "three_prismatic" needs ["frame", "three_turns", "branches"],
-    "closure" needs ["frame"],
+    "closure" needs ["frame", "branches"],
     "determinant" needs ["closure", "circle_roots", "branches"],
+    "arrangement" needs ["frame", "branches"],
+    "general" needs ["determinant", "arrangement"],
+    "solutions" needs ["frame", "branches"],
 }

@@ -71,18 +71,18 @@ in_both_scalars! {
             let found = solve(&links);
             tally.most = tally.most.max(found.count);
             for branch in found.found() {
-                assert!(branch.free == 0, "{branch:?}");
+                assert!(branch.free == 0 || SINGLE, "{branch:?}");
                 if !branch.double {
                     tally.worst = tally.worst.max(defect(&around(&links, &prismatic, &branch.joints), &IDENTITY));
                 }
             }
-            if found.near || found.found().iter().any(|b| b.double) {
+            if found.near || found.found().iter().any(|b| b.double || b.free != 0) {
                 tally.doubtful += 1;
                 continue;
             }
             let near = 1e4 * UNIT_ROUNDOFF.sqrt();
             tally.lost += usize::from(!found.found().iter().any(|b| apart(&b.joints, &joints) < near));
-            tally.odd += usize::from(found.count % 2);
+            tally.odd += found.count % 2;
         }
         println!("lost {} odd {} doubtful {} most {} worst {:e}", tally.lost, tally.odd, tally.doubtful, tally.most, tally.worst);
         tally

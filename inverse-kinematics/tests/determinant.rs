@@ -110,6 +110,24 @@ in_both_scalars! {
         }
     }
 
+    /// A Puma with joint 1 suppressed: postures of elbow and wrist share q1, so every root is a multiple one and its kernel not one-dimensional; two
+    /// members of each of the two kernels are found.
+    #[test]
+    fn solutions_that_share_the_suppressed_joint() {
+        let quarter = std::f64::consts::FRAC_PI_2;
+        let rows = [(0.0, 0.67, 0.0, quarter), (0.0, 0.0, 0.43, 0.0), (0.0, 0.15, 0.02, -quarter), (0.0, 0.43, 0.0, quarter), (0.0, 0.0, 0.0, -quarter), (0.0, 0.0, 0.0, 0.0)];
+        let arm = Arm::standard(&rows, &[]);
+        let random = &mut Random(5);
+        let mut both = 0;
+        for _ in 0..100 {
+            let t = arm.at(&arm.posture(random));
+            let (_, result) = solve(&arm, &t, 4, false);
+            assert!(!result.complete);
+            both += usize::from(result.found.count >= 4);
+        }
+        assert!(both >= if SINGLE { 20 } else { 98 }, "{both}");
+    }
+
     /// Two solutions that meet: found as one and double; 1e-4 to either side, two or none, and neither double.
     #[test]
     fn folds() {

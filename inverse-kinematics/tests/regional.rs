@@ -129,6 +129,11 @@ in_both_scalars! {
     #[test]
     fn slide_across() {
         assert!(check(5, [P, R, R], regional_slide_across, |r| (square(r), any(r)), 4) < CLOSED);
+        fn turned(r: &mut Random) -> Frame {
+            let f = compose(&square(r), &joint_then(false, point(r.angle()), &IDENTITY));
+            joint_then(false, point(r.angle()), &f)
+        }
+        assert!(check(13, [P, R, R], regional_slide_across, |r| (turned(r), any(r)), 4) < CLOSED);
     }
 
     #[test]

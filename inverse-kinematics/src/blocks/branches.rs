@@ -26,6 +26,8 @@ pub struct Branches<const J: usize, const N: usize> {
     pub miss: Real,
     /// A change by rounding could add or take away solutions that are not in `all`.
     pub near: bool,
+    /// There are solutions with joints that can move while everything stays met, beyond those in `all`.
+    pub continuum: bool,
 }
 
 impl<const J: usize, const N: usize> Branches<J, N> {
@@ -33,7 +35,7 @@ impl<const J: usize, const N: usize> Branches<J, N> {
     #[inline]
     pub fn new() -> Self {
         let none = Branch { joints: [[1.0, 0.0]; J], signs: 0, double: false, error: 0.0, free: 0 };
-        Branches { count: 0, all: [none; N], miss: Real::INFINITY, near: false }
+        Branches { count: 0, all: [none; N], miss: Real::INFINITY, near: false, continuum: false }
     }
 
     /// Adds a solution, if there is room.

@@ -146,6 +146,26 @@ impl Loop<'_> {
     }
 }
 
+/// Closes every solution of a loop to the last digits: for constructions that lose some on the way (block R with D = 2). Solutions with a
+/// joint that is free stay as they are. One that cannot be closed is none, and says `near`: it has been found for rounding alone.
+pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
+    let mut kept = Branches { all: found.all, ..Branches::new() };
+    (kept.miss, kept.near, kept.continuum) = (found.miss, found.near, found.continuum);
+    for branch in found.found() {
+        let mut branch = *branch;
+        if branch.free == 0 {
+            let closed = closing.close(&branch.joints, if branch.double { 12 } else { 4 });
+            if closed.residual > if branch.double { 64.0 } else { 1.0 } * CLOSED * closing.length {
+                kept.near = true;
+                continue;
+            }
+            branch.joints = closed.joints;
+        }
+        kept.add(branch);
+    }
+    *found = kept;
+}
+
 /// The turn of a frame: sine times axis for less than a right angle, beyond that angle times axis; about x for a half turn.
 fn turn_vector_of(f: &Frame) -> Vector {
     let v = [0.5 * (f[2][1] - f[1][2]), 0.5 * (f[0][2] - f[2][0]), 0.5 * (f[1][0] - f[0][1])];

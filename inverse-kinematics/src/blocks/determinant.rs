@@ -521,6 +521,8 @@ pub struct Arranged {
 /// - `links`: L1 to L6, one of them with the pose. `length`: the arm's own, > 0; the block works in units of it.
 /// - `miss`, without solutions: the residual of a least-squares posture (the links' unit, angles times `length`).
 /// - `complete` is false where the count of solutions is not that of the roots, or something is near: another arrangement may know more.
+/// - A determinant that vanishes at this pose, all angles q3: `free`; the joints can move while the loop stays closed, or the arrangement is one
+///   that does not serve here. No solutions then.
 /// - Arrangements exist for which the determinant vanishes for all poses, or has double roots at all poses: the choice is made when the arm is known.
 pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: Real) -> Arranged {
     let over = 1.0 / length;
@@ -543,7 +545,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     let mut result = Arranged { found: Branches::new(), roots: 0, noise: 1.0, complete: false, free: false };
     // Each of 12 pivots of equations of norm 1 is at most that; below u^3 nothing is left.
     if !(largest > UNIT_ROUNDOFF * UNIT_ROUNDOFF * UNIT_ROUNDOFF) {
-        result.free = largest == largest;
+        result.free = largest <= UNIT_ROUNDOFF;
         return result;
     }
     let (mut a, mut b) = ([0.0; 9], [0.0; 9]);
@@ -569,7 +571,10 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         value * over
     });
     result.roots = roots.count;
-    result.free = roots.free;
+    result.free = roots.free || noise > NOTHING_BUT_NOISE;
+    if result.free {
+        return result;
+    }
     let closing = Loop { links: &unit, prismatic, length: 1.0 };
     let mut doubtful = roots.near || !(noise <= MOST_NOISE);
     let (mut distinct, mut spurious) = (0, 0);
@@ -608,7 +613,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         }
     }
     result.found.near = roots.near;
-    if result.found.count == 0 && !result.free {
+    if result.found.count == 0 {
         // The angle at which the determinant is least.
         let (mut place, mut least) = (0, Real::INFINITY);
         for (j, sample) in samples.iter().enumerate() {
@@ -630,7 +635,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         }
     }
     result.found.miss *= length;
-    result.complete = !doubtful && !result.free;
+    result.complete = !doubtful;
     result
 }
 
@@ -640,6 +645,9 @@ const MOST_NOISE: Real = 1e7 * UNIT_ROUNDOFF;
 /// A root that leaves an equation of norm 1 unmet by more than this is none of the arm: u^(1/4), since a root near a double one is right to
 /// sqrt(u), and its kernel loses another half of that.
 const UNMET: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-4 } else { 1.5e-2 };
+
+/// As much says that the determinant is nothing but rounding: it vanishes.
+const NOTHING_BUT_NOISE: Real = 0.03;
 
 /// Two solutions whose joints differ by less than this are one: 8e-8 in double precision.
 const SAME: Real = 8.0;

@@ -93,6 +93,27 @@ fn one_circle_first(
     miss
 }
 
+/// Where qc is free: an angle that leaves the elbow within reach, (1, 0) if that does. The squared distance that two links have to reach is
+/// k0 + kc c + ks s; the middle of what of it is within their reach is aimed at.
+fn within_reach(bracket: &impl Fn([Real; 2]) -> Frame, l1: Real, l2: Real) -> [Real; 2] {
+    let square = |q: [Real; 2]| {
+        let m = bracket(q);
+        m[0][3] * m[0][3] + m[1][3] * m[1][3]
+    };
+    let (x, y, z) = (square([1.0, 0.0]), square([-1.0, 0.0]), square([0.0, 1.0]));
+    let (inner, outer) = ((l1 - l2) * (l1 - l2), (l1 + l2) * (l1 + l2));
+    if inner < x && x < outer {
+        return [1.0, 0.0];
+    }
+    let (k0, kc) = (0.5 * (x + y), 0.5 * (x - y));
+    let ks = z - k0;
+    let r = length(kc, ks);
+    let aim = 0.5 * (inner.max(k0 - r) + outer.min(k0 + r));
+    let line = line_and_circle(kc, ks, aim - k0, 0.0, ROUNDING * (k0 + outer));
+    let [first, _] = line.points;
+    first
+}
+
 /// Block 7, three parallel axes: Ja La (J1 L1 J2 L2 J3) L3 Jb Lb Jc Lc = 1 with L1, L2 = Tz(d) Tx(a) Rx(0 or pi).
 ///
 /// The bracket is a displacement M of the plane normal to its axes: its third row is (0, 0, ±1, h), constant. M L3 Jb Lb = La⁻¹ Ja⁻¹ Lc⁻¹ Jc⁻¹,
@@ -102,7 +123,7 @@ fn one_circle_first(
 ///
 /// - `links`: La, L1, L2, L3, Lb, Lc; frames of any kind but for L1, L2. The result's joints are in the order a, 1, 2, 3, b, c.
 /// - At most 8 solutions; `signs`: two bits for qa and qb (bit 0 and bit 1 where each is block 1; else the number of the root), bit 2 elbow.
-/// - Axis c parallel to the three: qc free. Elbow folded onto the shoulder: q1 free.
+/// - Axis c parallel to the three: qc free; one of its angles that leave the elbow within reach is given, if there is any. Elbow folded onto the shoulder: q1 free.
 pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
     let [la, l1, l2, l3, lb, lc] = links;
     let mut found = Branches::new();
@@ -134,9 +155,11 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
         let before = [dot(n, column(&ic, 0)), dot(n, column(&ic, 1))];
         let qc = turn(before, [dot(k, column(lb, 0)), dot(k, column(lb, 1))], ROUNDING);
         // M = (L3 Jb Lb Jc Lc Ja La)⁻¹
-        let chain = joint_then(false, qc.value, &compose(lc, &joint_then(false, qa, la)));
-        let m = inverse(&compose(l3, &joint_then(false, qb, &compose(lb, &chain))));
+        let (first, last) = (compose(l3, &joint_then(false, qb, lb)), compose(lc, &joint_then(false, qa, la)));
+        let bracket = |qc: [Real; 2]| inverse(&compose(&first, &joint_then(false, qc, &last)));
         let (a1, a2) = (l1[0][3], l2[0][3]);
+        let qc = if qc.free { Turn { value: within_reach(&bracket, a1.abs(), a2.abs()), ..qc } } else { qc };
+        let m = bracket(qc.value);
         let (s1, s2) = (if a1 < 0.0 { -1.0 } else { 1.0 }, if a2 < 0.0 { -1.0 } else { 1.0 });
         let arm = two_links(a1.abs(), a2.abs(), [m[0][3], m[1][3]], noise, solution.error * lengths);
         found.missed(arm.miss);

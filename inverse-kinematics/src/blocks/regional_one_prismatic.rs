@@ -20,20 +20,24 @@ pub fn regional_slide_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branc
     found
 }
 
-/// Block 6, first joint prismatic, normal to axis 2: p = Tz(q1) A Rz(q2) B Rz(q3) w with A = Tz(d) Tx(a) Rx(±90 degrees).
+/// Block 6, first joint prismatic, normal to axis 2: p = Tz(q1) A Rz(q2) B Rz(q3) w with the third column e of RA normal to z.
 ///
-/// Axis 2 is the y axis: p_y is the height of B Rz(q3) w along it, block 1 in q3; p_x = a + X is block 1 in q2; q1 is what is left. At most
-/// 4 solutions; `signs`: bit 0 q3, bit 1 q2. The point on axis 2: q2 free.
+/// Of the horizontal components that along e is the height of B Rz(q3) w on axis 2, block 1 in q3; that across e is block 1 in q2; q1 is what is
+/// left. At most 4 solutions; `signs`: bit 0 q3, bit 1 q2. The point on axis 2: q2 free.
 pub fn regional_slide_across(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {
     let mut found = Branches::new();
     let reach = reach(a, b, w, p);
     let noise = ROUNDING * reach;
     let g = point_of_third(b, w);
-    let line = line_and_circle(g[2].kc, g[2].ks, a[1][2] * (p[1] - a[1][3]) - g[2].k0, noise, 0.0);
+    let (u, v) = (p[0] - a[0][3], p[1] - a[1][3]);
+    // The row of RA across e, which has no third component.
+    let k = [0, 1].map(|j: usize| a[0][2] * a[1][j] - a[1][2] * a[0][j]);
+    let line = line_and_circle(g[2].kc, g[2].ks, a[0][2] * u + a[1][2] * v - g[2].k0, noise, 0.0);
     found.missed(line.miss);
     for (first, q3) in points(&line) {
         let [x, y, z] = [g[0].at(q3[0], q3[1]), g[1].at(q3[0], q3[1]), g[2].at(q3[0], q3[1])];
-        let across = line_and_circle(x, -y, p[0] - a[0][3], noise, line.error * reach);
+        let height = a[0][2] * v - a[1][2] * u;
+        let across = line_and_circle(k[0] * x + k[1] * y, k[1] * x - k[0] * y, height, noise, line.error * reach);
         found.missed(across.miss);
         for (second, q2) in points(&across) {
             let reached = transform(a, turn_vector(q2[0], q2[1], [x, y, z]));

@@ -20,6 +20,12 @@ pub fn sqrt(x: Real) -> Real {
     libm::sqrt(x)
 }
 
+/// The largest integer that is at most x.
+#[inline]
+pub fn floor(x: Real) -> Real {
+    libm::floor(x)
+}
+
 /// The angle of the point (c, s) in [-pi, pi], rad.
 #[inline]
 pub fn atan2(s: Real, c: Real) -> Real {

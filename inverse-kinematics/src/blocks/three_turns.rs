@@ -25,7 +25,8 @@ pub struct ThreeTurns {
 /// where t1 and t3 are badly determined.
 ///
 /// - `r`: its rotation is R. `alpha`, `beta`: (cos, sin). `noise`: how far rounding may have moved R's entries. `doubt`: how far they may be
-///   off besides, by errors of angles that they were computed from; what misses by no more is met at the end of the range.
+///   off besides, by errors of angles that they were computed from; what misses by no more is met at the end of the range, and axes that
+///   are parallel to no more are `free`, with t1 and t3 as they come out.
 /// - h <= noise with axes that can be parallel: `free`. D1 or D2 within its noise of 0: `double`. Negative: none, `miss` = -D.
 #[inline]
 pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, doubt: Real) -> ThreeTurns {
@@ -59,9 +60,13 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
         ((ca * cb - z) * over, sqrt(d1 * d2) * over.abs())
     };
     // At the end of the range with axes 1 and 3 parallel.
-    found.free = double && h <= noise;
+    let parallel = double && h <= noise;
+    // So nearly that errors of other angles decide: t1 and t3 are given as they come out, so that R is met.
+    let can_be = |c: Real, s: Real| s.abs() <= noise && c * z > 0.0;
+    let nearly = h <= noise + doubt && (can_be(ca * cb + sa * sb, sa * cb - ca * sb) || can_be(ca * cb - sa * sb, sa * cb + ca * sb));
+    found.free = parallel || nearly;
     found.double = double && !found.free;
-    found.count = if double { 1 } else { 2 };
+    found.count = if double || found.free { 1 } else { 2 };
     let mut sign = 1.0;
     for turns in &mut found.turns {
         let s2 = sign * s2;
@@ -70,7 +75,7 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
         let first = [c2, ca * s2, sa * s2];
         let second = [-s2 * cb, ca * c2 * cb - sa * sb, sa * c2 * cb + ca * sb];
         let third = [s2 * sb, -ca * c2 * sb - sa * cb];
-        let t1 = if found.free { [1.0, 0.0] } else { turn(third, [r[0][2], r[1][2]], 0.0).value };
+        let t1 = if parallel { [1.0, 0.0] } else { turn(third, [r[0][2], r[1][2]], 0.0).value };
         let x = turn_vector(t1[0], -t1[1], column(r, 0));
         let (c3, s3) = (dot(first, x), dot(second, x));
         let over = 1.0 / length(c3, s3);

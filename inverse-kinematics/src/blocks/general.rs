@@ -1,0 +1,50 @@
+// Six joints of a general arm: two arrangements of the determinant on a circle.
+
+/// All solutions of a general arm, in the arm's order: [`determinant_on_circle`] in the first arrangement; where that is not certain to be complete
+/// also in the second, and both results are joined.
+///
+/// - `near`: neither arrangement is complete, or they contradict each other: solutions may be missing.
+/// - `continuum`: the determinant vanishes in both.
+pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) -> Branches<6, 16> {
+    let [first, second] = arrangements;
+    let mut found = Branches::new();
+    let one = determinant_on_circle(&first.links_at(t), first.prismatic, length);
+    for branch in one.found.found() {
+        join(&mut found, &first.of_arm(branch), length);
+    }
+    found.miss = one.found.miss;
+    if one.complete {
+        return found;
+    }
+    let other = determinant_on_circle(&second.links_at(t), second.prismatic, length);
+    for branch in other.found.found() {
+        join(&mut found, &second.of_arm(branch), length);
+    }
+    found.miss = found.miss.min(other.found.miss);
+    found.continuum = one.free && other.free;
+    // Either the second is sure of itself and knows all that the first has found, or both found the same, an even number, double ones aside.
+    let single = found.found().iter().filter(|branch| !branch.double).count();
+    let agreed = one.found.count == found.count && other.found.count == found.count && single % 2 == 0;
+    let settled = other.complete && other.found.count == found.count || agreed && !one.free && !other.free;
+    found.near = !settled;
+    found
+}
+
+/// Adds a solution unless it is known.
+fn join(found: &mut Branches<6, 16>, branch: &Branch<6>, length: Real) {
+    let same = SAME * sqrt(UNIT_ROUNDOFF) * if length > 1.0 { length } else { 1.0 };
+    let count = found.count;
+    for known in found.all.iter_mut().take(count) {
+        let pairs = known.joints.iter().zip(&branch.joints);
+        let differ = pairs.into_iter().any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= same));
+        // Of a double solution the place is known to the square root of the rounding only.
+        let apart = if known.double && branch.double { 64.0 } else { 1.0 };
+        let pairs = known.joints.iter().zip(&branch.joints);
+        let far = pairs.into_iter().any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= apart * same));
+        if !differ || !far {
+            known.double |= branch.double;
+            return;
+        }
+    }
+    found.add(*branch);
+}

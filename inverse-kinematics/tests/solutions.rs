@@ -1,0 +1,107 @@
+//! What the emitted module makes of a construction's solutions: verdicts, order, limits, the nearest posture.
+
+mod arm {
+    #![allow(dead_code, unreachable_pub, clippy::approx_constant, clippy::excessive_precision)]
+    use armgen_inverse_kinematics::f64::*;
+
+    const DOF: usize = 2;
+    const MAX_SOLUTIONS: usize = 4;
+    const PRISMATIC: [bool; DOF] = [false, true];
+    const POSITION_LIMITS: [[Real; 2]; DOF] = [[3.0, 10.0], [-1.0, Real::INFINITY]];
+
+    include!("../src/blocks/solutions.rs");
+
+    fn branch(angle: Real, slide: Real, signs: u16) -> Branch<3> {
+        Branch { joints: [[angle.cos(), angle.sin()], [slide, 0.0], [1.0, 0.0]], signs, double: false, error: 0.0, free: 0 }
+    }
+
+    fn with(branches: &[Branch<3>]) -> Branches<3, 4> {
+        let mut found = Branches::new();
+        branches.iter().for_each(|b| found.add(*b));
+        found
+    }
+
+    #[test]
+    fn verdicts_and_their_order() {
+        let regular = branch(1.0, 0.5, 0);
+        let (double, free) = (Branch { double: true, ..regular }, Branch { free: 2, ..regular });
+        let verdict = |found: &Branches<3, 4>| conclude(found, false).verdict;
+        assert_eq!(verdict(&with(&[])), Verdict::Unreachable);
+        assert_eq!(verdict(&with(&[regular])), Verdict::Complete);
+        assert_eq!(verdict(&with(&[regular, double])), Verdict::NearDouble);
+        assert_eq!(verdict(&with(&[double, free])), Verdict::Continuum);
+        assert_eq!(conclude(&with(&[double, free]), false).all[1].free, 2);
+        assert_eq!(verdict(&Branches { near: true, ..with(&[]) }), Verdict::NearDouble);
+        assert_eq!(verdict(&Branches { continuum: true, ..with(&[]) }), Verdict::Continuum);
+        // A joint beyond those of the arm is virtual; that it can move is a continuum of nothing that is shown.
+        assert_eq!(conclude(&with(&[Branch { free: 4, ..regular }]), false).all[0].free, 0);
+        let none = conclude(&Branches { miss: 0.25, ..with(&[]) }, false);
+        assert_eq!((none.miss, none.count), (0.25, 0));
+        assert_eq!(conclude(&Branches { miss: 0.25, ..with(&[regular]) }, false).miss, 0.0);
+        // Not a number is no solution, and nothing is certain then.
+        let lost = conclude(&with(&[branch(Real::NAN, 0.0, 0), regular]), false);
+        assert_eq!((lost.count, lost.verdict), (1, Verdict::NearDouble));
+    }
+
+    #[test]
+    fn order_and_zeros() {
+        let found = with(&[branch(2.0, 0.0, 3), branch(-1.0, 0.5, 1), branch(-1.0, 0.25, 2)]);
+        let by_branch = conclude(&found, false);
+        assert_eq!(by_branch.as_slice().iter().map(|s| s.branch).collect::<Vec<_>>(), [1, 2, 3]);
+        let by_angle = conclude(&found, true);
+        assert_eq!(by_angle.as_slice().iter().map(|s| s.branch).collect::<Vec<_>>(), [2, 1, 3]);
+        assert_eq!(by_angle.all[3].q, [0.0; 2]);
+        // The half turn is pi, whichever way its sine is rounded.
+        let half = Branch { joints: [[-1.0, -0.0], [0.0, 0.0], [1.0, 0.0]], ..branch(0.0, 0.0, 0) };
+        assert_eq!(conclude(&with(&[half]), false).all[0].q[0], std::f64::consts::PI);
+    }
+
+    #[test]
+    fn limits_by_whole_turns() {
+        let turn = std::f64::consts::TAU;
+        let found =
+            conclude(&with(&[branch(3.05, 0.0, 0), branch(-1.0, 0.0, 1), branch(3.05, -2.0, 2), branch(0.0, 0.0, 3)]), false);
+        let within = found.within_limits();
+        assert_eq!(within.verdict, found.verdict);
+        let q: Vec<_> = within.as_slice().iter().map(|s| (s.branch, s.q[0])).collect();
+        // 3.05 is inside; -1 and 0 are moved by one turn; the slide of branch 2 is outside.
+        assert_eq!(q.len(), 3);
+        for ((branch, q), (wanted, angle)) in q.into_iter().zip([(0, 3.05), (1, turn - 1.0), (3, turn)]) {
+            assert_eq!(branch, wanted);
+            assert!((q - angle).abs() < 1e-15 * 8.0, "{q} {angle}");
+        }
+        assert_eq!(whole_turns_between(-0.5, 0.5), 0.0);
+        assert_eq!(whole_turns_between(0.25, 0.75), 0.0);
+        assert_eq!(whole_turns_between(1.5, 3.0), 2.0);
+        assert_eq!(whole_turns_between(-3.0, -1.5), -2.0);
+        assert_eq!(whole_turns_between(Real::NEG_INFINITY, Real::INFINITY), 0.0);
+    }
+
+    #[test]
+    fn nearest_modulo_turns() {
+        let found = conclude(&with(&[branch(3.0, 0.0, 0), branch(-1.0, 0.0, 1)]), false);
+        let branch_at = |q: [Real; 2]| found.nearest_to(&q).map(|s| s.branch);
+        assert_eq!(branch_at([-3.0, 0.0]), Some(0));
+        assert_eq!(branch_at([-0.5 + 4.0 * std::f64::consts::PI, 0.0]), Some(1));
+        assert_eq!(branch_at([1.0, 9.0]), Some(0), "the slide decides, the first of equals");
+        assert_eq!(Solutions::none(Verdict::Unreachable).nearest_to(&[0.0; 2]), None);
+        assert_eq!(branch_at([Real::NAN, 0.0]), Some(0), "only finite differences count");
+    }
+
+    #[test]
+    fn poses() {
+        let rows = |f: Frame| [f[0], f[1], f[2], [Real::NAN; 4]];
+        assert!(is_pose(&rows(IDENTITY)), "the last row is not read");
+        let mut t = IDENTITY;
+        t[2][2] = -1.0;
+        assert!(!is_pose(&rows(t)), "left-handed");
+        for (row, column, entry) in [(0, 0, 1.0 + 2e-6), (0, 1, 2e-6), (1, 3, Real::INFINITY), (2, 2, Real::NAN)] {
+            let mut t = IDENTITY;
+            t[row][column] = entry;
+            assert!(!is_pose(&rows(t)), "{row} {column} {entry}");
+        }
+        t = IDENTITY;
+        t[0][0] = 1.0 + 0.4e-6;
+        assert!(is_pose(&rows(t)));
+    }
+}
