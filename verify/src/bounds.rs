@@ -314,7 +314,7 @@ pub fn of_function(program: &Program, values: &[Formula], domain: &Domain, modul
 
 /// The nominal parameters as the module holds them.
 fn nominal(module: &Module) -> Vec<f64> {
-    let Some((_, Constant::Array(entries))) = module.constants.get("NOMINAL_PARAMETERS") else { return Vec::new() };
+    let Some(Constant::Array(entries)) = module.constants.get("NOMINAL_PARAMETERS") else { return Vec::new() };
     let number = |entry: &Constant| match entry {
         Constant::Number(true, literal) => -literal.value,
         Constant::Number(false, literal) => literal.value,

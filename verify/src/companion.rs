@@ -328,7 +328,7 @@ fn write_function(text: &mut String, program: &Program, table: &Table, promise: 
     }
     let given: Vec<&str> = program.arguments.iter().map(|a| argument(*a)).collect();
     let constant = |name: &str| match module.constants.get(name) {
-        Some((_, Constant::Integer(value))) => *value as usize,
+        Some(Constant::Integer(value)) => *value as usize,
         _ => 0,
     };
     let sizes = Sizes { n: constant("DOF"), p: constant("PARAMETERS"), b: constant("BASE_PARAMETERS"), m: constant("TASK_ROWS") };

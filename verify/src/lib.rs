@@ -78,7 +78,7 @@ pub struct Prepared {
 /// Reads a module and prepares the equations of its arm.
 pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Effort) -> Result<Prepared, String> {
     let module = Module::read(text)?;
-    if let Some((_, Constant::Text(name))) = module.constants.get("NAME") {
+    if let Some(Constant::Text(name)) = module.constants.get("NAME") {
         if *name != manipulator.name {
             return Err(format!("NAME: the module is of the robot `{name}`, the description of `{}`", manipulator.name));
         }

@@ -108,7 +108,7 @@ fn check(name: &str, scalar: Scalar, wanted: usize) {
         let changed = Module::read(&text).expect("a changed module still is one");
         let is_constant = module.constants.contains_key(&change.name);
         let verdict = if is_constant {
-            if same_bits(&changed.constants[&change.name].1, &module.constants[&change.name].1) {
+            if same_bits(&changed.constants[&change.name], &module.constants[&change.name]) {
                 idle += 1;
                 continue;
             }

@@ -99,12 +99,12 @@ fn what_answers_for_the_sines_is_known_by_its_text_and_its_use_by_the_equations(
         ("SIN_COS_RANGE: f64 = 6", "SIN_COS_RANGE: f64 = 7"),
     ] {
         let fault = fault(from, to);
-        assert!(fault.contains("is not one that is known to be right"), "{fault}");
+        assert!(fault.contains("where an emitted module has"), "{fault}");
     }
     let swapped = fault("let ([s1, s2,", "let ([s2, s1,");
     assert!(swapped.starts_with("direct_kinematics[0][0]: "), "{swapped}");
     let left_out = fault("        7,\n        q[0],", "        6,\n        q[0],");
-    assert!(left_out.contains("direct_kinematics"), "{left_out}");
+    assert!(left_out.contains("is of none of the first 6 angles"), "{left_out}");
 }
 
 /// Whoever writes a certificate can choose what literals stand for, but not constants whose sign is free.
@@ -140,15 +140,4 @@ fn an_arm_with_nested_roots_is_verified() {
     let source = Source::new("robot.yaml", text);
     let report = certify(&source, &common::generate(&source, Scalar::F64));
     assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
-}
-
-/// `cfg` on an element would make the compiler read another text than the checker.
-#[test]
-fn an_attribute_inside_of_a_body_is_refused() {
-    let source = common::source("scara");
-    let generated = common::generate(&source, Scalar::F64);
-    let hidden = generated.module.replace("-0.25,", "#[cfg(any())] 0.5, -0.25,");
-    assert_ne!(hidden, generated.module);
-    let fault = verify(&source, &hidden, None).first_fault().expect("not verified");
-    assert!(fault.contains("an attribute inside of a body"), "{fault}");
 }

@@ -1,8 +1,7 @@
-//! Values of constants: numbers, texts, truth values, and arrays of them.
+//! Values of constants, read by their types: numbers, texts, truth values, and arrays of them.
 
-use syn::{Expr, Lit, UnOp};
-
-use super::text;
+use super::lexer::{Fault, Kind, Token};
+use super::parser::{Parser, Reads};
 use crate::enclosure::Float;
 use crate::program::Literal;
 
@@ -23,42 +22,80 @@ pub enum Constant {
     Array(Vec<Constant>),
 }
 
+/// Entries of an array of constants; there are at most 1024 parameters.
+const MOST_ENTRIES: usize = 1024;
+
 impl Constant {
-    /// Reads the expression of a constant.
-    pub(super) fn read(expression: &Expr, real: Float) -> Result<Constant, String> {
-        match expression {
-            Expr::Array(array) => {
-                let entries: Result<_, _> = array.elems.iter().map(|e| Constant::read(e, real)).collect();
-                Ok(Constant::Array(entries?))
-            }
-            Expr::Lit(literal) => match &literal.lit {
-                Lit::Str(s) => Ok(Constant::Text(s.value())),
-                Lit::Bool(b) => Ok(Constant::Truth(b.value)),
-                Lit::Int(i) if i.suffix().is_empty() => {
-                    i.base10_parse().map(Constant::Integer).map_err(|e| format!("`{i}`: {e}"))
+    /// Takes a value of a type that a constant has.
+    pub(super) fn read(parser: &mut Parser<'_>, ty: &str, real: Float) -> Result<Constant, Fault> {
+        if let Some((entry, _)) = ty.strip_prefix('[').and_then(|inner| inner.rsplit_once(';')) {
+            let mut entries = Vec::new();
+            parser.expect("[")?;
+            parser.list("]", |parser| {
+                if entries.len() == MOST_ENTRIES {
+                    return Err(parser.peek().fault(format!("a constant of more than {MOST_ENTRIES} entries")));
                 }
-                Lit::Float(f) => float(f, real).map(|literal| Constant::Number(false, literal)),
-                other => Err(format!("`{}` is not a value that a constant has", text(other))),
-            },
-            Expr::Unary(unary) if matches!(unary.op, UnOp::Neg(_)) => match Constant::read(&unary.expr, real)? {
-                Constant::Number(negative, literal) => Ok(Constant::Number(!negative, literal)),
-                _ => Err(format!("`{}` is not a number", text(unary))),
-            },
-            other => match text(other).as_str() {
-                "Real::INFINITY" => Ok(Constant::Infinite(false)),
-                "Real::NEG_INFINITY" => Ok(Constant::Infinite(true)),
-                other => Err(format!("`{other}` is not a value that a constant has")),
-            },
+                entries.push(Constant::read(parser, entry, real)?);
+                Ok(())
+            })?;
+            return Ok(Constant::Array(entries));
         }
+        let token = parser.peek();
+        let value = match ty {
+            "&str" => (token.kind == Kind::Text).then(|| unquoted(&token)).transpose()?.map(Constant::Text),
+            "usize" => Some(Constant::Integer(integer(&token)? as u64)),
+            "bool" => ["false", "true"].iter().position(|word| token.is(word)).map(|truth| Constant::Truth(truth == 1)),
+            _ if token.is("Real") => {
+                parser.expect("Real::")?;
+                let infinities = ["INFINITY", "NEG_INFINITY"];
+                infinities.iter().position(|word| parser.is(word)).map(|sign| Constant::Infinite(sign == 1))
+            }
+            _ => {
+                let negative = parser.eat("-")?;
+                Some(Constant::Number(negative, decimal(&parser.peek(), real)?))
+            }
+        };
+        let last = parser.take()?;
+        value.ok_or_else(|| last.fault(format!("{} where a value of the type `{ty}` can stand", last.shown())))
     }
 }
 
-/// A decimal literal without a suffix.
-pub(super) fn float(literal: &syn::LitFloat, real: Float) -> Result<Literal, String> {
-    if !literal.suffix().is_empty() {
-        return Err(format!("`{literal}` has a suffix"));
+/// A text without its quotes. What rustc writes with an escape, it writes as `\u{301}`, and so it is read.
+fn unquoted(token: &Token<'_>) -> Result<String, Fault> {
+    let inner = &token.text[1..token.text.len() - 1];
+    let mut parts = inner.split('\\');
+    let mut text = parts.next().unwrap_or("").to_string();
+    for part in parts {
+        let (digits, rest) = part
+            .strip_prefix("u{")
+            .and_then(|part| part.split_once('}'))
+            .ok_or_else(|| token.fault(format!("an escape in {} that is not of the form \\u{{301}}", token.shown())))?;
+        let character = u32::from_str_radix(digits, 16).ok().and_then(char::from_u32);
+        // No other is written with an escape.
+        let character = character.filter(|c| c.escape_debug().to_string() == format!("\\u{{{digits}}}") && !c.is_control());
+        text.push(character.ok_or_else(|| token.fault(format!("the escape \\u{{{digits}}} is none that is written so")))?);
+        text += rest;
     }
-    let digits = literal.base10_digits().to_string();
-    let value = real.read(&digits).filter(|v| v.is_finite()).ok_or(format!("`{digits}` is no finite number"))?;
-    Ok(Literal { text: digits, value })
+    Ok(text)
+}
+
+/// An integer without a sign.
+pub(super) fn integer(token: &Token<'_>) -> Result<usize, Fault> {
+    let value = token.text.parse::<usize>().ok().filter(|value| token.kind == Kind::Number && value.to_string() == token.text);
+    value.ok_or_else(|| token.fault(format!("{} where an index or a count can stand", token.shown())))
+}
+
+/// A decimal number without a sign: the shortest one that is read as its float, as armgen and `{:?}` write it. So it has neither a suffix nor
+/// digits that do not count, and is neither infinite nor too small to be told from 0.
+pub(super) fn decimal(token: &Token<'_>, real: Float) -> Result<Literal, Fault> {
+    if token.kind != Kind::Number {
+        return Err(token.fault(format!("{} where a number can stand", token.shown())));
+    }
+    let shortest = |value: f64| match real {
+        Float::F64 => format!("{value:?}"),
+        Float::F32 => format!("{:?}", value as f32),
+    };
+    let value = real.read(token.text).filter(|value| shortest(*value) == token.text);
+    let value = value.ok_or_else(|| token.fault(format!("{} is not the shortest decimal of a float", token.shown())))?;
+    Ok(Literal { text: token.text.into(), value })
 }

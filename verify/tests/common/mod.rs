@@ -41,6 +41,11 @@ pub(crate) fn source(name: &str) -> Source {
 /// What the generator makes of it.
 pub(crate) fn generate(source: &Source, scalar: Scalar) -> Generated {
     #[allow(clippy::needless_update)]
-    let (generated, diagnostics) = armgen_codegen::generate(source, &Options { scalar, ..Options::default() });
+    generate_with(source, &Options { scalar, ..Options::default() })
+}
+
+/// What the generator makes of it with these options.
+pub(crate) fn generate_with(source: &Source, options: &Options) -> Generated {
+    let (generated, diagnostics) = armgen_codegen::generate(source, options);
     generated.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }

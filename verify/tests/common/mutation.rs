@@ -34,6 +34,8 @@ struct Walk<'a> {
     /// How many places are still to be passed; the change is made at 0.
     left: usize,
     choice: u64,
+    /// Whether numbers are f32.
+    single: bool,
     names: &'a [Expr],
     done: Option<(Kind, String)>,
     /// Whether this function is one that changes are made in.
@@ -126,6 +128,11 @@ impl Walk<'_> {
                     let digit = u64::from(digits.as_bytes()[at] - b'0');
                     let other = (digit + 1 + (self.choice >> 8) % 9) % 10;
                     let changed = format!("{}{other}{}", &digits[..at], &digits[at + 1..]);
+                    // As the shortest decimal of its float: no other is a literal of a module.
+                    let changed = match self.single {
+                        true => format!("{:?}", changed.parse::<f32>().expect("a decimal number")),
+                        false => format!("{:?}", changed.parse::<f64>().expect("a decimal number")),
+                    };
                     let changed: syn::LitFloat = syn::parse_str(&changed).expect("still a decimal number");
                     self.replace(e, Kind::Digit, syn::parse_quote!(#changed));
                 }
@@ -183,6 +190,7 @@ fn entries(function: &syn::ItemFn) -> Vec<Expr> {
 /// A module that can be changed at its places.
 pub(crate) struct Mutable {
     file: File,
+    single: bool,
     /// Entries of arguments that occur in each item.
     entries: Vec<Vec<Expr>>,
 }
@@ -194,7 +202,7 @@ impl Mutable {
             Item::Fn(function) => entries(function),
             _ => Vec::new(),
         });
-        Mutable { entries: entries.collect(), file }
+        Mutable { entries: entries.collect(), single: source.contains("type Real = f32"), file }
     }
 
     fn walk(item: &mut Item, entries: &[Expr], walk: &mut Walk<'_>) -> Option<String> {
@@ -233,7 +241,8 @@ impl Mutable {
     pub(crate) fn places(&self) -> Vec<(usize, usize)> {
         (0..self.file.items.len())
             .map(|item| {
-                let mut walk = Walk { left: 0, choice: 0, names: &[], done: None, counting: true, places: 0 };
+                let mut walk =
+                    Walk { left: 0, choice: 0, single: self.single, names: &[], done: None, counting: true, places: 0 };
                 Mutable::walk(&mut self.file.items[item].clone(), &[], &mut walk);
                 (item, walk.places)
             })
@@ -244,7 +253,7 @@ impl Mutable {
     /// The text changed at a place of an item, if something can be changed there.
     pub(crate) fn change(&self, item: usize, place: usize, choice: u64) -> Option<(String, Change)> {
         let mut file = self.file.clone();
-        let mut walk = Walk { left: place, choice, names: &[], done: None, counting: false, places: 0 };
+        let mut walk = Walk { left: place, choice, single: self.single, names: &[], done: None, counting: false, places: 0 };
         let name = Mutable::walk(&mut file.items[item], &self.entries[item], &mut walk)?;
         let (kind, what) = walk.done?;
         Some((prettyplease::unparse(&file), Change { name, kind, what }))

@@ -1,0 +1,473 @@
+//! From the body of a function to its steps.
+//!
+//! ```text
+//! body   = { { line } result }
+//! line   = let _ = ignored ;                                        arguments that are not needed: q or (q, dq)
+//!        | let (name, name) = sin_cos(angle) ;                      sin_cos_one in a module with the block for several angles
+//!        | let ([names], [names]) = sin_cos_four(count, angles) ;   four or eight, names of the first `count` ones
+//!        | let name = sum ;
+//!        | let [names] = part(arguments, [names]) ;                 each part once, in order
+//! result = sum | [ result, ... ] | ([ ... ], [ ... ]) | EquationsOfMotion { inertia: ..., coriolis: ..., gravity: ... }
+//! sum    = product { (+ | -) product }      product = factor { (* | /) factor }      factor = [-] primary
+//! primary = number | name | entry | sign(dq[index]) | ( sum )
+//! angle  = entry { (+ | -) entry } [ (+ | -) number ]               added joints first, each kind in their order, each joint once
+//! ```
+//!
+//! A name is a letter s, c or t, a digit, and digits, small letters and `_`: no keyword, no item, no prelude has such a name, and none is given
+//! twice in a function. In place of a name that is not used `_` may stand.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::constant::{decimal, integer};
+use super::items::{Part, Public};
+use super::lexer::{Fault, Kind, Token};
+use super::parser::{Parser, Reads};
+use crate::enclosure::Float;
+use crate::program::{Angle, Argument, Output, Program, Step};
+
+/// Steps and entries of results in a module; that of 32 joints takes a third of it.
+const MOST_STEPS: usize = 4_000_000;
+/// Brackets in brackets, in a sum and in a result.
+const MOST_BRACKETS: usize = 16;
+
+/// What all functions of a module share.
+#[derive(Debug)]
+pub(super) struct Shared<'a, 'm> {
+    pub(super) real: Float,
+    pub(super) parts: &'m BTreeMap<&'a str, Part<'a>>,
+    /// Whether there is a block for several angles at once.
+    pub(super) together: bool,
+    /// Private items that were called.
+    pub(super) calls: BTreeSet<&'static str>,
+    /// Parts that were called.
+    pub(super) parts_called: BTreeSet<&'a str>,
+    /// Steps and entries of all functions so far.
+    pub(super) steps: usize,
+}
+
+type Scope<'a> = BTreeMap<&'a str, usize>;
+
+struct Compiler<'a, 'm, 's> {
+    shared: &'s mut Shared<'a, 'm>,
+    parser: Parser<'a>,
+    /// Those of the function or the part that is read.
+    arguments: Vec<Argument>,
+    scope: Scope<'a>,
+    program: Program,
+    /// Parts called so far.
+    parts: usize,
+}
+
+impl<'a> Reads<'a> for Compiler<'a, '_, '_> {
+    fn parser(&mut self) -> &mut Parser<'a> {
+        &mut self.parser
+    }
+}
+
+/// Reads a public function.
+pub(super) fn compile<'a>(function: &Public<'a>, shared: &mut Shared<'a, '_>) -> Result<Program, Fault> {
+    let program = Program {
+        name: function.name.into(),
+        arguments: function.arguments.clone(),
+        steps: Vec::new(),
+        literals: Vec::new(),
+        turns: Vec::new(),
+        outputs: Vec::new(),
+    };
+    let arguments = function.arguments.clone();
+    let mut compiler = Compiler { shared, parser: function.body, arguments, scope: Scope::new(), program, parts: 0 };
+    compiler.parser.expect("{")?;
+    while compiler.parser.is("let") {
+        compiler.line()?;
+    }
+    compiler.result(String::new(), 0)?;
+    compiler.parser.expect("}")?;
+    Ok(compiler.program)
+}
+
+/// The name of a value.
+fn value_name<'a>(token: &Token<'a>) -> Result<&'a str, Fault> {
+    let rest = token.text.strip_prefix(['s', 'c', 't']).unwrap_or("");
+    let fits = |b: u8| b.is_ascii_digit() || b.is_ascii_lowercase() || b == b'_';
+    if token.kind == Kind::Word && rest.starts_with(|c: char| c.is_ascii_digit()) && rest.bytes().all(fits) {
+        return Ok(token.text);
+    }
+    Err(token.fault(format!("{} where the name of a value can stand, such as t1, s2 or c2", token.shown())))
+}
+
+impl<'a> Compiler<'a, '_, '_> {
+    fn push(&mut self, step: Step) -> Result<usize, Fault> {
+        self.count()?;
+        self.program.steps.push(step);
+        Ok(self.program.steps.len() - 1)
+    }
+
+    fn count(&mut self) -> Result<(), Fault> {
+        self.shared.steps += 1;
+        match self.shared.steps > MOST_STEPS {
+            true => Err(self.parser.peek().fault(format!("functions of more than {MOST_STEPS} steps and entries in all"))),
+            false => Ok(()),
+        }
+    }
+
+    /// Gives a value a name, or none for `_`.
+    fn bind(&mut self, name: &Token<'a>, value: usize) -> Result<(), Fault> {
+        if name.is("_") {
+            return Ok(());
+        }
+        match self.scope.insert(value_name(name)?, value) {
+            Some(_) => Err(name.fault(format!("{} is given twice", name.shown()))),
+            None => Ok(()),
+        }
+    }
+
+    fn line(&mut self) -> Result<(), Fault> {
+        self.parser.expect("let")?;
+        match self.parser.peek().text {
+            "_" => self.ignored(),
+            "(" => self.waves(),
+            "[" => self.call_of_part(),
+            _ => {
+                let name = self.parser.take()?;
+                value_name(&name)?;
+                self.parser.expect("=")?;
+                let value = self.sum(0)?;
+                self.parser.expect(";")?;
+                self.bind(&name, value)
+            }
+        }
+    }
+
+    /// An argument of the function that is read.
+    fn argument(&mut self) -> Result<Argument, Fault> {
+        let token = self.parser.take()?;
+        let argument = Argument::named(token.text).filter(|argument| self.arguments.contains(argument));
+        argument.ok_or_else(|| token.fault(format!("{} is not an argument of the function", token.shown())))
+    }
+
+    fn ignored(&mut self) -> Result<(), Fault> {
+        self.parser.expect("_ =")?;
+        if self.parser.eat("(")? {
+            self.list(")", |own| own.argument().map(drop))?;
+        } else {
+            self.argument()?;
+        }
+        self.parser.expect(";")
+    }
+
+    /// Names or `_` up to a bracket, behind the opening one.
+    fn names(&mut self, close: &str) -> Result<Vec<Token<'a>>, Fault> {
+        let mut names = Vec::new();
+        self.list(close, |own| {
+            let name = own.parser.take()?;
+            if !name.is("_") {
+                value_name(&name)?;
+            }
+            names.push(name);
+            Ok(())
+        })?;
+        Ok(names)
+    }
+
+    /// Behind `let`: the sines and cosines of one angle, or of several.
+    fn waves(&mut self) -> Result<(), Fault> {
+        self.parser.expect("(")?;
+        let several = self.parser.is("[");
+        let (sines, cosines) = if several {
+            self.parser.expect("[")?;
+            let sines = self.names("]")?;
+            self.parser.expect(", [")?;
+            let cosines = self.names("]")?;
+            self.parser.eat(",")?;
+            self.parser.expect(")")?;
+            (sines, cosines)
+        } else {
+            let names = self.names(")")?;
+            let &[sine, cosine] = names.as_slice() else {
+                return Err(self.parser.peek().fault("a sine and a cosine have two names"));
+            };
+            (vec![sine], vec![cosine])
+        };
+        self.parser.expect("=")?;
+        let function = self.parser.take()?;
+        let known: &[(&'static str, usize)] = match (several, self.shared.together) {
+            (false, false) => &[("sin_cos", 1)],
+            (false, true) => &[("sin_cos_one", 1)],
+            (true, true) => &[("sin_cos_four", 4), ("sin_cos_eight", 8)],
+            (true, false) => &[],
+        };
+        let Some(&(name, lanes)) = known.iter().find(|(name, _)| function.is(name)) else {
+            return Err(function.fault(format!("{} is no function that gives these sines and cosines", function.shown())));
+        };
+        self.shared.calls.insert(name);
+        self.parser.expect("(")?;
+        let mut count = 1;
+        if several {
+            let token = self.parser.take()?;
+            count = integer(&token)?;
+            if count > lanes || count == 0 {
+                return Err(token.fault(format!("`{name}` does not take {count} angles")));
+            }
+            self.parser.expect(",")?;
+        }
+        let mut angles = Vec::new();
+        self.list(")", |own| {
+            angles.push(own.angle()?);
+            Ok(())
+        })?;
+        if angles.len() != lanes || [&sines, &cosines].iter().any(|names| names.len() != lanes) {
+            return Err(function.fault(format!("`{name}` takes {lanes} angles and gives as many sines and cosines")));
+        }
+        self.parser.expect(";")?;
+        for (lane, angle) in angles.into_iter().enumerate() {
+            // A processor without vectors leaves the other lanes out, so that nothing may use them.
+            if lane >= count {
+                if let Some(name) = [&sines[lane], &cosines[lane]].into_iter().find(|name| !name.is("_")) {
+                    return Err(name.fault(format!("{} is of none of the first {count} angles", name.shown())));
+                }
+                continue;
+            }
+            let (sine, cosine) = (self.push(Step::Sine(angle.clone()))?, self.push(Step::Cosine(angle))?);
+            self.bind(&sines[lane], sine)?;
+            self.bind(&cosines[lane], cosine)?;
+        }
+        Ok(())
+    }
+
+    /// `q[1] + q[2] - q[3] + 0.5`: a sum of joint variables and a constant. Its steps are steps of the function.
+    fn angle(&mut self) -> Result<Angle, Fault> {
+        let mut angle = Angle::default();
+        let mut sum = None;
+        loop {
+            let minus = sum.is_some() && self.parser.eat("-")?;
+            if sum.is_some() && !minus {
+                self.parser.expect("+")?;
+            }
+            let place = self.parser.peek();
+            let term = if place.kind == Kind::Number && sum.is_some() {
+                let step = self.literal()?;
+                let literal = self.program.literals.len() - 1;
+                self.program.turns.push(literal);
+                angle.turn = Some((self.program.turns.len() - 1, minus));
+                step
+            } else {
+                let (argument, joint, step) = self.entry()?;
+                let factor = if minus { -1 } else { 1 };
+                // As rounding depends on the order, it is the same everywhere: added ones first.
+                let follows = angle.terms.last().is_none_or(|&(last, before)| (-before, last) < (-factor, joint));
+                let new = angle.terms.iter().all(|(other, _)| *other != joint);
+                if argument != Argument::Q || !follows || !new {
+                    return Err(place.fault("an angle is a sum of joint variables in their order, those taken away last"));
+                }
+                angle.terms.push((joint, factor));
+                step
+            };
+            sum = Some(match sum {
+                None => term,
+                Some(before) if minus => self.push(Step::Subtract(before, term))?,
+                Some(before) => self.push(Step::Add(before, term))?,
+            });
+            if angle.turn.is_some() || !(self.parser.is("+") || self.parser.is("-")) {
+                // As everywhere: joints by number.
+                angle.terms.sort_unstable();
+                return Ok(angle);
+            }
+        }
+    }
+
+    /// `q[3]`
+    fn entry(&mut self) -> Result<(Argument, usize, usize), Fault> {
+        let argument = self.argument()?;
+        self.parser.expect("[")?;
+        let index = integer(&self.parser.take()?)?;
+        self.parser.expect("]")?;
+        Ok((argument, index, self.push(Step::Input(argument, index))?))
+    }
+
+    fn literal(&mut self) -> Result<usize, Fault> {
+        let literal = decimal(&self.parser.take()?, self.shared.real)?;
+        self.program.literals.push(literal);
+        self.push(Step::Literal(self.program.literals.len() - 1))
+    }
+
+    fn sum(&mut self, brackets: usize) -> Result<usize, Fault> {
+        let mut sum = self.product(brackets)?;
+        loop {
+            let plus = self.parser.is("+");
+            if !plus && !self.parser.is("-") {
+                return Ok(sum);
+            }
+            self.parser.take()?;
+            let term = self.product(brackets)?;
+            sum = self.push(if plus { Step::Add(sum, term) } else { Step::Subtract(sum, term) })?;
+        }
+    }
+
+    fn product(&mut self, brackets: usize) -> Result<usize, Fault> {
+        let mut product = self.factor(brackets)?;
+        loop {
+            let times = self.parser.is("*");
+            if !times && !self.parser.is("/") {
+                return Ok(product);
+            }
+            self.parser.take()?;
+            let factor = self.factor(brackets)?;
+            product = self.push(if times { Step::Multiply(product, factor) } else { Step::Divide(product, factor) })?;
+        }
+    }
+
+    fn factor(&mut self, brackets: usize) -> Result<usize, Fault> {
+        let negative = self.parser.eat("-")?;
+        let token = self.parser.peek();
+        let value = match token.kind {
+            Kind::Number => self.literal()?,
+            Kind::Word if token.is("sign") => {
+                self.parser.expect("sign(")?;
+                let place = self.parser.peek();
+                let (argument, joint, _) = self.entry()?;
+                if argument != Argument::Dq {
+                    return Err(place.fault("the sign of something that is not a joint rate"));
+                }
+                self.parser.expect(")")?;
+                self.shared.calls.insert("sign");
+                self.push(Step::Sign(joint))?
+            }
+            Kind::Word if Argument::named(token.text).is_some() => self.entry()?.2,
+            Kind::Word => {
+                self.parser.take()?;
+                self.value_of(&token)?
+            }
+            _ if token.is("(") => {
+                if brackets == MOST_BRACKETS {
+                    return Err(token.fault(format!("brackets in more than {MOST_BRACKETS} others")));
+                }
+                self.parser.take()?;
+                let inner = self.sum(brackets + 1)?;
+                self.parser.expect(")")?;
+                inner
+            }
+            _ => return Err(token.fault(format!("{} where a number, a name or a bracket can stand", token.shown()))),
+        };
+        if negative {
+            self.push(Step::Negate(value))
+        } else {
+            Ok(value)
+        }
+    }
+
+    fn value_of(&self, name: &Token<'a>) -> Result<usize, Fault> {
+        let value = self.scope.get(name.text).copied();
+        value.ok_or_else(|| name.fault(format!("{} is not a value that is given before", name.shown())))
+    }
+
+    /// Behind `let`: `[t1, t2] = gravity_part_1(q, [c1, t3]);`, taken in as if its lines stood here.
+    fn call_of_part(&mut self) -> Result<(), Fault> {
+        self.parser.expect("[")?;
+        let given = self.names("]")?;
+        self.parser.expect("=")?;
+        let name = self.parser.take()?;
+        let expected = format!("{}_part_{}", self.program.name, self.parts + 1);
+        let Some(part) = self.shared.parts.get(name.text).filter(|_| name.is(&expected)) else {
+            return Err(name.fault(format!("{} where only part `{expected}` can be called", name.shown())));
+        };
+        self.parts += 1;
+        self.shared.parts_called.insert(name.text);
+        self.parser.expect("(")?;
+        for wanted in &part.arguments {
+            let place = self.parser.peek();
+            if self.argument()? != *wanted {
+                return Err(place.fault(format!("{} is not the argument that `{expected}` takes here", place.shown())));
+            }
+            self.parser.expect(",")?;
+        }
+        self.parser.expect("[")?;
+        let taken = self.values("]")?;
+        self.parser.eat(",")?;
+        self.parser.expect(");")?;
+        if [taken.len(), given.len()] != part.counts {
+            return Err(name.fault(format!("`{expected}` takes and gives other numbers of values")));
+        }
+
+        let caller = std::mem::replace(&mut self.parser, part.body);
+        let scope = std::mem::take(&mut self.scope);
+        let arguments = std::mem::replace(&mut self.arguments, part.arguments.clone());
+        self.parser.expect("{ let [")?;
+        let names = self.names("]")?;
+        self.parser.expect("= values;")?;
+        if names.len() != taken.len() {
+            return Err(name.fault(format!("`{expected}` does not name the values that it takes")));
+        }
+        names.iter().zip(taken).try_for_each(|(name, value)| self.bind(name, value))?;
+        while self.parser.is("let") {
+            self.parser.take()?;
+            let name = self.parser.take()?;
+            value_name(&name)?;
+            self.parser.expect("=")?;
+            let value = self.sum(0)?;
+            self.parser.expect(";")?;
+            self.bind(&name, value)?;
+        }
+        self.parser.expect("[")?;
+        let values = self.values("]")?;
+        self.parser.expect("}")?;
+        if values.len() != given.len() {
+            return Err(name.fault(format!("`{expected}` does not give the values that it should")));
+        }
+        (self.parser, self.scope, self.arguments) = (caller, scope, arguments);
+        given.iter().zip(values).try_for_each(|(name, value)| self.bind(name, value))
+    }
+
+    /// Values by their names, up to a bracket, behind the opening one.
+    fn values(&mut self, close: &str) -> Result<Vec<usize>, Fault> {
+        let mut values = Vec::new();
+        self.list(close, |own| {
+            let name = own.parser.take()?;
+            values.push(own.value_of(&name)?);
+            Ok(())
+        })?;
+        Ok(values)
+    }
+
+    /// What is returned, or a row of it.
+    fn result(&mut self, place: String, brackets: usize) -> Result<(), Fault> {
+        if brackets == MOST_BRACKETS {
+            return Err(self.parser.peek().fault(format!("brackets in more than {MOST_BRACKETS} others")));
+        }
+        let start = self.parser;
+        let mut index = 0;
+        if self.parser.eat("[")? {
+            return self.list("]", |own| {
+                index += 1;
+                own.result(format!("{place}[{}]", index - 1), brackets + 1)
+            });
+        }
+        if self.parser.eat("(")? && self.parser.is("[") {
+            self.list(")", |own| {
+                index += 1;
+                own.result(format!("{place}.{}", index - 1), brackets + 1)
+            })?;
+            return match index {
+                1 => Err(start.peek().fault("a result in brackets of its own")),
+                _ => Ok(()),
+            };
+        }
+        self.parser = start;
+        if self.parser.is("EquationsOfMotion") {
+            self.parser.expect("EquationsOfMotion {")?;
+            for (i, field) in ["inertia", "coriolis", "gravity"].into_iter().enumerate() {
+                if i > 0 {
+                    self.parser.expect(",")?;
+                }
+                self.parser.expect(field)?;
+                self.parser.expect(":")?;
+                self.result(format!("{place}.{field}"), brackets + 1)?;
+            }
+            self.parser.eat(",")?;
+            return self.parser.expect("}");
+        }
+        self.count()?;
+        let step = self.sum(0)?;
+        self.program.outputs.push(Output { place, step });
+        Ok(())
+    }
+}

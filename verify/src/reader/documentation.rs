@@ -1,0 +1,78 @@
+//! What documentation may hold. `cargo test` runs the code blocks of documentation: a block is one of plain text, fenced as armgen fences it, and
+//! nothing else can be a block. Outside of a fence no line is indented, no two blanks follow each other (an indented block can stand inside of a list
+//! or a quotation), and no `<` begins HTML, in which a fence would be no fence.
+
+use super::lexer::{Fault, Kind};
+use super::parser::Parser;
+
+/// Lines of the documentation of one item; that of 1024 parameters has a line for each.
+const MOST_LINES: usize = 2048;
+
+const OPENS: &str = " ```text";
+const CLOSES: &str = " ```";
+
+impl<'a> Parser<'a> {
+    /// Takes the documentation that stands here, if any does, line by line.
+    pub(super) fn documentation(&mut self) -> Result<Vec<&'a str>, Fault> {
+        let mut lines = Vec::new();
+        let mut fenced = false;
+        while self.peek().kind == Kind::Documentation {
+            let line = self.take()?;
+            let text = line.text;
+            if lines.len() == MOST_LINES {
+                return Err(line.fault(format!("documentation of more than {MOST_LINES} lines")));
+            }
+            if !text.is_empty() && !text.starts_with(' ') {
+                return Err(line.fault("documentation begins with a blank"));
+            }
+            if text.contains("```") || text.contains("~~~") {
+                if text != if fenced { CLOSES } else { OPENS } {
+                    let fence = line.shown();
+                    return Err(line.fault(format!("{fence} can begin or end a block of code, which `cargo test` would run")));
+                }
+                fenced = !fenced;
+            } else if !fenced && (text.contains("  ") || text.contains('<')) {
+                return Err(
+                    line.fault("documentation with two blanks in a row or a `<` can hold code, which `cargo test` would run")
+                );
+            }
+            lines.push(text);
+        }
+        match fenced {
+            true => Err(self.peek().fault("documentation ends inside of a block of text")),
+            false => Ok(lines),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str) -> Result<usize, String> {
+        let mut parser = Parser::new(text)?;
+        Ok(parser.documentation()?.len())
+    }
+
+    #[test]
+    fn blocks_of_plain_text_are_the_only_ones() {
+        assert_eq!(check("/// A.\n///\n/// ```text\n/// a =   b <c\n///     d\n/// ```\n///\n/// - `q`: b."), Ok(8));
+        for text in [
+            "/// ```\n/// panic!()\n/// ```",
+            "/// ```rust\n/// panic!()\n/// ```",
+            "/// ````text\n/// a\n/// ````",
+            "/// ```text\n/// ````\n/// ```",
+            "/// ~~~\n/// panic!()\n/// ~~~",
+            "///     panic!()",
+            "/// -     panic!()",
+            "/// >     panic!()",
+            "/// - ```\n///   panic!()\n///   ```",
+            "/// <!--\n/// ```text\n/// -->\n///\n///     panic!()\n/// ```",
+            "/// ```text\n/// a",
+            "///panic!()",
+        ] {
+            let fault = check(text).expect_err(text);
+            assert!(["code", "block", "blank"].iter().any(|word| fault.contains(word)), "{text}: {fault}");
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! The items of a module. All but private functions stand here as they must be written, and their tokens are compared with these texts; of functions
+//! the bodies are left for [`body`](super::body).
+
+use std::collections::BTreeMap;
+
+use super::constant::integer;
+use super::lexer::{Fault, Kind, Lexer};
+use super::parser::Parser;
+use super::sines::{self, Private};
+use crate::contract::Promise;
+use crate::enclosure::Float;
+use crate::program::Argument;
+
+const LINTS: &str = "#[allow(dead_code)]";
+/// On what holds numbers of a robot: clippy finds pi and e among them.
+const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
+
+/// The constants that a module may have, with their types.
+const CONSTANTS: [(&str, &str); 15] = [
+    ("NAME", "&str"),
+    ("DOF", "usize"),
+    ("JOINT_NAMES", "[&str; DOF]"),
+    ("JOINT_IS_REVOLUTE", "[bool; DOF]"),
+    ("POSITION_LIMITS", "[[Real; 2]; DOF]"),
+    ("VELOCITY_LIMITS", "[Real; DOF]"),
+    ("EFFORT_LIMITS", "[Real; DOF]"),
+    ("TASK_ROWS", "usize"),
+    ("TASK", "[usize; TASK_ROWS]"),
+    ("PARAMETERS", "usize"),
+    ("PARAMETER_NAMES", "[&str; PARAMETERS]"),
+    ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]"),
+    ("BASE_PARAMETERS", "usize"),
+    ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]"),
+    ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),
+];
+
+/// The struct, and its fields, each of which stands behind its documentation.
+const STRUCT: &str = "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {";
+const FIELDS: [&str; 3] = ["pub inertia: [[Real; DOF]; DOF],", "pub coriolis: [[Real; DOF]; DOF],", "pub gravity: [Real; DOF],"];
+
+/// A public function.
+#[derive(Clone, Debug)]
+pub(super) struct Public<'a> {
+    pub(super) name: &'a str,
+    pub(super) arguments: Vec<Argument>,
+    /// Its documentation, line by line.
+    pub(super) documentation: Vec<&'a str>,
+    /// At the opening brace.
+    pub(super) body: Parser<'a>,
+}
+
+/// A part of a public function that is too long for one: `NAME_part_K`.
+#[derive(Clone, Debug)]
+pub(super) struct Part<'a> {
+    pub(super) arguments: Vec<Argument>,
+    /// Values that it takes and gives.
+    pub(super) counts: [usize; 2],
+    /// At the opening brace.
+    pub(super) body: Parser<'a>,
+    /// At its name.
+    pub(super) place: Parser<'a>,
+}
+
+/// What stands in the text, in the order of the text where it matters.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Items<'a> {
+    /// The comments in front of all items.
+    pub(super) head: Vec<&'a str>,
+    pub(super) real: Option<Float>,
+    /// Each at its value.
+    pub(super) constants: BTreeMap<&'a str, (&'static str, Parser<'a>)>,
+    /// The struct, at its documentation.
+    pub(super) structure: Option<Parser<'a>>,
+    pub(super) public: Vec<Public<'a>>,
+    pub(super) parts: BTreeMap<&'a str, Part<'a>>,
+    pub(super) private: Private<'a>,
+}
+
+/// Lines of the comments in front of all items.
+const MOST_HEAD: usize = 64;
+
+/// The types of arguments and results of a public function, as they must stand behind its name, but for a comma behind the last argument.
+fn signature(parser: &mut Parser<'_>, signature: &str) -> Result<(), Fault> {
+    let mut wanted = Lexer::new(signature);
+    loop {
+        let want = wanted.next()?;
+        if want.kind == Kind::End {
+            return Ok(());
+        }
+        if want.is(")") {
+            parser.eat(",")?;
+        }
+        let found = parser.peek();
+        if found.text != want.text || found.kind != want.kind {
+            let shown = found.shown();
+            return Err(found.fault(format!("{shown} where the signature `{signature}` has `{}`", want.text)));
+        }
+        parser.take()?;
+    }
+}
+
+impl<'a> Items<'a> {
+    /// Reads all items.
+    pub(super) fn read(text: &'a str) -> Result<Items<'a>, Fault> {
+        let mut parser = Parser::new(text)?;
+        let mut items = Items::default();
+        while parser.peek().kind == Kind::Comment {
+            let line = parser.take()?;
+            if items.head.len() == MOST_HEAD {
+                return Err(line.fault(format!("more than {MOST_HEAD} lines of comments in front of all items")));
+            }
+            items.head.push(line.text);
+        }
+        while parser.peek().kind != Kind::End {
+            items.item(&mut parser)?;
+        }
+        Ok(items)
+    }
+
+    /// The struct and the constants of base parameters come with the functions that need them, and with no others.
+    pub(super) fn check_companions(&self) -> Result<(), Fault> {
+        let has = |name: &str| self.public.iter().any(|function| function.name == name);
+        if self.structure.is_some() != (has("equations_of_motion") || has("equations_of_motion_with")) {
+            let place = self.structure.map_or(1, |place| place.peek().line);
+            return Err(Fault {
+                line: place,
+                reason: "the struct `EquationsOfMotion` and functions that return it come together".into(),
+            });
+        }
+        let of_base = |name: &&&str| name.contains("BASE_");
+        match (has("base_regressor"), self.constants.keys().find(of_base)) {
+            (false, Some(name)) => {
+                let line = self.constants[name].1.peek().line;
+                Err(Fault { line, reason: format!("`{name}` without the function `base_regressor`") })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn item(&mut self, parser: &mut Parser<'a>) -> Result<(), Fault> {
+        let documented = *parser;
+        while parser.peek().kind == Kind::Documentation {
+            parser.take()?;
+        }
+        while parser.eat("#")? {
+            // As yet any: what an item must have in front of it follows from the item.
+            if parser.is("[") {
+                parser.skip("[", "]")?;
+            }
+        }
+        let first = parser.peek();
+        let public = parser.eat("pub")?;
+        let keyword = parser.take()?;
+        let named = *parser;
+        let name = parser.peek();
+        let is_private = !public && matches!(keyword.text, "fn" | "const") && !name.text.contains("_part_");
+        // All but private items, whose documentation is compared with the rest of them.
+        let mut documentation = Vec::new();
+        if !is_private {
+            *parser = documented;
+            documentation = parser.documentation()?;
+        }
+        match (public, keyword.text) {
+            (true, "type") => {
+                parser.expect(&format!("{LINTS} pub type Real ="))?;
+                let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
+                let word = parser.take()?;
+                let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
+                if self.real.replace(real).is_some() {
+                    return Err(word.fault("`Real` stands twice"));
+                }
+                parser.expect(";")
+            }
+            (true, "const") => {
+                let known = CONSTANTS.into_iter().find(|(known, _)| name.is(known));
+                let (known, ty) =
+                    known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
+                let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
+                parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
+                if self.constants.insert(name.text, (ty, *parser)).is_some() {
+                    return Err(name.fault(format!("constant `{known}` stands twice")));
+                }
+                // Read where `Real` is known.
+                while !parser.is(";") && parser.peek().kind != Kind::End {
+                    parser.take()?;
+                }
+                parser.expect(";")
+            }
+            (true, "struct") => {
+                parser.expect(STRUCT)?;
+                for field in FIELDS {
+                    parser.documentation()?;
+                    parser.expect(field)?;
+                }
+                parser.expect("}")?;
+                match self.structure.replace(documented) {
+                    Some(_) => Err(name.fault("the struct stands twice")),
+                    None => Ok(()),
+                }
+            }
+            (true, "fn") => {
+                let (promise, with) = Promise::of(name.text)
+                    .ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
+                parser.expect(&format!("{ALL_LINTS} pub fn {}", name.text))?;
+                if self.public.iter().any(|other| other.name == name.text) {
+                    return Err(name.fault(format!("function `{}` stands twice", name.text)));
+                }
+                signature(parser, &promise.signature(with))?;
+                let arguments = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied());
+                let arguments = arguments.filter_map(Argument::named).collect();
+                let body = *parser;
+                self.public.push(Public { name: name.text, arguments, documentation, body });
+                parser.expect("{")?;
+                *parser = body;
+                parser.skip("{", "}")
+            }
+            (false, "fn") if !is_private => {
+                parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
+                let part = part(parser, named)?;
+                if self.parts.insert(name.text, part).is_some() {
+                    return Err(name.fault(format!("function `{}` stands twice", name.text)));
+                }
+                Ok(())
+            }
+            (false, "fn" | "const") if is_private && name.kind == Kind::Word => {
+                if !sines::NAMES.contains(&name.text) {
+                    return Err(name.fault(format!("{} is not a private item of an emitted module", name.shown())));
+                }
+                if self.private.insert(name.text, documented).is_some() {
+                    return Err(name.fault(format!("`{}` stands twice", name.text)));
+                }
+                // Its tokens are compared as a whole where `Real` is known.
+                let last = if keyword.is("fn") { "{" } else { ";" };
+                while !parser.is(last) && parser.peek().kind != Kind::End {
+                    parser.take()?;
+                }
+                if keyword.is("fn") {
+                    parser.skip("{", "}")
+                } else {
+                    parser.expect(";")
+                }
+            }
+            _ => {
+                let wrong = if public { keyword } else { first };
+                Err(wrong.fault(format!("{} begins no item of an emitted module for one state", wrong.shown())))
+            }
+        }
+    }
+}
+
+/// Behind `fn`: `gravity_part_1(q: &[Real; DOF], values: [Real; 3]) -> [Real; 5] { ... }`.
+fn part<'a>(parser: &mut Parser<'a>, place: Parser<'a>) -> Result<Part<'a>, Fault> {
+    parser.take()?;
+    let mut arguments = Vec::new();
+    parser.expect("(")?;
+    while !parser.is("values") {
+        let token = parser.take()?;
+        let argument = Argument::named(token.text).filter(|argument| !arguments.contains(argument));
+        let argument = argument.ok_or_else(|| token.fault(format!("{} is not an argument that a part has", token.shown())))?;
+        arguments.push(argument);
+        parser.expect(if argument == Argument::Pi { ": &[Real; PARAMETERS]," } else { ": &[Real; DOF]," })?;
+    }
+    parser.expect("values: [Real;")?;
+    let taken = integer(&parser.take()?)?;
+    parser.expect("]")?;
+    parser.eat(",")?;
+    parser.expect(") -> [Real;")?;
+    let given = integer(&parser.take()?)?;
+    parser.expect("]")?;
+    let body = *parser;
+    parser.expect("{")?;
+    *parser = body;
+    parser.skip("{", "}")?;
+    Ok(Part { arguments, counts: [taken, given], body, place })
+}

@@ -1,0 +1,331 @@
+//! Modules that somebody would write who wants a wrong one verified, or one that runs code: each is refused, and for the reason that it was
+//! written against. What an emitted module may hold stands in docs/certificate.md.
+
+mod common;
+
+use armgen_codegen::program::{Options, Scalar, Trig};
+use armgen_codegen::source::Source;
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
+use armgen_verify::{certify, document_bounds, verify_with};
+
+struct Given {
+    source: Source,
+    module: String,
+    claims: Claims,
+}
+
+impl Given {
+    fn new(name: &str, trig: Trig) -> Given {
+        let source = common::source(name);
+        let mut generated = match trig {
+            Trig::Libm => common::generate(&source, Scalar::F64),
+            trig => common::generate_with(&source, &Options { trig, ..Options::default() }),
+        };
+        document_bounds(&source, &mut generated).expect("bounds");
+        assert!(certify(&source, &generated).passed());
+        let claims = Claims::from_numbers(&generated.constants);
+        Given { source, module: generated.module, claims }
+    }
+
+    /// A module with one place changed is refused, for this reason.
+    #[track_caller]
+    fn refused(&self, old: &str, new: &str, why: &str) {
+        assert!(self.module.contains(old), "`{old}` is not in the module");
+        self.refused_text(&self.module.replacen(old, new, 1), why);
+    }
+
+    #[track_caller]
+    fn refused_text(&self, text: &str, why: &str) {
+        assert_ne!(text, self.module);
+        let report = verify_with(&self.source, text, self.claims.clone(), Effort::default());
+        let Some(fault) = report.first_fault() else { panic!("accepted, instead of: {why}") };
+        assert!(fault.contains(why), "{fault}, instead of: {why}");
+    }
+}
+
+fn scara() -> Given {
+    Given::new("scara", Trig::Libm)
+}
+
+/// Where steps stand that can be changed: the inertia matrix.
+const T1: &str = "    let t1 = 5.0 * c2 + 8.766;\n";
+const RUNS: &str =
+    "#[used] #[link_section=\".init_array\"] static I: extern \"C\" fn() = r; extern \"C\" fn r(){ std::println!(\"x\"); }";
+const NO_ITEM: &str = "begins no item of an emitted module";
+
+#[test]
+fn text_that_nothing_needs_is_refused() {
+    let given = scara();
+    let module = &given.module;
+    let appended = |text: &str, why: &str| given.refused_text(&format!("{module}\n{text}\n"), why);
+    appended(&format!("fn table() -> Real {{ {RUNS} 0.0 }}"), "`table` is not a private item");
+    appended("fn unused() -> Real { mod a { #[path = \"b.rs\"] mod b; } 0.0 }", "`unused` is not a private item");
+    appended("fn sign(x: Real) -> Real {\n    if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { x }\n}", "`fn` where");
+    appended("use core::f64;", NO_ITEM);
+    appended("mod a {}", NO_ITEM);
+    appended("pub mod a {}", NO_ITEM);
+    appended("macro_rules! sin_cos { () => {} }", NO_ITEM);
+    appended("std::thread_local! { static A: u8 = 0; }", NO_ITEM);
+    appended("static A: u8 = 0;", NO_ITEM);
+    appended("extern crate std;", NO_ITEM);
+    appended("extern \"C\" { fn r(); }", NO_ITEM);
+    appended("impl Drop for EquationsOfMotion { fn drop(&mut self) { panic!() } }", NO_ITEM);
+    appended("unsafe impl Send for EquationsOfMotion {}", NO_ITEM);
+    appended("trait Neg {}", NO_ITEM);
+    appended("enum Name { A }", NO_ITEM);
+    appended("union Name { a: u8 }", NO_ITEM);
+    appended("type F = f64;", NO_ITEM);
+    appended(";", NO_ITEM);
+    appended("#[allow(dead_code)]\npub type Other = f64;", "`Other` where an emitted module has `Real`");
+    appended("#[allow(dead_code)]\npub type Real = f64;", "`Real` stands twice");
+    appended("pub struct Other { }", "`pub` where an emitted module has `#`");
+    appended("pub const OTHER: usize = 4;", "`OTHER` is not a constant that an emitted module has");
+    appended("const OTHER: usize = 4;", "`OTHER` is not a private item");
+    appended("#[allow(dead_code)]\npub const DOF: usize = 4;", "constant `DOF` stands twice");
+    appended("pub fn other(q: &[Real; DOF]) -> Real { q[0] }", "`other` is not a function that an emitted module has");
+    appended(
+        "#[allow(dead_code, clippy::all)]\n#[inline(never)]\nfn gravity_part_1(values: [Real; 0]) -> [Real; 0] { let [] = values; [] }",
+        "`gravity_part_1` is needed by no function",
+    );
+    let gravity = &module[module.find("#[allow(dead_code, clippy::all)]\npub fn gravity(").expect("it is there")..];
+    appended(&gravity[..gravity.find("\n}").expect("an end") + 2], "function `gravity` stands twice");
+}
+
+#[test]
+fn what_is_not_written_as_armgen_writes_it_is_refused() {
+    let given = scara();
+    let refused = |old: &str, new: &str, why: &str| given.refused(old, new, why);
+    // Attributes: what runs, hides, includes, derives or links.
+    let has = "where an emitted module has";
+    refused("/// Name of the robot.", "#[doc = include_str!(\"Cargo.toml\")]\n/// Name of the robot.", NO_ITEM);
+    refused("/// Name of the robot.\n", "#[doc = \"Name of the robot.\"]\n", "`doc` where an emitted module has `allow`");
+    refused("#[derive(Clone, Copy, Debug, PartialEq)]", "#[derive(Clone, Copy, Debug, PartialEq, evil::Evil)]", has);
+    refused("#[derive(Clone, Copy, Debug, PartialEq)]", "#[derive(Debug, PartialEq)]", has);
+    refused("#[derive(Clone, Copy, Debug, PartialEq)]", "#[repr(packed)]\n#[derive(Clone, Copy, Debug, PartialEq)]", has);
+    refused("#[allow(dead_code)]\npub const NAME", "#[cfg(any())]\npub const NAME", has);
+    refused("#[allow(dead_code)]\npub const NAME", "#[allow(dead_code, unsafe_code)]\npub const NAME", has);
+    refused("#[allow(dead_code)]\npub const NAME", "#[allow(dead_code)]\n#[no_mangle]\npub const NAME", has);
+    refused("#[allow(dead_code)]\npub const NAME", "#[evil::attribute]\n#[allow(dead_code)]\npub const NAME", has);
+    refused("#[inline]\nfn sin_cos", "#[no_mangle]\nfn sin_cos", has);
+    refused("#[inline]\nfn sin_cos", "#[inline]\n#[export_name = \"sin\"]\nfn sin_cos", has);
+    refused("// @generated", "#![feature(custom_inner_attributes)]\n// @generated", NO_ITEM);
+    refused("// @generated", "#!/bin/sh\n// @generated", NO_ITEM);
+    // Visibility, kinds of functions, types.
+    refused("pub fn gravity(", "pub unsafe fn gravity(", "`unsafe` begins no item");
+    refused("pub fn gravity(", "pub const fn gravity(", "`fn` is not a constant");
+    refused("pub fn gravity(", "pub async fn gravity(", "`async` begins no item");
+    refused("pub fn gravity(", "pub extern \"C\" fn gravity(", "`extern` begins no item");
+    refused("pub fn gravity(", "pub(crate) fn gravity(", "`(` begins no item");
+    refused("pub fn gravity(", "fn gravity(", "`gravity` is not a private item");
+    refused("pub fn gravity(", "pub fn gravity<const N: usize>(", "`<` where the signature");
+    refused("pub fn gravity(q: &[Real; DOF])", "pub fn gravity(q: [Real; DOF])", "`[` where the signature");
+    refused("pub fn gravity(q: &[Real; DOF])", "pub fn gravity(q: &mut [Real; DOF])", "`mut` where the signature");
+    refused("pub fn gravity(q: &[Real; DOF])", "pub fn gravity(q: &[Real; 4])", "`4` where the signature");
+    refused("pub fn gravity(q: &[Real; DOF])", "pub fn gravity(q: &[Real; { DOF }])", "`{` where the signature");
+    refused("pub fn gravity(q: &[Real; DOF])", "pub fn gravity(#[cfg(all())] q: &[Real; DOF])", "`#` where the signature");
+    refused("pub fn gravity(q: &[Real; DOF]) -> [Real; DOF] {", "pub fn gravity(q: &[Real; DOF]) -> [Real; DOF] where {", has);
+    refused(
+        "pub fn coriolis_matrix(q: &[Real; DOF], dq",
+        "pub fn coriolis_matrix(dq: &[Real; DOF], q",
+        "`dq` where the signature",
+    );
+    refused("pub const NOMINAL_PARAMETERS", "const NOMINAL_PARAMETERS", "is not a private item");
+    refused("    pub inertia:", "    inertia:", has);
+    refused("    pub inertia:", "    pub(crate) inertia:", has);
+    refused("    pub inertia: [[Real; DOF]; DOF],\n", "", has);
+    refused("pub struct EquationsOfMotion {", "pub struct EquationsOfMotion<const N: usize = 1> {", has);
+    refused("pub struct EquationsOfMotion {", &format!("pub struct EquationsOfMotion where [u8; {{ {RUNS} 1 }}]: Sized {{"), has);
+    refused("pub type Real = f64;", &format!("pub type Real<const N: usize = {{ {RUNS} 1 }}> = f64;"), has);
+    refused("pub type Real = f64;", "pub type Real = <u8 as A>::B;", "neither f64 nor f32");
+    refused("pub type Real = f64;", "pub type Real = std::f64;", "neither f64 nor f32");
+    refused("pub const DOF: usize = 4;", "pub const DOF: u8 = 4;", has);
+    refused("pub const DOF: usize = 4;", "pub const DOF: usize = 2 + 2;", has);
+    refused("pub const DOF: usize = 4;", "pub const DOF: usize = 0x4;", "`0x4` where an index or a count can stand");
+    refused("pub const DOF: usize = 4;", "pub const DOF: usize = TASK_ROWS;", "`TASK_ROWS` where an index or a count can stand");
+    refused("pub const NAME: &str = \"scara\";", "pub const NAME: &str = \"\\x73cara\";", "an escape in");
+    refused("pub const NAME: &str = \"scara\";", "pub const NAME: &str = \"\\u{73}cara\";", "is none that is written so");
+    refused(
+        "pub const NAME: &str = \"scara\";",
+        "pub const NAME: &str = concat!(\"scara\");",
+        "where a value of the type `&str`",
+    );
+    // Sines.
+    refused("libm::sincos(x)", "libm::sincosf(x)", has);
+    refused("libm::sincos(x)", "crate::libm::sincos(x)", has);
+    refused("libm::sincos(x)", "let (s, c) = libm::sincos(x); (c, s)", has);
+}
+
+#[test]
+fn two_readings_of_one_text_are_refused() {
+    let given = scara();
+    let module = &given.module;
+    // One name by normalisation: the compiler's reading has e, and an accent, twice.
+    let accents = format!("{T1}    let \u{e9} = 5.0 * c2 + 8.766;\n    let e\u{301} = 77.0 * \u{e9};\n");
+    given.refused(T1, &accents, "the character U+00E9 outside of comments");
+    given.refused(T1, &T1.replace("t1", "r#t1"), "`r#` begins a raw name");
+    given.refused_text(&format!("\u{feff}{module}"), "the character U+FEFF outside of comments");
+    given.refused_text(&module.replace('\n', "\r\n"), "a carriage return");
+    for blank in ['\t', '\u{b}', '\u{c}', '\u{85}', '\u{200e}', '\u{2028}', '\0'] {
+        given.refused(T1, &T1.replace(" + ", &format!("{blank}+{blank}")), "outside of comments");
+    }
+    given.refused(T1, &T1.replace(" + 8", " /* /* */ + 1.0 */ + 8"), "a comment between /* and */");
+    given.refused(T1, &T1.replace(";\n", "; // t1\n"), "`// t1`");
+    given.refused(T1, &T1.replace(";\n", "; // \u{202e}\n"), "the character U+202E, which cannot be seen");
+    given.refused("// Conventions:", "// \u{2066}Conventions:", "the character U+2066, which cannot be seen");
+    given.refused("// Conventions:", "//! Conventions:", "begins no comment of an emitted module");
+    given.refused("/// Name of the robot.", "//// Name of the robot.", "begins no comment of an emitted module");
+    given.refused("/// Name of the robot.", "/** Name of the robot. */", "a comment between /* and */");
+    // Names.
+    for name in ["DOF", "Real", "sin_cos", "Some", "q", "c2", "_t1", "T1", "t", "x", "self", "gravity", "s2x\u{430}"] {
+        let why = if name.is_ascii() { "" } else { "the character U+0430" };
+        given.refused(T1, &format!("{T1}    let {name} = 5.0 * c2;\n"), why);
+    }
+    for pattern in ["mut t9", "ref t9", "t9: Real", "t9 @ _", "&t9", "(t9)", "t9 | t9", "Some(t9)", "[t9]", "..", "0.0..=9.0"] {
+        given.refused(T1, &format!("{T1}    let {pattern} = 5.0 * c2;\n"), "");
+    }
+    // Numbers.
+    for number in [
+        "5.0f64", "5_0.0e-1", "5.", "5", "0x5", "5.00", "05.0", "5e0", "50e-1", "5.0_", "5E0", "5.0e+0", "1e999", "1e-999", "'5'",
+    ] {
+        let why = if number.starts_with('\'') { "the character `'`" } else { "" };
+        given.refused(T1, &T1.replace("5.0", number), why);
+    }
+    // The decimal is right over the reals, and the float is off by 4.
+    given.refused(
+        T1,
+        &T1.replace("8.766", "(8.766 - 4.0) + (100000000000000004.0 - 1e17)"),
+        "is not the shortest decimal of a float",
+    );
+}
+
+#[test]
+fn steps_that_no_emitted_body_has_are_refused() {
+    let given = scara();
+    let value = |text: &str, why: &str| given.refused(T1, &T1.replace("5.0 * c2 + 8.766", text), why);
+    let line = |text: &str, why: &str| given.refused(T1, &format!("{T1}    {text}\n"), why);
+    for (text, why) in [
+        ("c2.abs()", "`.` where an emitted module has `;`"),
+        ("(c2).mul_add(5.0, 8.766)", "`.` where an emitted module has `;`"),
+        ("f64::mul_add(5.0, c2, 8.766)", "`f64` is not a value that is given before"),
+        ("{ 5.0 * c2 + 8.766 }", "`{` where a number, a name or a bracket can stand"),
+        ("unsafe { 5.0 }", "`unsafe` is not a value"),
+        ("if true { 5.0 } else { 6.0 }", "`if` is not a value"),
+        ("loop { break 5.0 }", "`loop` is not a value"),
+        ("match c2 { x => x }", "`match` is not a value"),
+        ("(|x: Real| x)(c2)", "`|` where a number"),
+        ("5.0 as Real", "`as` where an emitted module has `;`"),
+        ("include!(\"x\")", "`include` is not a value"),
+        ("5.0 % c2", "`%` where an emitted module has `;`"),
+        ("--c2", "`-` where a number"),
+        ("-(-(-c2)) * - -5.0", "`-` where a number"),
+        ("!c2", "`!` where a number"),
+        ("*c2", "`*` where a number"),
+        ("&c2", "`&` where a number"),
+        ("(c2, c2).0", "`,` where an emitted module has `)`"),
+        ("[c2][0]", "`[` where a number"),
+        ("q[DOF - 1]", "`DOF` where an index"),
+        ("q[0usize]", "`0usize` where an index"),
+        ("q[00]", "`00` where an index"),
+        ("q[4]", "index 4 is beyond the end"),
+        ("q[18446744073709551616]", "where an index"),
+        ("(*q)[0]", "`*` where a number"),
+        ("q.0", "`.` where an emitted module has `[`"),
+        ("q", "`;` where an emitted module has `[`"),
+        ("dq[0]", "`dq` is not an argument of the function"),
+        ("sign(q[0])", "the sign of something that is not a joint rate"),
+        ("sin_cos(q[0])", "`sin_cos` is not a value"),
+        ("t2", "`t2` is not a value that is given before"),
+        ("Real::INFINITY", "`Real` is not a value"),
+        ("c2 as f32 as f64", "`as` where"),
+        ("c2 > 5.0", "`>` where"),
+        ("return 5.0", "`return` is not a value"),
+        ("#[cfg(any())] c2", "`#` where a number"),
+        ("NOMINAL_PARAMETERS[0]", "`NOMINAL_PARAMETERS` is not a value"),
+    ] {
+        value(text, why);
+    }
+    for (text, why) in [
+        ("let t2;", "`;` where an emitted module has `=`"),
+        ("let t2 = 5.0 else { panic!() };", "`else` where"),
+        ("let t1 = 5.0 * c2;", "`t1` is given twice"),
+        ("let (_, c2) = sin_cos(q[1]);", "`c2` is given twice"),
+        ("let _ = c2;", "`c2` is not an argument"),
+        ("let _ = std::process::exit(1);", "`std` is not an argument"),
+        ("let _ = (q, gravity(q));", "`gravity` is not an argument"),
+        ("#[cfg(any())] let t2 = 5.0;", "`#` where a number"),
+        ("t1 = 5.0;", "`=` where an emitted module has `}`"),
+        ("t1;", "`;` where an emitted module has `}`"),
+        ("const DOF: usize = 3;", "`const` is not a value"),
+        ("fn sin_cos(x: Real) -> (Real, Real) { (x, x) }", "`fn` is not a value"),
+        ("use libm as q;", "`use` is not a value"),
+        ("impl Drop for EquationsOfMotion { fn drop(&mut self) {} }", "`impl` is not a value"),
+        ("std::process::exit(1);", "`std` is not a value"),
+        (";", "`;` where a number"),
+        ("let (s9, c9) = sin_cos_one(q[1]);", "`sin_cos_one` is no function that gives"),
+        ("let (s9, c9) = libm::sincos(q[1]);", "`libm` is no function that gives"),
+        ("let (s9, c9) = (q[0], q[1]);", "`(` is no function that gives"),
+        ("let (s9,) = sin_cos(q[1]);", "a sine and a cosine have two names"),
+        ("let (s9, c9) = sin_cos(q[1] * 1.0);", "`*` where an emitted module has `)`"),
+        ("let (s9, c9) = sin_cos(-q[1]);", "`-` is not an argument"),
+        ("let (s9, c9) = sin_cos(0.5 + q[1]);", "`0.5` is not an argument"),
+        ("let (s9, c9) = sin_cos(q[1] + q[1]);", "an angle is a sum of joint variables in their order"),
+        ("let (s9, c9) = sin_cos(q[1] + q[0]);", "an angle is a sum of joint variables in their order"),
+        ("let (s9, c9) = sin_cos(q[1] - q[2] + q[3]);", "an angle is a sum of joint variables in their order"),
+        ("let (s9, c9) = sin_cos(q[1] + 0.5 + 0.5);", "`+` where an emitted module has `)`"),
+        ("let (s9, c9) = sin_cos(q[9]);", "index 9 is beyond the end of"),
+        ("let [t9] = inertia_matrix_part_1([c2]);", "only part `inertia_matrix_part_1` can be called"),
+        ("let [t9] = values;", "only part `inertia_matrix_part_1` can be called"),
+    ] {
+        line(text, why);
+    }
+    // What is returned.
+    let whole = "EquationsOfMotion {\n        inertia: ";
+    given.refused(whole, "EquationsOfMotion {\n        ..x, inertia: ", "`..` where an emitted module has `inertia`");
+    given.refused(whole, "Self { inertia: ", "`Self` is not a value");
+    given.refused(whole, "EquationsOfMotion { gravity: [0.0; 4], inertia: ", "`gravity` where an emitted module has `inertia`");
+    given.refused("[10.0 * c2 + 21.526, t1, -0.25, -1.02]", "[10.0 * c2 + 21.526; 4]", "`;` where an emitted module has `]`");
+    given.refused("[10.0 * c2 + 21.526, t1, -0.25, -1.02]", "[10.0 * c2 + 21.526, t1, -0.25]", "16 entries");
+}
+
+/// The block for several angles has a `sin_cos` of its own, which is right near 0 alone.
+#[test]
+fn sines_of_several_angles_are_asked_for_as_armgen_asks() {
+    let given = Given::new("scara", Trig::Fast);
+    let line = "let (_, c2) = sin_cos_one(q[1]);";
+    given.refused(line, "let (_, c2) = sin_cos(q[1]);", "`sin_cos` is no function that gives");
+    given.refused(line, "let (_, c2) = sin_cos_beyond(q[1]);", "`sin_cos_beyond` is no function that gives");
+    given.refused(line, "let ([_, _, _, _], [c2, _, _, _]) = sin_cos_four(1, q[1]);", "takes 4 angles");
+    given.refused(line, "let ([_, _, _, _], [c2, _, _, _]) = sin_cos_four(0, q[1], q[1], q[1], q[1]);", "does not take 0 angles");
+    given.refused(
+        line,
+        "let ([_, _, _, _], [_, c2, _, _]) = sin_cos_four(1, q[1], q[1], q[1], q[1]);",
+        "none of the first 1 angles",
+    );
+    given.refused("any(target_feature = \"sse2\"", "any(windows, target_feature = \"sse2\"", "where an emitted module has");
+    given.refused("0.1666666666666663", "0.1666666666666664", "where an emitted module has");
+    given.refused("#[inline(always)]\nfn sin_cos", "#[inline]\nfn sin_cos", "where an emitted module has");
+    let module = &given.module;
+    let cold = &module[module.find("/// The same where one").expect("it is there")..];
+    let cold = &cold[..cold.find("\n}\n").expect("an end") + 3];
+    given.refused_text(&module.replace(cold, ""), "the module does not have it");
+}
+
+/// `cargo test` runs what documentation holds.
+#[test]
+fn documentation_that_runs_is_refused() {
+    let given = scara();
+    let text = "/// Name of the robot.";
+    let doc = |lines: &str, why: &str| given.refused(text, &format!("{text}\n{lines}"), why);
+    doc("/// ```\n/// std::process::exit(1)\n/// ```", "can begin or end a block of code");
+    doc("/// ```no_run\n/// std::process::exit(1)\n/// ```", "can begin or end a block of code");
+    doc("/// ~~~\n/// std::process::exit(1)\n/// ~~~", "can begin or end a block of code");
+    doc("///\n///     std::process::exit(1)", "two blanks in a row");
+    doc("/// <!--\n/// ```text\n/// -->\n///\n///     std::process::exit(1)\n/// ```", "a `<` can hold code");
+    doc("/// ```text", "ends inside of a block");
+    given.refused(
+        "    /// Gravity term g(q)",
+        "    /// ```\n    /// exit()\n    /// ```\n    /// Gravity term g(q)",
+        "can begin or end a block",
+    );
+}
