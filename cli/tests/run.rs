@@ -8,8 +8,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use armgen_experiments::run::Arm;
-
 fn run(folder: &Path, files: &[&Path]) -> Output {
     let out = folder.join("out");
     let _ = fs::remove_dir_all(&out);

@@ -128,7 +128,7 @@ impl Item {
         }
         let element = |quantity: &'static Quantity| {
             let number = name.strip_prefix(element_of(quantity)?.name)?.strip_prefix('_')?.parse::<usize>().ok()?;
-            (1..=dof).contains(&number).then_some(Item::Element(quantity, number - 1))
+            (1..=dof).contains(&number).then(|| Item::Element(quantity, number - 1))
         };
         if let Some(item) = catalogue::quantities().find_map(element) {
             return vec![item];

@@ -13,6 +13,6 @@ pub mod scara {
 }
 
 /// The robot of the experiments.
-pub fn scara() -> impl Arm {
-    armgen_experiments::instance!(crate::scara)
+pub fn scara() -> Box<dyn Arm> {
+    Box::new(armgen_experiments::instance!(crate::scara))
 }

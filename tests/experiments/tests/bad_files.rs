@@ -10,7 +10,6 @@ use std::path::PathBuf;
 
 use armgen_codegen::diagnostic::AnyCode;
 use armgen_experiments::read::{Code, Parsed, SHARED};
-use armgen_experiments::run::Arm;
 use common::{files, parse, root, said, text_of};
 
 fn folder() -> PathBuf {

@@ -19,11 +19,11 @@ fn all(arm: &dyn Arm) -> Vec<Experiment> {
 #[test]
 fn every_experiment_gives_what_is_expected() {
     let arm = armgen_experiment_tests::scara();
-    let experiments = all(&arm);
+    let experiments = all(&*arm);
     assert_eq!(experiments.len(), EXPERIMENTS);
     assert_eq!(experiments.iter().map(|e| e.expect.len()).sum::<usize>(), EXPECTATIONS);
     assert!(experiments.iter().all(|e| !e.expect.is_empty()));
-    let mut jobs: Vec<Job<'_>> = experiments.iter().map(|experiment| Job::new(experiment, &arm)).collect();
+    let mut jobs: Vec<Job<'_>> = experiments.iter().map(|experiment| Job::new(experiment, &*arm)).collect();
     in_parallel(&mut jobs, Job::prepare);
     for job in &jobs {
         let name = &job.experiment().name;
@@ -51,7 +51,7 @@ fn every_experiment_gives_what_is_expected() {
 fn the_reported_adaptive_gains_are_called_unstable_before_anything_moves() {
     let arm = armgen_experiment_tests::scara();
     let experiment = experiment("adaptive_reported.yaml", &text_of(&folder(), "adaptive_reported.yaml"), arm.robot());
-    let mut job = Job::new(&experiment, &arm);
+    let mut job = Job::new(&experiment, &*arm);
     job.prepare();
     assert!(job.record().log().is_empty());
     assert_eq!(
@@ -68,7 +68,7 @@ fn damping_begins_below_the_threshold() {
     let run = |law: &str| {
         let text = text.replace("algorithm: inverse", &format!("algorithm: {law}"));
         let experiment = experiment("clik_inverse.yaml", &text, arm.robot());
-        let mut job = Job::new(&experiment, &arm);
+        let mut job = Job::new(&experiment, &*arm);
         job.run();
         let errors = arm.robot().task.iter().flat_map(|row| job.record().values(Quantity::TaskError(*row)));
         let largest = errors.map(f64::abs).reduce(f64::max).expect("there are samples");
@@ -89,7 +89,7 @@ fn what_is_not_as_expected_is_outside() {
     let text = text_of(&folder(), "manipulability.yaml");
     let wrong = text.replacen("value: 0.25, tolerance: 6e-13", "value: 0.26, tolerance: 6e-13", 1);
     let experiment = experiment("manipulability.yaml", &wrong, arm.robot());
-    let mut job = Job::new(&experiment, &arm);
+    let mut job = Job::new(&experiment, &*arm);
     job.run();
     let (lines, met) = (job.lines(), job.lines().iter().filter(|line| line.met).count());
     assert_eq!((lines.len(), met), (33, 32));
@@ -124,7 +124,7 @@ fn every_law_moves_the_arm() {
         };
         let run = |text: &str| {
             let experiment = experiment("law.yaml", text, arm.robot());
-            let mut job = Job::new(&experiment, &arm);
+            let mut job = Job::new(&experiment, &*arm);
             job.run();
             assert!(job.lines().iter().all(|line| line.met), "{name}: {:?}", job.lines());
             assert_eq!(job.record().log().len(), 201, "{name}");

@@ -46,7 +46,7 @@ fuzz_target!(|data: &[u8]| {
     }
     let arm = armgen_instance::built();
     match read::experiment(Path::new("fuzzed.yaml"), &Source::new("fuzzed.yaml", text), arm.robot(), &|_| Ok(PATH.to_owned())) {
-        Parsed::Experiment(experiment) => run(&experiment, &arm),
+        Parsed::Experiment(experiment) => run(&experiment, &*arm),
         Parsed::OtherRobot(_) => {}
         Parsed::Faulty(faulty) => {
             assert!(!faulty.is_empty());

@@ -17,8 +17,7 @@ use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 
 /// Runs the experiments for this robot; where there are none, moves it along a demonstration.
-pub(crate) fn run(files: &[PathBuf], out: &Path) -> u8 {
-    let arm = armgen_instance::built();
+pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm) -> u8 {
     let Files { experiments, others, code } = read_all(&named(files), arm.robot());
     let built = &arm.robot().name;
     for (robot, count) in &others {
@@ -27,9 +26,9 @@ pub(crate) fn run(files: &[PathBuf], out: &Path) -> u8 {
     }
     match (experiments.as_slice(), code) {
         // A file that is faulty or absent is the answer; without any there is nothing to run.
-        ([], DONE) => demonstrate(&arm, out),
+        ([], DONE) => demonstrate(arm, out),
         ([], code) => code,
-        (experiments, code) => code.max(run_all(experiments, &arm, out)),
+        (experiments, code) => code.max(run_all(experiments, arm, out)),
     }
 }
 

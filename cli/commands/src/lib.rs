@@ -1,0 +1,248 @@
+//! The commands of the program armgen: a robot arm's description checked, its equations shown, counted and generated, and the built robot
+//! moved.
+//!
+//! The robot that `armgen run` moves is handed in by the program: here nothing is compiled for one.
+//!
+//! ```text
+//! lib.rs       arguments, dispatch
+//! commands/    one file per command
+//! input.rs     descriptions from files
+//! terminal.rs  standard output and error: colour, closed pipes
+//! table.rs     aligned tables
+//! ```
+
+mod commands;
+mod input;
+mod table;
+mod terminal;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use armgen_codegen::program::Pass;
+use armgen_experiments::run::Arm;
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Parser, Subcommand, ValueEnum, ValueHint};
+
+use commands::generate::{Beside, Choices};
+
+/// Exit code: the file is valid, or the task was done.
+const DONE: u8 = 0;
+/// Exit code: something is wrong inside the file, or a result is not as expected.
+const FAULTY: u8 = 1;
+/// Exit code: a file cannot be read, is not UTF-8 or cannot be written; options that do not go together.
+const UNREADABLE: u8 = 2;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default());
+
+const EXAMPLES: &str = "Examples:
+  armgen check robot.yaml                      what the file says, and what is wrong with it
+  armgen show robot.yaml inertia_matrix        B(q) with the numbers of the file
+  armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
+  armgen verify robot.yaml robot.rs            whether that file equals the equations
+  armgen run                                   move the robot that this program was built with
+
+Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
+2 a file cannot be read, is not UTF-8 or cannot be written, or the options are wrong.";
+
+/// From a robot arm's data sheet to its exact equations of motion, and to plain no_std Rust
+#[derive(Debug, Parser)]
+#[command(name = "armgen", version, styles = STYLES, after_help = EXAMPLES, max_term_width = 100, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Check a description: a summary of the arm, or every fault with its place
+    #[command(after_help = "Examples:
+  armgen check robot.yaml
+  armgen check robots/*.yaml
+
+The summary goes to standard output; errors and warnings go to standard error, each with FILE:LINE:COLUMN.
+Exit codes: 0 valid (perhaps with warnings), 1 faulty, 2 a file cannot be opened or is not UTF-8.")]
+    Check {
+        /// Descriptions of robot arms
+        #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
+    },
+    /// Show the equations in closed form, or as numbered steps where they are long
+    #[command(after_help = "Examples:
+  armgen show robot.yaml                                  everything
+  armgen show robot.yaml inertia_matrix gravity           B(q) and g(q)
+  armgen show robot.yaml inertia_matrix --symbolic        with the names under `parameters`
+  armgen show robot.yaml determinant                      where the task's Jacobian is singular
+  armgen show robot.yaml --format latex > equations.tex   for a document with amsmath
+
+A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), one frame as `link_frame_2`, or `determinant`.")]
+    Show {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// What to show; everything if nothing is named
+        #[arg(value_name = "QUANTITY")]
+        quantities: Vec<String>,
+        /// Print the names of parameters instead of their values
+        #[arg(long)]
+        symbolic: bool,
+        /// Form of the output
+        #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
+        format: ShowFormat,
+    },
+    /// Generate the Rust module of an arm
+    #[command(after_help = "Examples:
+  armgen generate robot.yaml --out src/robot.rs           then: mod robot;
+  armgen generate robot.yaml --scalar f32 > robot_f32.rs
+  armgen generate robot.yaml --trig fast > robot.rs       for machines with wide vectors
+  armgen generate robot.yaml --out robot.rs --verify      with a certificate, robot.cert.json
+  armgen generate robot.yaml --out robot.rs --bounds      with robot_bounds.rs, running error bounds
+  armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
+  armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
+  armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
+
+The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.
+Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
+    Generate {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// File to write; standard output if not given
+        #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+        out: Option<PathBuf>,
+        #[command(flatten)]
+        choices: Choices,
+        #[command(flatten)]
+        beside: Beside,
+    },
+    /// Verify that a module equals the equations of its description, exactly
+    #[command(after_help = "Examples:
+  armgen verify robot.yaml src/robot.rs
+  armgen generate robot.yaml --out robot.rs --verify && armgen verify robot.yaml robot.rs
+
+The text of the module is read back by a checker of its own, which derives the equations from the
+description the textbook's way and compares both, exactly, at random points of prime fields and at
+a rational one. If a certificate, robot.cert.json, stands beside robot.rs, it must be of these two
+texts. Not judged are documentation comments, the compiler, and the sines and cosines themselves:
+for those see docs/sine-and-cosine.md.
+Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is named),
+2 a file cannot be opened or is not UTF-8.")]
+    Verify {
+        /// Description of the robot arm
+        #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
+        description: PathBuf,
+        /// The module that was generated from it
+        #[arg(value_name = "ROBOT.rs", value_hint = ValueHint::FilePath)]
+        module: PathBuf,
+    },
+    /// Count the operations of every emitted function
+    #[command(after_help = "Examples:
+  armgen count robot.yaml
+  armgen count robot.yaml --format json
+  armgen count robot.yaml --functions inverse_dynamics,gravity
+  armgen count robot.yaml --without grouping,slides       what these passes are worth
+
+mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine.")]
+    Count {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// Form of the output
+        #[arg(long, value_enum, default_value_t = CountFormat::Text)]
+        format: CountFormat,
+        /// Functions to count, separated by commas; all if none is named
+        #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+        functions: Vec<String>,
+        /// Passes to leave out, of those that make the functions cheaper (docs/passes.md), separated by commas
+        #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = pass_parser())]
+        without: Vec<Pass>,
+    },
+    /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected
+    #[command(after_help = "Examples:
+  armgen run                                     everything in experiments/, into out/
+  armgen run experiments/adaptive_a.yaml
+  armgen run my_experiments/*.yaml --out results
+
+The table goes to standard output; DIR receives figures (SVG) and logs (CSV). The format: docs/experiments.md.
+The robot is the one of robot.yaml at the time of building: edit it, and `cargo run --release -- run` builds and moves yours.
+An experiment for another robot is skipped; if none is left, the arm is moved along a demonstration.
+Exit codes: 0 all as expected, 1 a result is outside its expectation or a file is faulty, 2 a file cannot be opened.")]
+    Run {
+        /// Experiments; all of `experiments/` if none is named
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        files: Vec<PathBuf>,
+        /// Folder for figures (SVG) and logs (CSV)
+        #[arg(long, value_name = "DIR", default_value = "out", value_hint = ValueHint::DirPath)]
+        out: PathBuf,
+    },
+    /// Print completions for a shell
+    #[command(after_help = "Examples:
+  armgen completions bash > ~/.local/share/bash-completion/completions/armgen
+  armgen completions zsh > ~/.zfunc/_armgen
+  armgen completions fish > ~/.config/fish/completions/armgen.fish")]
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ShowFormat {
+    /// For a terminal
+    Text,
+    /// For a document with amsmath
+    Latex,
+    /// For programs
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum CountFormat {
+    /// For a terminal
+    Text,
+    /// For programs
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ScalarName {
+    /// 64 bits
+    F64,
+    /// 32 bits
+    F32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TrigName {
+    /// The crate libm, angle by angle: the same bits on every machine
+    Libm,
+    /// The standard library, angle by angle: the module then needs std
+    Std,
+    /// All angles together in vector instructions, within 1 unit in the last place; libm for large angles
+    Fast,
+}
+
+fn pass_parser() -> impl TypedValueParser<Value = Pass> {
+    PossibleValuesParser::new(Pass::ALL.map(Pass::name)).map(|name| Pass::named(&name).expect("one of the names of passes"))
+}
+
+/// Does what the arguments of the program say; `built` is the robot that it was built with.
+pub fn run(built: &dyn Arm) -> ExitCode {
+    let arguments = Arguments::parse();
+    let code = match arguments.command {
+        Command::Check { files } => commands::check::run(&files),
+        Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
+        Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
+        Command::Verify { description, module } => commands::verify::run(&description, &module),
+        Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
+        Command::Run { files, out } => commands::run::run(&files, &out, built),
+        Command::Completions { shell } => commands::completions::run(shell),
+    };
+    ExitCode::from(code)
+}
