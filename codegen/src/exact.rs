@@ -7,7 +7,8 @@
 //! sqrt(n)² = n,    sin(a)² = 1 - cos(a)²,    pi^i pi^j = pi^(i+j)
 //! ```
 //!
-//! so that a constant has one form: equal numbers are equal values, and `sqrt(2)·sqrt(3)` is `sqrt(6)`.
+//! so that a constant that is multiplied out has one form: equal numbers are equal values, and `sqrt(2)·sqrt(3)` is `sqrt(6)`. Long ones are
+//! not multiplied out ([`shared`]).
 //! (Relations beyond these, say between cos(0.7) and cos(1.4), are not known here. Nothing wrong follows: two ways to write one
 //! number may then stay two numbers, two numbers never become one.)
 //!
@@ -16,11 +17,12 @@
 
 mod enclosure;
 mod polynomial;
+mod shared;
+mod text;
 
 use std::cmp::Ordering;
 use std::collections::btree_map::Entry;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 use std::sync::Arc;
 
@@ -28,6 +30,8 @@ use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 pub use polynomial::Polynomial;
+pub use shared::{Shared, Sum};
+pub use text::Definitions;
 
 /// An exact fraction in lowest terms.
 pub type Rational = dashu_ratio::RBig;
@@ -38,17 +42,19 @@ pub enum Atom {
     /// The positive square root of a prime (or of an integer without a square factor that trial division finds).
     Root(UBig),
     /// The positive square root of a positive number that is not rational.
-    RootOf(Arc<Number>),
+    RootOf(Arc<Shared>),
     /// The number pi.
     Pi,
     /// Sine of an angle in (0, pi/4], rad.
-    Sine(Arc<Number>),
+    Sine(Arc<Shared>),
     /// Cosine of an angle in (0, pi/4], rad.
-    Cosine(Arc<Number>),
+    Cosine(Arc<Shared>),
     /// One over a number that has no simpler inverse.
-    Inverse(Arc<Number>),
+    Inverse(Arc<Shared>),
     /// The angle of the point (1, t) from the x axis: the arc tangent of a fraction in (0, 1), rad.
     Arctangent(Rational),
+    /// A sum that is not multiplied out ([`shared`]).
+    Sum(Arc<Sum>),
 }
 
 /// A product of powers of atoms, sorted; empty for the number 1.
@@ -144,8 +150,10 @@ impl Number {
             left = left.checked_sub(1)?;
             for (atom, _) in monomial {
                 left = left.checked_sub(1)?;
-                if let Atom::RootOf(n) | Atom::Sine(n) | Atom::Cosine(n) | Atom::Inverse(n) = atom {
-                    left = n.left_of(left)?;
+                match atom {
+                    Atom::RootOf(n) | Atom::Sine(n) | Atom::Cosine(n) | Atom::Inverse(n) => left = n.left_of(left)?,
+                    Atom::Sum(sum) => left = sum.terms().left_of(left)?,
+                    Atom::Root(_) | Atom::Pi | Atom::Arctangent(_) => {}
                 }
             }
         }
@@ -185,6 +193,12 @@ impl Number {
         Ordering::Equal
     }
 
+    /// Whether enclosures to the first of the precisions leave open that the two are one number.
+    pub fn is_near(&self, other: &Number) -> bool {
+        let (a, b) = (self.enclose(enclosure::PRECISIONS[0]), other.enclose(enclosure::PRECISIONS[0]));
+        a.0 <= b.1 && b.0 <= a.1
+    }
+
     /// Whether it is below 0.
     pub fn is_negative(&self) -> bool {
         match self.as_rational() {
@@ -210,7 +224,7 @@ impl Number {
 
     /// One over the number, made of roots, pi, sines and cosines as it is; `None` of 0, and where it would be an [`Atom::Inverse`].
     pub fn simple_inverse(&self) -> Option<Number> {
-        let is_inverse = |(atom, _): &(Atom, i32)| matches!(atom, Atom::Inverse(_));
+        let is_inverse = |(atom, power): &(Atom, i32)| matches!((atom, power), (Atom::Inverse(_), _) | (Atom::Sum(_), ..0));
         self.inverse().filter(|inverse| !inverse.terms.keys().flatten().any(is_inverse))
     }
 
@@ -244,7 +258,10 @@ impl Number {
                 }
             }
         }
-        Number::atom(Atom::Inverse(Arc::new(self.clone())))
+        if self.is_shared() {
+            return self.as_factor().inverse_within(steps);
+        }
+        Number::atom(Atom::Inverse(Shared::new(self.clone())))
     }
 
     /// Adds a term.
@@ -273,8 +290,10 @@ impl Number {
         }
         let mut terms = self.terms.iter();
         let (monomial, coefficient) = terms.next().expect("a positive number has a term");
-        if terms.next().is_some() || monomial.iter().any(|(_, power)| power % 2 != 0) || coefficient.is_negative() {
-            return Some(Number::atom(Atom::RootOf(Arc::new(self.clone()))));
+        // Of the atoms, only sums may be negative.
+        let simple = |(atom, power): &(Atom, i32)| power % 2 == 0 && !matches!(atom, Atom::Sum(_));
+        if terms.next().is_some() || !monomial.iter().all(simple) || coefficient.is_negative() {
+            return Some(Number::atom(Atom::RootOf(Shared::new(self.clone()))));
         }
         // sqrt(p/q · Π a^2k) = sqrt(p q)/q · Π a^k: the atoms with an even power are positive (pi; sines and cosines of first-octant angles).
         let (p, q) = (coefficient.numerator().unsigned_abs(), coefficient.denominator().clone());
@@ -333,9 +352,9 @@ impl Number {
 fn invert_power(atom: &Atom, power: i32, steps: u32) -> Number {
     let of = |power: i32| Number { terms: BTreeMap::from([(vec![(atom.clone(), power)], Rational::ONE)]) };
     match atom {
-        Atom::Pi | Atom::Sine(_) | Atom::Cosine(_) | Atom::Arctangent(_) => of(-power),
+        Atom::Pi | Atom::Sine(_) | Atom::Cosine(_) | Atom::Arctangent(_) | Atom::Sum(_) => of(-power),
         Atom::Root(n) => &of(1) * &Number::from(Rational::from_parts(IBig::ONE, n.clone())),
-        Atom::Inverse(n) => (0..power).fold(Number::one(), |product, _| &product * n),
+        Atom::Inverse(n) => (0..power).fold(Number::one(), |product, _| &product * &**n),
         // A root that stands is that of a positive number.
         Atom::RootOf(n) => &of(1) * &n.inverse_within(steps),
     }
@@ -431,77 +450,6 @@ impl Mul for &Number {
     }
 }
 
-/// A plain formula: `1/2*sqrt(3) - 2*pi`. What several terms are divided by stands once: `(cos(7/10) - 2*pi)*(1/(1 + pi))`.
-impl fmt::Display for Number {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.is_zero() {
-            return f.write_str("0");
-        }
-        let mut by_divisors: BTreeMap<Monomial, Number> = BTreeMap::new();
-        for (monomial, coefficient) in &self.terms {
-            let (divisors, rest) = split_divisors(monomial);
-            by_divisors.entry(divisors).or_default().terms.insert(rest, coefficient.clone());
-        }
-        let mut first = true;
-        for (monomial, coefficient) in &self.terms {
-            let (divisors, _) = split_divisors(monomial);
-            let together = match by_divisors.get(&divisors) {
-                _ if divisors.is_empty() => None,
-                Some(sum) if sum.terms.len() == 1 => None,
-                Some(_) => by_divisors.remove(&divisors),
-                None => continue,
-            };
-            let negative = together.is_none() && coefficient.is_negative();
-            f.write_str(match (first, negative) {
-                (true, true) => "-",
-                (true, false) => "",
-                (false, true) => " - ",
-                (false, false) => " + ",
-            })?;
-            first = false;
-            let size = coefficient.clone().abs();
-            let mut factors: Vec<String> = Vec::new();
-            let atoms = match &together {
-                Some(sum) => {
-                    factors.push(format!("({sum})"));
-                    &divisors
-                }
-                None => {
-                    if !size.is_one() || monomial.is_empty() {
-                        factors.push(size.to_string());
-                    }
-                    monomial
-                }
-            };
-            factors.extend(atoms.iter().map(|(atom, power)| power_text(atom, *power)));
-            f.write_str(&factors.join("*"))?;
-        }
-        Ok(())
-    }
-}
-
-/// What a term is divided by, and the rest of it.
-fn split_divisors(monomial: &Monomial) -> (Monomial, Monomial) {
-    monomial.iter().cloned().partition(|(atom, _)| matches!(atom, Atom::Inverse(_)))
-}
-
-fn power_text(atom: &Atom, power: i32) -> String {
-    let text = match atom {
-        Atom::Root(n) => format!("sqrt({n})"),
-        Atom::RootOf(n) => format!("sqrt({n})"),
-        Atom::Pi => "pi".into(),
-        Atom::Sine(angle) => format!("sin({angle})"),
-        Atom::Cosine(angle) => format!("cos({angle})"),
-        Atom::Inverse(n) => format!("(1/({n}))"),
-        Atom::Arctangent(ratio) => format!("atan({ratio})"),
-    };
-    match power {
-        1 => text,
-        ..=-1 => format!("{text}^({power})"),
-        _ => format!("{text}^{power}"),
-    }
-}
-
 /// An exact angle, rad.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Angle(Number);
@@ -576,7 +524,7 @@ fn atoms(angle: &Number) -> (Number, Number) {
         return (Number::zero(), Number::one());
     }
     let negative = sign == Ordering::Less;
-    let positive = Arc::new(if negative { -angle } else { angle.clone() });
+    let positive = Shared::new(if negative { -angle } else { angle.clone() });
     let sine = Number::atom(Atom::Sine(positive.clone()));
     (if negative { -&sine } else { sine }, Number::atom(Atom::Cosine(positive)))
 }

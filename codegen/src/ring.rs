@@ -15,8 +15,10 @@
 //! point of the circle. Two polynomials of degree d that differ agree at a random point with odds d/p, at two with (d/p)²,
 //! which is below 2^-110 here: equal fingerprints mean equal expressions. A new node equal to an old one (or to its negative) *is*
 //! the old one: that finds sin² + cos² = 1, distributivity and the addition theorems without a rewrite rule, and it makes every
-//! identity between expressions an exact test. Constants are interned by their exact value, never by fingerprint. The points are
-//! fixed: the same expressions on every machine, in every run.
+//! identity between expressions an exact test. The points are fixed: the same expressions on every machine, in every run.
+//!
+//! **Constants** that are multiplied out are interned by that form, never by fingerprint. One in which sums are shared has no such form: it is
+//! the same as another where their values in the field are equal and enclosures of 96 bits overlap.
 
 pub mod field;
 pub mod matrix;
@@ -28,6 +30,7 @@ mod calculus;
 mod count;
 mod evaluate;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::BuildHasherDefault;
 use std::rc::Rc;
@@ -353,8 +356,11 @@ impl Pool {
         }
     }
 
-    fn value(&self, expr: ExprId) -> Number {
-        self.as_constant(expr).expect("asked for constants only")
+    fn value(&self, expr: ExprId) -> Cow<'_, Number> {
+        match self.node(expr) {
+            Node::Constant(id) if !expr.is_negated() => Cow::Borrowed(&self.constants[id.0 as usize]),
+            _ => Cow::Owned(self.as_constant(expr).expect("asked for constants only")),
+        }
     }
 
     /// Whether the expression is a constant.
@@ -390,15 +396,37 @@ impl Pool {
                 return expr.signed(negative);
             }
         }
+        let fingerprint = [self.field.number(value); 2];
+        if let Some(known) = self.known_constant(value, &minus, fingerprint) {
+            return known;
+        }
         // By its value, so that what a divisor stands for is positive where the divisor is.
         let negative = value.is_negative();
         let size = Rc::new(if negative { minus } else { value.clone() });
-        let fingerprint = [self.field.number(&size); 2];
+        let fingerprint = if negative { self.negated(fingerprint) } else { fingerprint };
         let id = ConstantId(self.constants.len() as u32);
         let expr = self.push(Node::Constant(id), fingerprint);
         self.constants.push(size.clone());
         self.constant_nodes.insert(size, expr);
         expr.signed(negative)
+    }
+
+    /// A constant that has the value of this one and looks different, because not all is multiplied out in one of them: equal in the field, and as
+    /// near as enclosures tell at first.
+    fn known_constant(&self, value: &Number, minus: &Number, fingerprint: Fingerprint) -> Option<ExprId> {
+        if fingerprint[0] == self.field.zero() && value.is_shared() && value.is_near(&Number::zero()) {
+            return Some(ExprId::ZERO);
+        }
+        [(fingerprint, value, false), (self.negated(fingerprint), minus, true)].into_iter().find_map(
+            |(fingerprint, value, negative)| {
+                let &expr = self.known.get(&fingerprint)?;
+                let Node::Constant(id) = self.node(expr) else { return None };
+                let other = &self.constants[id.0 as usize];
+                // A known constant is positive, and found by its own value.
+                let same = (value.is_shared() || other.is_shared()) && value.is_near(other);
+                same.then_some(expr.signed(negative))
+            },
+        )
     }
 
     /// An exact integer.
@@ -484,7 +512,8 @@ impl Pool {
                 return self.sketched(sum);
             }
             let (x, y) = (self.value(a), self.value(b));
-            return self.constant(&(&x + &y));
+            let sum = x.plus(&y);
+            return self.constant(&sum);
         }
         // The node holds the sum with its first operand positive: x - y, never -x + y or -x - y.
         let (a, b) = if a.is_negated() && !b.is_negated() { (b, a) } else { (a, b) };
@@ -519,7 +548,7 @@ impl Pool {
                 return self.sketched(product).signed(negate);
             }
             (true, true) => {
-                let product = &self.value(a) * &self.value(b);
+                let product = self.value(a).times(&self.value(b));
                 let expected = self.field.mul(self.fingerprint(a)[0], self.fingerprint(b)[0]);
                 if let Some(constant) = self.folded(&product, expected) {
                     return constant.signed(negate);

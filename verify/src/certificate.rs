@@ -7,6 +7,7 @@ use serde_derive::{Deserialize, Serialize};
 
 use crate::bounds::two_digits;
 use crate::claims::Claims;
+use crate::formula::definitions::{self, Definitions};
 use crate::report::{Exact, Report, Verdict};
 
 /// A certificate.
@@ -30,6 +31,9 @@ pub struct Certificate {
     pub verified: bool,
     /// What is wrong with the whole.
     pub faults: Vec<String>,
+    /// Formulas that the exact values of literals refer to, each only to those before it: number, as in `k0`, and formula.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub definitions: Vec<(usize, String)>,
     /// Functions.
     pub functions: Vec<FunctionEntry>,
     /// Constants.
@@ -131,6 +135,8 @@ impl Certificate {
             },
             points: i.points,
         });
+        let literals = report.functions.iter().flat_map(|f| &f.literals).chain(report.constants.iter().flat_map(|c| &c.literals));
+        let values = literals.map(|exact| &exact.value);
         Certificate {
             certificate: FORMAT,
             made_by: format!("armgen {}", env!("CARGO_PKG_VERSION")),
@@ -158,6 +164,7 @@ impl Certificate {
             output: Text { sha256: report.output.clone() },
             verified: report.passed(),
             faults: report.faults.clone(),
+            definitions: definitions::of(values).iter().map(|d| (d.index(), d.formula().to_string())).collect(),
             functions: functions.collect(),
             constants: constants.collect(),
             identities: identities.collect(),
@@ -188,6 +195,10 @@ impl Certificate {
         let functions = self.functions.iter().map(|f| of(&f.name, &f.literals));
         let lists: Vec<(String, Vec<String>)> =
             functions.chain(self.constants.iter().map(|c| of(&c.name, &c.literals))).collect();
-        Claims::from_texts(lists.iter().map(|(name, texts)| (name.as_str(), texts.as_slice())))
+        let mut definitions = Definitions::default();
+        for (index, text) in &self.definitions {
+            definitions.define(*index, text)?;
+        }
+        Claims::with_definitions(lists.iter().map(|(name, texts)| (name.as_str(), texts.as_slice())), &definitions)
     }
 }

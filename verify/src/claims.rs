@@ -6,10 +6,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use armgen_codegen::exact::Number;
+use armgen_codegen::exact::{self, Number};
 
 use crate::arithmetic::Element;
 use crate::enclosure::Float;
+use crate::formula::definitions::Definitions;
 use crate::formula::{decimal, Formula, Rational};
 use crate::program::{Literal, Program, Step};
 use crate::reader::Module;
@@ -29,16 +30,36 @@ impl Claims {
     /// What a generator hands over. A constant that is longer than a formula may be is left out: its literal stands for the decimal number
     /// that it is, and the function does not equal the equations.
     pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
-        let read = |number: &Number| Formula::parse(&number.to_string()).ok();
-        let of = |(name, numbers): (&String, &Vec<Number>)| (name.clone(), numbers.iter().filter_map(read).collect());
-        Claims { by_name: constants.iter().map(of).collect() }
+        let mut texts = exact::Definitions::default();
+        let lists: Vec<(&String, Vec<String>)> = constants
+            .iter()
+            .map(|(name, numbers)| (name, numbers.iter().map(|number| texts.formula(number)).collect()))
+            .collect();
+        let mut definitions = Definitions::default();
+        for (index, text) in texts.texts().iter().enumerate() {
+            // Without one of them, those that refer to it are left out too.
+            let _ = definitions.define(index, text);
+        }
+        let read = |text: &String| Formula::parse_with(text, &definitions).ok();
+        Claims {
+            by_name: lists.into_iter().map(|(name, texts)| (name.clone(), texts.iter().filter_map(read).collect())).collect(),
+        }
+    }
+
+    /// Formulas without names, by function.
+    pub fn from_texts<'a>(constants: impl IntoIterator<Item = (&'a str, &'a [String])>) -> Result<Claims, String> {
+        Claims::with_definitions(constants, &Definitions::default())
     }
 
     /// What a certificate lists.
-    pub fn from_texts<'a>(constants: impl IntoIterator<Item = (&'a str, &'a [String])>) -> Result<Claims, String> {
+    pub fn with_definitions<'a>(
+        constants: impl IntoIterator<Item = (&'a str, &'a [String])>,
+        definitions: &Definitions,
+    ) -> Result<Claims, String> {
         let mut by_name = BTreeMap::new();
         for (name, texts) in constants {
-            let formulas: Result<Vec<Formula>, String> = texts.iter().map(|text| Formula::parse(text)).collect();
+            let formulas: Result<Vec<Formula>, String> =
+                texts.iter().map(|text| Formula::parse_with(text, definitions)).collect();
             by_name.insert(name.to_string(), formulas.map_err(|e| format!("`{name}`: {e}"))?);
         }
         Ok(Claims { by_name })

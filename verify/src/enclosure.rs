@@ -8,7 +8,7 @@
 
 use std::cmp::Ordering;
 
-use dashu_base::{Abs, Signed, SquareRoot, UnsignedAbs};
+use dashu_base::{Abs, BitTest, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use crate::formula::{Formula, Rational, Root};
@@ -18,17 +18,25 @@ const PRECISIONS: [usize; 5] = [128, 256, 1024, 4096, 12_288];
 
 /// Two integers a, b for the numbers between a/2^bits and b/2^bits.
 #[derive(Clone, Debug)]
-struct Interval {
+pub(crate) struct Interval {
     low: IBig,
     high: IBig,
 }
 
-/// Two fractions around a constant, about 2^-bits apart; `None` if it is no number (a root of a negative, a division by 0) or out of reach.
+/// More bits are worked with than are asked for: deep graphs of definitions lose many.
+const GUARDS: [usize; 3] = [64, 512, 4096];
+
+/// Two fractions around a constant, less than 2^-bits apart; `None` if it is no number (a root of a negative, a division by 0) or out of reach.
 pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
-    let working = bits + 64;
-    let interval = interval(formula, working)?;
-    let fraction = |n: IBig| Rational::from_parts(n, UBig::ONE << working);
-    Some((fraction(interval.low), fraction(interval.high)))
+    GUARDS.into_iter().find_map(|guard| {
+        let working = bits + guard;
+        let interval = interval(formula, working)?;
+        if (&interval.high - &interval.low).bit_len() > guard {
+            return None;
+        }
+        let fraction = |n: IBig| Rational::from_parts(n, UBig::ONE << working);
+        Some((fraction(interval.low), fraction(interval.high)))
+    })
 }
 
 /// Sine and cosine of a fraction below 256 in size, as integers over 2^bits with the number of bits, off by less than two units of 2^-`fine`.
@@ -100,6 +108,7 @@ fn interval(formula: &Formula, bits: usize) -> Option<Interval> {
             let (n, d) = (tangent.numerator().clone() << bits, IBig::from(tangent.denominator().clone()));
             arctangent_of(Interval { low: floor_div(&n, &d), high: -floor_div(&-n, &d) }, bits)?
         }
+        Formula::Defined(definition) => definition.enclosure(bits, |formula| interval(formula, bits))?,
         Formula::Sum(terms) => {
             let mut sum = exact(IBig::ZERO);
             for term in terms {

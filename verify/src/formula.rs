@@ -5,16 +5,23 @@
 //!
 //! ```text
 //! sum = [-] product { (+|-) product }    product = power { (*|/) power }    power = primary [ ^ integer | ^( integer ) ]
-//! primary = decimal | pi | sqrt(sum) | sin(sum) | cos(sum) | atan(fraction) | ( sum )
+//! primary = decimal | pi | sqrt(sum) | sin(sum) | cos(sum) | atan(fraction) | ( sum ) | name
 //! ```
+//!
+//! A name, `k0` and so on, stands for a formula that is defined once: the constants of an arm with general angles are graphs, and
+//! written out they would be exponentially long ([`mod@definitions`]).
+
+pub mod definitions;
 
 use std::collections::BTreeSet;
 use std::fmt;
+use std::sync::Arc;
 
 use dashu_base::{Abs, Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use crate::arithmetic::{Arithmetic, Element};
+use definitions::{Defined, Definition, Definitions};
 
 /// An exact fraction.
 pub type Rational = dashu_ratio::RBig;
@@ -67,6 +74,8 @@ pub enum Formula {
     Product(Vec<Formula>),
     /// An integer power.
     Power(Box<Formula>, i32),
+    /// A formula that is defined once.
+    Defined(Arc<Definition>),
 }
 
 /// The roots and angles that occur in formulas; a root stands after those inside it.
@@ -84,12 +93,17 @@ const LARGEST_POWER: i32 = 400;
 const TRIAL_DIVISION: u32 = 10_000;
 
 impl Formula {
-    /// Reads a formula.
+    /// Reads a formula without names.
     pub fn parse(text: &str) -> Result<Formula, String> {
+        Formula::parse_with(text, &Definitions::default())
+    }
+
+    /// Reads a formula that may refer to definitions.
+    pub fn parse_with(text: &str, definitions: &Definitions) -> Result<Formula, String> {
         if text.len() > LONGEST {
             return Err(format!("a formula of {} characters is longer than any constant of a robot", text.len()));
         }
-        let mut parser = Parser { rest: text, depth: 0 };
+        let mut parser = Parser { rest: text, depth: 0, definitions };
         let formula = parser.sum()?;
         parser.skip();
         if parser.rest.is_empty() {
@@ -108,15 +122,18 @@ impl Formula {
     }
 
     /// The value where fractions, roots, pi and angles (sine, cosine) have the values given; `None` where one has none, or for a division by 0.
+    /// `defined` keeps the values of what is defined, for one choice of all the others.
     pub fn evaluate<E: Element>(
         &self,
         rational: &dyn Fn(&Rational) -> Option<E>,
         root: &dyn Fn(&Root) -> Option<E>,
         pi: &dyn Fn() -> Option<E>,
         angle: &dyn Fn(&Formula) -> Option<(E, E)>,
+        defined: &Defined<E>,
     ) -> Option<E> {
-        let of = |formula: &Formula| formula.evaluate(rational, root, pi, angle);
+        let of = |formula: &Formula| formula.evaluate(rational, root, pi, angle, defined);
         match self {
+            Formula::Defined(definition) => defined.get(definition, of),
             Formula::Rational(value) => rational(value),
             Formula::Pi => pi(),
             Formula::Root(inner) => root(inner),
@@ -252,6 +269,8 @@ impl Formula {
             }
             Formula::Sum(parts) | Formula::Product(parts) => parts.iter().for_each(|part| part.collect(atoms)),
             Formula::Power(base, _) => base.collect(atoms),
+            // Once for all: [`Atoms::of`].
+            Formula::Defined(_) => {}
         }
     }
 }
@@ -340,6 +359,7 @@ impl fmt::Display for Formula {
                 Ok(())
             }
             Formula::Power(base, exponent) => write!(f, "({base})^({exponent})"),
+            Formula::Defined(definition) => f.write_str(&definition.name()),
         }
     }
 }
@@ -348,6 +368,8 @@ impl Atoms {
     /// The roots and angles of some formulas.
     pub fn of<'a>(formulas: impl IntoIterator<Item = &'a Formula>) -> Atoms {
         let mut atoms = Atoms::default();
+        let formulas: Vec<&Formula> = formulas.into_iter().collect();
+        definitions::of(formulas.iter().copied()).iter().for_each(|definition| definition.formula().collect(&mut atoms));
         formulas.into_iter().for_each(|formula| formula.collect(&mut atoms));
         let mut coprime = Vec::new();
         let mut nested = Vec::new();
@@ -432,6 +454,7 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
 struct Parser<'a> {
     rest: &'a str,
     depth: usize,
+    definitions: &'a Definitions,
 }
 
 impl Parser<'_> {
@@ -540,6 +563,10 @@ impl Parser<'_> {
         if word == "pi" {
             return Ok(Formula::Pi);
         }
+        if word == definitions::PREFIX {
+            let digits = self.digits();
+            return self.definitions.get(&digits).map(Formula::Defined).ok_or(format!("`{word}{digits}` is not defined before"));
+        }
         if !["sqrt", "sin", "cos", "atan"].contains(&word) {
             return Err(format!("`{word}` where a number, pi, sqrt, sin, cos or atan can stand"));
         }
@@ -586,7 +613,7 @@ impl Parser<'_> {
 
 /// The exact value of a decimal literal as it stands in the text.
 pub fn decimal(text: &str) -> Result<Formula, String> {
-    let mut parser = Parser { rest: text, depth: 0 };
+    let mut parser = Parser { rest: text, depth: 0, definitions: &Definitions::default() };
     let value = parser.decimal()?;
     if parser.rest.is_empty() {
         Ok(value)

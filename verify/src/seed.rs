@@ -16,7 +16,7 @@ use crate::arithmetic::Stream;
 use crate::claims::{Claims, Resolved};
 use crate::enclosure::Float;
 use crate::equations::arm::formula;
-use crate::formula::Formula;
+use crate::formula::{definitions, Formula};
 use crate::program::{Angle, Program, Step};
 use crate::reader::Module;
 
@@ -68,7 +68,7 @@ pub fn stream(manipulator: &Manipulator, module: &Module, claims: &Claims, run: 
 
 fn of_formulas(formulas: &[Formula]) -> Hash {
     let mut parts = Parts::of("formulas");
-    formulas.iter().for_each(|formula| parts.add(formula.to_string().as_bytes()));
+    formulas.iter().for_each(|formula| parts.add(definitions::spelled(formula).as_bytes()));
     parts.finish()
 }
 

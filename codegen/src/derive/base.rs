@@ -173,7 +173,7 @@ fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
             let factor = system[r][unknown].clone();
             if !factor.is_zero() {
                 for &c in unknowns.iter().chain([&n]).filter(|&&c| !pivot[c].is_zero()) {
-                    let difference = &system[r][c] - &(&factor * &pivot[c]);
+                    let difference = system[r][c].minus(&factor.times(&pivot[c]));
                     system[r][c] = zero_if_zero(field, difference);
                 }
             }
@@ -189,7 +189,7 @@ fn solve(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number> {
         let mut value = system[row][n].clone();
         for c in others {
             if !system[row][c].is_zero() && !solution[c].is_zero() {
-                value = &value - &(&system[row][c] * &solution[c]);
+                value = value.minus(&system[row][c].times(&solution[c]));
             }
         }
         let value = zero_if_zero(field, value);
@@ -247,7 +247,7 @@ fn solve_general(field: &mut Field, mut system: Vec<Vec<Number>>) -> Vec<Number>
             let factor = other[k].clone();
             if r != k && !factor.is_zero() {
                 for (x, p) in other.iter_mut().zip(&row) {
-                    *x = zero_if_zero(field, &*x - &(&factor * p));
+                    *x = zero_if_zero(field, x.minus(&factor.times(p)));
                 }
             }
         }
@@ -270,8 +270,8 @@ fn minors(system: &[Vec<Number>], columns: &[usize]) -> Number {
         for (place, (k, &column)) in columns.iter().enumerate().filter(|(k, _)| set >> k & 1 == 1).enumerate() {
             let entry = &system[row][column];
             if !entry.is_zero() {
-                let term = entry * &of_set[set & !(1 << k)];
-                sum = if (row + place).is_multiple_of(2) { &sum + &term } else { &sum - &term };
+                let term = entry.times(&of_set[set & !(1 << k)]);
+                sum = if (row + place).is_multiple_of(2) { sum.plus(&term) } else { sum.minus(&term) };
             }
         }
         of_set[set] = sum;
@@ -381,7 +381,7 @@ fn grouped(manipulator: &Manipulator, field: &Field, rest: Rest, own: bool) -> P
             for (other, combination) in &dependence.dependent {
                 for (_, k) in combination.iter().filter(|(c, _)| *c == column) {
                     for (sum, value) in total.iter_mut().zip(&values[*other]) {
-                        *sum = &*sum + &(k * value);
+                        *sum = sum.plus(&k.times(value));
                     }
                 }
             }
@@ -469,8 +469,8 @@ const LONGEST_FACTOR: usize = 60;
 
 /// A number for people: exact if it is short.
 fn shown(number: &Number) -> String {
-    let exact = number.to_string();
-    if exact.len() > LONGEST_FACTOR {
+    let exact = if number.is_readable() { number.to_string() } else { String::new() };
+    if exact.is_empty() || exact.len() > LONGEST_FACTOR {
         format!("{:?}", number.to_f64())
     } else {
         exact
@@ -484,8 +484,8 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
     let mut name = format!("{}R", parameter.name());
     let parts: Vec<(&Parameter, &Number)> = standard.entries.iter().zip(coefficients).filter(|(_, k)| !k.is_zero()).collect();
     for (entry, k) in &parts {
-        nominal = &nominal + &(*k * &entry.nominal);
-        let negative = k.leads_negative();
+        nominal = nominal.plus(&k.times(&entry.nominal));
+        let negative = if k.is_shared() { k.is_negative() } else { k.leads_negative() };
         let size = if negative { -*k } else { (*k).clone() };
         let factor = shown(&size);
         meaning += match (meaning.is_empty(), negative) {
@@ -503,7 +503,7 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
     }
     let rest = &coefficients[standard.len()];
     if !rest.is_zero() {
-        nominal = &nominal + rest;
+        nominal = nominal.plus(rest);
         meaning += if meaning.is_empty() { "" } else { " + " };
         meaning += &format!("({} from the masses of rotors)", shown(rest));
     }

@@ -7,9 +7,9 @@
 //! were lost.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Mutex, PoisonError};
 
-use dashu_base::{BitTest, DivEuclid, SquareRoot};
+use dashu_base::{BitTest, DivEuclid, Signed, SquareRoot};
 use dashu_int::{IBig, UBig};
 
 use super::{Atom, Number, Rational};
@@ -17,17 +17,37 @@ use super::{Atom, Number, Rational};
 /// Numbers of bits to try in turn; the last is beyond what any written number needs to be told apart.
 pub(super) const PRECISIONS: [usize; 5] = [96, 160, 320, 1280, 5120];
 
+/// So many more places are worked with than bits are asked for: products of rotations lose one or two with each of them.
+const GUARD: usize = 160;
+
 /// Enclosures wider than 2^LOST multiples of 2^-places are done again with more of them.
 const LOST: usize = 16;
 
 /// Two multiples of 2^-places.
 type Interval = (IBig, IBig);
 
+/// The enclosures found so far of what many numbers share, by their places.
+#[derive(Default)]
+pub(super) struct Known(Mutex<Vec<(usize, Interval)>>);
+
+impl Known {
+    /// The enclosure to so many places, found by `enclose` if it is not there.
+    fn at(&self, places: usize, enclose: impl FnOnce() -> Interval) -> Interval {
+        let list = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, known)) = list().iter().find(|(of, _)| *of == places) {
+            return known.clone();
+        }
+        let enclosed = enclose();
+        list().push((places, enclosed.clone()));
+        enclosed
+    }
+}
+
 impl Number {
     /// Two fractions around the number, less than 2^-bits apart.
     pub fn enclose(&self, bits: usize) -> (Rational, Rational) {
-        let places = bits + 64;
-        let (low, high) = Enclosures::new(places).number(self);
+        let places = bits + GUARD;
+        let (low, high) = Enclosures::new(places).within(GUARD, self);
         let fraction = |n: IBig| Rational::from_parts(n, UBig::ONE << places);
         (fraction(low), fraction(high))
     }
@@ -37,25 +57,30 @@ impl Number {
 struct Enclosures {
     places: usize,
     roots: BTreeMap<UBig, Interval>,
-    /// By what the atom is of, which outlives this.
-    others: BTreeMap<(&'static str, *const Number), Interval>,
+    pi: Option<Interval>,
 }
 
 impl Enclosures {
     fn new(places: usize) -> Enclosures {
-        Enclosures { places, roots: BTreeMap::new(), others: BTreeMap::new() }
+        Enclosures { places, roots: BTreeMap::new(), pi: None }
     }
 
     /// Within about 2^LOST multiples of 2^-places: what sines and cosines are taken of is as short as it looks.
     fn number(&mut self, number: &Number) -> Interval {
+        self.within(LOST, number)
+    }
+
+    /// Within about 2^lost multiples of 2^-places.
+    fn within(&mut self, lost: usize, number: &Number) -> Interval {
         let mut guard = 0;
         loop {
             let (low, high) = self.to(self.places + guard, |all| all.sum(number));
             let width = (&high - &low).bit_len();
-            if width <= guard + LOST {
+            if width <= guard + lost {
                 return (floor_shift(low, guard), ceil_shift(high, guard));
             }
-            guard = width;
+            // In steps, so that what is shared is enclosed to few different places.
+            guard = width.next_multiple_of(GUARD);
         }
     }
 
@@ -63,8 +88,13 @@ impl Enclosures {
         let mut sum = (IBig::ZERO, IBig::ZERO);
         for (monomial, coefficient) in number.terms() {
             let scaled = coefficient.numerator() << self.places;
-            let denominator = IBig::from(coefficient.denominator().clone());
-            let mut product = (floor_quotient(&scaled, &denominator), ceil_quotient(&scaled, &denominator));
+            let mut product = match coefficient.denominator() {
+                one if one.is_one() => (scaled.clone(), scaled),
+                other => {
+                    let other = IBig::from(other.clone());
+                    (floor_quotient(&scaled, &other), ceil_quotient(&scaled, &other))
+                }
+            };
             for (atom, power) in monomial {
                 let enclosed = if *power < 0 { self.inverse_atom(atom) } else { self.atom(atom) };
                 for _ in 0..power.unsigned_abs() {
@@ -86,29 +116,24 @@ impl Enclosures {
                 };
                 self.roots.entry(n.clone()).or_insert_with(root).clone()
             }
-            Atom::RootOf(n) => self.once("root", n, |_| {
+            Atom::RootOf(n) => n.own.at(places, || {
                 let (low, high) = Enclosures::new(2 * places).number(n);
                 let floor = |n: IBig| IBig::from(UBig::try_from(n).unwrap_or(UBig::ZERO).sqrt());
                 (floor(low), floor(high) + IBig::ONE)
             }),
-            Atom::Pi => match self.others.get(&("pi", std::ptr::null())) {
-                Some(known) => known.clone(),
-                None => {
-                    let pi = pi(places);
-                    self.others.insert(("pi", std::ptr::null()), pi.clone());
-                    pi
-                }
-            },
+            Atom::Pi => self.pi.get_or_insert_with(|| pi(places)).clone(),
             Atom::Arctangent(ratio) => arctangent(ratio, places),
-            Atom::Sine(angle) => self.once("sine", angle, |all| {
-                let (low, high) = all.number(angle);
+            Atom::Sine(angle) => angle.sine.at(places, || {
+                let (low, high) = self.number(angle);
                 widen(series(&low, places, 1), &(high - low))
             }),
-            Atom::Cosine(angle) => self.once("cosine", angle, |all| {
-                let (low, high) = all.number(angle);
+            Atom::Cosine(angle) => angle.cosine.at(places, || {
+                let (low, high) = self.number(angle);
                 widen(series(&low, places, 0), &(high - low))
             }),
-            Atom::Inverse(n) => self.once("inverse", n, |all| inverse(places, |places| all.to(places, |all| all.number(n)))),
+            Atom::Inverse(n) => n.own.at(places, || inverse(places, |places| self.to(places, |all| all.number(n)))),
+            // How wide it comes out, only the number that it is a factor of can judge.
+            Atom::Sum(sum) => sum.terms().own.at(places, || self.sum(sum.terms())),
         }
     }
 
@@ -125,16 +150,6 @@ impl Enclosures {
         } else {
             enclose(&mut Enclosures::new(places))
         }
-    }
-
-    fn once(&mut self, what: &'static str, of: &Arc<Number>, enclose: impl FnOnce(&mut Enclosures) -> Interval) -> Interval {
-        let key = (what, Arc::as_ptr(of));
-        if let Some(known) = self.others.get(&key) {
-            return known.clone();
-        }
-        let enclosed = enclose(self);
-        self.others.insert(key, enclosed.clone());
-        enclosed
     }
 }
 
@@ -157,9 +172,17 @@ fn ceil_shift(n: IBig, bits: usize) -> IBig {
 }
 
 fn multiply(a: &Interval, b: &Interval, places: usize) -> Interval {
-    let products = [&a.0 * &b.0, &a.0 * &b.1, &a.1 * &b.0, &a.1 * &b.1];
-    let low = products.iter().min().expect("four products").clone();
-    let high = products.into_iter().max().expect("four products");
+    let (low, high) = match (a.0.is_negative(), b.0.is_negative()) {
+        (false, false) => (&a.0 * &b.0, &a.1 * &b.1),
+        (true, false) if a.1.is_negative() => (&a.0 * &b.1, &a.1 * &b.0),
+        (false, true) if b.1.is_negative() => (&a.1 * &b.0, &a.0 * &b.1),
+        (true, true) if a.1.is_negative() && b.1.is_negative() => (&a.1 * &b.1, &a.0 * &b.0),
+        _ => {
+            let products = [&a.0 * &b.0, &a.0 * &b.1, &a.1 * &b.0, &a.1 * &b.1];
+            let low = products.iter().min().expect("four products").clone();
+            (low, products.into_iter().max().expect("four products"))
+        }
+    };
     (floor_shift(low, places), ceil_shift(high, places))
 }
 

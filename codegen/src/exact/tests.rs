@@ -138,3 +138,71 @@ fn enclosures_are_tight_whatever_the_sizes() {
     assert_eq!((small.to_f64(), inverse.to_f64()), (0.0, f64::INFINITY));
     assert_eq!(Angle::new(small).sin().sign(), Ordering::Greater);
 }
+
+type Rotation = [[Number; 3]; 3];
+
+/// The product in which sums are shared.
+fn product(a: &Rotation, b: &Rotation) -> Rotation {
+    let entry = |i: usize, j: usize| (0..3).fold(Number::zero(), |sum, k| sum.plus(&a[i][k].times(&b[k][j])));
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}
+
+/// A chain of rotations about x and z by general angles, and the same in floats.
+fn chain(rotations: i64) -> (Rotation, [[f64; 3]; 3]) {
+    let number = |n: i64| Number::from(n);
+    let mut exact: Rotation = std::array::from_fn(|i| std::array::from_fn(|j| number(i64::from(i == j))));
+    let mut floats = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for n in 0..rotations {
+        let angle = Angle::new(rational(17 + 3 * n, 100));
+        let (s, c) = (angle.sin(), angle.cos());
+        let next: Rotation = if n % 2 == 0 {
+            [[number(1), number(0), number(0)], [number(0), c.clone(), -&s], [number(0), s, c]]
+        } else {
+            [[c.clone(), -&s, number(0)], [s, c, number(0)], [number(0), number(0), number(1)]]
+        };
+        let next_floats = next.each_ref().map(|row| row.each_ref().map(Number::to_f64));
+        exact = product(&exact, &next);
+        floats = std::array::from_fn(|i| std::array::from_fn(|j| (0..3).map(|k| floats[i][k] * next_floats[k][j]).sum()));
+    }
+    (exact, floats)
+}
+
+#[test]
+fn products_of_many_rotations_stay_short_and_keep_their_values() {
+    let mut lengths = Vec::new();
+    for rotations in [8, 16, 32, 64] {
+        let (exact, floats) = chain(rotations);
+        let mut definitions = Definitions::default();
+        let mut length = 0;
+        for (number, float) in exact.iter().flatten().zip(floats.iter().flatten()) {
+            assert!(number.terms().count() <= shared::MOST_TERMS);
+            assert!((number.to_f64() - float).abs() < 1e-14, "{rotations}: {} is not {float}", number.to_f64());
+            length += definitions.formula(number).len();
+        }
+        length += definitions.texts().iter().map(String::len).sum::<usize>();
+        lengths.push(length);
+    }
+    // Once they are shared, the length grows with the number of rotations; multiplied out, each would double it.
+    assert!(lengths[3] < 3 * lengths[2] && lengths[2] < 5 * lengths[1], "{lengths:?}");
+    assert!(lengths[3] < 1_000_000, "{lengths:?}");
+}
+
+#[test]
+fn a_long_sum_is_one_factor_in_formulas() {
+    let (exact, _) = chain(12);
+    let number = &exact[0][0];
+    assert!(number.is_shared() && !number.is_readable());
+    assert!(number.to_string().contains('≈'), "{number}");
+    let mut definitions = Definitions::default();
+    let formula = definitions.formula(number);
+    assert!(formula.contains("k0") || definitions.texts().iter().any(|text| text.contains("k0")));
+    assert_eq!(definitions.formula(number), formula, "defined once");
+    for (index, text) in definitions.texts().iter().enumerate() {
+        assert!(!text.contains(&format!("k{index}*")), "a definition refers to those before it only");
+    }
+    // A factor cancels against itself, and has no sign that a root could rely on.
+    let factor = exact[1][1].times(&exact[2][2]);
+    assert!(factor.checked_div(&factor).is_some_and(|one| one.is_one()) || factor.terms().count() > 1);
+    let square = number.times(number);
+    assert!((square.sqrt().expect("a square").to_f64() - number.to_f64().abs()).abs() < 1e-15);
+}

@@ -34,8 +34,8 @@ impl Pool {
         Some(match node {
             Node::Constant(id) => (*self.constants[id.0 as usize]).clone(),
             Node::Symbol(symbol) => self.value_of_symbol(symbol, of),
-            Node::Add(a, b) => &signed(a) + &signed(b),
-            Node::Mul(a, b) => &signed(a) * &signed(b),
+            Node::Add(a, b) => signed(a).plus(&signed(b)),
+            Node::Mul(a, b) => signed(a).times(&signed(b)),
             Node::Reciprocal(a) => signed(a).simple_inverse()?,
         })
     }

@@ -251,6 +251,7 @@ impl Field {
                 let value = self.number(number);
                 self.inverse(value)
             }
+            Atom::Sum(sum) => self.number(sum.terms()),
         };
         self.atoms.insert(atom.clone(), value);
         value
@@ -302,6 +303,7 @@ fn collect_roots(number: &Number, roots: &mut BTreeSet<Atom>) {
                 roots.insert(atom.clone());
             }
             Atom::Inverse(inner) | Atom::RootOf(inner) => collect_roots(inner, roots),
+            Atom::Sum(sum) => collect_roots(sum.terms(), roots),
             _ => {}
         }
     }

@@ -61,7 +61,7 @@ impl NormalForm {
 
     /// Number of terms with those of the coefficients multiplied out: a coefficient of several roots or general angles is a sum itself.
     fn size(&self) -> usize {
-        self.terms.values().map(|coefficient| coefficient.terms().count()).sum()
+        self.terms.values().map(Number::terms_multiplied_out).fold(0, usize::saturating_add)
     }
 
     /// Whether this is 0.
@@ -98,7 +98,7 @@ impl NormalForm {
     /// Adds a term; `wave` is in its canonical form.
     pub fn add_term(&mut self, wave: Wave, factors: Factors, coefficient: Number) {
         let key = (wave, factors);
-        let sum = self.terms.get(&key).map_or_else(|| coefficient.clone(), |c| c + &coefficient);
+        let sum = self.terms.get(&key).map_or_else(|| coefficient.clone(), |c| c.plus(&coefficient));
         if sum.is_zero() {
             self.terms.remove(&key);
         } else {
@@ -126,7 +126,7 @@ impl NormalForm {
         for ((wave_a, factors_a), ca) in &self.terms {
             for ((wave_b, factors_b), cb) in &other.terms {
                 let factors = merge(factors_a, factors_b);
-                let c = ca * cb;
+                let c = ca.times(cb);
                 if wave_a.angles.is_empty() || wave_b.angles.is_empty() {
                     let wave = if wave_a.angles.is_empty() { wave_b } else { wave_a };
                     product.add_term(wave.clone(), factors, c);

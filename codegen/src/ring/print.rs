@@ -181,6 +181,11 @@ impl Printer<'_> {
             Atom::Sine(angle) => call("sin", self.number(angle)),
             Atom::Cosine(angle) => call("cos", self.number(angle)),
             Atom::Arctangent(ratio) => call(if self.notation == Notation::Text { "atan" } else { "arctan" }, ratio.to_string()),
+            Atom::Sum(sum) if sum.terms().is_readable() => format!("({})", self.number(sum.terms())),
+            Atom::Sum(sum) => match self.notation {
+                Notation::Text => format!("(≈{:?})", sum.terms().to_f64()),
+                Notation::Latex => format!("\\left(\\approx {:?}\\right)", sum.terms().to_f64()),
+            },
             Atom::Inverse(n) => match self.notation {
                 Notation::Text => format!("(1/({}))", self.number(n)),
                 Notation::Latex => format!("\\frac{{1}}{{{}}}", self.number(n)),

@@ -92,3 +92,34 @@ fn exact_values_follow_the_identities() {
     let pole = p.reciprocal(s);
     assert_eq!(p.evaluate(&[pole], &|_| Number::zero()), None);
 }
+
+#[test]
+fn constants_that_are_not_multiplied_out_are_known_by_their_values() {
+    let mut p = Pool::new(Field::for_constants([]));
+    // R R' = 1 and R (R' R) = R for a product of a dozen rotations by general angles.
+    let mut rotation = matrix::IDENTITY;
+    for n in 0..12 {
+        let angle =
+            crate::exact::Angle::new(Number::from(crate::exact::Rational::from(17 + 3 * n) / crate::exact::Rational::from(100)));
+        let (s, c) = (p.constant(&angle.sin()), p.constant(&angle.cos()));
+        let (zero, one) = (ExprId::ZERO, ExprId::ONE);
+        let next = if n % 2 == 0 {
+            [[one, zero, zero], [zero, c, -s], [zero, s, c]]
+        } else {
+            [[c, -s, zero], [s, c, zero], [zero, zero, one]]
+        };
+        rotation = p.product(&rotation, &next);
+    }
+    assert!(rotation.iter().flatten().all(|&entry| p.is_constant(entry)));
+    assert!(p.as_constant(rotation[0][0]).expect("a constant").is_shared());
+    let back = matrix::transpose(&rotation);
+    assert_eq!(p.product(&rotation, &back), matrix::IDENTITY);
+    let there_and_back = p.product(&back, &rotation);
+    assert_eq!(p.product(&rotation, &there_and_back), rotation);
+    // Another way to the same value is the same constant, with its sign.
+    let [x, y] = [rotation[0][0], rotation[1][2]];
+    let (sum, difference) = (p.add(x, y), p.sub(x, y));
+    let (product, squares) = (p.mul(sum, difference), [p.mul(x, x), p.mul(y, y)]);
+    assert_eq!(p.sub(squares[0], squares[1]), product);
+    assert_eq!(p.sub(squares[1], squares[0]), -product);
+}

@@ -15,6 +15,7 @@ use dashu_base::{Abs, EstimatedLog2, UnsignedAbs};
 use dashu_int::UBig;
 
 use super::{Arithmetic, Element};
+use crate::formula::definitions::{self, Defined};
 use crate::formula::{Formula, Rational, Root};
 
 /// What all values of a program share.
@@ -138,6 +139,7 @@ impl Element for Degree {
 #[derive(Clone, Debug)]
 pub struct Degrees {
     table: Rc<Table>,
+    defined: Defined<Degree>,
 }
 
 fn log2(n: &UBig) -> f64 {
@@ -160,6 +162,7 @@ fn denominator(formula: &Formula, common: &mut UBig) {
         Formula::Sum(parts) | Formula::Product(parts) => parts.iter().for_each(|p| denominator(p, common)),
         Formula::Power(base, _) => denominator(base, common),
         Formula::Root(Root::Nested(inner)) => denominator(inner, common),
+        // Pi and angles have none; what is defined stands among the constants itself.
         _ => {}
     }
 }
@@ -168,8 +171,10 @@ impl Degrees {
     /// Bounds for programs with these constants.
     pub fn new<'a>(constants: impl IntoIterator<Item = &'a Formula>) -> Degrees {
         let mut common = UBig::ONE;
+        let constants: Vec<&Formula> = constants.into_iter().collect();
+        definitions::of(constants.iter().copied()).iter().for_each(|definition| denominator(definition.formula(), &mut common));
         constants.into_iter().for_each(|formula| denominator(formula, &mut common));
-        Degrees { table: Rc::new(Table { common: log2(&common), divisors: RefCell::default() }) }
+        Degrees { defined: Defined::default(), table: Rc::new(Table { common: log2(&common), divisors: RefCell::default() }) }
     }
 
     fn with(&self, degree: f64, height: f64, k: f64) -> Degree {
@@ -205,7 +210,7 @@ impl Arithmetic for Degrees {
             }
         };
         let input = || self.with(1.0, 0.0, 0.0);
-        formula.evaluate(&|r| Some(self.rational(r)), &root, &|| Some(input()), &|_| Some((input(), input())))
+        formula.evaluate(&|r| Some(self.rational(r)), &root, &|| Some(input()), &|_| Some((input(), input())), &self.defined)
     }
 
     fn draw(&mut self) -> Degree {

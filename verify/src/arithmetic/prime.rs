@@ -11,6 +11,7 @@ use dashu_int::UBig;
 
 use super::roots::Dependent;
 use super::{Arithmetic, Element, Stream};
+use crate::formula::definitions::Defined;
 use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
 
 /// An integer modulo a prime.
@@ -114,6 +115,7 @@ pub struct Prime {
     pi: Residue,
     roots: BTreeMap<Root, Residue>,
     angles: BTreeMap<Formula, (Residue, Residue)>,
+    defined: Defined<Residue>,
 }
 
 /// How many primes are tried before a robot's roots are given up: each further independent root halves the chance of a prime.
@@ -140,6 +142,7 @@ impl Prime {
                 pi: Residue { value: 0, prime },
                 roots: BTreeMap::new(),
                 angles: BTreeMap::new(),
+                defined: Defined::default(),
             };
             field.pi = field.draw();
             for angle in &atoms.angles {
@@ -199,7 +202,8 @@ impl Arithmetic for Prime {
             Root::Integer(n) => root_from_coprime(n, self.integer(1), integers()),
             nested => self.roots.get(nested).copied(),
         };
-        formula.evaluate(&|r| self.rational(r), &root, &|| Some(self.pi), &|angle| self.angles.get(angle).copied())
+        let angle = |angle: &Formula| self.angles.get(angle).copied();
+        formula.evaluate(&|r| self.rational(r), &root, &|| Some(self.pi), &angle, &self.defined)
     }
 
     fn draw(&mut self) -> Residue {

@@ -146,7 +146,8 @@ fn root_by_others(field: &Atoms, columns: &[Formula], i: usize, factors: &[usize
 fn has_free_atoms(formula: &Formula) -> bool {
     match formula {
         Formula::Rational(_) | Formula::Root(Root::Integer(_)) => false,
-        Formula::Pi | Formula::Sine(_) | Formula::Cosine(_) | Formula::Arctangent(_) => true,
+        // What a description has under its roots is not defined elsewhere.
+        Formula::Pi | Formula::Sine(_) | Formula::Cosine(_) | Formula::Arctangent(_) | Formula::Defined(_) => true,
         Formula::Root(Root::Nested(inner)) | Formula::Power(inner, _) => has_free_atoms(inner),
         Formula::Sum(parts) | Formula::Product(parts) => parts.iter().any(has_free_atoms),
     }

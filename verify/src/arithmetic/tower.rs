@@ -11,6 +11,7 @@ use dashu_int::IBig;
 
 use super::roots::Dependent;
 use super::{Arithmetic, Element, Stream};
+use crate::formula::definitions::Defined;
 use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
 
 /// The squares of the adjoined roots, each in the coordinates of the field below.
@@ -26,6 +27,9 @@ pub struct Surd {
 
 /// As many roots are adjoined: a product costs up to 4^k products of fractions.
 pub const MOST_ROOTS: usize = 5;
+
+/// And 4^k times the angles of constants are at most so many: each makes the fractions longer.
+const MOST_WORK: usize = 4096;
 
 impl Surd {
     /// Coordinates over the products of the adjoined roots: the k-th bit of a place says whether the k-th root is a factor.
@@ -129,13 +133,15 @@ pub struct Tower {
     pi: Surd,
     roots: BTreeMap<Root, Surd>,
     angles: BTreeMap<Formula, (Surd, Surd)>,
+    defined: Defined<Surd>,
 }
 
 impl Tower {
-    /// The tower in which all roots of `atoms` exist; `None` if too many of them are independent.
+    /// The tower in which all roots of `atoms` exist; `None` if too many of them are independent, or there are too many angles beside them.
     pub fn new(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent) -> Option<Tower> {
         let levels = atoms.roots.len() - dependent.len();
-        (levels <= MOST_ROOTS).then(|| Tower::with_levels(levels, stream, atoms, dependent)).flatten()
+        let short = levels <= MOST_ROOTS && atoms.angles.len() << (2 * levels) <= MOST_WORK;
+        short.then(|| Tower::with_levels(levels, stream, atoms, dependent)).flatten()
     }
 
     /// The tower of some roots of integers without common factors.
@@ -151,6 +157,7 @@ impl Tower {
             pi: Surd { coordinates: vec![Rational::ZERO; 1 << levels], squares: Arc::default() },
             roots: BTreeMap::new(),
             angles: BTreeMap::new(),
+            defined: Defined::default(),
         };
         // The squares are found in the full width, the levels above still without a square of their own, and cut to the level below.
         let mut squares: Vec<Vec<Rational>> = (0..levels).map(|level| vec![Rational::ZERO; 1 << level]).collect();
@@ -214,6 +221,7 @@ impl Arithmetic for Tower {
             },
             &|| Some(self.pi.clone()),
             &|angle| self.angles.get(angle).cloned(),
+            &self.defined,
         )
     }
 

@@ -167,6 +167,7 @@ fn nesting(value: &Number) -> usize {
     let of = |atom: &Atom| match atom {
         Atom::Root(_) | Atom::Pi | Atom::Arctangent(_) => 0,
         Atom::RootOf(n) | Atom::Sine(n) | Atom::Cosine(n) | Atom::Inverse(n) => 1 + nesting(n),
+        Atom::Sum(sum) => 1 + nesting(sum.terms()),
     };
     value.terms().flat_map(|(monomial, _)| monomial.iter().map(|(atom, _)| of(atom))).max().unwrap_or(0)
 }

@@ -1,0 +1,264 @@
+//! Constants that are not multiplied out.
+//!
+//! A product of rotations by general angles has more terms with every rotation: multiplied out, the constants of an arm would grow
+//! exponentially with its joints. [`Number::plus`] and [`Number::times`] therefore multiply out what stays short, and take a longer operand as
+//! one factor, an [`Atom::Sum`], that all results share:
+//!
+//! ```text
+//! x y = X Y    with X = Σ of the terms of x,  Y = Σ of the terms of y
+//! ```
+//!
+//! A constant is then a graph whose size grows with the number of operations. It has no normal form: two graphs may have one value. Whoever
+//! has to know compares values, in a prime field and by enclosures (`Pool::constant`, in the module `ring`).
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+use std::ops::Deref;
+use std::sync::Arc;
+
+use super::enclosure::Known;
+use super::{multiply_monomials, Atom, Monomial, Number};
+use crate::ring::field::scramble;
+
+/// A sum or a product of more terms is not multiplied out.
+pub(super) const MOST_TERMS: usize = 32;
+
+/// A number that atoms share, with the enclosures that are known.
+#[derive(Default)]
+pub struct Shared {
+    number: Number,
+    pub(super) sine: Known,
+    pub(super) cosine: Known,
+    /// Of what else an atom may be of it: the number itself, its root, its inverse.
+    pub(super) own: Known,
+}
+
+impl Shared {
+    pub(super) fn new(number: Number) -> Arc<Shared> {
+        Arc::new(Shared { number, ..Shared::default() })
+    }
+}
+
+impl Deref for Shared {
+    type Target = Number;
+    fn deref(&self) -> &Number {
+        &self.number
+    }
+}
+
+impl fmt::Debug for Shared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.number.fmt(f)
+    }
+}
+
+impl fmt::Display for Shared {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.number.fmt(f)
+    }
+}
+
+impl PartialEq for Shared {
+    fn eq(&self, other: &Shared) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Shared {}
+
+impl PartialOrd for Shared {
+    fn partial_cmp(&self, other: &Shared) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Shared {
+    fn cmp(&self, other: &Shared) -> Ordering {
+        if std::ptr::eq(self, other) {
+            return Ordering::Equal;
+        }
+        self.number.cmp(&other.number)
+    }
+}
+
+impl Hash for Shared {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.number.hash(state);
+    }
+}
+
+/// A sum that is one factor. Sums are told apart by 128 bits that follow from their text, in which the sums inside them stand as such
+/// bits: comparing two graphs node by node would take exponential time.
+#[derive(Clone, Debug)]
+pub struct Sum {
+    digest: [u64; 2],
+    terms: Arc<Shared>,
+    /// How many terms it would have multiplied out.
+    multiplied_out: usize,
+}
+
+impl Sum {
+    fn of(number: &Number) -> Sum {
+        let text = Digested(number).to_string();
+        let digest = [1, 2].map(|lane| {
+            let words = text.as_bytes().chunks(8).map(|bytes| bytes.iter().fold(0, |word, &byte| word << 8 | u64::from(byte)));
+            words.fold(scramble(lane), |hash, word| scramble(hash ^ word))
+        });
+        Sum { digest, terms: Shared::new(number.clone()), multiplied_out: number.terms_multiplied_out() }
+    }
+
+    /// The sum that it is.
+    pub fn terms(&self) -> &Arc<Shared> {
+        &self.terms
+    }
+}
+
+impl PartialEq for Sum {
+    fn eq(&self, other: &Sum) -> bool {
+        self.digest == other.digest
+    }
+}
+
+impl Eq for Sum {}
+
+impl PartialOrd for Sum {
+    fn partial_cmp(&self, other: &Sum) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Sum {
+    fn cmp(&self, other: &Sum) -> Ordering {
+        self.digest.cmp(&other.digest)
+    }
+}
+
+impl Hash for Sum {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.digest.hash(state);
+    }
+}
+
+/// The text of a number with the digests of the sums inside.
+struct Digested<'a>(&'a Number);
+
+impl fmt::Display for Digested<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (monomial, coefficient) in self.0.terms() {
+            write!(f, "+{coefficient}")?;
+            for (atom, power) in monomial {
+                match atom {
+                    Atom::Sum(sum) => write!(f, "*{:x?}^{power}", sum.digest)?,
+                    Atom::Inverse(of) => write!(f, "*1/({})^{power}", Digested(of))?,
+                    Atom::RootOf(of) => write!(f, "*sqrt({})^{power}", Digested(of))?,
+                    other => write!(f, "*{other:?}^{power}")?,
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Number {
+    /// Whether a sum in it is not multiplied out, so that it may look different from a number of the same value.
+    pub fn is_shared(&self) -> bool {
+        self.terms.keys().flatten().any(|(atom, _)| match atom {
+            Atom::Sum(_) => true,
+            Atom::Inverse(of) | Atom::RootOf(of) => of.is_shared(),
+            _ => false,
+        })
+    }
+
+    /// How many terms it would have multiplied out, if nothing cancelled.
+    pub fn terms_multiplied_out(&self) -> usize {
+        let of_factor = |(atom, power): &(Atom, i32)| match atom {
+            Atom::Sum(sum) => sum.multiplied_out.saturating_pow(power.unsigned_abs()),
+            _ => 1,
+        };
+        let of_term = |monomial: &Monomial| monomial.iter().map(of_factor).fold(1, usize::saturating_mul);
+        self.terms.keys().map(of_term).fold(0, usize::saturating_add)
+    }
+
+    /// The sum, in which a long operand becomes one factor.
+    pub fn plus(&self, other: &Number) -> Number {
+        let (a, b) = (self.terms.len(), other.terms.len());
+        if a + b <= MOST_TERMS {
+            return self + other;
+        }
+        let sum = self + other;
+        if sum.terms.len() <= MOST_TERMS {
+            return sum;
+        }
+        match (a > b, 2 * a.min(b) > MOST_TERMS) {
+            (_, true) => &self.as_factor() + &other.as_factor(),
+            (true, _) => &self.as_factor() + other,
+            (false, _) => self + &other.as_factor(),
+        }
+    }
+
+    /// The difference, likewise.
+    pub fn minus(&self, other: &Number) -> Number {
+        self.plus(&-other)
+    }
+
+    /// The product, multiplied out where that is short.
+    pub fn times(&self, other: &Number) -> Number {
+        self.expanded(other).unwrap_or_else(|| self.product_of_factors(other))
+    }
+
+    /// The product multiplied out, if it has few terms.
+    fn expanded(&self, other: &Number) -> Option<Number> {
+        if self.terms.len() * other.terms.len() > MOST_TERMS {
+            return None;
+        }
+        let mut product = Number::zero();
+        for (a, p) in &self.terms {
+            for (b, q) in &other.terms {
+                // Each squared sine, 1 - cos², doubles the terms.
+                if squared_sines(a, b) > MOST_TERMS.ilog2() as usize {
+                    return None;
+                }
+                let coefficient = p * q;
+                for (monomial, c) in multiply_monomials(a, b).terms {
+                    product.add_term(monomial, c * &coefficient);
+                }
+            }
+        }
+        (product.terms.len() <= MOST_TERMS).then_some(product)
+    }
+
+    /// The product of operands of several terms as they are; of products that share sines the second as one factor.
+    fn product_of_factors(&self, other: &Number) -> Number {
+        let (a, b) = (self.as_factor(), other.as_factor());
+        a.expanded(&b).unwrap_or_else(|| {
+            let b = Number::atom(Atom::Sum(Arc::new(Sum::of(&b))));
+            &a * &b
+        })
+    }
+
+    /// The number as one term.
+    pub(super) fn as_factor(&self) -> Number {
+        if self.terms.len() < 2 {
+            return self.clone();
+        }
+        Number::atom(Atom::Sum(Arc::new(Sum::of(self))))
+    }
+}
+
+/// How many sines a product of two monomials squares.
+fn squared_sines(a: &Monomial, b: &Monomial) -> usize {
+    let sines = |monomial: &Monomial| -> BTreeMap<Arc<Shared>, i32> {
+        let sine = |(atom, power): &(Atom, i32)| match atom {
+            Atom::Sine(angle) => Some((angle.clone(), *power)),
+            _ => None,
+        };
+        monomial.iter().filter_map(sine).collect()
+    };
+    let a = sines(a);
+    if a.is_empty() {
+        return 0;
+    }
+    sines(b).iter().filter(|(angle, power)| a.get(*angle).is_some_and(|own| own + **power == 2)).count()
+}
