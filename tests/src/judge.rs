@@ -10,6 +10,8 @@
 //! T = ½ dq' B dq                                     U(b) - U(a) = ∫ g dq from a to b
 //! ```
 
+use armgen_codegen::catalogue::{self, Sizes};
+
 use crate::functions::{Arguments, Functions};
 use crate::oracle::{rank, solve, times, Description, Matrix, Model, RegressorChoice};
 use crate::precision::{agree, AT_COMPUTED_ACCELERATIONS, NEAR_NOMINAL, WELL_CONDITIONED};
@@ -97,12 +99,7 @@ impl Case<'_> {
         let (robot, model) = (self.robot, &self.model);
         let a = arguments(state, &robot.nominal());
         let State { q, dq, ddq, dqr, ddqr } = state;
-        let expect = |function: &str, expected: Vec<f64>| self.check(function, &robot.call(function, &a), &expected);
-        expect("direct_kinematics", model.direct_kinematics(q).concat());
-        expect("link_frames", model.link_frames(q).concat().concat());
-        expect("geometric_jacobian", model.geometric_jacobian(q).concat());
-        expect("geometric_jacobian_dot", model.geometric_jacobian_dot(q, dq).concat());
-        self.expect_dynamics("", model, &a);
+        self.expect_values(false, model, &a);
         self.expect_forward_dynamics("forward_dynamics", model, a.clone());
         self.judge_beyond(&a);
 
@@ -125,16 +122,13 @@ impl Case<'_> {
         self.check("Y(q, dq, dq, ddq) pi + tau_known", &tau, &robot.call("inverse_dynamics", &a));
     }
 
-    /// The functions beyond the traits: momentum, base regressor, operational inertia, derivatives.
+    /// The functions beyond the traits that no formula gives: base regressor, operational inertia, derivatives of forward dynamics.
     fn judge_beyond(&self, a: &Arguments) {
         let (robot, model, n) = (self.robot, &self.model, self.robot.dof());
-        if !robot.has("momentum") {
+        if !robot.has("base_regressor") {
             return;
         }
         let b = model.inertia_matrix(&a.q);
-        let c = model.coriolis_matrix(&a.q, &a.dq);
-        self.check("momentum", &robot.call("momentum", a), &times(&b, &a.dq));
-        self.check("coriolis_transpose_times", &robot.call("coriolis_transpose_times", a), &times(&transposed(&c), &a.dq));
 
         let base = robot.nominal_base();
         let y: Matrix = robot.call("base_regressor", a).chunks(base.len()).map(<[f64]>::to_vec).collect();
@@ -160,10 +154,6 @@ impl Case<'_> {
         }
 
         let (by_q, by_dq) = model.inverse_dynamics_derivatives(&a.q, &a.dq, &a.ddq);
-        let found = robot.call("inverse_dynamics_derivatives", a);
-        self.check("dtau/dq", &found[..n * n], &by_q.concat());
-        self.check("dtau/d(dq)", &found[n * n..], &by_dq.concat());
-
         // B times the derivatives of forward dynamics, at the accelerations that the torques cause.
         let a = Arguments { tau: model.inverse_dynamics(&a.q, &a.dq, &a.ddq), ..a.clone() };
         let found = robot.call("forward_dynamics_derivatives", &a);
@@ -198,27 +188,22 @@ impl Case<'_> {
         }
     }
 
-    /// The functions of the dynamics but for the forward one, plain (`""`) or `_with`, against a model.
-    fn expect_dynamics(&self, ending: &str, model: &Model, a: &Arguments) {
-        let expect = |function: &str, expected: &[f64]| {
-            let function = format!("{function}{ending}");
-            self.check(&function, &self.robot.call(&function, a), expected);
-        };
-        let (b, c) = (model.inertia_matrix(&a.q).concat(), model.coriolis_matrix(&a.q, &a.dq).concat());
-        let g = model.gravity(&a.q);
-        expect("inertia_matrix", &b);
-        expect("coriolis_matrix", &c);
-        expect("gravity", &g);
-        expect("friction", &model.friction(&a.dq));
-        // Together, but each to its own scale.
-        let terms = self.robot.call(&format!("equations_of_motion{ending}"), a);
+    /// All functions, plain or `_with`, for which a model has a formula, each part of a result to its own scale.
+    fn expect_values(&self, with_parameters: bool, model: &Model, a: &Arguments) {
         let n = self.robot.dof();
-        self.check("equations_of_motion: B", &terms[..n * n], &b);
-        self.check("equations_of_motion: C", &terms[n * n..2 * n * n], &c);
-        self.check("equations_of_motion: g", &terms[2 * n * n..], &g);
-        expect("inverse_dynamics", &model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
-        expect("kinetic_energy", &[model.kinetic_energy(&a.q, &a.dq)]);
-        expect("potential_energy", &[model.potential_energy(&a.q)]);
+        let sizes = Sizes { dof: n, parameters: a.pi.len(), base_parameters: 0, task: 0 };
+        for (quantity, _) in catalogue::functions().filter(|(_, with)| *with == with_parameters) {
+            let function = quantity.function_name(with_parameters);
+            let Some(expected) = model.value(&function, a).filter(|_| self.robot.has(&function)) else { continue };
+            let found = self.robot.call(&function, a);
+            assert_eq!(found.len(), expected.len(), "{}: {function}", self.what);
+            let mut start = 0;
+            for part in quantity.result {
+                let entries = start..start + part.len(&sizes);
+                start = entries.end;
+                self.check(&format!("{function}: {}", part.name), &found[entries.clone()], &expected[entries]);
+            }
+        }
     }
 
     /// The accelerations come back from the torques that they need.
@@ -277,7 +262,7 @@ impl Case<'_> {
             .collect();
         let a = arguments(&random::state(self.robot.dof(), self.seed + 500), &pi);
         if let Some(model) = self.model_at(&pi) {
-            self.expect_dynamics("_with", &model, &a);
+            self.expect_values(true, &model, &a);
         }
         self.judge_identities(&a);
 

@@ -15,6 +15,7 @@
 
 mod description;
 mod dynamics;
+mod functions;
 mod kinematics;
 mod regressor;
 mod scalar;

@@ -4,6 +4,7 @@ pub mod base_regressor;
 pub mod coriolis;
 pub mod derivatives;
 pub mod equations_of_motion;
+pub mod first_moment;
 pub mod forward_dynamics;
 pub mod friction;
 pub mod gravity;
@@ -13,7 +14,6 @@ pub mod kinematics;
 pub mod kinetic_energy;
 pub mod momentum;
 pub mod operational_inertia;
-pub mod potential_energy;
 pub mod regressor;
 
 use super::quantity::Quantity;
@@ -30,7 +30,7 @@ pub(crate) static DECLARED: [&[&Quantity]; 15] = [
     &[&forward_dynamics::FORWARD_DYNAMICS],
     &regressor::DECLARED,
     &[&kinetic_energy::KINETIC_ENERGY],
-    &[&potential_energy::POTENTIAL_ENERGY],
+    &first_moment::DECLARED,
     &momentum::DECLARED,
     &[&base_regressor::BASE_REGRESSOR],
     &[&operational_inertia::OPERATIONAL_INERTIA],

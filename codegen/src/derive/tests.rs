@@ -319,7 +319,7 @@ fn newton_euler_is_lagrange() {
 #[test]
 fn gravity_is_the_gradient_of_the_potential() {
     check(|pool, arm, _| {
-        let potential = potential_energy::potential_energy(pool, arm);
+        let potential = first_moment::potential_energy(pool, arm);
         let gradient: Vec<ExprId> = (0..arm.dof() as u16).map(|i| pool.partial_derivative(&[potential], i)[0]).collect();
         let g = gravity::gravity(pool, arm, &mut Plan::default());
         assert_equal(pool, &g, &gradient);

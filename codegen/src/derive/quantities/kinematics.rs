@@ -155,9 +155,9 @@ pub fn link_frames(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
         .collect()
 }
 
-/// The links from the base to the tip.
-pub fn path_to_tip(arm: &Arm) -> Vec<usize> {
-    let mut path: Vec<usize> = std::iter::successors(Some(arm.tip), |&i| arm.joints[i].parent).collect();
+/// The links from the base to a link.
+fn path_to(arm: &Arm, link: usize) -> Vec<usize> {
+    let mut path: Vec<usize> = std::iter::successors(Some(link), |&i| arm.joints[i].parent).collect();
     path.reverse();
     path
 }
@@ -169,10 +169,15 @@ fn z(frame: &(Matrix, Vector)) -> Vector {
 /// J(q): six rows, linear then angular.
 pub fn geometric_jacobian(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let frames = frames(pool, arm);
-    let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
-    let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
+    jacobian_of_point(pool, arm, &frames, arm.tip, &arm.tool_origin)
+}
+
+/// The geometric Jacobian of a point fixed in joint frame `link`: six rows, linear then angular.
+fn jacobian_of_point(pool: &mut Pool, arm: &Arm, frames: &Frames, link: usize, point: &Vector) -> Vec<Vec<ExprId>> {
+    let shift = pool.transform(&frames.joints[link].0, point);
+    let end = pool.add_vectors(&frames.joints[link].1, &shift);
     let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
-    for i in path_to_tip(arm) {
+    for i in path_to(arm, link) {
         let axis = z(&frames.joints[i]);
         if arm.joints[i].is_revolute() {
             let arm_to_end = pool.sub_vectors(&end, &frames.joints[i].1);
@@ -196,7 +201,7 @@ fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angu
 pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let frames = frames(pool, arm);
     let rates = arm.symbols(pool, Symbol::Rate);
-    let path = path_to_tip(arm);
+    let path = path_to(arm, arm.tip);
     let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
     let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
     // Angular velocity of each link on the path, and linear velocity of the end effector relative to each joint's origin, from the tip down.

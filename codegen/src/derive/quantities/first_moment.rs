@@ -1,14 +1,18 @@
-//! The potential energy of gravity.
+//! What follows from the first moment of the whole arm in the base frame: the potential energy of gravity.
 //!
 //! ```text
-//! U = -Σ_i m_i g0' p_li                                                               (the book, eq. 7.36)
+//! h = Σ_i m_i p_li,   U = -g0' h                                                      (the book, eq. 7.36)
 //! ```
 
 use super::kinematics::frames;
 use crate::derive::arm::Arm;
 use crate::derive::passes::Use;
 use crate::derive::quantity::{Argument, Documentation, Part, Quantity, Recursion, Typeset};
+use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
+
+/// In the order of the emitted module.
+pub(super) static DECLARED: [&Quantity; 1] = [&POTENTIAL_ENERGY];
 
 /// U(q).
 pub static POTENTIAL_ENERGY: Quantity = Quantity {
@@ -32,8 +36,8 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
     interface: Some("Dynamics"),
 };
 
-/// U(q), J: zero where all masses, rotors included, lie at the origin of the base frame.
-pub fn potential_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
+/// h(q), kg m: links, load and rotors, those that the base carries included.
+fn first_moment(pool: &mut Pool, arm: &Arm) -> Vector {
     let frames = frames(pool, arm);
     let mut total = arm.base_moment;
     for (joint, (rotation, origin)) in arm.joints.iter().zip(&frames.joints) {
@@ -42,5 +46,11 @@ pub fn potential_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
         let first = pool.add_vectors(&turned, &weighted);
         total = pool.add_vectors(&total, &first);
     }
-    -pool.dot3(&arm.gravity, &total)
+    total
+}
+
+/// U(q), J: zero where all masses, rotors included, lie at the origin of the base frame.
+pub fn potential_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
+    let first = first_moment(pool, arm);
+    -pool.dot3(&arm.gravity, &first)
 }
