@@ -1,4 +1,5 @@
-//! What a robot is to the rest of this crate: three traits, from kinematics alone to the regressor.
+//! What a robot is to the rest of this crate: three traits, from kinematics alone to the regressor, and one for each function that not
+//! every robot has.
 //!
 //! The emitted module of a robot comes with implementations of these traits (feature `runtime` of the crate that holds it):
 //! a unit struct for the nominal robot, and `WithParameters` for the same robot with parameters chosen at run time.
@@ -13,6 +14,11 @@
 //!
 //! with `g` on the left: the torque that holds the arm at rest is `tau = g(q)`.
 //! "The book" is Siciliano, Sciavicco, Villani, Oriolo, *Robotics: Modelling, Planning and Control*.
+
+#[rustfmt::skip] // it is written by a test
+mod single;
+
+pub use single::*;
 
 use nalgebra::{Matrix4, RealField, SMatrix, SVector, Scalar};
 

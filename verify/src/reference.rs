@@ -7,7 +7,7 @@ use armgen_codegen::manipulator::Manipulator;
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::{Arithmetic, Element};
 use crate::contract::{Array, Length, Promise, Returned};
-use crate::equations::arm::Arm;
+use crate::equations::arm::{Arm, Frame};
 use crate::equations::lagrange::{
     accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, times_vector,
 };
@@ -17,7 +17,7 @@ use crate::equations::parameters::{
 };
 use crate::equations::pose::Pose;
 use crate::equations::state::State;
-use crate::equations::vector::solve;
+use crate::equations::vector::{solve, Vector as Vector3};
 
 const N: Length = Length::Dof;
 const SQUARE: Array = &[N, N];
@@ -41,11 +41,12 @@ impl Promise {
 }
 
 /// All functions that the checker knows. Written apart from the generator's catalogue; a test compares the two.
-pub const PROMISES: [Promise; 21] = [
+pub const PROMISES: [Promise; 23] = [
     promise("direct_kinematics", &["q"], Returned::One(FRAME)),
     promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
     promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)),
     promise("geometric_jacobian_dot", &["q", "dq"], Returned::One(JACOBIAN)),
+    promise("link_jacobians", &["q"], Returned::One(&[N, Length::Of(6), N])).optional(),
     promise("inertia_matrix", &["q"], Returned::One(SQUARE)).with_parameters(),
     promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
     promise("gravity", &["q"], Returned::One(VECTOR)).with_parameters(),
@@ -62,6 +63,7 @@ pub const PROMISES: [Promise; 21] = [
     promise("known_torque", &["q", "dq", "dqr", "ddqr"], Returned::One(VECTOR)),
     promise("kinetic_energy", &["q", "dq"], Returned::One(&[])).with_parameters(),
     promise("potential_energy", &["q"], Returned::One(&[])).with_parameters(),
+    promise("center_of_mass", &["q"], Returned::One(&[Length::Of(3)])).with_parameters().optional(),
     promise("momentum", &["q", "dq"], Returned::One(VECTOR)).optional(),
     promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)).optional(),
     promise("base_regressor", &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])).optional(),
@@ -160,9 +162,26 @@ fn of_parts<E: Element>(arm: &Arm<E>, state: &State<E>, parts: Parts<E>, values:
     put("kinetic_energy", vec![kinetic]);
     put("potential_energy", vec![u]);
     put("momentum", momentum);
+    if let Some(point) = center_of_mass(arm, state) {
+        put("center_of_mass", point);
+    }
     let transposed: Vec<Vec<E>> = (0..arm.dof()).map(|i| c.iter().map(|row| row[i].clone()).collect()).collect();
     put("coriolis_transpose_times", times_vector(&transposed, &state.dq));
     Some(without_friction)
+}
+
+/// Σ m p / Σ m: the sum on top is -U where free fall is along an axis at 1. None where there is no mass.
+fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> {
+    let links = arm.joints.iter().map(|joint| &joint.link.mass);
+    let rotors = arm.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
+    let load = arm.payload.iter().map(|body| &body.mass);
+    let total = links.chain(rotors).chain(load).fold(arm.zero.clone(), |sum, mass| sum.plus(mass));
+    let along = |axis: usize| {
+        let mut falling = arm.clone();
+        falling.gravity = [0, 1, 2].map(|i| if i == axis { arm.one.clone() } else { arm.zero.clone() });
+        potential_energy(&falling, state).negated().over(&total)
+    };
+    (0..3).map(along).collect()
 }
 
 /// ∂τ/∂q and ∂τ/∂q̇ row by row, by dual numbers through Newton and Euler.
@@ -231,6 +250,14 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     let frames = pose.links.iter().flat_map(|frame| pose.homogeneous(frame, &arm.one)).collect();
     values.insert("link_frames".into(), frames);
     values.insert("geometric_jacobian".into(), pose.geometric_jacobian(arm.tip));
+    let of_link = |(i, link): (usize, &Frame<E>)| {
+        let columns = pose.jacobian(Some(i), &link.origin);
+        let rows = |of: fn(&(Vector3<E>, Vector3<E>)) -> &Vector3<E>| -> Vec<E> {
+            (0..3).flat_map(|row| columns.iter().map(move |column| of(column)[row].clone())).collect()
+        };
+        [rows(|column| &column.0), rows(|column| &column.1)].concat()
+    };
+    values.insert("link_jacobians".into(), pose.links.iter().enumerate().flat_map(of_link).collect());
     let moving = arm.map(&|e| Dual::constant(e));
     let along = state.moving(&state.dq, &vec![arm.zero.clone(); arm.dof()]);
     let rates = Pose::new(&moving, &along).geometric_jacobian(arm.tip).into_iter().map(|entry| entry.rate);

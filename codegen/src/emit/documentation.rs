@@ -1,7 +1,7 @@
 //! The documentation of emitted functions, in no language: formula, arguments, result, frames, units and signs, cost. Written for readers
 //! who never saw the generator. Each language writes the [`Block`]s as its comments are written, and its own names for the links.
 
-use crate::catalogue::{self, Argument, Documentation};
+use crate::catalogue::{self, Argument, Documentation, Quantity};
 use crate::exact::Number;
 use crate::program::listing::decimal;
 use crate::program::{Cost, Function, Module, Operand, Parameter};
@@ -59,6 +59,17 @@ pub(super) fn linked(text: &str, write: &dyn Fn(Link<'_>) -> String) -> String {
     result + rest
 }
 
+/// The documentation of a quantity, whatever the arm.
+pub(super) fn of_quantity(quantity: &Quantity) -> Vec<Block> {
+    let Documentation { title, formula, result, .. } = quantity.documentation;
+    let items = quantity.arguments.iter().map(argument).chain([format!("Returns {result}")]);
+    vec![Block::text(title), Block::Verbatim(vec![formula.into()]), Block::List(items.collect())]
+}
+
+fn argument(argument: &Argument) -> String {
+    format!("{{{}}}: {}", argument.name(), argument.meaning())
+}
+
 /// The documentation of a function.
 pub(super) fn function(function: &Function, module: &Module) -> Vec<Block> {
     let Documentation { title, formula, result, result_with, failure, names_gravity } = function.quantity.documentation;
@@ -75,7 +86,7 @@ pub(super) fn function(function: &Function, module: &Module) -> Vec<Block> {
         blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
     }
     blocks.push(Block::Formula(formula));
-    let arguments = function.arguments.iter().map(|a| format!("{{{}}}: {}", a.name(), a.meaning()));
+    let arguments = function.arguments.iter().map(argument);
     blocks.push(Block::List(arguments.chain([format!("Returns {result}")]).collect()));
     if let Some(joint) = turned_joint(function) {
         blocks.push(Block::text(format!(

@@ -20,6 +20,7 @@ use crate::program::{Function, Module, Scalar};
 use crate::ring::Symbol;
 use body::Body;
 use literal::literal;
+pub use runtime::single_traits;
 pub(super) use signature::accesses;
 use signature::{argument, ignored, of_parts, structures, type_of, usize_literal, with_fields};
 

@@ -22,8 +22,9 @@ fn main() {
                 let name = format!("{robot}_{ending}");
                 Robot::new(path).scalar(scalar).trig(trig).file_stem(&name).generate();
                 let module = fs::read_to_string(out.join(format!("{name}.rs"))).expect("the module was just written");
-                fs::write(out.join(format!("{name}_calls.rs")), armgen_bare_calls::calls(&module))
-                    .expect("OUT_DIR can be written");
+                let runtime = fs::read_to_string(out.join(format!("{name}_runtime.rs"))).expect("it was written with it");
+                let texts = armgen_bare_calls::calls(&module) + &armgen_bare_calls::method_calls(&runtime);
+                fs::write(out.join(format!("{name}_calls.rs")), texts).expect("OUT_DIR can be written");
                 let include = |file: String| format!("    include!(concat!(env!(\"OUT_DIR\"), \"/{file}.rs\"));\n");
                 let files = [name.clone(), format!("{name}_runtime"), format!("{name}_calls")].map(include).concat();
                 modules +=
@@ -31,7 +32,7 @@ fn main() {
                 calls += &format!(
                     "    let (v, p) = (core::hint::black_box([0.5; {name}::DOF]), core::hint::black_box([0.5; {name}::PARAMETERS]));\n    \
                      let arguments = {name}::Arguments {{ q: v, dq: v, ddq: v, dqr: v, ddqr: v, tau: v, pi: p }};\n    \
-                     {name}::each_function(&arguments, &mut |_, call| call());\n"
+                     {name}::each_function(&arguments, &mut |_, call| call());\n    {name}::each_method(&arguments);\n"
                 );
             }
         }

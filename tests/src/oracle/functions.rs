@@ -1,6 +1,7 @@
 //! The values of emitted functions by name, as far as each has one formula.
 
-use super::{times, Matrix, Model};
+use super::kinematics::Posture;
+use super::{times, Dual, Matrix, Model};
 use crate::functions::Arguments;
 
 impl Model {
@@ -23,6 +24,8 @@ impl Model {
             "inverse_dynamics" => self.inverse_dynamics(q, dq, ddq),
             "kinetic_energy" => vec![self.kinetic_energy(q, dq)],
             "potential_energy" => vec![self.potential_energy(q)],
+            "link_jacobians" => (1..=self.dof()).flat_map(|link| self.link_jacobian(q, link).concat()).collect(),
+            "center_of_mass" => self.center_of_mass(q),
             "momentum" => times(&self.inertia_matrix(q), dq),
             "coriolis_transpose_times" => times(&transposed(&self.coriolis_matrix(q, dq)), dq),
             "inverse_dynamics_derivatives" => {
@@ -31,6 +34,34 @@ impl Model {
             }
             _ => return None,
         })
+    }
+}
+
+impl Model {
+    /// The geometric Jacobian of the origin of link frame `link`, from 1, by the derivatives of that frame: (dp, the vector of dR R').
+    fn link_jacobian(&self, q: &[f64], link: usize) -> Matrix {
+        let mut rows = vec![vec![]; 6];
+        for j in 0..self.dof() {
+            let direction: Vec<f64> = (0..self.dof()).map(|i| f64::from(u8::from(i == j))).collect();
+            let frame = Posture::new(self, &Dual::along(q, &direction)).frames[link];
+            let spin = |i: usize, k: usize| -> f64 { (0..3).map(|c| frame.r[i][c].derivative * frame.r[k][c].value).sum() };
+            for i in 0..3 {
+                rows[i].push(frame.p[i].derivative);
+                rows[i + 3].push(spin((i + 2) % 3, (i + 1) % 3));
+            }
+        }
+        rows
+    }
+
+    /// Σ m p / Σ m, the sum on top by the potential energy in a free fall of 1 along each axis in turn.
+    fn center_of_mass(&self, q: &[f64]) -> Vec<f64> {
+        let motors = self.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| motor.mass);
+        let mass: f64 = self.joints.iter().map(|joint| joint.link[0]).chain(motors).chain(self.payload.map(|load| load[0])).sum();
+        let moment = |axis: usize| {
+            let gravity = [0, 1, 2].map(|i| f64::from(u8::from(i == axis)));
+            -Model { gravity, ..self.clone() }.potential_energy(q)
+        };
+        (0..3).map(|axis| moment(axis) / mass).collect()
     }
 }
 

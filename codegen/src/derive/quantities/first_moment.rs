@@ -1,18 +1,20 @@
-//! What follows from the first moment of the whole arm in the base frame: the potential energy of gravity.
+//! What follows from the first moment of the whole arm in the base frame: the potential energy of gravity and the centre of mass.
 //!
 //! ```text
-//! h = Σ_i m_i p_li,   U = -g0' h                                                      (the book, eq. 7.36)
+//! h = Σ_i m_i p_li,   U = -g0' h,   p_c = h / Σ_i m_i                                 (the book, eq. 7.36)
 //! ```
 
 use super::kinematics::frames;
 use crate::derive::arm::Arm;
+use crate::derive::model::Model;
+use crate::derive::parameters::{ParameterKind, View};
 use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 
 /// In the order of the emitted module.
-pub(super) static DECLARED: [&Quantity; 1] = [&POTENTIAL_ENERGY];
+pub(super) static DECLARED: [&Quantity; 2] = [&POTENTIAL_ENERGY, &CENTER_OF_MASS];
 
 /// U(q).
 pub static POTENTIAL_ENERGY: Quantity = Quantity {
@@ -35,6 +37,54 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
     gathers: &[],
     interface: Some("Dynamics"),
 };
+
+/// p_c(q).
+pub static CENTER_OF_MASS: Quantity = Quantity {
+    name: "center_of_mass",
+    symbol: Typeset::plain("p_c(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part::whole(Typeset::plain("p_c(q)"), Typeset::plain("p_c"), &[Length::Fixed(3)], "m")],
+    structure: None,
+    has_parameters: true,
+    documentation: Documentation {
+        failure: ["cannot fail", "not finite where the masses add up to 0"],
+        ..Documentation::new(
+            "Centre of mass of the whole arm in the base frame: links, load and rotors, those that the base carries included.",
+            "p_c(q) = sum_i m_i p_li / m,  m = sum_i m_i,  U(q) = - m g0' p_c",
+            "its x, y and z, m.",
+        )
+    },
+    recursion: Recursion::new(Use::Plain, |pool, arm, _, setting| {
+        let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, setting.model, setting.view));
+        let inverse = pool.reciprocal(mass);
+        pool.scale(inverse, &first).to_vec()
+    }),
+    missing: no_center_of_mass,
+    gathers: &[],
+    interface: Some("CenterOfMass"),
+};
+
+/// Why an arm has no centre of mass, or none that its parameters give.
+fn no_center_of_mass(model: &Model, with_parameters: bool) -> Option<String> {
+    if with_parameters && matches!(model.parameters.kind, ParameterKind::Base(_)) {
+        return Some("base parameters are what torques tell apart, which does not give the mass of the arm".into());
+    }
+    let view = if with_parameters { View::Vector(&model.parameters) } else { View::Nominal };
+    let mut pool = Pool::new(model.field.clone());
+    let arm = Arm::new(&mut pool, &model.manipulator, view);
+    (total_mass(&mut pool, &arm, model, view) == ExprId::ZERO).then(|| "its bodies have no mass".into())
+}
+
+/// Σ_i m_i over the bodies of [`first_moment`], kg.
+fn total_mass(pool: &mut Pool, arm: &Arm, model: &Model, view: View<'_>) -> ExprId {
+    let carried: Vec<ExprId> = arm.joints.iter().map(|joint| joint.body.mass).collect();
+    let mut total = pool.sum(carried);
+    for motor in model.manipulator.joints.iter().filter(|joint| joint.parent.is_none()).filter_map(|joint| joint.motor.as_ref()) {
+        let rotor = view.polynomial(pool, &model.manipulator, &motor.mass);
+        total = pool.add(total, rotor);
+    }
+    total
+}
 
 /// h(q), kg m: links, load and rotors, those that the base carries included.
 fn first_moment(pool: &mut Pool, arm: &Arm) -> Vector {

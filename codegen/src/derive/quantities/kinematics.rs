@@ -1,4 +1,4 @@
-//! Direct kinematics and the geometric Jacobian.
+//! Direct kinematics and geometric Jacobians, of the end effector and of every link.
 //!
 //! ```text
 //! R_0i = R_0p R_i,   p_0i = p_0p + R_0p origin_i                                     (the book, Sect. 2.8)
@@ -13,7 +13,8 @@ use crate::ring::matrix::{Matrix, Vector, IDENTITY, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// In the order of the emitted module.
-pub(super) static DECLARED: [&Quantity; 4] = [&DIRECT_KINEMATICS, &LINK_FRAMES, &GEOMETRIC_JACOBIAN, &GEOMETRIC_JACOBIAN_DOT];
+pub(super) static DECLARED: [&Quantity; 5] =
+    [&DIRECT_KINEMATICS, &LINK_FRAMES, &GEOMETRIC_JACOBIAN, &GEOMETRIC_JACOBIAN_DOT, &LINK_JACOBIANS];
 
 /// T_e(q).
 pub static DIRECT_KINEMATICS: Quantity = Quantity {
@@ -106,6 +107,34 @@ pub static GEOMETRIC_JACOBIAN_DOT: Quantity = Quantity {
     interface: Some("Kinematics"),
 };
 
+/// J_i(q) of every link.
+pub static LINK_JACOBIANS: Quantity = Quantity {
+    name: "link_jacobians",
+    symbol: Typeset::plain("J_i(q)"),
+    arguments: &[Argument::Q],
+    result: &[Part {
+        element: Some(Element { name: "link_jacobian", letter: "J" }),
+        ..Part::whole(
+            Typeset::plain("J_i(q)"),
+            Typeset::plain("j"),
+            &[Length::Dof, Length::Fixed(6), Length::Dof],
+            "m or 1 above, 1 below",
+        )
+    }],
+    structure: None,
+    has_parameters: false,
+    documentation: Documentation::new(
+        "Geometric Jacobian J_i(q) of the origin of every link frame, in the base frame.",
+        "(v_i, omega_i) = J_i(q) dq                                        (Siciliano et al., Sect. 3.1)",
+        "`j[link][row][joint]`, 6 rows each: three linear (velocity of the origin of the frame that {link_frames} gives, m/s), then three \
+         angular (rad/s). Joints beyond a link have columns of zeros.",
+    ),
+    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| link_jacobians(pool, arm).concat().concat()),
+    missing: Quantity::NEVER_MISSING,
+    gathers: &[],
+    interface: Some("LinkJacobians"),
+};
+
 /// Frames in the base frame.
 #[derive(Clone, Debug)]
 pub struct Frames {
@@ -188,6 +217,13 @@ fn jacobian_of_point(pool: &mut Pool, arm: &Arm, frames: &Frames, link: usize, p
         }
     }
     jacobian
+}
+
+/// J_i(q) of the origin of every link frame: six rows each, linear then angular.
+pub fn link_jacobians(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
+    let frames = frames(pool, arm);
+    let links = arm.joints.iter().enumerate();
+    links.map(|(i, joint)| jacobian_of_point(pool, arm, &frames, i, &joint.link_origin)).collect()
 }
 
 fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angular: &Vector) {

@@ -1,18 +1,20 @@
 //! The implementation of the runtime's traits for an emitted module: text that names `armgen_runtime` and `nalgebra`, and nothing of either here.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, ToTokens};
 
-use super::signature::{accesses, argument, length, of_parts, with_fields};
+use super::documentation;
+use super::signature::{accesses, argument, length, of_parts, usize_literal, with_fields};
 use crate::catalogue::{self, Argument, Length, Part, Quantity};
+use crate::emit::documentation as common;
 use crate::program::Module;
 
 /// Two robots over the functions of the module, in scope by `use super::*` or by standing beside it: `Nominal`, the robot of the description,
 /// and `WithParameters`, the same robot with parameters chosen at run time.
 pub(super) fn implementation(module: &Module) -> TokenStream {
     let doc = format!(" The robot `{}` as described.", module.name);
-    let nominal = traits(&quote!(Nominal), false);
-    let with_parameters = traits(&quote!(WithParameters), true);
+    let nominal = traits(module, &quote!(Nominal), false);
+    let with_parameters = traits(module, &quote!(WithParameters), true);
     quote! {
         #[doc = #doc]
         #[allow(dead_code)]
@@ -39,21 +41,43 @@ pub(super) fn implementation(module: &Module) -> TokenStream {
     }
 }
 
+/// The traits that every implementation has; every other is of one function, which not every arm has.
+const BASIC: [&str; 3] = ["Kinematics", "Dynamics", "Regressor"];
+
 /// The methods of a trait.
 fn methods(interface: &str) -> impl Iterator<Item = &'static Quantity> + use<'_> {
     catalogue::quantities().filter(move |quantity| quantity.interface == Some(interface))
 }
 
-/// Functions that the implementation calls and the module does not have.
-pub(super) fn missing(module: &Module) -> Vec<String> {
-    let needed = catalogue::functions().filter(|(quantity, _)| quantity.interface.is_some());
-    let has = |(quantity, with)| module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with));
-    needed.filter(|&function| !has(function)).map(|(quantity, with)| quantity.function_name(with)).collect()
+/// The quantities with traits of their own, and these.
+fn single() -> impl Iterator<Item = (&'static Quantity, &'static str)> {
+    catalogue::quantities().filter_map(|quantity| Some((quantity, quantity.interface.filter(|name| !BASIC.contains(name))?)))
 }
 
-fn traits(robot: &TokenStream, with_parameters: bool) -> TokenStream {
+fn has(module: &Module, quantity: &Quantity, with_parameters: bool) -> bool {
+    module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with_parameters))
+}
+
+/// Functions that every implementation calls and the module does not have.
+pub(super) fn missing(module: &Module) -> Vec<String> {
+    let basic = |quantity: &Quantity| quantity.interface.is_some_and(|name| BASIC.contains(&name));
+    let needed = catalogue::functions().filter(|(quantity, with)| basic(quantity) && !has(module, quantity, *with));
+    needed.map(|(quantity, with)| quantity.function_name(with)).collect()
+}
+
+fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenStream {
     let of = |interface: &str| methods(interface).map(|q| method(q, with_parameters)).collect::<Vec<_>>();
     let (kinematics, dynamics, regressor) = (of("Kinematics"), of("Dynamics"), of("Regressor"));
+    let single = single().filter(|(quantity, _)| has(module, quantity, with_parameters && quantity.has_parameters));
+    let single = single.map(|(quantity, interface)| {
+        let (interface, method) = (format_ident!("{interface}"), method(quantity, with_parameters));
+        let lengths = constants(quantity).into_iter().map(length);
+        quote! {
+            impl armgen_runtime::robot::#interface<#(#lengths),*> for #robot {
+                #method
+            }
+        }
+    });
     let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     quote! {
         impl armgen_runtime::robot::Kinematics<DOF> for #robot {
@@ -71,7 +95,61 @@ fn traits(robot: &TokenStream, with_parameters: bool) -> TokenStream {
                 armgen_runtime::nalgebra::SVector::from(#parameters)
             }
         }
+
+        #(#single)*
     }
+}
+
+/// The constants that a trait of one function is generic over: the number of joints, and what else its result has as dimensions.
+fn constants(quantity: &Quantity) -> Vec<Length> {
+    let mut all = vec![Length::Dof];
+    for &length in quantity.result.iter().flat_map(|part| part.lengths) {
+        if !matches!(length, Length::Fixed(_)) && !all.contains(&length) {
+            all.push(length);
+        }
+    }
+    all
+}
+
+/// The constant that a trait is generic over.
+fn generic(length: Length) -> TokenStream {
+    match length {
+        Length::Dof => quote!(N),
+        Length::Parameters => quote!(P),
+        Length::BaseParameters => quote!(B),
+        Length::Task => quote!(M),
+        Length::Fixed(value) => usize_literal(value).into_token_stream(),
+    }
+}
+
+/// The text of the runtime's traits of one function each, `runtime/src/robot/single.rs`.
+pub fn single_traits() -> String {
+    let traits = single().map(|(quantity, interface)| {
+        let (interface, name) = (format_ident!("{interface}"), format_ident!("{}", quantity.name));
+        let title = format!(" The function `{}` of a robot.", quantity.name);
+        let documentation = documentation::lines(&common::of_quantity(quantity));
+        let lengths = constants(quantity).into_iter().map(generic);
+        let arguments = quantity.arguments.iter().map(|&a| {
+            let (name, _) = argument(a);
+            quote!(#name: &SVector<Self::Real, N>)
+        });
+        let returns = of_parts(quantity, |part| part_type(part, &quote!(Self::Real), &quote!(), generic), |name| quote!(#name));
+        quote! {
+            #[doc = #title]
+            pub trait #interface<#(const #lengths: usize),*>: Kinematics<N> {
+                #(#[doc = #documentation])*
+                fn #name(&self, #(#arguments),*) -> #returns;
+            }
+        }
+    });
+    let traits = quote! {
+        use super::Kinematics;
+        use nalgebra::{SMatrix, SVector};
+        #(#traits)*
+    };
+    "//! Traits of one function each, for what not every robot has. Written from the catalogue of emitted functions; a test says when that differs.\n\n"
+        .to_string()
+        + &super::format(traits)
 }
 
 fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
@@ -95,7 +173,8 @@ fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
         passed.insert(0, quote!(&self.parameters));
     }
     let call = quote!(#called(#(#passed),*));
-    let returns = of_parts(quantity, part_type, |name| quote!(armgen_runtime::robot::#name<Real, DOF>));
+    let own = |part: &Part| part_type(part, &quote!(Real), &quote!(armgen_runtime::nalgebra::), length);
+    let returns = of_parts(quantity, own, |name| quote!(armgen_runtime::robot::#name<Real, DOF>));
     let value = match quantity.result {
         [part] => converted(part, &call),
         parts => {
@@ -122,19 +201,19 @@ fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
 }
 
 /// The type of a part of a result in the runtime.
-fn part_type(part: &Part) -> TokenStream {
+fn part_type(part: &Part, real: &TokenStream, nalgebra: &TokenStream, length: fn(Length) -> TokenStream) -> TokenStream {
     let of_matrix = |rows: Length, columns: Length| match (rows, columns) {
-        (Length::Fixed(4), Length::Fixed(4)) => quote!(armgen_runtime::nalgebra::Matrix4<Real>),
+        (Length::Fixed(4), Length::Fixed(4)) => quote!(#nalgebra Matrix4<#real>),
         (rows, columns) => {
             let (rows, columns) = (length(rows), length(columns));
-            quote!(armgen_runtime::nalgebra::SMatrix<Real, #rows, #columns>)
+            quote!(#nalgebra SMatrix<#real, #rows, #columns>)
         }
     };
     match *part.lengths {
-        [] => quote!(Real),
+        [] => real.clone(),
         [entries] => {
             let entries = length(entries);
-            quote!(armgen_runtime::nalgebra::SVector<Real, #entries>)
+            quote!(#nalgebra SVector<#real, #entries>)
         }
         [rows, columns] => of_matrix(rows, columns),
         [count, rows, columns, ..] => {

@@ -48,6 +48,52 @@ pub fn calls(module: &str) -> String {
     prettyplease::unparse(&syn::parse2(tokens).expect("calls are a Rust file"))
 }
 
+/// Rust text to be included beside `runtime`, the emitted implementation of the traits, and the text of [`calls`]: `each_method`, which calls
+/// every method of every trait for both robots.
+pub fn method_calls(runtime: &str) -> String {
+    let file = syn::parse_file(runtime).expect("an emitted implementation is a Rust file");
+    let calls = file.items.iter().filter_map(|item| match item {
+        Item::Impl(implementation) => implementation_calls(implementation),
+        _ => None,
+    });
+    let tokens = quote! {
+        /// Calls each method of the traits of the runtime.
+        pub fn each_method(arguments: &Arguments) {
+            use armgen_runtime::nalgebra::SVector;
+            let nominal = Nominal;
+            let with_parameters = WithParameters { parameters: core::hint::black_box(arguments.pi) };
+            #(#calls)*
+        }
+    };
+    prettyplease::unparse(&syn::parse2(tokens).expect("calls are a Rust file"))
+}
+
+/// The calls of the methods of a trait of the runtime; none of another trait.
+fn implementation_calls(implementation: &syn::ItemImpl) -> Option<impl quote::ToTokens> {
+    let (path, _) = implementation.trait_.as_ref()?;
+    let name = &path.segments.last()?.ident;
+    if path.segments.first()?.ident != "armgen_runtime" {
+        return None;
+    }
+    let own = &implementation.self_ty;
+    let robot = if quote!(#own).to_string() == "Nominal" { quote!(nominal) } else { quote!(with_parameters) };
+    let calls = implementation.items.iter().filter_map(|item| match item {
+        syn::ImplItem::Fn(method) => {
+            let method_name = &method.sig.ident;
+            let values = method.sig.inputs.iter().filter_map(|input| match input {
+                FnArg::Typed(input) => {
+                    let argument = &input.pat;
+                    Some(quote!(core::hint::black_box(&SVector::from(arguments.#argument))))
+                }
+                FnArg::Receiver(_) => None,
+            });
+            Some(quote!(core::hint::black_box(armgen_runtime::robot::#name::#method_name(&#robot, #(#values),*));))
+        }
+        _ => None,
+    });
+    Some(quote!(#(#calls)*))
+}
+
 fn visit(function: &syn::ItemFn) -> impl quote::ToTokens {
     let (name, output) = (&function.sig.ident, &function.sig.output);
     let text = name.to_string();

@@ -1,11 +1,17 @@
 //! The program that proves the absence of panics calls every public function there is.
 
-use armgen_bare_calls::{calls, named_functions, public_functions};
-use armgen_codegen::{program::Options, source::Source};
+use armgen_bare_calls::{calls, method_calls, named_functions, public_functions};
+use armgen_codegen::{program::Options, source::Source, Generated};
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
 fn project(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../..").join(path)
+}
+
+fn generated() -> Generated {
+    let text = fs::read_to_string(project("robots/scara.yaml")).expect("the robot is there");
+    let (generated, _) = armgen_codegen::generate(&Source::new("scara.yaml", text), &Options::default());
+    generated.expect("the description is valid")
 }
 
 fn missing(called: &str) -> BTreeSet<String> {
@@ -15,7 +21,8 @@ fn missing(called: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_public_function_of_the_runtime_is_called() {
-    let called = fs::read_to_string(project("tests/bare/no_panic/src/runtime.rs")).expect("the calls are there");
+    let steps = fs::read_to_string(project("tests/bare/no_panic/src/runtime.rs")).expect("the calls are there");
+    let called = steps + &method_calls(&generated().runtime);
     assert_eq!(missing(&called), BTreeSet::new(), "these are not called by tests/bare/no_panic/src/runtime.rs");
     // The check sees what it is to see: one of each kind, forgotten.
     for name in ["manipulability", "left_singular", "NullSpace::new", "Dynamics::gravity", "Path::check_reach", "Clik::approach"]
@@ -27,10 +34,7 @@ fn every_public_function_of_the_runtime_is_called() {
 
 #[test]
 fn every_public_function_of_an_emitted_module_is_called() {
-    let path = project("robots/scara.yaml");
-    let text = fs::read_to_string(path).expect("the robot is there");
-    let (generated, _) = armgen_codegen::generate(&Source::new("scara.yaml", text), &Options::default());
-    let module = generated.expect("the description is valid").module;
+    let module = generated().module;
     let named = named_functions(&calls(&module));
     // Read off the text by its lines, another way than `calls` goes.
     let functions: Vec<&str> = module.lines().filter_map(|line| line.strip_prefix("pub fn ")?.split('(').next()).collect();
