@@ -31,7 +31,10 @@ use crate::derive::arm::Arm;
 use crate::derive::derivation::{Derivation, CLOSED_FORM_TERMS};
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterKind, View};
-use crate::derive::{self, determinant::Factor};
+use crate::derive::{
+    self,
+    determinant::{Factor, Zeros},
+};
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -198,10 +201,10 @@ impl Shown {
     }
 
     /// The factors of the determinant in one notation, and where each is zero.
-    pub fn factors(&self, notation: Notation) -> Option<Vec<(String, Option<String>)>> {
+    pub fn factors(&self, notation: Notation) -> Option<Vec<(String, &Zeros)>> {
         let printer = Printer { notation, parameters: &self.parameters };
         let factors = self.factors.as_ref()?;
-        Some(factors.iter().map(|factor| (printer.form(&factor.form), factor.singular.clone())).collect())
+        Some(factors.iter().map(|factor| (printer.form(&factor.form), &factor.zeros)).collect())
     }
 
     /// Whether this is a square matrix equal to its transpose.

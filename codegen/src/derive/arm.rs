@@ -11,7 +11,7 @@
 //! A body is its mass m, first moment h = ∫ r dm and second moments S = ∫ r r' dm: with these, moving a body to another frame is
 //! one congruence, and the inertia tensor is tr(S) 1 - S.
 
-use super::parameters::{second_moments, StandardParameter, View};
+use super::parameters::{second_moments, Inertial, StandardParameter, View};
 use crate::exact::Number;
 use crate::manipulator::{JointKind, Manipulator, Placement};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
@@ -355,8 +355,8 @@ fn placement(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, placeme
 }
 
 /// The ten parameters of a body as mass, first and second moments.
-fn inertial_body(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, of: impl Fn(u8) -> StandardParameter) -> Body {
-    let value = std::array::from_fn::<ExprId, 10, _>(|k| view.standard(pool, manipulator, of(k as u8)));
+fn inertial_body(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, of: impl Fn(Inertial) -> StandardParameter) -> Body {
+    let value = Inertial::TEN.map(|k| view.standard(pool, manipulator, of(k)));
     let [mass, x, y, z, inertia @ ..] = value;
     Body { mass, first: [x, y, z], second: second_moments(pool, &inertia) }
 }

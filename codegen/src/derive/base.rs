@@ -7,7 +7,7 @@
 
 use super::arm::{Arm, Rest};
 use super::newton_euler::Motion;
-use super::parameters::{Parameter, ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
+use super::parameters::{Inertial, Parameter, ParameterKind, ParameterVector, StandardParameter, View};
 use super::passes::turn_last_link;
 use super::plan::Plan;
 use super::quantities::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
@@ -396,22 +396,26 @@ fn grouped(manipulator: &Manipulator, field: &Field, rest: Rest, own: bool) -> P
 /// What can be left after grouping: links without m, mcz and Iyy or the second moment along the axis (revolute) or without inertia
 /// (prismatic), rotors, friction.
 fn candidates(manipulator: &Manipulator, rest: Rest) -> Vec<StandardParameter> {
-    let flat = |parameter: StandardParameter| match (rest, parameter) {
-        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, 4)) => StandardParameter::Link(i, FLAT_IXX),
-        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, 9)) => StandardParameter::Link(i, FLAT_IYY),
+    let left = |parameter: StandardParameter| match (rest, parameter) {
+        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, Inertial::Ixx)) => {
+            StandardParameter::Link(i, Inertial::PlanarIxx)
+        }
+        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, Inertial::Izz)) => {
+            StandardParameter::Link(i, Inertial::PlanarIyy)
+        }
         _ => parameter,
     };
     StandardParameter::all(manipulator)
         .into_iter()
         .filter(|&parameter| match parameter {
             StandardParameter::Link(i, k) if manipulator.joints[usize::from(i)].kind == JointKind::Revolute => {
-                ![0, 3, 6].contains(&k)
+                ![Inertial::M, Inertial::Mcz, Inertial::Iyy].contains(&k)
             }
-            StandardParameter::Link(_, k) => k < 4,
+            StandardParameter::Link(_, k) => k <= Inertial::Mcz,
             StandardParameter::Payload(_) => false,
             _ => true,
         })
-        .map(flat)
+        .map(left)
         .collect()
 }
 
@@ -422,16 +426,18 @@ fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter
             let body = &arm.joints[usize::from(i)].body;
             let [xx, xy, yy, xz, yz, zz] = body.second;
             match k {
-                0 => body.mass,
-                1..=3 => body.first[usize::from(k) - 1],
-                4 => pool.add(yy, zz),
-                5 => -xy,
-                6 => pool.add(xx, zz),
-                7 => -xz,
-                8 => -yz,
-                FLAT_IXX => yy,
-                FLAT_IYY => xx,
-                _ => pool.add(xx, yy),
+                Inertial::M => body.mass,
+                Inertial::Mcx => body.first[0],
+                Inertial::Mcy => body.first[1],
+                Inertial::Mcz => body.first[2],
+                Inertial::Ixx => pool.add(yy, zz),
+                Inertial::Ixy => -xy,
+                Inertial::Iyy => pool.add(xx, zz),
+                Inertial::Ixz => -xz,
+                Inertial::Iyz => -yz,
+                Inertial::Izz => pool.add(xx, yy),
+                Inertial::PlanarIxx => yy,
+                Inertial::PlanarIyy => xx,
             }
         }
         _ => {
@@ -519,13 +525,24 @@ fn entry(parameter: StandardParameter, standard: &ParameterVector, coefficients:
 /// Columns are kept in this order: friction, then links from the base outwards; within a link inertia about the axis first. Rotors are told
 /// apart from links only where nothing else can carry their effect.
 fn preference(parameter: StandardParameter) -> (u8, u16, u8) {
-    const RANK: [u8; 12] = [9, 3, 4, 8, 5, 1, 7, 2, 6, 0, 0, 5];
+    let of_body = |parameter: Inertial| match parameter {
+        Inertial::Izz | Inertial::PlanarIxx => 0,
+        Inertial::Ixy => 1,
+        Inertial::Ixz => 2,
+        Inertial::Mcx => 3,
+        Inertial::Mcy => 4,
+        Inertial::Ixx | Inertial::PlanarIyy => 5,
+        Inertial::Iyz => 6,
+        Inertial::Iyy => 7,
+        Inertial::Mcz => 8,
+        Inertial::M => 9,
+    };
     match parameter {
         StandardParameter::RotorViscous(i) => (0, i, 0),
         StandardParameter::Viscous(i) => (0, i, 1),
         StandardParameter::Coulomb(i) => (0, i, 2),
-        StandardParameter::Link(i, k) => (1, i, RANK[usize::from(k)]),
+        StandardParameter::Link(i, k) => (1, i, of_body(k)),
         StandardParameter::RotorInertia(i) => (2, i, 0),
-        StandardParameter::Payload(k) => (3, 0, k),
+        StandardParameter::Payload(k) => (3, 0, k as u8),
     }
 }

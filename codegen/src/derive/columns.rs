@@ -19,7 +19,7 @@
 use std::collections::BTreeMap;
 
 use super::arm::{Arm, Joint};
-use super::plan::{Pass, Plan};
+use super::plan::{Pass, Place, Plan};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -87,7 +87,7 @@ impl<'a> Ways<'a> {
     pub(super) fn start(&self, pool: &mut Pool, plan: &mut Plan, mut column: Column, joint: usize) -> Traveller {
         let mut relative = self.arm.joints[joint].parent;
         if let (Some(moving), Some(p), Some(omega)) = (&mut column.rate, relative, self.omega) {
-            if plan.way(Pass::RelativeMoment, joint, 2) == 1 {
+            if plan.way(Pass::RelativeMoment, Place::Joint(joint), 2) == 1 {
                 let turning = pool.transform_back(&self.arm.joints[joint].fixed, &omega[p]);
                 let swept = pool.cross(&turning, &column.inertial.1);
                 moving.transposed = pool.add_vectors(&moving.transposed, &swept);
@@ -143,7 +143,7 @@ impl<'a> Ways<'a> {
         let from = t.link;
         let joint = &self.arm.joints[from];
         let parent = joint.parent?;
-        let place = 2 * from + usize::from(t.fresh);
+        let place = Place::Column(from, t.fresh);
         // The parent's angular velocity in the axes that the column is in.
         let mut outer = ZERO;
         if let Some(omega) = self.omega {
@@ -153,7 +153,7 @@ impl<'a> Ways<'a> {
         if let (Some(moving), Some(omega)) = (&mut t.column.rate, self.omega) {
             if t.relative == Some(from) {
                 let n = t.column.inertial.1;
-                let change = if plan.way(Pass::RelativeMoment, self.arm.dof() + from, 2) == 0 {
+                let change = if plan.way(Pass::RelativeMoment, Place::Leaving(from), 2) == 0 {
                     t.relative = Some(parent);
                     pool.cross(&n, &[ExprId::ZERO, ExprId::ZERO, -joint.spin])
                 } else {

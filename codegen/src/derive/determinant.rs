@@ -42,8 +42,47 @@ pub struct Determinant {
 pub struct Factor {
     /// Its closed form.
     pub form: NormalForm,
-    /// Where it is zero, if it depends on one joint variable alone: `q2 = k pi`.
-    pub singular: Option<String>,
+    /// Where it is zero.
+    pub zeros: Zeros,
+}
+
+/// Where a factor of a determinant is zero.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Zeros {
+    /// Nowhere.
+    Never,
+    /// At every q.
+    Everywhere,
+    /// Where the parameters that alone stand in it make it so.
+    OfParameters,
+    /// At values of one joint variable: `q2 = k pi`.
+    Of(String),
+    /// Where several joints together make it so.
+    OfSeveralJoints,
+}
+
+impl Zeros {
+    /// In a few words; none where several joints together decide.
+    pub fn words(&self) -> Option<&str> {
+        match self {
+            Zeros::Never => Some("never"),
+            Zeros::Everywhere => Some("at every q"),
+            Zeros::OfParameters => Some("where its parameters alone make it so"),
+            Zeros::Of(values) => Some(values),
+            Zeros::OfSeveralJoints => None,
+        }
+    }
+
+    /// As a sentence about the factor.
+    pub fn sentence(&self) -> String {
+        match self {
+            Zeros::Never => "never zero".into(),
+            Zeros::Everywhere => "zero at every q".into(),
+            Zeros::OfParameters => "zero where its parameters alone make it so".into(),
+            Zeros::Of(values) => format!("zero at {values}"),
+            Zeros::OfSeveralJoints => "zero where several joints together make it so".into(),
+        }
+    }
 }
 
 /// Up to so many terms, on the way too, the determinant is sought in closed form.
@@ -103,7 +142,7 @@ enum Variable {
 /// The factors of a form: contents in single variables, then what is left; the constant factor goes into the first.
 fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
     let mut rest = form.clone();
-    let mut found: Vec<(NormalForm, Option<String>)> = Vec::new();
+    let mut found: Vec<(NormalForm, Zeros)> = Vec::new();
     let variables: Vec<Variable> =
         rest.angles().into_iter().map(Variable::Angle).chain(positions(&rest).into_iter().map(Variable::Position)).collect();
     for variable in variables {
@@ -118,15 +157,15 @@ fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
         match found.first_mut() {
             Some((first, _)) => *first = first.times(&scale, TERMS).expect("a constant adds no terms"),
             None => {
-                let singular = zeros_without_joints(&scale);
-                found.push((scale, singular));
+                let zeros = zeros_without_joints(&scale);
+                found.push((scale, zeros));
             }
         }
     } else {
-        let singular = zeros_without_joints(&rest);
-        found.push((rest, singular));
+        let zeros = zeros_without_joints(&rest);
+        found.push((rest, zeros));
     }
-    found.into_iter().map(|(form, singular)| Factor { form, singular }).collect()
+    found.into_iter().map(|(form, zeros)| Factor { form, zeros }).collect()
 }
 
 /// The joints whose displacements stand in a form.
@@ -136,22 +175,21 @@ fn positions(form: &NormalForm) -> Vec<u16> {
     all.into_iter().collect()
 }
 
-/// Where a factor is zero in which no joint variable stands; `None` of others.
-fn zeros_without_joints(form: &NormalForm) -> Option<String> {
-    let alone = form.angles().is_empty() && positions(form).is_empty();
-    let constant = form.terms().all(|(_, factors, _)| factors.is_empty());
-    alone.then(|| {
-        match (form.is_empty(), constant) {
-            (true, _) => "at every q",
-            (_, true) => "never",
-            _ => "where its parameters alone make it so",
-        }
-        .into()
-    })
+/// Where a factor is zero that is no product of ones in a single joint variable.
+fn zeros_without_joints(form: &NormalForm) -> Zeros {
+    if !form.angles().is_empty() || !positions(form).is_empty() {
+        Zeros::OfSeveralJoints
+    } else if form.is_empty() {
+        Zeros::Everywhere
+    } else if form.terms().all(|(_, factors, _)| factors.is_empty()) {
+        Zeros::Never
+    } else {
+        Zeros::OfParameters
+    }
 }
 
 /// The content of a form in one variable, in factors with their zeros, and the quotient; `None` if there is none.
-fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<(NormalForm, Option<String>)>, NormalForm)> {
+fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<(NormalForm, Zeros)>, NormalForm)> {
     let groups = split(form, variable);
     let degree = groups.values().map(Univariate::degree).max()?;
     let mut divisor: Option<Univariate> = None;
@@ -185,8 +223,8 @@ fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<
         .into_iter()
         .map(|(part, degree)| {
             let form = from_univariate(&part, variable, degree);
-            let singular = zeros(&form, variable, &part);
-            (form, Some(singular))
+            let zeros = zeros(&form, variable, &part);
+            (form, zeros)
         })
         .collect();
     // The pieces carry scales (sin q is 2t/(1 + t²)): what they have too much is divided out of the quotient.
@@ -196,17 +234,17 @@ fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<
 }
 
 /// Scales each factor to a leading coefficient of 1, and returns the product of what was taken out.
-fn normalised(parts: Vec<(NormalForm, Option<String>)>) -> (Vec<(NormalForm, Option<String>)>, Number) {
+fn normalised(parts: Vec<(NormalForm, Zeros)>) -> (Vec<(NormalForm, Zeros)>, Number) {
     let mut scale = Number::one();
     let parts = parts
         .into_iter()
-        .map(|(form, singular)| {
+        .map(|(form, zeros)| {
             let groups = form.by_wave();
             let leading = groups[0].1[0].1.clone();
             let inverse = Number::one().checked_div(&leading).expect("a term is not zero");
             scale = &scale * &leading;
             let scaled = form.times(&NormalForm::term(Wave::one(), Vec::new(), inverse), usize::MAX).expect("no limit");
-            (scaled, singular)
+            (scaled, zeros)
         })
         .collect();
     (parts, scale)
@@ -289,7 +327,7 @@ fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
 }
 
 /// Where a factor in one variable is zero.
-fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> String {
+fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zeros {
     let printer = Printer { notation: Notation::Text, parameters: &[] };
     let coefficient = |angles: Vec<(u16, i32)>, sine: bool| {
         form.terms().find(|(w, _, _)| w.angles == angles && w.sine == sine).map_or(Number::zero(), |(_, _, c)| c.clone())
@@ -300,10 +338,10 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Stri
             match polynomial.coefficients() {
                 [zero, one] => {
                     let root = (-zero).checked_div(one).expect("the leading coefficient is not zero");
-                    format!("{name} = {}", printer.number(&root))
+                    Zeros::Of(format!("{name} = {}", printer.number(&root)))
                 }
                 [zero, one, two] => quadratic(&printer, &name, zero, one, two),
-                _ => format!("{name} with {} = 0", printer.form(form)),
+                _ => Zeros::Of(format!("{name} with {} = 0", printer.form(form))),
             }
         }
         Variable::Angle(i) => {
@@ -311,14 +349,14 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Stri
             let highest = form.terms().map(|(w, _, _)| w.order()).max().unwrap_or(0);
             let (a, b, c) = (coefficient(vec![(i, 1)], false), coefficient(vec![(i, 1)], true), coefficient(Vec::new(), false));
             if highest != 1 {
-                return format!("{name} with {} = 0", printer.form(form));
+                return Zeros::Of(format!("{name} with {} = 0", printer.form(form)));
             }
             match (a.is_zero(), b.is_zero(), c.is_zero()) {
-                (true, false, true) => format!("{name} = k pi"),
-                (false, true, true) => format!("{name} = pi/2 + k pi"),
+                (true, false, true) => Zeros::Of(format!("{name} = k pi")),
+                (false, true, true) => Zeros::Of(format!("{name} = pi/2 + k pi")),
                 (false, false, true) => {
                     let ratio = (-&a).checked_div(&b).expect("b is not zero");
-                    format!("{name} = atan({}) + k pi", printer.number(&ratio))
+                    Zeros::Of(format!("{name} = atan({}) + k pi", printer.number(&ratio)))
                 }
                 _ => linear_with_constant(&printer, &name, &a, &b, &c),
             }
@@ -327,24 +365,24 @@ fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Stri
 }
 
 /// c + b q + a q² = 0.
-fn quadratic(printer: &Printer<'_>, name: &str, c: &Number, b: &Number, a: &Number) -> String {
+fn quadratic(printer: &Printer<'_>, name: &str, c: &Number, b: &Number, a: &Number) -> Zeros {
     let root = |numerator: Number| {
         let root = numerator.checked_div(&(a * &Number::from(2))).expect("the leading coefficient is not zero");
         printer.number(&root)
     };
     let discriminant = &(b * b) - &(&(a * c) * &Number::from(4));
     match discriminant.sqrt() {
-        None => "never".into(),
-        Some(zero) if zero.is_zero() => format!("{name} = {}", root(-b)),
-        Some(width) => format!("{name} = {} or {}", root(&-b - &width), root(&-b + &width)),
+        None => Zeros::Never,
+        Some(zero) if zero.is_zero() => Zeros::Of(format!("{name} = {}", root(-b))),
+        Some(width) => Zeros::Of(format!("{name} = {} or {}", root(&-b - &width), root(&-b + &width))),
     }
 }
 
 /// a cos q + b sin q + c = 0.
-fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Number, c: &Number) -> String {
+fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Number, c: &Number) -> Zeros {
     let square = &(a * a) + &(b * b);
     if (&square - &(c * c)).sign() == std::cmp::Ordering::Less {
-        return "never".into();
+        return Zeros::Never;
     }
     let radius = square.sqrt().expect("a sum of squares");
     let ratio = (-c).checked_div(&radius).expect("a wave is there");
@@ -359,13 +397,13 @@ fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Numbe
         Angle::new(&part * &Number::pi()).cos() == ratio
     });
     let opening = match exact {
-        Some((0, _)) => return format!("{name} = {centre}{}2 k pi", if centre.is_empty() { "" } else { "+ " }),
-        Some((1, 1)) => return format!("{name} = {centre}{}pi + 2 k pi", if centre.is_empty() { "" } else { "+ " }),
+        Some((0, _)) => return Zeros::Of(format!("{name} = {centre}{}2 k pi", if centre.is_empty() { "" } else { "+ " })),
+        Some((1, 1)) => return Zeros::Of(format!("{name} = {centre}{}pi + 2 k pi", if centre.is_empty() { "" } else { "+ " })),
         Some((1, d)) => format!("pi/{d}"),
         Some((n, d)) => format!("{n} pi/{d}"),
         None => format!("acos({})", printer.number(&ratio)),
     };
-    format!("{name} = {centre}+- {opening} + 2 k pi")
+    Zeros::Of(format!("{name} = {centre}+- {opening} + 2 k pi"))
 }
 
 #[cfg(test)]
@@ -376,9 +414,9 @@ mod tests {
     fn zeros_of_a_quadratic_factor() {
         let printer = Printer { notation: Notation::Text, parameters: &[] };
         let zeros = |c: i64, b: i64, a: i64| quadratic(&printer, "q1", &c.into(), &b.into(), &a.into());
-        assert_eq!(zeros(1, 2, 1), "q1 = -1");
-        assert_eq!(zeros(3, -4, 1), "q1 = 1 or 3");
-        assert_eq!(zeros(-2, 0, 1), "q1 = -sqrt(2) or sqrt(2)");
-        assert_eq!(zeros(1, 0, 1), "never");
+        assert_eq!(zeros(1, 2, 1).words(), Some("q1 = -1"));
+        assert_eq!(zeros(3, -4, 1).words(), Some("q1 = 1 or 3"));
+        assert_eq!(zeros(-2, 0, 1).words(), Some("q1 = -sqrt(2) or sqrt(2)"));
+        assert_eq!(zeros(1, 0, 1).words(), Some("never"));
     }
 }

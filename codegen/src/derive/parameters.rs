@@ -9,9 +9,8 @@ use crate::ring::{ExprId, Pool, Symbol};
 /// One of the parameters in which the dynamics of every arm are linear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum StandardParameter {
-    /// One of the ten of a link, in its link frame, inertia about the origin: m mcx mcy mcz Ixx Ixy Iyy Ixz Iyz Izz. Beyond the ten, Ixx and Iyy of a
-    /// link without extent along z, Izz = Ixx + Iyy: what [`Rest::NoSecondMomentAlongAxis`](super::arm::Rest) leaves.
-    Link(u16, u8),
+    /// One of a link, in its link frame.
+    Link(u16, Inertial),
     /// Inertia of the rotor of a joint about its axis.
     RotorInertia(u16),
     /// Viscous friction at the rotor of a joint.
@@ -20,25 +19,104 @@ pub enum StandardParameter {
     Viscous(u16),
     /// Coulomb friction at a joint.
     Coulomb(u16),
-    /// One of the ten of the payload, in the end-effector frame.
-    Payload(u8),
+    /// One of the payload, in the end-effector frame.
+    Payload(Inertial),
 }
 
-/// Names of the inertial parameters of a body, without the link's number: the ten, and two of a link without extent along z.
-pub const INERTIAL_NAMES: [&str; 12] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz", "Ixx", "Iyy"];
+/// An inertial parameter of a body in a frame: mass, first moments m c, moments and products of inertia about the frame's origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Inertial {
+    /// m.
+    M,
+    /// m c_x.
+    Mcx,
+    /// m c_y.
+    Mcy,
+    /// m c_z.
+    Mcz,
+    /// Ixx.
+    Ixx,
+    /// Ixy = -∫xy dm.
+    Ixy,
+    /// Iyy.
+    Iyy,
+    /// Ixz = -∫xz dm.
+    Ixz,
+    /// Iyz = -∫yz dm.
+    Iyz,
+    /// Izz.
+    Izz,
+    /// Ixx of a planar body: one without extent along z, Izz = Ixx + Iyy. That is what
+    /// [`Rest::NoSecondMomentAlongAxis`](super::arm::Rest) leaves.
+    PlanarIxx,
+    /// Iyy of a planar body.
+    PlanarIyy,
+}
 
-/// Ixx of a link without extent along z.
-pub const FLAT_IXX: u8 = 10;
+impl Inertial {
+    /// The ten of any body.
+    pub const TEN: [Inertial; 10] = [
+        Inertial::M,
+        Inertial::Mcx,
+        Inertial::Mcy,
+        Inertial::Mcz,
+        Inertial::Ixx,
+        Inertial::Ixy,
+        Inertial::Iyy,
+        Inertial::Ixz,
+        Inertial::Iyz,
+        Inertial::Izz,
+    ];
 
-/// Iyy of a link without extent along z.
-pub const FLAT_IYY: u8 = 11;
+    /// How many there are, the two of planar bodies included.
+    pub const COUNT: usize = Inertial::TEN.len() + 2;
+
+    /// Its place among all of them.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Inertial::M => "m",
+            Inertial::Mcx => "mcx",
+            Inertial::Mcy => "mcy",
+            Inertial::Mcz => "mcz",
+            Inertial::Ixx | Inertial::PlanarIxx => "Ixx",
+            Inertial::Ixy => "Ixy",
+            Inertial::Iyy | Inertial::PlanarIyy => "Iyy",
+            Inertial::Ixz => "Ixz",
+            Inertial::Iyz => "Iyz",
+            Inertial::Izz => "Izz",
+        }
+    }
+
+    /// What it is, with its unit.
+    fn meaning(self) -> &'static str {
+        match self {
+            Inertial::M => "mass, kg",
+            Inertial::Mcx => "first moment m cx, kg m",
+            Inertial::Mcy => "first moment m cy, kg m",
+            Inertial::Mcz => "first moment m cz, kg m",
+            Inertial::Ixx => "inertia Ixx about the frame's origin, kg m²",
+            Inertial::Ixy => "inertia Ixy = -∫xy dm about the frame's origin, kg m²",
+            Inertial::Iyy => "inertia Iyy about the frame's origin, kg m²",
+            Inertial::Ixz => "inertia Ixz = -∫xz dm about the frame's origin, kg m²",
+            Inertial::Iyz => "inertia Iyz = -∫yz dm about the frame's origin, kg m²",
+            Inertial::Izz => "inertia Izz about the frame's origin, kg m²",
+            Inertial::PlanarIxx => "inertia Ixx about the frame's origin, with as much in Izz, kg m²",
+            Inertial::PlanarIyy => "inertia Iyy about the frame's origin, with as much in Izz, kg m²",
+        }
+    }
+}
 
 impl StandardParameter {
     /// All that a description gives, in the order of the regressor `standard`.
     pub fn all(manipulator: &Manipulator) -> Vec<StandardParameter> {
         let mut all = Vec::new();
         for i in 0..manipulator.joints.len() as u16 {
-            all.extend((0..10).map(|k| StandardParameter::Link(i, k)));
+            all.extend(Inertial::TEN.map(|k| StandardParameter::Link(i, k)));
         }
         for (i, joint) in manipulator.joints.iter().enumerate() {
             let i = i as u16;
@@ -56,7 +134,7 @@ impl StandardParameter {
             }
         }
         if manipulator.payload.is_some() {
-            all.extend((0..10).map(StandardParameter::Payload));
+            all.extend(Inertial::TEN.map(StandardParameter::Payload));
         }
         all
     }
@@ -64,12 +142,12 @@ impl StandardParameter {
     /// Its name: `m1`, `Ixx1`, `Im1`, `Fm1`, `Fv1`, `Fc1`, `mp`.
     pub fn name(self) -> String {
         match self {
-            StandardParameter::Link(i, k) => format!("{}{}", INERTIAL_NAMES[usize::from(k)], i + 1),
+            StandardParameter::Link(i, k) => format!("{}{}", k.name(), i + 1),
             StandardParameter::RotorInertia(i) => format!("Im{}", i + 1),
             StandardParameter::RotorViscous(i) => format!("Fm{}", i + 1),
             StandardParameter::Viscous(i) => format!("Fv{}", i + 1),
             StandardParameter::Coulomb(i) => format!("Fc{}", i + 1),
-            StandardParameter::Payload(k) => format!("{}p", INERTIAL_NAMES[usize::from(k)]),
+            StandardParameter::Payload(k) => format!("{}p", k.name()),
         }
     }
 
@@ -78,14 +156,12 @@ impl StandardParameter {
         let joint = |i: u16| &manipulator.joints[usize::from(i)];
         let motor = |i: u16| joint(i).motor.as_ref();
         match self {
-            StandardParameter::Link(i, FLAT_IXX) => Part::OfBody(Some(&joint(i).link), 4),
-            StandardParameter::Link(i, FLAT_IYY) => Part::OfBody(Some(&joint(i).link), 6),
-            StandardParameter::Link(i, k) => Part::OfBody(Some(&joint(i).link), usize::from(k)),
+            StandardParameter::Link(i, k) => Part::OfBody(Some(&joint(i).link), k),
             StandardParameter::RotorInertia(i) => Part::Whole(motor(i).and_then(|m| m.inertia.as_ref())),
             StandardParameter::RotorViscous(i) => Part::Whole(motor(i).and_then(|m| m.viscous.as_ref())),
             StandardParameter::Viscous(i) => Part::Whole(joint(i).viscous.as_ref()),
             StandardParameter::Coulomb(i) => Part::Whole(joint(i).coulomb.as_ref()),
-            StandardParameter::Payload(k) => Part::OfBody(manipulator.payload.as_ref(), usize::from(k)),
+            StandardParameter::Payload(k) => Part::OfBody(manipulator.payload.as_ref(), k),
         }
     }
 
@@ -105,15 +181,15 @@ impl StandardParameter {
 enum Part<'a> {
     /// It is given as such.
     Whole(Option<&'a Polynomial>),
-    /// One of the ten of a body.
-    OfBody(Option<&'a Body>, usize),
+    /// One of a body.
+    OfBody(Option<&'a Body>, Inertial),
 }
 
-/// The k-th of the ten inertial parameters of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c'), where `of` gives the
-/// entries of the body, and the others are the operations on what it gives.
+/// An inertial parameter of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c'), where `of` gives the entries of the
+/// body, and the others are the operations on what it gives.
 fn inertial<T>(
     body: &Body,
-    k: usize,
+    parameter: Inertial,
     of: &mut dyn FnMut(&Polynomial) -> T,
     mul: &mut dyn FnMut(&T, &T) -> T,
     add: &mut dyn FnMut(&T, &T) -> T,
@@ -124,28 +200,29 @@ fn inertial<T>(
         let moment = mul(&m, &a);
         mul(&moment, &b)
     };
-    match k {
-        0 => of(&body.mass),
-        1..=3 => {
-            let (m, c) = (of(&body.mass), of(&body.com[k - 1]));
-            mul(&m, &c)
+    // Of a moment of inertia the two coordinates whose squares it takes, which are added; of a product of inertia the two whose product
+    // is taken away.
+    let (element, moment, (i, j)) = match parameter {
+        Inertial::M => return of(&body.mass),
+        Inertial::Mcx | Inertial::Mcy | Inertial::Mcz => {
+            let (m, c) = (of(&body.mass), of(&body.com[parameter.index() - Inertial::Mcx.index()]));
+            return mul(&m, &c);
         }
-        _ => {
-            let element = of(&body.inertia[k - 4]);
-            // Of each element, the coordinates of the products that it takes: those of a moment are added, a product of inertia is
-            // taken away.
-            match [[(1, 1), (2, 2)], [(0, 1); 2], [(0, 0), (2, 2)], [(0, 2); 2], [(1, 2); 2], [(0, 0), (1, 1)]][k - 4] {
-                [one, other] if one != other => {
-                    let (one, other) = (square(of, one.0, one.1), square(of, other.0, other.1));
-                    let sum = add(&element, &one);
-                    add(&sum, &other)
-                }
-                [(i, j), _] => {
-                    let product = square(of, i, j);
-                    add(&element, &neg(&product))
-                }
-            }
-        }
+        Inertial::Ixx | Inertial::PlanarIxx => (0, true, (1, 2)),
+        Inertial::Ixy => (1, false, (0, 1)),
+        Inertial::Iyy | Inertial::PlanarIyy => (2, true, (0, 2)),
+        Inertial::Ixz => (3, false, (0, 2)),
+        Inertial::Iyz => (4, false, (1, 2)),
+        Inertial::Izz => (5, true, (0, 1)),
+    };
+    let element = of(&body.inertia[element]);
+    if moment {
+        let (one, other) = (square(of, i, i), square(of, j, j));
+        let sum = add(&element, &one);
+        add(&sum, &other)
+    } else {
+        let product = square(of, i, j);
+        add(&element, &neg(&product))
     }
 }
 
@@ -314,23 +391,9 @@ impl ParameterVector {
 impl StandardParameter {
     /// What it is, with unit and frame.
     pub fn meaning(self, manipulator: &Manipulator) -> String {
-        const INERTIAL: [&str; 12] = [
-            "mass, kg",
-            "first moment m cx, kg m",
-            "first moment m cy, kg m",
-            "first moment m cz, kg m",
-            "inertia Ixx about the frame's origin, kg m²",
-            "inertia Ixy = -∫xy dm about the frame's origin, kg m²",
-            "inertia Iyy about the frame's origin, kg m²",
-            "inertia Ixz = -∫xz dm about the frame's origin, kg m²",
-            "inertia Iyz = -∫yz dm about the frame's origin, kg m²",
-            "inertia Izz about the frame's origin, kg m²",
-            "inertia Ixx about the frame's origin, with as much in Izz, kg m²",
-            "inertia Iyy about the frame's origin, with as much in Izz, kg m²",
-        ];
         let name = |i: u16| &manipulator.joints[usize::from(i)].name;
         match self {
-            StandardParameter::Link(i, k) => format!("link {} ({}): {}", i + 1, name(i), INERTIAL[usize::from(k)]),
+            StandardParameter::Link(i, k) => format!("link {} ({}): {}", i + 1, name(i), k.meaning()),
             StandardParameter::RotorInertia(i) => {
                 format!("rotor of joint {} ({}): inertia about its axis, kg m²", i + 1, name(i))
             }
@@ -339,7 +402,7 @@ impl StandardParameter {
             }
             StandardParameter::Viscous(i) => format!("joint {} ({}): viscous friction, N m s or N s/m", i + 1, name(i)),
             StandardParameter::Coulomb(i) => format!("joint {} ({}): Coulomb friction, N m or N", i + 1, name(i)),
-            StandardParameter::Payload(k) => format!("payload, in the end-effector frame: {}", INERTIAL[usize::from(k)]),
+            StandardParameter::Payload(k) => format!("payload, in the end-effector frame: {}", k.meaning()),
         }
     }
 }

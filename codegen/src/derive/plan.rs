@@ -114,7 +114,35 @@ impl FromIterator<Pass> for Passes {
     }
 }
 
-type Fork = (Pass, usize);
+/// Where a derivation may go several ways; joints and links by index. A search takes the forks of a pass in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// The whole arm.
+    Arm,
+    /// A joint, or the column that starts there.
+    Joint(usize),
+    /// A column that leaves the link that its moment is relative to.
+    Leaving(usize),
+    /// A joint, and which of the parameters that it may hand on.
+    Parameter(usize, usize),
+    /// The link that a column leaves, and whether it is still in the axes of that link's parent.
+    Column(usize, bool),
+    /// A joint that feels gravity.
+    Gravity(usize),
+    /// A body whose columns of the regressor are formed, links before the payload.
+    Regressor(usize, Wrench),
+}
+
+/// Which of the unit wrenches of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wrench {
+    /// Those with a force.
+    Force,
+    /// Couples.
+    Couple,
+}
+
+type Fork = (Pass, Place);
 
 /// The ways taken at the forks of a derivation.
 #[derive(Clone, Debug, Default)]
@@ -162,14 +190,17 @@ impl Plan {
     }
 
     /// Which of `ways` to take at a fork.
-    pub fn way(&mut self, pass: Pass, place: usize, ways: usize) -> usize {
+    pub fn way(&mut self, pass: Pass, place: Place, ways: usize) -> usize {
         if ways < 2 || !self.has(pass) {
             return 0;
         }
         self.forks.insert((pass, place), ways);
         #[cfg(test)]
         if let Some(seed) = self.scattered {
-            return crate::ring::field::scramble(seed ^ (place as u64) << 8 ^ pass as u64) as usize % ways;
+            return crate::ring::field::scramble(
+                format!("{pass:?} {place:?}").bytes().fold(seed, |s, b| crate::ring::field::scramble(s ^ u64::from(b))),
+            ) as usize
+                % ways;
         }
         self.ways.get(&(pass, place)).copied().filter(|&way| way < ways).unwrap_or(0)
     }
@@ -217,9 +248,9 @@ mod tests {
     #[test]
     fn the_search_finds_the_cheapest_way_and_keeps_off_what_is_switched_off() {
         let cost = |plan: &mut Plan| {
-            let slide = plan.way(Pass::Slides, 3, 4);
+            let slide = plan.way(Pass::Slides, Place::Joint(3), 4);
             // A fork that only one way leads to.
-            let extra = if slide == 2 { plan.way(Pass::Meeting, 0, 3) } else { 0 };
+            let extra = if slide == 2 { plan.way(Pass::Meeting, Place::Joint(0), 3) } else { 0 };
             (20 - [0, 3, 5, 4][slide] - 2 * extra, 1)
         };
         let best = |without, effort| {

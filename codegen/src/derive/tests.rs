@@ -7,6 +7,7 @@ use super::parameters::{ParameterVector, View};
 use super::plan::Plan;
 use super::quantities::base_regressor::BASE_REGRESSOR;
 use super::quantities::coriolis::CORIOLIS_MATRIX;
+use super::quantities::first_moment::CENTER_OF_MASS;
 use super::quantities::gravity::GRAVITY;
 use super::quantities::inertia::INERTIA_MATRIX;
 use super::quantities::inverse_dynamics::INVERSE_DYNAMICS;
@@ -457,7 +458,7 @@ fn check_determinant(text: &str, form: &str, factors: &[(&str, Option<&str>)]) {
     let printer = crate::ring::print::Printer { notation: crate::ring::print::Notation::Text, parameters: &[] };
     assert_eq!(printer.form(found.form.as_ref().expect("short")), form);
     let texts: Vec<(String, Option<String>)> =
-        found.factors.iter().map(|f| (printer.form(&f.form), f.singular.clone())).collect();
+        found.factors.iter().map(|f| (printer.form(&f.form), f.zeros.words().map(String::from))).collect();
     let texts: Vec<(&str, Option<&str>)> = texts.iter().map(|(f, s)| (f.as_str(), s.as_deref())).collect();
     assert_eq!(texts, factors);
     // The product of the factors is the determinant.
@@ -527,7 +528,7 @@ fn six_axis_arms_have_their_textbook_factors() {
     // Wrist, elbow and shoulder of the Puma. The elbow is stretched where the wrist centre lies on x2: a3 sin q3 + d4 cos q3 = 0.
     let puma = model(include_str!("../../../robots/puma560.yaml"));
     let found = determinant::determinant(&puma, View::Nominal).expect("square");
-    let singular: Vec<Option<&str>> = found.factors.iter().map(|f| f.singular.as_deref()).collect();
+    let singular: Vec<Option<&str>> = found.factors.iter().map(|f| f.zeros.words()).collect();
     assert_eq!(singular, [Some("q3 = atan(-4318/203) + k pi"), Some("q5 = k pi"), None]);
     let panda = model(include_str!("../../../robots/panda7.yaml"));
     assert!(determinant::determinant(&panda, View::Nominal).is_err_and(|why| why.contains("not square")));
@@ -663,4 +664,23 @@ fn a_task_that_the_arm_cannot_do_has_no_operational_inertia() {
     assert_eq!(missing("task: [x, rz]\n"), None);
     assert!(missing("task: [x, y, z]\n").is_some_and(|why| why.contains("3 joints cannot move the 3 rows")));
     assert!(missing("").is_some());
+}
+
+#[test]
+fn what_has_no_mass_has_no_center_of_mass_and_base_parameters_give_none() {
+    let missing = |mass: u8, regressor: &str| {
+        let link = format!("link: {{mass: {mass}, inertia: {{xx: 1, yy: 1, zz: 1}}}}");
+        let text = format!(
+            "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nregressor: {regressor}\njoints:\n  - {{name: a, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}}}\n"
+        );
+        let source = Source::new("arm.yaml", text);
+        let model = crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0);
+        [false, true].map(|with| (CENTER_OF_MASS.missing)(&model, with))
+    };
+    assert_eq!(missing(2, "standard"), [None, None]);
+    let [plain, with] = missing(0, "standard");
+    // The parameters of the arm may give it a mass all the same.
+    assert!(plain.is_some_and(|why| why.contains("no mass")) && with.is_none());
+    let [plain, with] = missing(2, "base");
+    assert!(plain.is_none() && with.is_some_and(|why| why.contains("base parameters")));
 }

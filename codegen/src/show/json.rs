@@ -41,7 +41,8 @@ impl Serialize for Shown {
             shown.serialize_field("steps", &formulas.steps)?;
         }
         if let Some(factors) = self.factors(Notation::Text) {
-            let (factors, singular): (Vec<_>, Vec<_>) = factors.into_iter().unzip();
+            let (factors, singular): (Vec<_>, Vec<_>) =
+                factors.into_iter().map(|(factor, zeros)| (factor, zeros.words())).unzip();
             shown.serialize_field("factors", &factors)?;
             shown.serialize_field("singular", &singular)?;
         }

@@ -5,7 +5,6 @@
 use crate::catalogue::Absent;
 use std::fmt::Write;
 
-use super::text::zero;
 use super::{break_sum, Formulas, Sheet, Shown};
 use crate::ring::print::Notation;
 
@@ -45,9 +44,9 @@ impl Shown {
     /// The factors of the determinant, and where they are zero.
     fn latex_factors(&self) -> String {
         let mut lines = Vec::new();
-        for (factor, singular) in self.factors(Notation::Latex).unwrap_or_default() {
+        for (factor, zeros) in self.factors(Notation::Latex).unwrap_or_default() {
             lines.extend(break_sum(&factor, WIDTH, &measure).into_iter().map(|piece| format!("& {piece}")));
-            let words = zero(singular.as_deref()).replace('_', "\\_").replace('^', "\\textasciicircum ");
+            let words = zeros.sentence().replace('_', "\\_").replace('^', "\\textasciicircum ");
             lines.push(format!("&\\qquad\\text{{{words}}}"));
         }
         if lines.is_empty() {

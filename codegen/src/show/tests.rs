@@ -104,7 +104,7 @@ fn zeros_of_a_determinant_are_told_as_far_as_one_joint_decides() {
         );
         let sheet = sheet(&text, &["determinant"], Reading::Symbolic);
         let factors = sheet.quantities[0].factors(Notation::Text).expect("factors");
-        factors.into_iter().map(|(factor, singular)| format!("{factor}: {}", text::zero(singular.as_deref()))).collect::<Vec<_>>()
+        factors.into_iter().map(|(factor, zeros)| format!("{factor}: {}", zeros.sentence())).collect::<Vec<_>>()
     };
     let planar = ["type: revolute, a: l1, alpha: 0, d: 0, theta: 0", "type: revolute, a: l2, alpha: 0, d: 0, theta: 0"];
     assert_eq!(zeros(&planar, "[x, y]"), ["sin(q2): zero at q2 = k pi", "l1*l2: zero where its parameters alone make it so"]);

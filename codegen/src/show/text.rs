@@ -42,11 +42,11 @@ impl Shown {
     /// The factors of the determinant, and where they are zero.
     fn text_factors(&self) -> String {
         let mut text = String::new();
-        for (factor, singular) in self.factors(Notation::Text).unwrap_or_default() {
+        for (factor, zeros) in self.factors(Notation::Text).unwrap_or_default() {
             const INDENT: usize = 10;
             let pieces = break_sum(&factor, WIDTH - INDENT, &|s| s.chars().count());
             let factor = pieces.join(&format!("\n{:INDENT$}", ""));
-            writeln!(text, "  factor  {factor}\n{:INDENT$}{}", "", zero(singular.as_deref())).expect("writing to a string");
+            writeln!(text, "  factor  {factor}\n{:INDENT$}{}", "", zeros.sentence()).expect("writing to a string");
         }
         text
     }
@@ -98,15 +98,5 @@ impl Shown {
             writeln!(text, "  {name:<width$} = {}", pieces.join(&separator)).expect("writing to a string");
         }
         text
-    }
-}
-
-/// Where a factor is zero.
-pub(super) fn zero(singular: Option<&str>) -> String {
-    match singular {
-        Some(place) if place.contains('=') => format!("zero at {place}"),
-        Some("never") => "never zero".into(),
-        Some(place) => format!("zero {place}"),
-        None => "zero where several joints together make it so".into(),
     }
 }

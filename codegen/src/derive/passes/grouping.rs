@@ -10,7 +10,7 @@
 //! The origin of a joint frame is free along the joint axis: at the foot of either common normal, or where Sxz or Syz vanishes.
 
 use super::super::arm::{Arm, Body};
-use super::super::plan::{Pass, Plan};
+use super::super::plan::{Pass, Place, Plan};
 use crate::ring::{ExprId, Pool};
 
 /// Groups all links towards the base.
@@ -71,7 +71,7 @@ fn hand_on(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usiz
             .skip(1)
             .filter(|&(_, gain)| gain != ExprId::ZERO)
             .collect();
-        let way = plan.way(Pass::Freedoms, 3 * i + kind, there.len() + 1);
+        let way = plan.way(Pass::Freedoms, Place::Parameter(i, kind), there.len() + 1);
         if way > 0 {
             let (entry, gain) = there[way - 1];
             let inverse = pool.reciprocal(gain);
@@ -120,7 +120,7 @@ fn slide(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
             ways.push(shift);
         }
     }
-    let way = plan.way(Pass::Slides, i, ways.len() + 1);
+    let way = plan.way(Pass::Slides, Place::Joint(i), ways.len() + 1);
     if way > 0 {
         arm.slide(pool, i, ways[way - 1]);
     }

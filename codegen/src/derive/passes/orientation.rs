@@ -6,7 +6,7 @@
 //! whose sine and cosine are asked for as such, or formed by the addition theorem.
 
 use super::super::arm::{Arm, Joint};
-use super::super::plan::{Pass, Plan};
+use super::super::plan::{Pass, Place, Plan};
 use crate::ring::matrix::IDENTITY;
 use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 
@@ -76,9 +76,9 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
         let (length, last) = (run.len(), *run.last().expect("not empty"));
         if length > 1 {
             // Own axes each; those of the link before; those of link k of the run, the last one included.
-            let way = plan.way(Pass::ParallelAxes, first, length + 2);
+            let way = plan.way(Pass::ParallelAxes, Place::Joint(first), length + 2);
             if way > 0 {
-                let sums = plan.has(Pass::AngleSums) && plan.way(Pass::AngleSums, first, 2) == 0;
+                let sums = plan.has(Pass::AngleSums) && plan.way(Pass::AngleSums, Place::Joint(first), 2) == 0;
                 orient(pool, arm, &run, way - 1, sums);
             }
         }

@@ -11,7 +11,7 @@
 
 use super::super::arm::Arm;
 use super::super::parameters::View;
-use super::super::plan::{Pass, Plan};
+use super::super::plan::{Pass, Place, Plan};
 use crate::exact::Rational;
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
@@ -57,7 +57,7 @@ pub(crate) fn of_last_link(field: &Field, manipulator: &Manipulator) -> Option<T
 
 /// Turns the axes of the last link, or leaves them.
 pub(super) fn turn(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
-    if pool.field().turn().is_some() && plan.way(Pass::Turn, arm.tip, 2) == 1 {
+    if pool.field().turn().is_some() && plan.way(Pass::Turn, Place::Joint(arm.tip), 2) == 1 {
         turn_last_link(pool, arm);
     }
 }

@@ -4,7 +4,7 @@
 //! are L times what they were and the acceleration of gravity is one L-th. The length that occurs most often becomes 1, and products with it vanish.
 
 use super::super::arm::Arm;
-use super::super::plan::{Pass, Plan};
+use super::super::plan::{Pass, Place, Plan};
 use crate::ring::{ExprId, Pool};
 
 /// Lengths in units of one of them.
@@ -19,7 +19,7 @@ pub(super) fn unit_of_length(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
             lengths.push(length);
         }
     }
-    let way = plan.way(Pass::UnitOfLength, 0, lengths.len() + 1);
+    let way = plan.way(Pass::UnitOfLength, Place::Arm, lengths.len() + 1);
     if way == 0 {
         return;
     }

@@ -8,7 +8,7 @@
 
 use crate::derive::arm::Arm;
 use crate::derive::passes::Use;
-use crate::derive::plan::{Pass, Plan};
+use crate::derive::plan::{Pass, Place, Plan};
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
@@ -34,9 +34,6 @@ pub static GRAVITY: Quantity = Quantity {
     gathers: &[],
     interface: Some("Dynamics"),
 };
-
-/// Forks of g, apart from those of the columns of B.
-const FORKS: usize = 1 << 16;
 
 /// Mass and first moment of all that each joint carries, in its joint frame.
 fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
@@ -67,7 +64,7 @@ pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
         direction.push(own);
         let (mass, mut h) = composite[i];
         let mut meets = own;
-        if plan.way(Pass::Meeting, FORKS + i, 2) == 1 {
+        if plan.way(Pass::Meeting, Place::Gravity(i), 2) == 1 {
             h = joint.about_axis(pool, &h);
             meets = hat;
         }

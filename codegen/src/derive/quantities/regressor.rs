@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 use super::inertia::{along, wrench_outward};
 use crate::derive::arm::Arm;
 use crate::derive::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
-use crate::derive::parameters::{ParameterKind, ParameterVector, StandardParameter, View, FLAT_IXX, FLAT_IYY};
-use crate::derive::plan::{Pass, Plan};
+use crate::derive::parameters::{Inertial, ParameterKind, ParameterVector, StandardParameter, View};
+use crate::derive::plan::{self, Pass, Place, Plan};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -78,9 +78,6 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
 
 /// Where searches for the plan of a regressor start: its wrenches stop at their links, by twists; and two links further in, where axes meet.
 pub(super) static STARTS: [usize; 2] = [0, 5];
-
-/// Forks of the regressor, apart from those of the columns of B.
-const FORKS: usize = 1 << 17;
 
 /// Y, for an arm whose parameter vector are symbols (named parameters) or for the standard parameters of any arm.
 pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
@@ -150,13 +147,13 @@ fn columns_in(
                 let (rotation, origin) = &frames[i];
                 let of =
                     links[i].get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, (i, i), (rotation, origin)));
-                of.iter().for_each(|(row, entries)| y[*row][column] = entries[usize::from(k)]);
+                of.iter().for_each(|(row, entries)| y[*row][column] = entries[k.index()]);
             }
             StandardParameter::Payload(k) => {
                 let tool = (&arm.tool_rotation, &arm.tool_origin);
                 let of =
                     payload.get_or_insert_with(|| link_columns(pool, plan, &mut twists, &motions, (arm.tip, arm.dof()), tool));
-                of.iter().for_each(|(row, entries)| y[*row][column] = entries[usize::from(k)]);
+                of.iter().for_each(|(row, entries)| y[*row][column] = entries[k.index()]);
             }
             StandardParameter::RotorInertia(i) => {
                 rotor_column(pool, arm, &motions, motion, usize::from(i))
@@ -177,8 +174,8 @@ fn columns_in(
     y
 }
 
-/// For each joint that feels a link: the entries of the ten parameters, and of the two of a link without extent along z.
-type LinkColumns = Vec<(usize, [ExprId; 12])>;
+/// For each joint that feels a link: the entries of the ten parameters, and of the two of a planar link.
+type LinkColumns = Vec<(usize, [ExprId; Inertial::COUNT])>;
 
 /// A wrench: force, and moment about an origin.
 type Wrench = (Vector, Vector);
@@ -289,13 +286,13 @@ fn link_columns(
     }
     // Each frame of the path in either form, except the last, where nothing is left.
     let ways = 2 * path.len() - 1;
-    let forces = (plan.way(Pass::Meeting, FORKS + 2 * place, ways) + plan.start()) % ways;
+    let forces = (plan.way(Pass::Meeting, Place::Regressor(place, plan::Wrench::Force), ways) + plan.start()) % ways;
     // Couples go as far as forces (way 0), so that one set of twists will do, or stop elsewhere.
-    let couples = match plan.way(Pass::Meeting, FORKS + 2 * place + 1, path.len()) {
+    let couples = match plan.way(Pass::Meeting, Place::Regressor(place, plan::Wrench::Couple), path.len()) {
         0 => (forces / 2).min(path.len().saturating_sub(2)),
         way => way - 1,
     };
-    let mut columns: LinkColumns = path.iter().map(|&j| (j, [ExprId::ZERO; 12])).collect();
+    let mut columns: LinkColumns = path.iter().map(|&j| (j, [ExprId::ZERO; Inertial::COUNT])).collect();
     for (k, (force, moment)) in unit_wrenches(pool, &a, &u).into_iter().enumerate() {
         let (stop, by_moment) = if k < 4 { (forces / 2, forces % 2 == 1) } else { (couples, false) };
         // Into the joint frame.
@@ -319,8 +316,8 @@ fn link_columns(
 /// The wrenches of m, mcx, mcy, mcz, Ixx, ... = 1 for a body whose origin accelerates by a and in which U is the field.
 ///
 /// Those of a body without extent along z are e × U e, of a mass on the y axis (Ixx = Izz) and on the x axis (Iyy = Izz).
-fn unit_wrenches(pool: &mut Pool, a: &Vector, u: &Matrix) -> [Wrench; 12] {
-    let mut all = [(ZERO, ZERO); 12];
+fn unit_wrenches(pool: &mut Pool, a: &Vector, u: &Matrix) -> [Wrench; Inertial::COUNT] {
+    let mut all = [(ZERO, ZERO); Inertial::COUNT];
     all[0].0 = *a;
     for k in 0..3 {
         let mut unit = ZERO;
@@ -330,8 +327,8 @@ fn unit_wrenches(pool: &mut Pool, a: &Vector, u: &Matrix) -> [Wrench; 12] {
     for (wrench, moment) in all[4..10].iter_mut().zip(inertia_moments(pool, u)) {
         wrench.1 = moment;
     }
-    all[usize::from(FLAT_IXX)].1 = [u[2][1], ExprId::ZERO, -u[0][1]];
-    all[usize::from(FLAT_IYY)].1 = [ExprId::ZERO, -u[2][0], u[1][0]];
+    all[Inertial::PlanarIxx.index()].1 = [u[2][1], ExprId::ZERO, -u[0][1]];
+    all[Inertial::PlanarIyy.index()].1 = [ExprId::ZERO, -u[2][0], u[1][0]];
     all
 }
 
