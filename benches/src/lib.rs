@@ -38,30 +38,7 @@ pub struct Case {
     pub call: fn(&State),
 }
 
-/// Hands the measured functions and their arguments to a macro.
-#[macro_export]
-macro_rules! functions {
-    ($callback:ident $($head:tt)*) => {
-        $callback! {
-            $($head)*
-            direct_kinematics(q);
-            geometric_jacobian(q);
-            geometric_jacobian_dot(q, dq);
-            inertia_matrix(q);
-            coriolis_matrix(q, dq);
-            gravity(q);
-            equations_of_motion(q, dq);
-            inverse_dynamics(q, dq, ddq);
-            forward_dynamics(q, dq, ddq);
-            regressor(q, dq, dq, ddq);
-            base_regressor(q, dq, ddq);
-            inverse_dynamics_derivatives(q, dq, ddq);
-            forward_dynamics_derivatives(q, dq, ddq);
-            momentum(q, dq);
-            coriolis_transpose_times(q, dq);
-        }
-    };
-}
+include!(concat!(env!("OUT_DIR"), "/functions.rs"));
 
 macro_rules! cases {
     ($module:ident $robot:literal $trig:literal $($function:ident($($argument:ident),*);)*) => {
