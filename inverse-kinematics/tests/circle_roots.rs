@@ -37,10 +37,9 @@ in_both_scalars! {
 
         fn find<const N: usize>(&self) -> CircleRoots<20> {
             let (a, b, largest) = self.coefficients::<N>();
-            circle_roots(&a, &b, 8.0 * UNIT_ROUNDOFF, 0.0, |c, s| {
+            circle_roots(&a, &b, 8.0 * UNIT_ROUNDOFF, 0.0, |points| {
                 // In double precision for both scalars: right relative to its own size.
-                let [c, s] = [c as f64, s as f64];
-                (self.at(s.atan2(c)) / largest as f64) as Real
+                points.map(|[c, s]| (self.at((s as f64).atan2(c as f64)) / largest as f64) as Real)
             })
         }
     }
@@ -196,17 +195,17 @@ in_both_scalars! {
     fn nothing_at_all() {
         let mut asked = 0;
         for scale in [0.0, 1e-3 * UNIT_ROUNDOFF] {
-            let found = circle_roots::<9, 20>(&[scale; 9], &[scale; 9], UNIT_ROUNDOFF, 0.0, |_, _| { asked += 1; 0.0 });
+            let found = circle_roots::<9, 20>(&[scale; 9], &[scale; 9], UNIT_ROUNDOFF, 0.0, |_| { asked += 9; [0.0; 9] });
             assert_eq!((found.count, found.free, found.near), (0, true, false));
         }
         assert_eq!(asked, 0);
         // A constant that is no noise.
         let mut a = [0.0; 9];
         a[0] = 1.0;
-        let found = circle_roots::<9, 20>(&a, &[0.0; 9], UNIT_ROUNDOFF, 0.0, |_, _| 1.0);
+        let found = circle_roots::<9, 20>(&a, &[0.0; 9], UNIT_ROUNDOFF, 0.0, |_| [1.0; 9]);
         assert_eq!((found.count, found.free, found.near), (0, false, false));
         a[3] = Real::NAN;
-        let found = circle_roots::<9, 20>(&a, &[0.0; 9], UNIT_ROUNDOFF, 0.0, |_, _| Real::NAN);
+        let found = circle_roots::<9, 20>(&a, &[0.0; 9], UNIT_ROUNDOFF, 0.0, |_| [Real::NAN; 9]);
         assert!(found.count == 0 && found.near);
     }
 
@@ -232,10 +231,10 @@ in_both_scalars! {
             let a: [Real; 9] = std::array::from_fn(|_| random.between(-1.0, 1.0) as Real);
             let b: [Real; 9] = std::array::from_fn(|_| random.between(-1.0, 1.0) as Real);
             let mut asked = 0;
-            let found = circle_roots::<9, 20>(&a, &b, 0.5, 0.0, |_, _| { asked += 1; random.between(-1.0, 1.0) as Real });
+            let found = circle_roots::<9, 20>(&a, &b, 0.5, 0.0, |_| { asked += 9; std::array::from_fn(|_| random.between(-1.0, 1.0) as Real) });
             assert!(asked <= 9 * 40, "{asked}");
             assert!(found.near);
-            let found = circle_roots::<9, 20>(&a, &b, 1e-3, 0.0, |_, _| 0.0);
+            let found = circle_roots::<9, 20>(&a, &b, 1e-3, 0.0, |_| [0.0; 9]);
             assert!(found.count <= 20);
         }
     }

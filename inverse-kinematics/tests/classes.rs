@@ -210,23 +210,43 @@ in_both_scalars! {
         }
     }
 
+    /// Links whose turn between the revolute joints `turning` is about x, whatever prismatic joints stand between.
+    fn about_x(turning: &[usize], random: &mut Random) -> [Frame; 6] {
+        let mut links: [Frame; 6] = std::array::from_fn(|_| any(random));
+        for pair in turning.windows(2) {
+            let mut chain = IDENTITY;
+            for link in &links[pair[0]..pair[1] - 1] {
+                chain = compose(&chain, link);
+            }
+            let turn = link(random.between(-0.3, 0.3), random.between(-0.3, 0.3), random.between(0.4, 2.7));
+            links[pair[1] - 1] = compose(&inverse(&chain), &turn);
+        }
+        links
+    }
+
+    #[test]
+    fn two_prismatic_joints_anywhere() {
+        let places = [[1, 3], [2, 4], [1, 4], [1, 5], [2, 5], [3, 5], [1, 2], [3, 4], [4, 5]];
+        for (seed, slides) in places.into_iter().enumerate() {
+            let prismatic: [bool; 6] = std::array::from_fn(|i| slides.contains(&i));
+            let turning: Vec<usize> = (1..6).filter(|i| !prismatic[*i]).collect();
+            for open in [0, 5] {
+                let first = turning[0] > 1 && open == 0;
+                let make = |r: &mut Random| (about_x(&turning, r), if first || turning[0] == 1 { open } else { 5 });
+                let tally = tally(50 + seed as u64, prismatic, make, |l| two_slides(l, slides, 0.5));
+                assert_eq!((tally.lost, tally.odd), (0, 0));
+                assert!(tally.most >= 4 && tally.most <= 8);
+                assert!(tally.worst < if SINGLE { 1e-3 } else { 1e-12 });
+                assert!(tally.doubtful <= if SINGLE { 250 } else { 5 });
+            }
+        }
+    }
+
     #[test]
     fn three_prismatic_joints_anywhere() {
-        let turn = |r: &mut Random| link(r.between(-0.3, 0.3), r.between(-0.3, 0.3), r.between(0.4, 2.7));
         for (seed, turning) in [[0, 1, 2], [0, 2, 4], [3, 4, 5], [1, 2, 5], [0, 3, 5]].into_iter().enumerate() {
             let prismatic: [bool; 6] = std::array::from_fn(|i| !turning.contains(&i));
-            let make = |r: &mut Random| {
-                // Between revolute joints: the whole turn is about x, so those before a prismatic one are undone by the last.
-                let mut links: [Frame; 6] = std::array::from_fn(|_| any(r));
-                for pair in turning.windows(2) {
-                    let mut chain = IDENTITY;
-                    for link in &links[pair[0]..pair[1] - 1] {
-                        chain = compose(&chain, link);
-                    }
-                    links[pair[1] - 1] = compose(&inverse(&chain), &turn(r));
-                }
-                (links, 5)
-            };
+            let make = |r: &mut Random| (about_x(&turning, r), 5);
             let tally = tally(31 + seed as u64, prismatic, make, |l| three_prismatic(l, turning));
             assert_eq!((tally.lost, tally.odd, tally.most), (0, 0, 2));
             // Directions of slides may be near a plane.

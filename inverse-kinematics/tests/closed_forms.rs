@@ -25,6 +25,26 @@ in_both_scalars! {
     }
 
     #[test]
+    fn angles_beside_a_known_one() {
+        let random = &mut Random(9);
+        let mut angles: Vec<f64> = (0..200).map(|_| random.angle()).collect();
+        angles.extend([0.0, 1e-9, -1e-9, std::f64::consts::PI, 3.0, -3.0]);
+        for t in angles {
+            let [c, s] = point(t);
+            let known = angle_beside([0.0, 0.0], 0.0, [c, s]);
+            for value in [[c, s], [c, -s], [-c, -s], [-c, s], [s, c]] {
+                let found = angle_beside([c, s], known, value);
+                let wanted = atan2(value[1], value[0]);
+                let off = (found - wanted).abs();
+                assert!(off.min((off - 2.0 * HALF_TURN).abs()) <= 8.0 * UNIT_ROUNDOFF, "{t} {value:?}: {found} {wanted}");
+                assert!(-HALF_TURN < found && found <= HALF_TURN);
+            }
+        }
+        assert_eq!(angle_beside([1.0, 0.0], 0.0, [-1.0, -0.0]), HALF_TURN);
+        assert_eq!(angle_beside([0.0, 1.0], 0.5 * HALF_TURN, [-1.0, -0.0]), HALF_TURN);
+    }
+
+    #[test]
     fn line_and_circle_meets_its_equation() {
         let random = &mut Random(1);
         for _ in 0..2000 {

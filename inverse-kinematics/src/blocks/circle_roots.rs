@@ -292,7 +292,7 @@ impl<const M: usize> CircleRoots<M> {
 /// count with it if |f| is within the noise there, so no root is lost between two arcs; what is found twice is found to be one.
 ///
 /// - `b[0]` is not read. `noise`: how far the coefficients' rounding may move f, > 0; that of evaluating f is added here.
-/// - `exact(c, s)`: f itself, right relative to its largest value nearby; asked for at nine Chebyshev points of an arc of half width
+/// - `exact`: f itself, right relative to its largest value nearby, at nine points (c, s): Chebyshev's of an arc of half width
 ///   <= pi/256 on which |f| stays below [`WEAK`] times the noise. There the noise is 1e-13 of the largest value (1000 u), and the
 ///   interpolation's remainder sum_k .. (kh)^9/(9! 2^8).
 /// - `floor`: how far rounding of what f is computed from may move f, wherever it is: added to the noise of `exact`. Where nobody knows it is 0,
@@ -305,7 +305,7 @@ pub fn circle_roots<const N: usize, const M: usize>(
     b: &[Real; N],
     noise: Real,
     floor: Real,
-    mut exact: impl FnMut(Real, Real) -> Real,
+    mut exact: impl FnMut(&[[Real; 2]; 9]) -> [Real; 9],
 ) -> CircleRoots<M> {
     let root = CircleRoot { c: 1.0, s: 0.0, double: false, error: 0.0 };
     let mut found = CircleRoots {
@@ -371,13 +371,13 @@ pub fn circle_roots<const N: usize, const M: usize>(
                 }
                 _ if largest(&t) < WEAK * noise && h <= 0.0123 && found.anew < ANEW => {
                     found.anew += 1;
-                    let mut values = [0.0; 9];
-                    let mut size: Real = 0.0;
-                    for (i, value) in values.iter_mut().enumerate() {
+                    let mut points = [[0.0; 2]; 9];
+                    for (i, point) in points.iter_mut().enumerate() {
                         let (c, s) = turned(cosine_of_10_degrees(2 * i + 1));
-                        *value = exact(c, s);
-                        size = size.max(value.abs());
+                        *point = [c, s];
                     }
+                    let values = exact(&points);
+                    let size = values.iter().fold(0.0, |size: Real, value| size.max(value.abs()));
                     let remainder = remainder / 256.0;
                     if remainder <= sqrt(UNIT_ROUNDOFF) * size || h <= shortest {
                         let t = interpolation(&values);
@@ -403,7 +403,7 @@ pub fn circle_roots<const N: usize, const M: usize>(
                     for _ in 0..2 {
                         let (value, derivative) = f.at(c, s);
                         slope = derivative;
-                        let (cx, sx) = small_turn((-value / slope).clamp(-h, h));
+                        let (cx, sx) = small_turn((-value / slope).max(-h).min(h));
                         (c, s) = (c * cx - s * sx, s * cx + c * sx);
                     }
                     let apart = 4.0 * slack / slope.abs();

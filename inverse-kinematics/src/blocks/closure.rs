@@ -63,7 +63,7 @@ impl Loop<'_> {
         for ((value, step), prismatic) in moved.iter_mut().zip(step).zip(self.prismatic) {
             let [c, s] = *value;
             *value = if prismatic {
-                [c + step.clamp(-0.5 * self.length, 0.5 * self.length), 0.0]
+                [c + step.max(-0.5 * self.length).min(0.5 * self.length), 0.0]
             } else {
                 let (cd, sd) = small_turn(step.clamp(-0.5, 0.5));
                 let (c, s) = (c * cd - s * sd, s * cd + c * sd);
@@ -215,4 +215,21 @@ fn solve(equations: &Equations) -> ([Real; 6], Real) {
         x[k] = if rows[k][k] != 0.0 { sum / rows[k][k] } else { 0.0 };
     }
     (x, smallest)
+}
+
+/// Two solutions whose joints differ by less than this are one: 8e-8 in double precision.
+const SAME: Real = 8.0;
+
+/// Adds a solution unless it is known.
+fn merge<const N: usize>(found: &mut Branches<6, N>, closed: &Closed, double: bool) {
+    let same = SAME * sqrt(UNIT_ROUNDOFF);
+    let count = found.count;
+    for known in found.all.iter_mut().take(count) {
+        let differ = known.joints.iter().zip(&closed.joints).any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= same));
+        if !differ {
+            known.double |= closed.double || double;
+            return;
+        }
+    }
+    found.add(Branch { joints: closed.joints, signs: 0, double: closed.double || double, error: 0.0, free: 0 });
 }

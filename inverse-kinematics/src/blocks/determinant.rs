@@ -64,9 +64,11 @@ fn bilinear(a: bool, b: bool, f: impl Fn([Real; 2], [Real; 2]) -> Frame) -> [[Re
     }
     let mut result = [[0.0; 9]; 14];
     for (k, result) in result.iter_mut().enumerate() {
-        let by_b = values.map(|row| coefficients(b, row.map(|v| v[k])));
+        let [x, y, z] = &values;
+        let by_b = |row: &[[Real; 14]; 3]| coefficients(b, [row[0][k], row[1][k], row[2][k]]);
+        let (x, y, z) = (by_b(x), by_b(y), by_b(z));
         for j in 0..3 {
-            let by_a = coefficients(a, by_b.map(|v| v[j]));
+            let by_a = coefficients(a, [x[j], y[j], z[j]]);
             for i in 0..3 {
                 result[3 * i + j] = by_a[i];
             }
@@ -109,17 +111,20 @@ impl Eliminants {
             compose(&i1, &joint_then(p2, back(p2, q2), &compose(&i0, &joint_then(p1, back(p1, q1), &i5))))
         });
         let mut a = [[0.0; 35]; 14];
-        for (i, row) in a.iter_mut().enumerate() {
-            row[..8].copy_from_slice(&right[i][1..]);
-            for j in 0..9 {
-                // Components across axis 3 are turned by Rz(q3), the others stay.
-                match (i < 12, i % 3) {
-                    (true, 0) => (row[17 + j], row[26 + j]) = (left[i][j], -left[i + 1][j]),
-                    (true, 1) => (row[17 + j], row[26 + j]) = (left[i][j], left[i - 1][j]),
-                    _ => row[8 + j] = left[i][j],
-                }
+        for j in 0..9 {
+            // Of the four vectors the components across axis 3 are turned by Rz(q3), the others stay.
+            for v in 0..4 {
+                let (x, y) = (left[3 * v][j], left[3 * v + 1][j]);
+                (a[3 * v][17 + j], a[3 * v][26 + j]) = (x, -y);
+                (a[3 * v + 1][17 + j], a[3 * v + 1][26 + j]) = (y, x);
+                a[3 * v + 2][8 + j] = left[3 * v + 2][j];
             }
-            row[8] -= right[i][0];
+            (a[12][8 + j], a[13][8 + j]) = (left[12][j], left[13][j]);
+        }
+        for (row, right) in a.iter_mut().zip(&right) {
+            let [constant, rest @ ..] = right;
+            row[..8].copy_from_slice(rest);
+            row[8] -= constant;
             let square = row.iter().fold(0.0, |sum, x| sum + x * x);
             let over = inverse_sqrt(square);
             for x in row.iter_mut() {
@@ -136,7 +141,7 @@ impl Eliminants {
                     *by_5 = to_powers(p5, [row[at], row[at + 1], row[at + 2]]);
                 }
                 for j in 0..3 {
-                    let by_4 = to_powers(p4, by_5.map(|x| x[j]));
+                    let by_4 = to_powers(p4, [by_5[0][j], by_5[1][j], by_5[2][j]]);
                     for i in 0..3 {
                         e[3 * i + j] = by_4[i];
                     }
@@ -268,7 +273,10 @@ fn reduced<const L: usize>(e: &[[[Real; L]; 9]; 6]) -> ([[[Real; L]; 6]; 6], [Re
     let mut product = [1.0; L];
     let mut m = [[[0.0; L]; 6]; 6];
     let mut upper = *e;
-    let mut lower = e.map(|[a0, a1, a2, b0, b1, b2, c0, c1, c2]| [c0, c1, c2, a0, a1, a2, b0, b1, b2]);
+    let mut lower = *e;
+    for row in &mut lower {
+        row.rotate_right(3);
+    }
     for k in 0..3 {
         reflect(&mut upper, k, &mut product);
         reflect(&mut lower, k, &mut product);
@@ -293,28 +301,16 @@ fn determinants<const L: usize>(e: &[[[Real; L]; 9]; 6]) -> [Real; L] {
     product
 }
 
-/// cos(j 15 degrees).
-#[inline]
-fn cosine_of_15_degrees(j: usize) -> Real {
-    const COSINES: [Real; 7] = [
-        1.0,
-        0.965925826289068286749743199728897368,
-        0.866025403784438646763723170752936183,
-        0.707106781186547524400844362104849039,
-        0.5,
-        0.258819045102520762348898837624048328,
-        0.0,
-    ];
-    let j = j % 24;
-    let j = if j > 12 { 24 - j } else { j };
-    let (i, sign) = if j > 6 { (12 - j, -1.0) } else { (j, 1.0) };
-    COSINES.get(i).map_or(0.0, |c| sign * c)
-}
-
 /// The kernel of a nearly singular 6 x 6 matrix by complete pivoting: one vector, or two where the last two pivots are small. Columns are
 /// monomials x4^(1 + i) x5^j at 3 i + j.
 fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
-    let mut m = m.map(|row| row.map(|[x]| x));
+    let mut flat = [[0.0; 6]; 6];
+    for (flat, row) in flat.iter_mut().zip(m) {
+        for (flat, [x]) in flat.iter_mut().zip(row) {
+            *flat = *x;
+        }
+    }
+    let mut m = flat;
     let mut columns = [0, 1, 2, 3, 4, 5];
     let mut pivots = [0.0; 6];
     for k in 0..5 {
@@ -348,11 +344,13 @@ fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
     // Two solutions nearly share q3 where the last but one pivot is small as well.
     let pair = !(pivots[4] > SHARED * pivots[0]);
     let mut vectors = [[0.0; 6]; 2];
-    let (known, count) = if pair { (4, 2) } else { (5, 1) };
+    let count = if pair { 2 } else { 1 };
     for (n, vector) in vectors.iter_mut().enumerate().take(count) {
-        let mut x = [0.0; 6];
-        x[if known + n < 6 { known + n } else { 5 }] = 1.0;
-        for k in (0..5).rev().skip(5 - known) {
+        let mut x = if pair && n == 0 { [0.0, 0.0, 0.0, 0.0, 1.0, 0.0] } else { [0.0, 0.0, 0.0, 0.0, 0.0, 1.0] };
+        for k in (0..5).rev() {
+            if k == 4 && pair {
+                continue;
+            }
             let mut sum = 0.0;
             for j in k + 1..6 {
                 sum -= m[k][j] * x[j];
@@ -526,7 +524,10 @@ pub struct Arranged {
 /// - Arrangements exist for which the determinant vanishes for all poses, or has double roots at all poses: the choice is made when the arm is known.
 pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: Real) -> Arranged {
     let over = 1.0 / length;
-    let unit = links.map(|f| f.map(|[x, y, z, t]| [x, y, z, t * over]));
+    let mut unit = *links;
+    for row in unit.iter_mut().flatten() {
+        row[3] *= over;
+    }
     let eliminants = Eliminants::new(&unit, &prismatic, 1.0);
     let mut samples = [0.0; 24];
     let mut largest: Real = 0.0;
@@ -548,27 +549,15 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         result.free = largest <= UNIT_ROUNDOFF;
         return result;
     }
-    let (mut a, mut b) = ([0.0; 9], [0.0; 9]);
-    let mut noise: Real = 0.0;
-    for k in 0..13 {
-        let (mut x, mut y) = (0.0, 0.0);
-        for (j, sample) in samples.iter().enumerate() {
-            x += sample * cosine_of_15_degrees(j * k);
-            y += sample * cosine_of_15_degrees(j * k + 18);
-        }
-        let weight = if k == 0 { 1.0 } else { 2.0 } / (24.0 * largest);
-        if k < 9 {
-            a[k] = x * weight;
-            b[k] = y * weight;
-        } else {
-            noise = noise.max((x * weight).abs()).max((y * weight).abs());
-        }
-    }
+    let (a, b, noise) = fourier::<24, 9>(&samples, largest);
     result.noise = noise;
     let over = 1.0 / largest;
-    let roots: CircleRoots<20> = circle_roots(&a, &b, (4.0 * noise).max(24.0 * UNIT_ROUNDOFF), 0.0, |c, s| {
-        let [value] = determinants(&eliminants.at(&[[c, s]]));
-        value * over
+    let roots: CircleRoots<20> = circle_roots(&a, &b, (4.0 * noise).max(24.0 * UNIT_ROUNDOFF), 0.0, |points| {
+        let mut values = determinants(&eliminants.at(points));
+        for value in &mut values {
+            *value *= over;
+        }
+        values
     });
     result.roots = roots.count;
     result.free = roots.free || noise > NOTHING_BUT_NOISE;
@@ -648,20 +637,3 @@ const UNMET: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-4 } else { 1.5e-2 };
 
 /// As much says that the determinant is nothing but rounding: it vanishes.
 const NOTHING_BUT_NOISE: Real = 0.03;
-
-/// Two solutions whose joints differ by less than this are one: 8e-8 in double precision.
-const SAME: Real = 8.0;
-
-/// Adds a solution unless it is known.
-fn merge(found: &mut Branches<6, 16>, closed: &Closed, double: bool) {
-    let same = SAME * sqrt(UNIT_ROUNDOFF);
-    let count = found.count;
-    for known in found.all.iter_mut().take(count) {
-        let differ = known.joints.iter().zip(&closed.joints).any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= same));
-        if !differ {
-            known.double |= closed.double || double;
-            return;
-        }
-    }
-    found.add(Branch { joints: closed.joints, signs: 0, double: closed.double || double, error: 0.0, free: 0 });
-}

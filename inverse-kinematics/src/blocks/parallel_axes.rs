@@ -1,6 +1,6 @@
 // Block 7: six revolute joints, three neighbours of which have parallel axes.
 
-/// What [`two_circles`] finds.
+/// What `two_circles` finds.
 struct TwoCircles {
     a: [Real; 2],
     b: [Real; 2],
@@ -119,7 +119,7 @@ fn within_reach(bracket: &impl Fn([Real; 2]) -> Frame, l1: Real, l2: Real) -> [R
 /// The bracket is a displacement M of the plane normal to its axes: its third row is (0, 0, ±1, h), constant. M L3 Jb Lb = La⁻¹ Ja⁻¹ Lc⁻¹ Jc⁻¹,
 /// and of the third row of both sides Jc⁻¹ leaves the third component and the offset alone: two equations, linear in (ca, sa) and (cb, sb).
 /// If axes b and c intersect (UR arms: the offset is free of qb) or are parallel, or axes a and c, each is block 1; else block R with D = 2
-/// ([`two_circles`]). qc by block 2 from the rest of the row; M's displacement gives the elbow by block 4, its turn the last angle.
+/// (`two_circles`). qc by block 2 from the rest of the row; M's displacement gives the elbow by block 4, its turn the last angle.
 ///
 /// - `links`: La, L1, L2, L3, Lb, Lc; frames of any kind but for L1, L2. The result's joints are in the order a, 1, 2, 3, b, c.
 /// - At most 8 solutions; `signs`: two bits for qa and qb (bit 0 and bit 1 where each is block 1; else the number of the root), bit 2 elbow.

@@ -61,14 +61,16 @@ fn squares(u: &Affine, v: &Affine, minus: &[(Real, Affine)], linear: &Affine) ->
     a[0] -= linear.k0;
     a[1] -= linear.kc;
     b[1] -= linear.ks;
-    circle_roots(&a, &b, ROUNDING * size, 0.25 * ROUNDING * size, |c, s| {
-        let (u, v) = (u.at(c, s), v.at(c, s));
-        let mut value = u * u + v * v - linear.at(c, s);
-        for (factor, w) in minus {
-            let w = w.at(c, s);
-            value -= factor * w * w;
-        }
-        value
+    circle_roots(&a, &b, ROUNDING * size, 0.25 * ROUNDING * size, |points| {
+        points.map(|[c, s]| {
+            let (u, v) = (u.at(c, s), v.at(c, s));
+            let mut value = u * u + v * v - linear.at(c, s);
+            for (factor, w) in minus {
+                let w = w.at(c, s);
+                value -= factor * w * w;
+            }
+            value
+        })
     })
 }
 
@@ -174,7 +176,7 @@ pub fn regional_crossing(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches
     found
 }
 
-/// What [`by_elimination`] finds for one q3.
+/// What `by_elimination` finds for one q3.
 struct Eliminated {
     q2: [Real; 2],
     q3: [Real; 2],
@@ -224,7 +226,7 @@ fn by_elimination(
 /// Block 6, no particular axes: p = Rz(q1) A Rz(q2) B Rz(q3) w for any frames A, B whose axes 1 and 2 neither are parallel nor intersect.
 ///
 /// The squared length |p|² = |tA|² + |g|² + 2 (RA' tA)·(X, Y, g3) and the height p_z = tA_z + e3' RA (X, Y, g3) are free of q1 (Pieper's
-/// F1 to F4); [`by_elimination`] gives q3 and q2, block 2 q1. At most 4 solutions; `signs`: the number of q3's root, anticlockwise from 0.
+/// F1 to F4); `by_elimination` gives q3 and q2, block 2 q1. At most 4 solutions; `signs`: the number of q3's root, anticlockwise from 0.
 /// The point on axis 2: q2 free. p on axis 1: q1 free. The equation in q3 empty: q3 free, without a value.
 /// Axes 1 and 2 that nearly are parallel or intersect cost digits: as many as their offset times the sine of their angle is below 1.
 pub fn regional_general(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {

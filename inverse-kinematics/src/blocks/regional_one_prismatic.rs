@@ -56,7 +56,7 @@ pub fn regional_slide_across(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Bran
 /// Block 6, first joint prismatic: p = Tz(q1) A Rz(q2) B Rz(q3) w for any frames A, B with axes 1 and 2 not at right angles and axes 2 and 3
 /// not parallel.
 ///
-/// The components across axis 1 are two equations in (X, Y, g3): [`by_elimination`], then q1. At most 4 solutions; `signs`: the number of
+/// The components across axis 1 are two equations in (X, Y, g3): `by_elimination`, then q1. At most 4 solutions; `signs`: the number of
 /// q3's root. The point on axis 2: q2 free. The equation in q3 empty: q3 free, without a value.
 pub fn regional_slide(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {
     let mut found = Branches::new();

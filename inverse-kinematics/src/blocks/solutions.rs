@@ -95,7 +95,7 @@ impl Solutions {
 }
 
 /// 2 pi.
-const WHOLE_TURN: Real = 6.283185307179586476925286766559005768;
+const WHOLE_TURN: Real = 2.0 * HALF_TURN;
 
 /// The nearest integer to x >= 0.
 fn rounded(x: Real) -> Real {
@@ -139,16 +139,17 @@ fn conclude<const J: usize, const N: usize>(found: &Branches<J, N>, by_angle: bo
     let mut result = Solutions::none(Verdict::Complete);
     let mut near = found.near;
     let mut continuum = found.continuum;
+    let (mut points, mut angles) = ([[1.0, 0.0]; DOF], [0.0; DOF]);
     for branch in found.found() {
         let mut solution = Solution { q: [0.0; DOF], branch: branch.signs, double: branch.double, free: 0 };
         let mut finite = true;
-        for (i, ((q, [c, s]), prismatic)) in solution.q.iter_mut().zip(&branch.joints).zip(PRISMATIC).enumerate() {
-            *q = if prismatic { *c } else { atan2(*s, *c) };
-            // -pi is pi.
-            if !prismatic && *q <= -0.5 * WHOLE_TURN {
-                *q = 0.5 * WHOLE_TURN;
-            }
-            finite &= q.is_finite();
+        let known = points.iter_mut().zip(&mut angles);
+        for (i, ((q, value), ((point, angle), prismatic))) in
+            solution.q.iter_mut().zip(&branch.joints).zip(known.zip(PRISMATIC)).enumerate()
+        {
+            *q = if prismatic { value[0] } else { angle_beside(*point, *angle, *value) };
+            (*point, *angle) = (*value, *q);
+            finite &= value[0].is_finite() && value[1].is_finite();
             solution.free |= branch.free & 1 << i;
         }
         if !finite {

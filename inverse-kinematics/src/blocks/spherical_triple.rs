@@ -1,5 +1,12 @@
 // Six joints, three neighbours of which turn about axes through one point.
 
+/// Directions as seen from behind a joint and a link.
+#[inline]
+fn seen_behind(prismatic: bool, [c, s]: [Real; 2], link: &Frame, [x, y, z]: [Vector; 3]) -> [Vector; 3] {
+    let seen = |v: Vector| rotate_back(link, if prismatic { v } else { turn_vector(c, -s, v) });
+    [seen(x), seen(y), seen(z)]
+}
+
 /// Spherical triple: J1 L1 J2 L2 J3 L3 J4 L4 J5 L5 J6 L6 = 1 with L4 = Tz(d) Rx(alpha), L5 = Rx(beta); sin alpha and sin beta are not 0.
 ///
 /// The point in which axes 4, 5 and 6 meet does not feel them: block 6, as `regional`, brings L3 (0, 0, d) to what L6⁻¹ makes of the origin.
@@ -19,12 +26,17 @@ pub fn spherical_triple(
     let back = inverse(l6);
     let arm = regional(l1, l2, transform(l3, [0.0, 0.0, l4[2][3]]), column(&back, 3));
     (found.miss, found.near) = (arm.miss, arm.near);
+    let [p1, p2, p3] = prismatic;
+    let whole = [column(&back, 0), column(&back, 1), column(&back, 2)];
+    // Branches come by their first joints: what is left behind joint 1 serves two.
+    let (mut first, mut behind) = ([Real::NAN; 2], whole);
     for branch in arm.found() {
         let [q1, q2, q3] = branch.joints;
-        let [p1, p2, p3] = prismatic;
-        let chain = compose(l2, &joint_then(p3, q3, l3));
-        let chain = joint_then(p1, q1, &compose(l1, &joint_then(p2, q2, &chain)));
-        let rest = compose(&inverse(&chain), &back);
+        if q1 != first {
+            (first, behind) = (q1, seen_behind(p1, q1, l1, whole));
+        }
+        let [x, y, z] = seen_behind(p3, q3, l3, seen_behind(p2, q2, l2, behind));
+        let rest = [[x[0], y[0], z[0], 0.0], [x[1], y[1], z[1], 0.0], [x[2], y[2], z[2], 0.0]];
         let wrist = three_turns(&rest, [l4[2][2], l4[2][1]], [l5[2][2], l5[2][1]], ROUNDING, branch.error);
         found.missed(wrist.miss);
         for (i, [q4, q5, q6]) in wrist.turns.iter().enumerate().take(wrist.count) {

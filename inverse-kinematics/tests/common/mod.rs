@@ -33,6 +33,7 @@ impl Random {
 #[macro_export]
 macro_rules! in_both_scalars {
     ($($item:item)*) => {
+        #[allow(clippy::unnecessary_cast)]
         mod double {
             #[allow(unused_imports)]
             use armgen_inverse_kinematics::f64::*;
@@ -40,6 +41,7 @@ macro_rules! in_both_scalars {
             use $crate::common::Random;
             $($item)*
         }
+        #[allow(clippy::unnecessary_cast)]
         mod single {
             #[allow(unused_imports)]
             use armgen_inverse_kinematics::f32::*;

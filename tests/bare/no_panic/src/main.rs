@@ -1,4 +1,5 @@
-//! A program that links only if nothing in it can panic: every function of every robot's module, and every step of the runtime.
+//! A program that links only if nothing in it can panic: every function of every robot's module, every step of the runtime,
+//! and every block of inverse kinematics.
 //!
 //! Its panic handler calls a function that nobody defines. Where the optimiser proves every panic unreachable, the handler is dropped and
 //! the program links; one surviving panic keeps it, and the linker says `undefined reference to a_panic_path_survives`. The program has
@@ -11,6 +12,7 @@
 #![no_std]
 #![no_main]
 
+mod inverse_kinematics;
 mod runtime;
 
 include!(concat!(env!("OUT_DIR"), "/robots.rs"));
@@ -27,6 +29,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 #[unsafe(no_mangle)]
 pub extern "C" fn main() -> i32 {
     every_emitted_function();
+    inverse_kinematics::every_block();
     use armgen_runtime::task::Row::{Rx, Ry, Rz, X, Y, Z};
     runtime::every_step::<_, 4, 4, { scara_f64::PARAMETERS }>(&scara_f64::Nominal, [X, Y, Z, Rz]);
     runtime::every_step::<_, 4, 3, { scara_f32::PARAMETERS }>(&scara_f32::Nominal, [Y, Z, Rz]);

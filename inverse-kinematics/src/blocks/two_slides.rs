@@ -1,0 +1,266 @@
+// Block 9: six joints, two of them prismatic, by samples of a product.
+//
+// With one revolute joint given, the other three make a rotation, block 5: t2's sine is ±w, w² = W. The prismatic joints can then close the loop
+// if what is left to slide is in the plane of their directions: f = det(na, nb, r) = 0. f is A + B w in the ring of numbers a + b w, w² = W, whatever
+// the sign of W; the product of both branches, A² - B² W, times the squared sine h² between axes t1 and t3 (the denominator of t1 and t3) is a
+// trigonometric polynomial of degree 4 in the given joint: at most 8 solutions. Found by sampling for every place of the two joints.
+
+/// a + b w.
+#[derive(Clone, Copy)]
+struct WithRoot {
+    a: Real,
+    b: Real,
+}
+
+impl WithRoot {
+    fn plus(self, y: WithRoot) -> WithRoot {
+        WithRoot { a: self.a + y.a, b: self.b + y.b }
+    }
+
+    fn minus(self, y: WithRoot) -> WithRoot {
+        WithRoot { a: self.a - y.a, b: self.b - y.b }
+    }
+
+    fn by(self, k: Real) -> WithRoot {
+        WithRoot { a: k * self.a, b: k * self.b }
+    }
+
+    /// The product, w² = `square`.
+    fn times(self, y: WithRoot, square: Real) -> WithRoot {
+        WithRoot { a: self.a * y.a + self.b * y.b * square, b: self.a * y.b + self.b * y.a }
+    }
+
+    /// The value for a real w.
+    fn at(self, w: Real) -> Real {
+        self.a + self.b * w
+    }
+}
+
+/// A loop with two prismatic joints; the first joint is revolute, and is the one that is given.
+struct TwoSlides<'a> {
+    links: &'a [Frame; 6],
+    slides: [usize; 2],
+    /// (cos, sin) of alpha and beta, and the rotations before t1 and after t3.
+    alpha: [Real; 2],
+    beta: [Real; 2],
+    before: Frame,
+    after: Frame,
+}
+
+/// The loop at one value of the given joint.
+struct AtGiven {
+    /// (cos, sin) of t1, t2, t3 as a + b w.
+    turns: [[WithRoot; 2]; 3],
+    /// w².
+    square: Real,
+    /// h²: (sin between axes t1 and t3)².
+    sine: Real,
+    /// det(na, nb, r).
+    f: WithRoot,
+}
+
+impl<'a> TwoSlides<'a> {
+    fn new(links: &'a [Frame; 6], slides: [usize; 2]) -> Self {
+        let mut parts = [IDENTITY; 4];
+        let mut part = 0;
+        for (i, link) in links.iter().enumerate() {
+            part += usize::from(i > 0 && !slides.contains(&i));
+            if let Some(between) = parts.get_mut(part) {
+                *between = compose(between, link);
+            }
+        }
+        let [before, a, b, after] = parts;
+        TwoSlides { links, slides, alpha: [a[2][2], a[2][1]], beta: [b[2][2], b[2][1]], before, after }
+    }
+
+    /// What is left to slide, and the directions of the slides, as they are seen from behind the first joint.
+    fn displacements(&self, turns: &[[WithRoot; 2]; 3], square: Real) -> [[WithRoot; 3]; 3] {
+        const ZERO: WithRoot = WithRoot { a: 0.0, b: 0.0 };
+        let mut vectors = [[ZERO; 3]; 3];
+        let mut turns = turns.iter().rev();
+        let mut slid = 0;
+        for (i, link) in self.links.iter().enumerate().rev() {
+            for (k, vector) in vectors.iter_mut().enumerate() {
+                let [x, y, z] = *vector;
+                let row = |r: &[Real; 4]| {
+                    let turned = x.by(r[0]).plus(y.by(r[1])).plus(z.by(r[2]));
+                    if k == 0 {
+                        WithRoot { a: turned.a + r[3], ..turned }
+                    } else {
+                        turned
+                    }
+                };
+                *vector = [row(&link[0]), row(&link[1]), row(&link[2])];
+            }
+            if i == 0 {
+                break;
+            }
+            if self.slides.contains(&i) {
+                slid += 1;
+                // From the last on: direction 2, then 1.
+                if let Some(direction) = vectors.get_mut(if slid == 1 { 2 } else { 1 }) {
+                    *direction = [ZERO, ZERO, WithRoot { a: 1.0, b: 0.0 }];
+                }
+            } else if let Some([c, s]) = turns.next() {
+                for vector in &mut vectors {
+                    let [x, y, z] = *vector;
+                    *vector = [
+                        c.times(x, square).minus(s.times(y, square)),
+                        s.times(x, square).plus(c.times(y, square)),
+                        z,
+                    ];
+                }
+            }
+        }
+        vectors
+    }
+
+    fn at(&self, given: [Real; 2]) -> AtGiven {
+        let ([ca, sa], [cb, sb]) = (self.alpha, self.beta);
+        // Rz(t1) A Rz(t2) B Rz(t3) = (after J1 before)⁻¹
+        let g = inverse(&compose(&self.after, &joint_then(false, given, &self.before)));
+        let c2 = (ca * cb - g[2][2]) / (sa * sb);
+        let square = (1.0 - c2) * (1.0 + c2);
+        let sine = g[0][2] * g[0][2] + g[1][2] * g[1][2];
+        let over = 1.0 / (sine + Real::MIN_POSITIVE);
+        // Third column and third row, as in block 5.
+        let (x, y) = (WithRoot { a: 0.0, b: sb }, WithRoot { a: -(ca * c2 * sb + sa * cb), b: 0.0 });
+        let (u, v) = (WithRoot { a: 0.0, b: sa }, WithRoot { a: sa * c2 * cb + ca * sb, b: 0.0 });
+        let t1 = [x.by(g[0][2]).plus(y.by(g[1][2])).by(over), x.by(g[1][2]).minus(y.by(g[0][2])).by(over)];
+        let t3 = [u.by(g[2][0]).plus(v.by(g[2][1])).by(over), v.by(g[2][0]).minus(u.by(g[2][1])).by(over)];
+        let turns = [t1, [WithRoot { a: c2, b: 0.0 }, WithRoot { a: 0.0, b: 1.0 }], t3];
+        let [r, a, b] = self.displacements(&turns, square);
+        let minor = |i: usize, j: usize| a[i].times(b[j], square).minus(a[j].times(b[i], square));
+        let f = r[0].times(minor(1, 2), square).plus(r[1].times(minor(2, 0), square)).plus(r[2].times(minor(0, 1), square));
+        AtGiven { turns, square, sine, f }
+    }
+
+    /// The product of both branches, a polynomial: where w is real as a product, so that it is right relative to its own size.
+    fn product(&self, given: [Real; 2]) -> Real {
+        let AtGiven { square, sine, f, .. } = self.at(given);
+        sine * if square > 0.0 {
+            let w = sqrt(square);
+            f.at(w) * f.at(-w)
+        } else {
+            f.a * f.a - f.b * f.b * square
+        }
+    }
+
+    /// All joints for a given first one and a branch.
+    fn joints(&self, given: [Real; 2], at: &AtGiven, w: Real) -> [[Real; 2]; 6] {
+        let mut turned = [[1.0, 0.0]; 3];
+        for (turned, [c, s]) in turned.iter_mut().zip(&at.turns) {
+            let (c, s) = (c.at(w), s.at(w));
+            let n = length(c, s);
+            *turned = if n > 0.0 { [c / n, s / n] } else { [1.0, 0.0] };
+        }
+        let [r, a, b] = self.displacements(&at.turns, at.square);
+        let real = |v: [WithRoot; 3]| [v[0].at(w), v[1].at(w), v[2].at(w)];
+        let (r, a, b) = (real(r), real(a), real(b));
+        let m = cross(a, b);
+        let over = 1.0 / dot(m, m);
+        let mut lengths = [dot(cross(b, r), m) * over, dot(cross(r, a), m) * over].into_iter();
+        let mut turned = turned.into_iter();
+        let mut joints = [given; 6];
+        for (i, joint) in joints.iter_mut().enumerate().skip(1) {
+            *joint = if self.slides.contains(&i) {
+                [lengths.next().unwrap_or(0.0), 0.0]
+            } else {
+                turned.next().unwrap_or([1.0, 0.0])
+            };
+        }
+        joints
+    }
+}
+
+/// Block 9, two prismatic joints: J1 L1 ... J6 L6 = 1 with joint 1 revolute and `slides` the numbers (from 0) of the prismatic joints, neighbours or not.
+///
+/// With t1, t2, t3 the other revolute joints, what stands between them is Rx(alpha) and Rx(beta) as a rotation, sin alpha and sin beta not 0.
+/// 12 samples of the product above give the polynomial of degree 4, its orders 5 and 6 the rounding; block R gives the first joint, the sign
+/// of f the branch, block 5 and two linear equations the rest, Newton's method the last digits.
+///
+/// - `length`: the arm's own, > 0. At most 8 solutions; `signs` are 0: the block has no branches.
+/// - `near`: the number of solutions is not that of the roots, or rounding decides. The polynomial vanishes: `continuum`.
+/// - Without solutions `miss` is the residual of a least-squares posture (the links' unit, angles times `length`).
+pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branches<6, 8> {
+    let mut found = Branches::new();
+    let mut unit = *links;
+    for row in unit.iter_mut().flatten() {
+        row[3] /= length;
+    }
+    let arm = TwoSlides::new(&unit, slides);
+    let mut samples = [0.0; 12];
+    let mut largest: Real = 0.0;
+    for (j, sample) in samples.iter_mut().enumerate() {
+        *sample = arm.product([cosine_of_15_degrees(2 * j), cosine_of_15_degrees(2 * j + 18)]);
+        largest = largest.max(sample.abs());
+    }
+    // Squares of volumes of displacements that are right to u.
+    if !(largest > UNIT_ROUNDOFF * UNIT_ROUNDOFF) {
+        found.continuum = largest <= UNIT_ROUNDOFF;
+        found.near = !found.continuum;
+        return found;
+    }
+    let (a, b, noise) = fourier::<12, 5>(&samples, largest);
+    let over = 1.0 / largest;
+    let roots: CircleRoots<12> = circle_roots(&a, &b, (4.0 * noise).max(24.0 * UNIT_ROUNDOFF), 0.0, |points| {
+        let mut values = [0.0; 9];
+        for (value, point) in values.iter_mut().zip(points) {
+            *value = arm.product(*point) * over;
+        }
+        values
+    });
+    let mut prismatic = [false; 6];
+    for (i, kind) in prismatic.iter_mut().enumerate() {
+        *kind = slides.contains(&i);
+    }
+    let closing = Loop { links: &unit, prismatic, length: 1.0 };
+    found.continuum = roots.free;
+    for root in roots.all.iter().take(roots.count) {
+        let given = [root.c, root.s];
+        let at = arm.at(given);
+        let w = sqrt(at.square.max(0.0));
+        let (plus, minus) = (at.f.at(w).abs(), at.f.at(-w).abs());
+        // The branch that vanishes, or both that nearly do.
+        for (w, f) in [(w, plus), (-w, minus)] {
+            if f <= plus.min(minus) + 1e-3 * (plus + minus) {
+                let closed = closing.close(&arm.joints(given, &at, w), if root.double { 12 } else { 6 });
+                if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
+                    merge(&mut found, &closed, root.double);
+                }
+            }
+        }
+    }
+    let distinct = found.count;
+    for root in roots.shallow.iter().take(roots.shallow_count) {
+        let given = [root.c, root.s];
+        let at = arm.at(given);
+        let w = sqrt(at.square.max(0.0));
+        let w = if at.f.at(w).abs() <= at.f.at(-w).abs() { w } else { -w };
+        let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
+        if closed.residual <= 2.0 * ROUNDING {
+            merge(&mut found, &closed, true);
+        }
+    }
+    found.near = !roots.free && (roots.near || distinct != roots.count);
+    if found.count == 0 && !found.continuum {
+        let (mut place, mut least) = (0, Real::INFINITY);
+        for (j, sample) in samples.iter().enumerate() {
+            if sample.abs() < least {
+                (place, least) = (j, sample.abs());
+            }
+        }
+        let given = [cosine_of_15_degrees(2 * place), cosine_of_15_degrees(2 * place + 18)];
+        let at = arm.at(given);
+        let joints = arm.joints(given, &at, sqrt(at.square.max(0.0)));
+        found.missed(closing.nearest(&joints, 1e-2).residual * length);
+    }
+    for branch in &mut found.all {
+        for (value, prismatic) in branch.joints.iter_mut().zip(prismatic) {
+            if prismatic {
+                value[0] *= length;
+            }
+        }
+    }
+    found
+}
