@@ -117,6 +117,13 @@ pub fn joint_back(prismatic: bool, value: [Real; 2], v: Vector) -> Vector {
     }
 }
 
+/// Directions as seen from behind a joint and a link.
+#[inline]
+pub fn seen_behind(prismatic: bool, [c, s]: [Real; 2], link: &Frame, [x, y, z]: [Vector; 3]) -> [Vector; 3] {
+    let seen = |v: Vector| rotate_back(link, if prismatic { v } else { turn_vector(c, -s, v) });
+    [seen(x), seen(y), seen(z)]
+}
+
 /// The sum of the absolute entries of the displacement.
 #[inline]
 pub fn extent(f: &Frame) -> Real {

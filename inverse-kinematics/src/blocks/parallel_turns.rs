@@ -20,18 +20,17 @@ pub fn parallel_turns(
     let back = inverse(l4);
     let arm = regional(l1, l2, column(l3, 3), column(&back, 3));
     (found.miss, found.near) = (arm.miss, arm.near);
+    let [p1, p2, p3] = prismatic;
+    let whole = [column(&back, 0), column(&back, 1), column(&back, 2)];
     for branch in arm.found() {
         let [q1, q2, q3] = branch.joints;
-        let [p1, p2, p3] = prismatic;
-        let chain = compose(l2, &joint_then(p3, q3, l3));
-        let chain = joint_then(p1, q1, &compose(l1, &joint_then(p2, q2, &chain)));
-        let rest = compose(&inverse(&chain), &back);
-        let tilt = length(length(rest[0][2], rest[1][2]), length(rest[2][0], rest[2][1]));
-        if !(tilt <= ROUNDING && rest[2][2] > 0.0) {
-            found.missed(if rest[2][2] > 0.0 { tilt } else { 1.0 - rest[2][2] });
+        let [x, y, z] = seen_behind(p3, q3, l3, seen_behind(p2, q2, l2, seen_behind(p1, q1, l1, whole)));
+        let tilt = sqrt(x[2] * x[2] + y[2] * y[2] + z[0] * z[0] + z[1] * z[1]);
+        if !(tilt <= ROUNDING && z[2] > 0.0) {
+            found.missed(if z[2] > 0.0 { tilt } else { 1.0 - z[2] });
             continue;
         }
-        let q4 = turn([1.0, 0.0], [rest[0][0], rest[1][0]], 0.0).value;
+        let q4 = turn([1.0, 0.0], [x[0], x[1]], 0.0).value;
         found.add(Branch { joints: [q1, q2, q3, q4], signs: branch.signs, double: branch.double, error: branch.error, free: branch.free });
     }
     found

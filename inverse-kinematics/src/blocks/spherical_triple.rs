@@ -1,12 +1,5 @@
 // Six joints, three neighbours of which turn about axes through one point.
 
-/// Directions as seen from behind a joint and a link.
-#[inline]
-fn seen_behind(prismatic: bool, [c, s]: [Real; 2], link: &Frame, [x, y, z]: [Vector; 3]) -> [Vector; 3] {
-    let seen = |v: Vector| rotate_back(link, if prismatic { v } else { turn_vector(c, -s, v) });
-    [seen(x), seen(y), seen(z)]
-}
-
 /// Spherical triple: J1 L1 J2 L2 J3 L3 J4 L4 J5 L5 J6 L6 = 1 with L4 = Tz(d) Rx(alpha), L5 = Rx(beta); sin alpha and sin beta are not 0.
 ///
 /// The point in which axes 4, 5 and 6 meet does not feel them: block 6, as `regional`, brings L3 (0, 0, d) to what L6⁻¹ makes of the origin.
