@@ -44,7 +44,7 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
         trig: Trig::Fast,
         without: [Pass::Grouping, Pass::Slides].into_iter().collect(),
         batch: Some(4),
-        functions: Selection::named(&names.map(String::from)).expect("names of functions"),
+        functions: Selection::named(names.map(String::from)).expect("names of functions"),
     };
     let (generated, _) = armgen_codegen::generate(&source, &options);
     let generated = generated.expect("a valid description");

@@ -1,5 +1,8 @@
 //! Block R against products of known roots: all of them found, no other, clusters, double roots, nothing at all.
 
+// The same text is compiled for both scalars.
+#![allow(clippy::unnecessary_cast)]
+
 #[macro_use]
 mod common;
 

@@ -38,7 +38,7 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
         without: &[Pass::UnitOfLength], ..Recursion::new(Use::Dynamics, |pool, arm, plan, setting| {
             operational_inertia(pool, arm, plan, &setting.model.manipulator.task_rows()).concat()
         }) },
-    missing: missing,
+    missing,
     gathers: &[],
     interface: None,
 };
