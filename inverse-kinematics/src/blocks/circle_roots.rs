@@ -43,8 +43,8 @@ pub struct CircleRoots<const M: usize> {
 
 /// How often one search may halve an arc, and how often it may ask for the function itself on an arc: many times what generic polynomials of
 /// degree 8 need (about 60, and 0 to 3).
-const HALVINGS: usize = 600;
-const ANEW: usize = 40;
+const HALVINGS: usize = 1000;
+const ANEW: usize = 240;
 
 /// Arcs are not halved below this half width, rad, 7e-8 in double precision: two roots as near as that are one change by rounding apart,
 /// since rounding of the coefficients by u moves a double root by sqrt(u).

@@ -74,20 +74,23 @@ impl Loop<'_> {
         moved
     }
 
-    /// Newton's method from `joints`, at most `steps` of it, until the residual no longer falls. NaN: a residual that is not small.
-    pub fn close(&self, joints: &[[Real; 2]; 6], steps: usize) -> Closed {
+    /// Newton's method from `joints` until the residual no longer falls, at most 6 steps. At a `contact`, where two solutions may have met, 12, since
+    /// it only halves the distance there; and as that place is found to the root of its residual only, a larger rounding is asked for in `double`.
+    /// NaN: a residual that is not small.
+    pub fn close(&self, joints: &[[Real; 2]; 6], contact: bool) -> Closed {
+        let (steps, units) = if contact { (12, 1024.0) } else { (6, 32.0) };
         let mut best = Closed { joints: *joints, residual: Real::INFINITY, double: false };
         let mut joints = *joints;
         for step in 0..=steps {
             let (rows, residual) = self.equations(&joints);
             let falls = residual < 0.5 * best.residual;
+            let (x, pivot) = solve(&rows);
             if residual < best.residual {
-                (best.joints, best.residual) = (joints, residual);
+                // Only a small pivot lets the Jacobian be nearly singular: the inverse is worth its time there.
+                let double = !(pivot > 1e-3 * self.length) && self.nearly_double(&rows, units);
+                best = Closed { joints, residual, double };
             }
             let precise = residual <= 16.0 * UNIT_ROUNDOFF * self.length;
-            let (x, pivot) = solve(&rows);
-            // Only a small pivot lets the Jacobian be nearly singular: the inverse is worth its time there.
-            best.double = !(pivot > 1e-3 * self.length) && self.nearly_double(&rows);
             if precise || step == steps || (!falls && best.residual <= CLOSED * self.length) || !(residual < Real::INFINITY) {
                 break;
             }
@@ -96,10 +99,10 @@ impl Loop<'_> {
         best
     }
 
-    /// Whether |J⁻¹|² K 32 u >= 1/2 with lengths in units of the arm's length: what Newton and Kantorovich's theorem asks for to hold one
+    /// Whether |J⁻¹|² K `units` u >= 1/2 with lengths in units of the arm's length: what Newton and Kantorovich's theorem asks for to hold one
     /// solution apart from another after a change of the pose by its rounding. K, the bound of second derivatives, is taken as 4:
     /// lever arms of two lengths of the arm.
-    fn nearly_double(&self, rows: &Equations) -> bool {
+    fn nearly_double(&self, rows: &Equations, units: Real) -> bool {
         const SECOND_DERIVATIVES: Real = 4.0;
         let mut square = 0.0;
         for k in 0..6 {
@@ -113,11 +116,12 @@ impl Loop<'_> {
                 square += x * x;
             }
         }
-        !(square * SECOND_DERIVATIVES * 32.0 * UNIT_ROUNDOFF < 0.5)
+        !(square * SECOND_DERIVATIVES * units * UNIT_ROUNDOFF < 0.5)
     }
 
     /// The least residual that damped steps (Levenberg, Marquardt) reach from `joints` in 30 of them: how far a pose out of reach is. `damping`, of
-    /// the squared length, is divided by 4 by each that succeeds. `double` is always set.
+    /// the squared length, is divided by 4 by each that succeeds. `double`: the Jacobian is singular there, to the root of a larger rounding,
+    /// since such a place is found to the root of its residual only.
     pub fn nearest(&self, joints: &[[Real; 2]; 6], damping: Real) -> Closed {
         let mut joints = *joints;
         let (mut rows, mut residual) = self.equations(&joints);
@@ -142,7 +146,7 @@ impl Loop<'_> {
                 damping *= 4.0;
             }
         }
-        Closed { joints, residual, double: true }
+        Closed { joints, residual, double: self.nearly_double(&rows, 1024.0) }
     }
 }
 
@@ -154,7 +158,7 @@ pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
     for branch in found.found() {
         let mut branch = *branch;
         if branch.free == 0 {
-            let closed = closing.close(&branch.joints, if branch.double { 12 } else { 4 });
+            let closed = closing.close(&branch.joints, branch.double);
             if closed.residual > if branch.double { 64.0 } else { 1.0 } * CLOSED * closing.length {
                 kept.near = true;
                 continue;
@@ -225,9 +229,14 @@ fn merge<const N: usize>(found: &mut Branches<6, N>, closed: &Closed, double: bo
     let same = SAME * sqrt(UNIT_ROUNDOFF);
     let count = found.count;
     for known in found.all.iter_mut().take(count) {
-        let differ = known.joints.iter().zip(&closed.joints).any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= same));
-        if !differ {
-            known.double |= closed.double || double;
+        let mut apart: Real = 0.0;
+        for (x, y) in known.joints.iter().zip(&closed.joints) {
+            apart = apart.max((x[0] - y[0]).abs() + (x[1] - y[1]).abs());
+        }
+        // The place of a double solution is known to the root of the rounding only.
+        let double = closed.double || double;
+        if apart <= if double || known.double { 64.0 * same } else { same } {
+            known.double |= double;
             return;
         }
     }

@@ -518,6 +518,7 @@ pub struct Arranged {
 ///
 /// - `links`: L1 to L6, one of them with the pose. `length`: the arm's own, > 0; the block works in units of it.
 /// - `miss`, without solutions: the residual of a least-squares posture (the links' unit, angles times `length`).
+/// - `double` is a solution at which the Jacobian is singular to rounding; a double root need not be one: solutions may share q3.
 /// - `complete` is false where the count of solutions is not that of the roots, or something is near: another arrangement may know more.
 /// - A determinant that vanishes at this pose, all angles q3: `free`; the joints can move while the loop stays closed, or the arrangement is one
 ///   that does not serve here. No solutions then.
@@ -580,10 +581,10 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
                 spurious += 1;
                 continue;
             }
-            let closed = closing.close(&joints, if root.double { 12 } else { 6 });
+            let closed = closing.close(&joints, root.double);
             if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
                 let before = result.found.count;
-                merge(&mut result.found, &closed, root.double);
+                merge(&mut result.found, &closed, closed.residual > CLOSED);
                 distinct += result.found.count - before;
             }
         }
@@ -597,7 +598,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         let (joints, _) = eliminants.joints(&unit, &prismatic, 1.0, q3, &vectors[0]);
         let closed = closing.nearest(&joints, UNIT_ROUNDOFF);
         // As near as rounding of the pose: it may have been at this place.
-        if closed.residual <= 2.0 * ROUNDING {
+        if closed.residual <= 2.0 * ROUNDING && closed.double {
             merge(&mut result.found, &closed, true);
         }
     }

@@ -224,9 +224,9 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
         // The branch that vanishes, or both that nearly do.
         for (w, f) in [(w, plus), (-w, minus)] {
             if f <= plus.min(minus) + 1e-3 * (plus + minus) {
-                let closed = closing.close(&arm.joints(given, &at, w), if root.double { 12 } else { 6 });
+                let closed = closing.close(&arm.joints(given, &at, w), root.double);
                 if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
-                    merge(&mut found, &closed, root.double);
+                    merge(&mut found, &closed, closed.residual > CLOSED);
                 }
             }
         }
@@ -238,7 +238,7 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
         let w = sqrt(at.square.max(0.0));
         let w = if at.f.at(w).abs() <= at.f.at(-w).abs() { w } else { -w };
         let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
-        if closed.residual <= 2.0 * ROUNDING {
+        if closed.residual <= 2.0 * ROUNDING && closed.double {
             merge(&mut found, &closed, true);
         }
     }

@@ -8,6 +8,7 @@ fn keep<V>(value: V) {
 
 macro_rules! every_block {
     ($scalar:ident) => {
+        #[allow(unreachable_pub)]
         mod $scalar {
             use super::{black_box, keep};
             use armgen_inverse_kinematics::$scalar::*;
