@@ -153,6 +153,11 @@ impl Parser<'_> {
     fn atom(&mut self) -> Result<Formula, String> {
         match self.peek() {
             Some('(') => self.parenthesis(),
+            // A constant that is not written out is shown by the decimal nearest to it, sign included.
+            Some('≈') => {
+                self.rest = &self.rest['≈'.len_utf8()..];
+                self.factor()
+            }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_ascii_alphabetic() || c == '_' => {
                 let length = self.rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(self.rest.len());

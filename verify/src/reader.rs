@@ -1,9 +1,9 @@
 //! Reads an emitted module back: constants as values, functions as straight-line programs.
 //!
 //! The reader accepts a grammar and nothing else, with a lexer and a parser of its own: what it does not know it cannot skip. All but the bodies of
-//! functions is compared, token by token, with the texts that an emitted module has ([`items`], [`sines`], signatures from
-//! [`contract`](crate::contract)); bodies have the grammar of [`body`], constants that of their types ([`constant`]), documentation that of
-//! [`documentation`], and all text the characters of [`lexer`]. `docs/certificate.md` has the whole.
+//! functions is compared, token by token, with the texts that an emitted module has (`items`, `sines`, signatures from
+//! [`contract`](crate::contract)); bodies have the grammar of `body`, constants that of their types (`constant`), documentation that of
+//! `documentation`, and all text the characters of `lexer`. `docs/certificate.md` has the whole.
 
 mod body;
 mod constant;
