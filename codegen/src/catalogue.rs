@@ -1,5 +1,5 @@
 //! The catalogue: every function that can be emitted, in the order of the module. What each is stands beside its derivation, in
-//! [`quantities`].
+//! [`mod@quantities`].
 
 pub use crate::derive::quantities;
 pub use crate::derive::quantity::{

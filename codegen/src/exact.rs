@@ -8,7 +8,7 @@
 //! ```
 //!
 //! so that a constant that is multiplied out has one form: equal numbers are equal values, and `sqrt(2)·sqrt(3)` is `sqrt(6)`. Long ones are
-//! not multiplied out ([`shared`]).
+//! not multiplied out (`shared`).
 //! (Relations beyond these, say between cos(0.7) and cos(1.4), are not known here. Nothing wrong follows: two ways to write one
 //! number may then stay two numbers, two numbers never become one.)
 //!
@@ -53,7 +53,7 @@ pub enum Atom {
     Inverse(Arc<Shared>),
     /// The angle of the point (1, t) from the x axis: the arc tangent of a fraction in (0, 1), rad.
     Arctangent(Rational),
-    /// A sum that is not multiplied out ([`shared`]).
+    /// A sum that is not multiplied out (`shared`).
     Sum(Arc<Sum>),
 }
 

@@ -5,7 +5,7 @@
 //! operations in the same order wherever `+ - * /` bind as usual.
 //!
 //! A compiler takes more than twice the time for twice the straight line: scheduling, vectorising and the choice of registers look at a
-//! block as a whole. A body of more than [`LONG`] lines therefore is taken apart into several functions, each of which takes the values
+//! block as a whole. A body of more than `LONG` lines therefore is taken apart into several functions, each of which takes the values
 //! that it needs and returns those that later ones need; names stay what they would be in one piece.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -2,7 +2,7 @@
 //! accepted by their texts alone.
 //!
 //! The texts stand here once more, and are not those of the generator taken in: what is right is decided where it is checked. Whoever changes the
-//! generator's block of sines (`codegen/src/emit/sincos`) has to find the new one right and copy it, as it is emitted, to `sines/`.
+//! generator's block of sines (`codegen/src/emit/rust/sincos`) has to find the new one right and copy it, as it is emitted, to `sines/`.
 
 use std::collections::{BTreeMap, BTreeSet};
 
