@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use armgen_codegen::diagnostic::AnyCode;
+use armgen_experiments::model::{AlgorithmKind, LawKind};
 use armgen_experiments::read::{Code, Parsed, SHARED};
 use common::{files, parse, root, said, text_of};
 
@@ -73,10 +74,17 @@ fn an_experiment_for_another_robot_is_left_alone() {
     assert!(said(&parse("robot: [\n")).contains("error[yaml-syntax]"));
 }
 
-/// The page lists every code.
+/// The page lists every code, every law and every algorithm, with their keys.
 #[test]
-fn the_page_names_every_code() {
+fn the_page_names_every_code_and_every_key_of_a_law() {
     let page = text_of(&root(), "docs/experiments.md");
-    let missing: Vec<&str> = codes().iter().map(|code| code.name()).filter(|name| !page.contains(&format!("`{name}`"))).collect();
+    let laws = LawKind::ALL.into_iter().flat_map(|kind| {
+        let gains = kind.gains().iter().map(|gain| gain.key);
+        [kind.name()].into_iter().chain(gains).chain(kind.optional().iter().copied())
+    });
+    let algorithms = AlgorithmKind::ALL.into_iter().flat_map(|kind| [kind.name()].into_iter().chain(kind.keys().iter().copied()));
+    let codes = codes();
+    let words = codes.iter().map(|code| code.name()).chain(laws).chain(algorithms);
+    let missing: Vec<&str> = words.filter(|word| !page.contains(&format!("`{word}`"))).collect();
     assert!(missing.is_empty(), "docs/experiments.md does not name {missing:?}");
 }
