@@ -27,10 +27,10 @@ pub mod print;
 pub mod turn;
 
 mod calculus;
+mod constants;
 mod count;
 mod evaluate;
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::hash::BuildHasherDefault;
 use std::rc::Rc;
@@ -345,101 +345,6 @@ impl Pool {
         fingerprint.map(|x| self.field.neg(x))
     }
 
-    /// The exact value, if the expression is a constant.
-    pub fn as_constant(&self, expr: ExprId) -> Option<Number> {
-        match self.node(expr) {
-            Node::Constant(id) => {
-                let value = &*self.constants[id.0 as usize];
-                Some(if expr.is_negated() { -value } else { value.clone() })
-            }
-            _ => None,
-        }
-    }
-
-    fn value(&self, expr: ExprId) -> Cow<'_, Number> {
-        match self.node(expr) {
-            Node::Constant(id) if !expr.is_negated() => Cow::Borrowed(&self.constants[id.0 as usize]),
-            _ => Cow::Owned(self.as_constant(expr).expect("asked for constants only")),
-        }
-    }
-
-    /// Whether the expression is a constant.
-    pub fn is_constant(&self, expr: ExprId) -> bool {
-        matches!(self.node(expr), Node::Constant(_))
-    }
-
-    /// A constant of a sketch.
-    fn sketched(&mut self, value: Element) -> ExprId {
-        let fingerprint = [value; 2];
-        if value == self.field.zero() {
-            return ExprId::ZERO;
-        }
-        if let Some(&expr) = self.known.get(&fingerprint) {
-            return expr;
-        }
-        if let Some(&expr) = self.known.get(&self.negated(fingerprint)) {
-            return -expr;
-        }
-        self.push(Node::Constant(ConstantId(u32::MAX)), fingerprint)
-    }
-
-    /// An exact constant.
-    pub fn constant(&mut self, value: &Number) -> ExprId {
-        if self.sketch {
-            let value = self.field.number(value);
-            return self.sketched(value);
-        }
-        let minus = -value;
-        // Most are known, and their signs with them.
-        for (size, negative) in [(value, false), (&minus, true)] {
-            if let Some(&expr) = self.constant_nodes.get(size) {
-                return expr.signed(negative);
-            }
-        }
-        let fingerprint = [self.field.number(value); 2];
-        if let Some(known) = self.known_constant(value, &minus, fingerprint) {
-            return known;
-        }
-        // By its value, so that what a divisor stands for is positive where the divisor is.
-        let negative = value.is_negative();
-        let size = Rc::new(if negative { minus } else { value.clone() });
-        let fingerprint = if negative { self.negated(fingerprint) } else { fingerprint };
-        let id = ConstantId(self.constants.len() as u32);
-        let expr = self.push(Node::Constant(id), fingerprint);
-        self.constants.push(size.clone());
-        self.constant_nodes.insert(size, expr);
-        expr.signed(negative)
-    }
-
-    /// A constant that has the value of this one and looks different, because not all is multiplied out in one of them: equal in the field, and as
-    /// near as enclosures tell at first.
-    fn known_constant(&self, value: &Number, minus: &Number, fingerprint: Fingerprint) -> Option<ExprId> {
-        if fingerprint[0] == self.field.zero() && value.is_shared() && value.is_near(&Number::zero()) {
-            return Some(ExprId::ZERO);
-        }
-        [(fingerprint, value, false), (self.negated(fingerprint), minus, true)].into_iter().find_map(
-            |(fingerprint, value, negative)| {
-                let &expr = self.known.get(&fingerprint)?;
-                let Node::Constant(id) = self.node(expr) else { return None };
-                let other = &self.constants[id.0 as usize];
-                // A known constant is positive, and found by its own value.
-                let same = (value.is_shared() || other.is_shared()) && value.is_near(other);
-                same.then_some(expr.signed(negative))
-            },
-        )
-    }
-
-    /// An exact integer.
-    pub fn integer(&mut self, value: i64) -> ExprId {
-        self.constant(&Number::from(value))
-    }
-
-    /// An exact fraction.
-    pub fn fraction(&mut self, numerator: i64, denominator: i64) -> ExprId {
-        let value = crate::exact::Rational::from(numerator) / crate::exact::Rational::from(denominator);
-        self.constant(&Number::from(value))
-    }
-
     /// An input.
     pub fn symbol(&mut self, symbol: Symbol) -> ExprId {
         if let Some(&known) = self.symbols.get(&symbol) {
@@ -507,13 +412,7 @@ impl Pool {
             return a;
         }
         if self.is_constant(a) && self.is_constant(b) {
-            if self.sketch {
-                let sum = self.field.add(self.fingerprint(a)[0], self.fingerprint(b)[0]);
-                return self.sketched(sum);
-            }
-            let (x, y) = (self.value(a), self.value(b));
-            let sum = x.plus(&y);
-            return self.constant(&sum);
+            return self.sum_of_constants(a, b);
         }
         // The node holds the sum with its first operand positive: x - y, never -x + y or -x - y.
         let (a, b) = if a.is_negated() && !b.is_negated() { (b, a) } else { (a, b) };
@@ -543,14 +442,8 @@ impl Pool {
             return a.signed(negate);
         }
         match (self.is_constant(a), self.is_constant(b)) {
-            (true, true) if self.sketch => {
-                let product = self.field.mul(self.fingerprint(a)[0], self.fingerprint(b)[0]);
-                return self.sketched(product).signed(negate);
-            }
             (true, true) => {
-                let product = self.value(a).times(&self.value(b));
-                let expected = self.field.mul(self.fingerprint(a)[0], self.fingerprint(b)[0]);
-                if let Some(constant) = self.folded(&product, expected) {
+                if let Some(constant) = self.product_of_constants(a, b) {
                     return constant.signed(negate);
                 }
             }
@@ -569,13 +462,6 @@ impl Pool {
         let (fa, fb) = (self.fingerprint(a), self.fingerprint(b));
         let fingerprint = [0, 1].map(|i| self.field.mul(fa[i], fb[i]));
         self.find_or_push(Node::Mul(a, b), fingerprint).signed(negate)
-    }
-
-    /// The constant that an operation on constants comes to, if its value in the field is what the operation gives there. It is not where a
-    /// nested root is reduced, r r to what stands under the root: its value in the field is one on which nothing is known.
-    fn folded(&mut self, value: &Number, expected: Element) -> Option<ExprId> {
-        let constant = self.constant(value);
-        (self.fingerprint(constant)[0] == expected).then_some(constant)
     }
 
     /// 1/a. The caller knows that a is not identically zero.

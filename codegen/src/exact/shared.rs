@@ -171,6 +171,11 @@ impl Number {
         })
     }
 
+    /// Whether there are roots among the factors of its terms.
+    pub fn has_roots(&self) -> bool {
+        self.terms.keys().flatten().any(|(atom, _)| matches!(atom, Atom::Root(_) | Atom::RootOf(_)))
+    }
+
     /// How many terms it would have multiplied out, if nothing cancelled.
     pub fn terms_multiplied_out(&self) -> usize {
         let of_factor = |(atom, power): &(Atom, i32)| match atom {

@@ -108,7 +108,7 @@ impl Pool {
         for index in (0..self.len()).filter(|&i| needed[i]) {
             let image = |e: ExprId| images[e.index()].signed(e.is_negated());
             images[index] = match self.node(self.expr(index)) {
-                Node::Constant(_) => target.constant(&self.as_constant(self.expr(index)).expect("a constant")),
+                Node::Constant(_) => target.constant_of(self, self.expr(index)),
                 Node::Symbol(symbol) => of(target, symbol),
                 Node::Add(a, b) => target.add(image(a), image(b)),
                 Node::Mul(a, b) => target.mul(image(a), image(b)),

@@ -206,7 +206,7 @@ impl Pool {
         for index in (0..self.len()).filter(|&i| needed[i]) {
             let of = |e: ExprId| done[e.index()].signed(e.is_negated());
             done[index] = match self.nodes[index] {
-                Node::Constant(_) => to.constant(&self.as_constant(self.expr(index)).expect("a constant")),
+                Node::Constant(_) => to.constant_of(self, self.expr(index)),
                 Node::Symbol(symbol) => meaning(to, symbol),
                 Node::Add(a, b) => to.add(of(a), of(b)),
                 Node::Mul(a, b) => to.mul(of(a), of(b)),

@@ -322,7 +322,7 @@ impl Circuit {
             let expr = match &self.gates[gate as usize] {
                 Gate::Leaf(expr) => match from.node(*expr) {
                     Node::Symbol(symbol) => pool.symbol(symbol),
-                    _ => pool.constant(&from.as_constant(*expr).expect("a leaf is a symbol or a constant")),
+                    _ => pool.constant_of(from, *expr),
                 },
                 Gate::Sum(terms) => {
                     let terms: Vec<ExprId> = terms.iter().map(|t| built[&t.gate].signed(t.negated)).collect();
