@@ -74,13 +74,12 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
         };
         field.from_u64(scramble(scramble(state << 8 | kind) ^ u64::from(index)))
     };
-    let mut constants = field.clone();
     let mut values: Vec<Element> = Vec::with_capacity(pool.len());
     for index in 0..pool.len() {
         let of = |e: ExprId| if e.is_negated() { field.neg(values[e.index()]) } else { values[e.index()] };
         let expr = pool.expr(index);
         values.push(match pool.node(expr) {
-            Node::Constant(_) => constants.number(&pool.as_constant(expr).expect("a constant")),
+            Node::Constant(_) => pool.fingerprint(expr)[0],
             Node::Symbol(symbol @ Symbol::Sine(_)) => field.circle(draw(symbol)).0,
             Node::Symbol(symbol @ Symbol::Cosine(_)) => field.circle(draw(symbol)).1,
             Node::Symbol(Symbol::SineOf(sum)) => field.circle_of(sum, |i| field.circle(draw(Symbol::Sine(i)))).0,
