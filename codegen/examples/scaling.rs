@@ -1,8 +1,11 @@
 //! How generation, operation counts and compile times grow with the joints of a chain.
 //!
-//! `cargo run --release -p armgen-codegen --example scaling [-- [--figure FILE] [--functions NAMES] [JOINTS or ROBOT.yaml ...]]` generates chains
-//! of 2, 4, 8, 16 and 32 revolute joints (or of as many as asked for, or the robots of descriptions), twist angles pi/2, 0, -pi/2, 0 in turn and
-//! full inertias, compiles each emitted module by `rustc` at opt-level 3 in one codegen unit, prints a table and draws it.
+//! `cargo run --release -p armgen-codegen --example scaling [-- [--figure FILE] [--functions NAMES] [--generation] [JOINTS or ROBOT.yaml ...]]`
+//! generates chains of 2, 4, 8, 16 and 32 revolute joints (or of as many as asked for, or the robots of descriptions), twist angles pi/2, 0, -pi/2,
+//! 0 in turn and full inertias, compiles each emitted module by `rustc` at opt-level 3 in one codegen unit, prints a table and draws it.
+//!
+//! `r7` stands for a chain of 7 revolute joints whose angles are all decimals, `p10` for one of 10 prismatic joints, `rrp9` for one of 9 joints that
+//! are revolute, revolute, prismatic in turn. With `--generation` nothing is compiled.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,17 +16,20 @@ use armgen_codegen::program::{Cost, Options, Selection, Trig};
 use armgen_codegen::source::Source;
 use armgen_codegen::{emit, manipulator, Model};
 
-/// A chain of n revolute joints whose links have all ten inertial parameters.
-fn chain(n: usize) -> String {
+/// A chain of n joints, `kinds` in turn, whose links have all ten inertial parameters; its angles are decimals if they are `general`.
+fn chain(n: usize, kinds: &str, general: bool) -> String {
     let mut text = format!("name: chain{n}\nconvention: modified\ngravity: [0, 0, -9.81]\njoints:\n");
-    for i in 0..n {
-        let alpha = ["pi/2", "0", "-pi/2", "0"][i % 4];
+    for (i, kind) in kinds.chars().cycle().take(n).enumerate() {
+        let kind = if kind == 'r' { "revolute" } else { "prismatic" };
+        let right = || (["pi/2", "0", "-pi/2", "0"][i % 4].to_string(), "0".to_string());
+        let (alpha, theta) =
+            if general { (format!("0.{}", 17 + 10 * (i % 8) + i / 8), format!("0.{}", 300 + 7 * i)) } else { right() };
         // Numbers that differ from link to link and have no pattern to exploit.
         let vary = |k: usize| ((i * 37 + k * 61) % 97) as f64 / 97.0;
         let fixed = |x: f64| format!("{x:.4}");
         writeln!(
             text,
-            "  - {{name: j{i}, type: revolute, a: {}, alpha: {alpha}, d: {}, theta: 0, link: {{mass: {}, com: [{}, {}, {}], \
+            "  - {{name: j{i}, type: {kind}, a: {}, alpha: {alpha}, d: {}, theta: {theta}, link: {{mass: {}, com: [{}, {}, {}], \
              inertia: {{xx: {}, yy: {}, zz: {}, xy: {}, xz: {}, yz: {}}}}}}}",
             fixed(0.05 + 0.2 * vary(0)),
             fixed(0.1 + 0.2 * vary(1)),
@@ -45,6 +51,7 @@ fn chain(n: usize) -> String {
 
 /// What was measured of one chain.
 struct Row {
+    arm: String,
     joints: usize,
     generation: Duration,
     memory_mib: f64,
@@ -54,11 +61,18 @@ struct Row {
     operations: Vec<(String, usize)>,
 }
 
-fn measure(what: &str, selection: &Selection, folder: &Path) -> Row {
-    let text = match what.parse() {
-        Ok(joints) => chain(joints),
-        Err(_) => std::fs::read_to_string(what).unwrap_or_else(|error| panic!("{what}: {error}")),
-    };
+/// The description that an argument stands for.
+fn description(what: &str) -> String {
+    let kinds = what.trim_end_matches(|c: char| c.is_ascii_digit());
+    match (what[kinds.len()..].parse(), kinds) {
+        (Ok(joints), "") => chain(joints, "r", false),
+        (Ok(joints), kinds) if kinds.chars().all(|kind| "rp".contains(kind)) => chain(joints, kinds, true),
+        _ => std::fs::read_to_string(what).unwrap_or_else(|error| panic!("{what}: {error}")),
+    }
+}
+
+fn measure(what: &str, selection: &Selection, compiled: bool, folder: &Path) -> Row {
+    let text = description(what);
     let started = processor_time(OWN);
     let source = Source::new("robot.yaml", text);
     let (valid, diagnostics) = manipulator::read(&source);
@@ -78,11 +92,11 @@ fn measure(what: &str, selection: &Selection, folder: &Path) -> Row {
     let joints = module.joints.len();
     let path = folder.join(format!("armgen_scaling_{}_{joints}.rs", std::process::id()));
     std::fs::write(&path, &text).expect("the folder for temporary files can be written");
-    let compilation = compile(&path);
+    let compilation = if compiled { compile(&path) } else { None };
     // Where there is no compiler, there is no object file.
     let _ = std::fs::remove_file(path.with_extension("o"));
     std::fs::remove_file(&path).expect("what was written can be removed");
-    Row { joints, generation, memory_mib: peak_memory(), bytes: text.len(), compilation, operations }
+    Row { arm: what.into(), joints, generation, memory_mib: peak_memory(), bytes: text.len(), compilation, operations }
 }
 
 /// The most memory that this process has had, MiB; not a number where the system does not tell.
@@ -120,10 +134,12 @@ fn processor_time(place: usize) -> Duration {
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
+    let mut compiled = true;
     let (mut figure, mut selection, mut robots): (Option<PathBuf>, _, Vec<String>) = (None, Selection::ALL, Vec::new());
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--figure" => figure = arguments.next().map(PathBuf::from),
+            "--generation" => compiled = false,
             "--functions" => {
                 let names = arguments.next().unwrap_or_default();
                 selection = Selection::named(names.split(',')).unwrap_or_else(|message| panic!("{message}"));
@@ -136,14 +152,14 @@ fn main() {
     }
     let folder = std::env::temp_dir();
     let mut rows = Vec::new();
-    println!("joints  generation s (CPU)  peak MiB  text KiB  compile s (CPU)  operations in all");
+    println!("arm     generation s (CPU)  peak MiB  text KiB  compile s (CPU)  operations in all");
     for robot in robots {
-        let row = measure(&robot, &selection, &folder);
+        let row = measure(&robot, &selection, compiled, &folder);
         let total: usize = row.operations.iter().map(|(_, count)| count).sum();
         let compilation = row.compilation.map_or("-".into(), |time| format!("{:.2}", time.as_secs_f64()));
         println!(
             "{:6}  {:18.2}  {:8.0}  {:8.0}  {compilation:>15}  {total:17}",
-            row.joints,
+            row.arm,
             row.generation.as_secs_f64(),
             row.memory_mib,
             row.bytes as f64 / 1024.0
