@@ -12,9 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use armgen_codegen::program::{Cost, Options, Selection, Trig};
+use armgen_codegen::program::{Cost, Trig};
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
-use armgen_codegen::{emit, manipulator, Model};
+use armgen_codegen::{emit, validate, Model};
 
 /// A chain of n joints, `kinds` in turn, whose links have all ten inertial parameters; its angles are decimals if they are `general`.
 fn chain(n: usize, kinds: &str, general: bool) -> String {
@@ -75,10 +76,10 @@ fn measure(what: &str, selection: &Selection, compiled: bool, folder: &Path) -> 
     let text = description(what);
     let started = processor_time(OWN);
     let source = Source::new("robot.yaml", text);
-    let (valid, diagnostics) = manipulator::read(&source);
+    let (valid, diagnostics) = validate::read(&source);
     let (manipulator, _) =
         valid.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)));
-    let module = armgen_codegen::program::module(
+    let module = armgen_codegen::schedule::module(
         &Model::new(manipulator),
         &Options { trig: Trig::Std, functions: selection.clone(), ..Options::default() },
     );

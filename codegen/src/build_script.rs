@@ -18,10 +18,12 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::diagnostic::Colour;
-pub use crate::program::{Pass, Scalar, Trig};
+pub use crate::kinds::Scalar;
+pub use crate::pass::Pass;
+pub use crate::program::Trig;
 
 use crate::catalogue::Absent;
-use crate::program::{Options, Selection};
+use crate::schedule::{Options, Selection};
 use crate::source::Source;
 
 /// Why nothing was generated: every fault of the description with its place, or the file that cannot be read or written.

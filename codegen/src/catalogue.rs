@@ -1,9 +1,11 @@
 //! The catalogue: every function that can be emitted, in the order of the module. What each is stands beside its derivation, in
 //! [`mod@quantities`].
 
+pub use crate::derive::model::Sizes;
+pub use crate::derive::parameters::Parameter;
 pub use crate::derive::quantities;
 pub use crate::derive::quantity::{
-    Absent, Argument, Documentation, Element, Length, Part, Quantity, Recursion, Setting, Sizes, Structure, Typeset,
+    Absent, Argument, Documentation, Element, Length, Part, Quantity, Recursion, Setting, Structure, Typeset,
 };
 
 use quantities::DECLARED;

@@ -14,6 +14,8 @@ pub mod passes;
 pub mod plan;
 pub mod quantities;
 pub mod quantity;
+pub mod regressor;
+mod wrench;
 
 pub use derivation::Derivation;
 pub use model::Model;

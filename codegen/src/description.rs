@@ -11,7 +11,7 @@ mod reader;
 
 use crate::diagnostic::Diagnostics;
 use crate::document::{yaml, Expression};
-use crate::manipulator::{JointKind, TaskRow};
+use crate::kinds::{JointKind, TaskRow};
 use crate::source::{Source, Span, Spanned};
 
 /// A value that may have been unreadable.

@@ -3,19 +3,16 @@
 //! ```text
 //! Source -> yaml.rs: tree of nodes -> reader.rs: keys and kinds of values
 //!                                     expression.rs: scalar -> Expression
-//!                                     suggest.rs: "did you mean ...?"
 //! ```
 //!
 //! Nothing here knows what a file is about: which keys there are, and what stands under them, is said by whoever reads.
 
 mod expression;
 pub mod reader;
-mod suggest;
 pub mod yaml;
 
 pub(crate) use expression::out_of_range;
 pub use expression::{parse as parse_expression, Expression, ExpressionKind, Operator};
-pub use suggest::did_you_mean;
 
 /// `text` shortened for a message, control characters made visible.
 pub fn excerpt(text: &str) -> String {

@@ -7,7 +7,7 @@
 //! | parse | [`source::Source`] | [`description::RobotDescription`] | yes |
 //! | validate | `RobotDescription` | [`manipulator::Manipulator`] | yes |
 //! | derive | `Manipulator` | [`derive::Derivation`] of each [`catalogue::Quantity`] | no |
-//! | schedule | derivations, [`program::Options`] | [`program::Module`] | no |
+//! | schedule | derivations, [`schedule::Options`] | [`program::Module`] | no |
 //! | emit | `Module` | text | no |
 //!
 //! Text goes in, text comes out; only [`build_script`] touches files and environment.
@@ -20,11 +20,17 @@ pub mod diagnostic;
 pub mod document;
 pub mod emit;
 pub mod exact;
+pub mod kinds;
 pub mod manipulator;
+pub mod pass;
 pub mod program;
 pub mod ring;
+pub mod schedule;
+mod scramble;
 pub mod show;
 pub mod source;
+pub mod suggest;
+pub mod validate;
 
 use std::collections::BTreeMap;
 
@@ -34,7 +40,8 @@ use diagnostic::Diagnostics;
 use emit::c::CFace;
 use emit::{Notes, Origin};
 use exact::Number;
-use program::{Module, Options};
+use program::Module;
+use schedule::Options;
 use source::Source;
 
 /// The text of an emitted module and of the trait implementation that goes with it.
@@ -64,11 +71,11 @@ impl Generated {
 
 /// From text to text: the module if the description is valid, and all there is to say about the description.
 pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
-    let (valid, mut diagnostics) = manipulator::read_for(source, options.scalar);
+    let (valid, mut diagnostics) = validate::read_for(source, options.scalar);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };
-    let module = program::module(&Model::new(manipulator), options);
+    let module = schedule::module(&Model::new(manipulator), options);
     if let Some(value) = module.out_of_range() {
-        diagnostics.push(manipulator::product_out_of_range(&places, options.scalar, value));
+        diagnostics.push(validate::product_out_of_range(&places, options.scalar, value));
         return (None, diagnostics);
     }
     let origin = Origin::of(source);

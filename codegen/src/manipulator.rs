@@ -13,21 +13,12 @@
 //! A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's link_frame) Rz(theta) Tz(d)`
 //! and `link_frame = Tx(a) Rx(alpha)`; a modified one gives `placement = Rx(alpha) Tx(a) Rz(theta) Tz(d)` and `link_frame = 1`.
 
-mod validate;
-
 use crate::exact::{Number, Polynomial};
-
-pub use validate::{
-    is_rust_name, product_out_of_range, read, read_for, JointPlaces, Places, Role, Scalar, Use, MAX_JOINTS, MAX_PARAMETERS,
-};
+use crate::kinds::{JointKind, ParameterId, TaskRow};
 
 /// Index into [`Manipulator::joints`]; link i is the one that joint i moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
-
-/// Index into [`Manipulator::parameters`]; the variables of every [`Polynomial`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ParameterId(pub u32);
 
 /// A valid robot arm.
 #[derive(Clone, Debug)]
@@ -86,15 +77,6 @@ pub struct Joint {
     pub coulomb: Option<Polynomial>,
 }
 
-/// Kinds of joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JointKind {
-    /// Turns about the z axis of the joint frame; q in rad.
-    Revolute,
-    /// Slides along the z axis of the joint frame; q in m.
-    Prismatic,
-}
-
 /// Limits of a joint; rad or m, rad/s or m/s, N m or N.
 #[derive(Clone, Debug, Default)]
 pub struct Limits {
@@ -143,23 +125,6 @@ pub struct Placement {
     pub translation: [Polynomial; 3],
 }
 
-/// A row of the operational space: rows of the geometric Jacobian in the base frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum TaskRow {
-    /// Linear along x0.
-    X,
-    /// Linear along y0.
-    Y,
-    /// Linear along z0.
-    Z,
-    /// Angular about x0.
-    Rx,
-    /// Angular about y0.
-    Ry,
-    /// Angular about z0.
-    Rz,
-}
-
 /// The choice of the regressor's columns.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RegressorChoice {
@@ -180,20 +145,5 @@ impl Manipulator {
     /// Rows of the geometric Jacobian that make up the task.
     pub fn task_rows(&self) -> Vec<usize> {
         self.task.iter().map(|row| row.index()).collect()
-    }
-}
-
-impl TaskRow {
-    /// All rows, in the order of the geometric Jacobian.
-    pub const ALL: [TaskRow; 6] = [TaskRow::X, TaskRow::Y, TaskRow::Z, TaskRow::Rx, TaskRow::Ry, TaskRow::Rz];
-
-    /// Index of the row in the geometric Jacobian.
-    pub fn index(self) -> usize {
-        self as usize
-    }
-
-    /// The word of the file.
-    pub fn name(self) -> &'static str {
-        ["x", "y", "z", "rx", "ry", "rz"][self.index()]
     }
 }

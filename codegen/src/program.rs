@@ -7,18 +7,13 @@ mod constants;
 mod cost;
 pub mod listing;
 mod optimise;
-mod schedule;
-mod selection;
 
-pub use crate::derive::plan::{Pass, Passes};
-pub use crate::manipulator::Scalar;
 pub use cost::Cost;
-pub use schedule::{module, Options};
-pub use selection::{Selection, UnknownFunctions};
+pub(crate) use optimise::optimise;
 
-use crate::catalogue::{Absent, Argument, Quantity, Sizes};
-pub use crate::derive::parameters::Parameter;
+use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
+use crate::kinds::Scalar;
 use crate::ring::Symbol;
 
 /// Where the sines and cosines of the emitted module come from.

@@ -28,7 +28,7 @@ pub mod turn;
 
 mod calculus;
 mod constants;
-mod count;
+pub(crate) mod count;
 mod evaluate;
 
 use std::collections::{BTreeMap, HashMap};
@@ -36,7 +36,8 @@ use std::hash::BuildHasherDefault;
 use std::rc::Rc;
 
 use crate::exact::{Number, Polynomial};
-use field::{scramble, Element, Field};
+use crate::scramble::scramble;
+use field::{Element, Field};
 
 /// What the arguments of an emitted function are; joint i has index i - 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -80,7 +81,7 @@ pub struct AngleSum {
 }
 
 /// An [`AngleSum`] has a bit for every joint.
-const _: () = assert!(crate::manipulator::MAX_JOINTS <= u32::BITS as usize);
+const _: () = assert!(crate::kinds::MAX_JOINTS <= u32::BITS as usize);
 
 impl AngleSum {
     /// The joints, and whether their variables are taken away; those that are added first.

@@ -25,12 +25,13 @@ mod text;
 
 use std::collections::BTreeSet;
 
-use crate::catalogue::quantities::regressor::{derivative_by_parameter, regressor, KNOWN_TORQUE, REGRESSOR};
+use crate::catalogue::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
 use crate::catalogue::{self, Absent, Length, Part, Quantity, Typeset};
 use crate::derive::arm::Arm;
 use crate::derive::derivation::{Derivation, CLOSED_FORM_TERMS};
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterKind, View};
+use crate::derive::regressor::{derivative_by_parameter, regressor};
 use crate::derive::{
     self,
     determinant::{Factor, Zeros},

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::build_script::{Pass, Robot, Scalar, Trig};
-use armgen_codegen::program::{Options, Selection};
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 
 fn robot(name: &str) -> PathBuf {

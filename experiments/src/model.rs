@@ -8,8 +8,9 @@ mod motion;
 mod number;
 mod record;
 mod robot;
+mod unit;
 
-pub use channel::{Channel, JointQuantity, PostureQuantity, Quantity, Unit};
+pub use channel::{Channel, JointQuantity, PostureQuantity, Quantity};
 pub use expectation::{Expectation, Take, Target};
 pub use experiment::{Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Postures, Sampling};
 pub use law::{Adaptation, Gain, Law, LawKind, Per};
@@ -17,3 +18,4 @@ pub use motion::{Motion, Sheet, Trajectory};
 pub use number::{digits, number};
 pub use record::{Record, Shape, Shapes, Speed};
 pub use robot::{Joint, Parameter, Robot};
+pub use unit::Unit;

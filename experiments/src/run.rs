@@ -16,7 +16,6 @@ mod instance;
 mod path;
 mod postures;
 
-pub use demonstration::Demonstration;
 pub use instance::{Functions, Instance};
 
 use crate::model::{Experiment, Record, Robot};
@@ -37,6 +36,17 @@ pub trait Arm: Sync {
     /// # Errors
     /// Why it cannot be run, in words.
     fn demonstrate(&self) -> Result<Demonstration, String>;
+}
+
+/// What a demonstration leaves behind.
+#[derive(Clone, Debug)]
+pub struct Demonstration {
+    /// What was done, a line each.
+    pub summary: Vec<String>,
+    /// All samples.
+    pub record: Record,
+    /// Why the motion is not as expected, if it is not.
+    pub fault: Option<String>,
 }
 
 /// A run that is prepared.

@@ -1,9 +1,10 @@
 //! Programs interpreted: the steps that would be printed as Rust, carried out in f64, so that a robot can be judged without a compiler.
 
-use armgen_codegen::manipulator;
-use armgen_codegen::program::{Function, Module, Operand, Operation, Options};
+use armgen_codegen::program::{Function, Module, Operand, Operation};
 use armgen_codegen::ring::{AngleSum, Symbol};
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_codegen::Model;
 
 use crate::functions::{Arguments, Functions};
@@ -26,10 +27,10 @@ impl Interpreted {
     /// The same, generated as `options` say.
     pub fn with_options(text: &str, options: &Options) -> Result<Self, String> {
         let source = Source::new("robot.yaml", text);
-        let (valid, diagnostics) = manipulator::read(&source);
+        let (valid, diagnostics) = validate::read(&source);
         match valid {
             Some((manipulator, _)) => {
-                Ok(Interpreted { module: armgen_codegen::program::module(&Model::new(manipulator), options) })
+                Ok(Interpreted { module: armgen_codegen::schedule::module(&Model::new(manipulator), options) })
             }
             None => Err(diagnostics.render(&source, armgen_codegen::diagnostic::Colour::Never)),
         }

@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::{Code, Colour, Diagnostics, Severity};
-use armgen_codegen::manipulator;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 
 /// Files that show how several kinds of faults come out together.
 const MIXED: [&str; 2] = ["many-faults", "windows-lines-and-umlauts"];
@@ -31,7 +31,7 @@ fn read(stem: &str) -> (Source, bool, Diagnostics) {
     let name = format!("{stem}.yaml");
     let text = std::fs::read_to_string(folder().join(&name)).expect("a readable file");
     let source = Source::new(name, text);
-    let (valid, diagnostics) = manipulator::read(&source);
+    let (valid, diagnostics) = validate::read(&source);
     (source, valid.is_some(), diagnostics)
 }
 

@@ -1,6 +1,7 @@
 //! The C face as a stranger uses it: a static library of its own without `std`, and a C program that links it and checks values.
 
-use armgen_codegen::program::{Options, Scalar};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::{generate, source::Source, Generated};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -3,7 +3,8 @@
 
 use std::path::Path;
 
-use armgen_codegen::program::{Options, Scalar};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_tests::emitted::emitted;
 use armgen_tests::oracle::Description;

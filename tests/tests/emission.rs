@@ -5,7 +5,8 @@ use std::path::Path;
 use std::process::Command;
 
 use armgen_codegen::catalogue;
-use armgen_codegen::program::{Cost, Options};
+use armgen_codegen::program::Cost;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_tests::count::{count, Operations};
 use armgen_tests::emitted::{emitted, ALL};

@@ -6,9 +6,10 @@
 use std::path::Path;
 
 use armgen_codegen::diagnostic::Colour;
-use armgen_codegen::manipulator::{self, Scalar};
-use armgen_codegen::program::Options;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 
 fn robot(name: &str) -> Vec<u8> {
     std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("a robot")
@@ -17,7 +18,7 @@ fn robot(name: &str) -> Vec<u8> {
 /// Reads the bytes as a file and renders what is said about them; whether they describe an arm.
 fn read(bytes: &[u8]) -> bool {
     let source = Source::new("robot.yaml", String::from_utf8_lossy(bytes));
-    let (valid, diagnostics) = manipulator::read(&source);
+    let (valid, diagnostics) = validate::read(&source);
     assert_eq!(valid.is_some(), !diagnostics.has_errors());
     let rendered = diagnostics.render(&source, Colour::Never);
     assert_eq!(rendered.is_empty(), diagnostics.is_empty());

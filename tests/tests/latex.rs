@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use armgen_codegen::manipulator;
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_codegen::Model;
 use pulldown_latex::{Parser, Storage};
 
@@ -45,7 +45,7 @@ fn read(formula: &str) -> Result<(), String> {
 fn sheet(path: &str, reading: Reading) -> String {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
-    let (valid, _) = manipulator::read(&Source::new(path, text));
+    let (valid, _) = validate::read(&Source::new(path, text));
     let (manipulator, _) = valid.expect("a valid description");
     Sheet::new(&Model::new(manipulator), &Item::all(), reading).latex()
 }

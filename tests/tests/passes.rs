@@ -3,7 +3,8 @@
 //!
 //! `cargo test -p armgen-tests --test passes -- --nocapture` prints by how much: the table in docs/passes.md.
 
-use armgen_codegen::program::{Options, Pass, Passes, Selection};
+use armgen_codegen::pass::{Pass, Passes};
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::precision::{agree, deviation, FORWARD_RESIDUAL, REFERENCE, WITHOUT_A_PASS};

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use armgen_codegen::program::{Options, Pass, Passes};
+use armgen_codegen::pass::{Pass, Passes};
+use armgen_codegen::schedule::Options;
 use armgen_tests::functions::expected;
 use armgen_tests::interpreter::Interpreted;
 use armgen_tests::judge::{judge, Tolerance};

@@ -16,9 +16,11 @@ use std::panic::AssertUnwindSafe;
 use std::path::Path;
 
 use armgen_codegen::diagnostic::Colour;
-use armgen_codegen::manipulator::{self, JointKind};
-use armgen_codegen::program::{Options, Scalar};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_tests::compiled::Compiled;
 use armgen_tests::functions::expected;
 use armgen_tests::judge::{judge, Tolerance};
@@ -156,7 +158,7 @@ fn certify(seed: u64, seen: &mut Seen) {
     let absent: Vec<String> = generated.absent.iter().map(|absent| absent.function.clone()).collect();
     assert_eq!(certified, expected(&absent), "seed {seed}");
     let untried: Vec<_> = report.identities.iter().filter_map(|i| i.holds.as_ref().err().map(|why| (&i.name, why))).collect();
-    let (manipulator, _) = manipulator::read(&source).0.expect("it was generated from");
+    let (manipulator, _) = validate::read(&source).0.expect("it was generated from");
     assert_eq!(manipulator.dof(), joints, "seed {seed}");
     let cost = seen.cost.entry(joints).or_default();
     *cost = (cost.0 + 1, cost.1 + generating, cost.2 + certifying);

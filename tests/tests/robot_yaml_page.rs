@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use armgen_codegen::diagnostic::{Code, Colour};
-use armgen_codegen::manipulator;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 
 const TOP: [(&str, &str); 4] =
     [("name", "name: arm"), ("convention", "convention: standard"), ("gravity", "gravity: [0, 0, -9.81]"), ("parameters", "")];
@@ -73,7 +73,7 @@ fn the_examples_of_the_page_are_valid() {
     assert!(blocks.len() >= 6);
     for (kind, text) in blocks {
         let source = Source::new("example", as_file(&kind, &text));
-        let (valid, diagnostics) = manipulator::read(&source);
+        let (valid, diagnostics) = validate::read(&source);
         let unexpected = diagnostics.iter().filter(|d| d.code != Code::UnusedParameter).count();
         assert!(valid.is_some() && unexpected == 0, "{}\n{}", source.text(), diagnostics.render(&source, Colour::Never));
     }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use armgen_codegen::catalogue::{self, Part, Sizes};
 use armgen_codegen::show::{Item, Reading, Sheet};
-use armgen_codegen::{manipulator, source::Source, Model};
+use armgen_codegen::{source::Source, validate, Model};
 use armgen_tests::formula;
 use armgen_tests::functions::{Arguments, Functions};
 use armgen_tests::interpreter::Interpreted;
@@ -83,7 +83,7 @@ fn place(shown: &str, sizes: &Sizes) -> Option<(String, Range<usize>)> {
 }
 
 fn check(what: &str, text: &str) {
-    let model = Model::new(manipulator::read(&Source::new("robot.yaml", text)).0.unwrap_or_else(|| panic!("{what}\n{text}")).0);
+    let model = Model::new(validate::read(&Source::new("robot.yaml", text)).0.unwrap_or_else(|| panic!("{what}\n{text}")).0);
     let program = Interpreted::new(text).expect("it has been read");
     let (dof, sizes) = (program.dof(), model.sizes());
     let described: Vec<(String, f64)> =

@@ -11,11 +11,12 @@ use std::fmt::Write;
 
 use armgen_codegen::catalogue;
 use armgen_codegen::derive::parameters::View;
-use armgen_codegen::manipulator;
-use armgen_codegen::program::{module, Cost, Options};
+use armgen_codegen::program::Cost;
 use armgen_codegen::ring::field::Element;
+use armgen_codegen::schedule::{module, Options};
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_codegen::Model;
 use armgen_tests::emitted::{Emitted, ALL};
 
@@ -29,7 +30,7 @@ fn users_robots() -> impl Iterator<Item = &'static Emitted> {
 }
 
 fn model(robot: &Emitted) -> Model {
-    let (valid, _) = manipulator::read(&Source::new(robot.path, robot.description()));
+    let (valid, _) = validate::read(&Source::new(robot.path, robot.description()));
     Model::new(valid.expect("every robot here is valid").0)
 }
 

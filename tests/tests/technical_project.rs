@@ -15,9 +15,9 @@ use serde_json::{json, Value};
 ///
 /// THE ONE PLACE where the generator comes in: everything below takes what this returns.
 fn shown(reading: Reading) -> Value {
-    use armgen_codegen::{manipulator, show, source::Source, Model};
+    use armgen_codegen::{show, source::Source, validate, Model};
     let source = Source::new("scara.yaml", include_str!("../../robots/scara.yaml"));
-    let model = Model::new(manipulator::read(&source).0.expect("robots/scara.yaml is valid").0);
+    let model = Model::new(validate::read(&source).0.expect("robots/scara.yaml is valid").0);
     let reading = match reading {
         Reading::Nominal => show::Reading::Nominal,
         Reading::Symbolic => show::Reading::Symbolic,

@@ -3,9 +3,10 @@
 
 use std::process::ExitCode;
 
-use armgen_codegen::manipulator::{self, Scalar};
-use armgen_codegen::program::Options;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_verify::bounds::two_digits;
 use armgen_verify::claims::Claims;
 use armgen_verify::companion::LANES;
@@ -46,7 +47,7 @@ fn table(path: &str, scalar: Scalar, states: u64, functions: &[String]) -> Resul
     #[allow(clippy::needless_update)]
     let options = Options { scalar, ..Options::default() };
     let generated = armgen_codegen::generate(&source, &options).0.ok_or("not a valid description")?;
-    let (manipulator, _) = manipulator::read_for(&source, scalar).0.ok_or("not a valid description")?;
+    let (manipulator, _) = validate::read_for(&source, scalar).0.ok_or("not a valid description")?;
     let module = Module::read(&generated.module)?;
     let mut subjects = Subject::all(&manipulator, &module, &Claims::from_numbers(&generated.constants))?;
     subjects.retain(|subject| functions.is_empty() || functions.contains(&subject.program.name));

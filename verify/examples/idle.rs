@@ -1,6 +1,6 @@
 //! Steps without influence in the modules of some robots: `cargo run --release -p armgen-verify --example idle -- robots/*.yaml`.
 
-use armgen_codegen::program::Options;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::claims::Claims;
 use armgen_verify::{checker::Effort, influence, prepare};
@@ -10,7 +10,7 @@ fn main() {
         let text = std::fs::read_to_string(&path).expect("the file can be read");
         let source = Source::new(path.clone(), text);
         let (generated, _) = armgen_codegen::generate(&source, &Options::default());
-        let (read, _) = armgen_codegen::manipulator::read(&source);
+        let (read, _) = armgen_codegen::validate::read(&source);
         let (Some(generated), Some((manipulator, _))) = (generated, read) else { continue };
         let claims = Claims::from_numbers(&generated.constants);
         let effort = Effort { points: 1, exact_points: 0, seed: 1 };

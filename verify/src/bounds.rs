@@ -13,7 +13,8 @@
 use std::collections::BTreeMap;
 
 use armgen_codegen::emit::Notes;
-use armgen_codegen::manipulator::{JointKind, Manipulator};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::wide::Wide;
 use crate::arithmetic::Stream;

@@ -1,6 +1,7 @@
 //! Constants of a module against the description.
 
-use armgen_codegen::manipulator::{JointKind, Manipulator};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::prime::{Prime, Residue};
 use crate::arithmetic::Element;

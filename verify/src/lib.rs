@@ -48,8 +48,10 @@ pub mod residual;
 pub mod seed;
 pub mod test_kit;
 
-use armgen_codegen::manipulator::{self, Manipulator, Scalar};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_codegen::Generated;
 use sha2::{Digest, Sha256};
 
@@ -128,7 +130,7 @@ fn generated_claims(source: &Source, text: &str) -> Claims {
     };
     // Whatever else the text was generated with, a constant has its exact value all the same.
     #[allow(clippy::needless_update)]
-    let options = armgen_codegen::program::Options { scalar, ..Default::default() };
+    let options = armgen_codegen::schedule::Options { scalar, ..Default::default() };
     let (generated, _) = armgen_codegen::generate(source, &options);
     generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
 }
@@ -136,7 +138,7 @@ fn generated_claims(source: &Source, text: &str) -> Claims {
 /// Verifies with chosen claims and effort.
 pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) -> Report {
     let mut report = Report::of(hash(source.text()), hash(text));
-    let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
+    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let Some((manipulator, _)) = read else {
         report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
         return report;
@@ -152,14 +154,14 @@ pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) 
 /// The text of a test file for a project that has the module: what [`test_kit`](mod@test_kit) describes. `import` brings the module in as
 /// `robot`: `use my_crate::robot;`, or `#[path = "../src/robot.rs"] mod robot;`.
 pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, String> {
-    let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
+    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
     test_kit::test_kit(&manipulator, &Module::read(text)?, import)
 }
 
 /// Puts the error bounds of all functions into the documentation of what was generated: see [`bounds`](mod@bounds).
 pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
-    let (read, diagnostics) = manipulator::read_for(source, Scalar::F64);
+    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
     let module = Module::read(&generated.module)?;
     let bounds = bounds::of(&manipulator, &module, &Claims::from_numbers(&generated.constants));

@@ -3,7 +3,9 @@
 
 mod common;
 
-use armgen_codegen::program::{Options, Scalar, Trig};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;

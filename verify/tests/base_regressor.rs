@@ -2,8 +2,9 @@
 
 mod common;
 
+use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator;
-use armgen_codegen::program::Scalar;
+use armgen_codegen::validate;
 use armgen_verify::arithmetic::Element;
 use armgen_verify::base::OwnParameters;
 use armgen_verify::certificate::Certificate;
@@ -32,7 +33,7 @@ fn subject(name: &str) -> Subject {
     let source = common::source(name);
     let generated = common::generate(&source, Scalar::F64);
     let module = Module::read(&generated.module).expect("a module");
-    let (manipulator, _) = manipulator::read(&source).0.expect("a valid description");
+    let (manipulator, _) = validate::read(&source).0.expect("a valid description");
     let claims = Claims::from_numbers(&generated.constants);
     let own = constants::base_parameters(&manipulator, &claims, &module).expect("base parameters");
     let program = module.program("base_regressor").expect("the function").clone();

@@ -5,8 +5,9 @@ mod common;
 use std::path::Path;
 use std::process::Command;
 
-use armgen_codegen::manipulator::{self, Manipulator};
-use armgen_codegen::program::Scalar;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::Wide;
 use armgen_verify::arithmetic::{Element, Stream};
 use armgen_verify::bounds::{domain_of, draw, literal_errors, notes, of, of_function, two_digits};
@@ -21,7 +22,7 @@ fn robot(name: &str, scalar: Scalar) -> (String, Module, Claims, Manipulator) {
     let source = common::source(name);
     let generated = common::generate(&source, scalar);
     let module = Module::read(&generated.module).expect("a module");
-    let (manipulator, _) = manipulator::read_for(&source, scalar).0.expect("a valid description");
+    let (manipulator, _) = validate::read_for(&source, scalar).0.expect("a valid description");
     (generated.module, module, Claims::from_numbers(&generated.constants), manipulator)
 }
 

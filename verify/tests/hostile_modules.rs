@@ -1,6 +1,6 @@
 //! Whatever text is given for a module, the checker ends, on a small stack too, and says what is wrong and where.
 
-use armgen_codegen::program::Options;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::reader::{Module, LONGEST};
 

@@ -10,8 +10,8 @@ mod mutation;
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::manipulator;
-use armgen_codegen::program::Scalar;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::{Wide, WideArguments};
 use armgen_verify::arithmetic::{Element, Stream};
 use armgen_verify::checker::Effort;
@@ -78,7 +78,7 @@ fn check(name: &str, scalar: Scalar, wanted: usize) -> usize {
     let start = std::time::Instant::now();
     let source = common::source(name);
     let generated = common::generate(&source, scalar);
-    let (read, _) = manipulator::read_for(&source, scalar);
+    let (read, _) = validate::read_for(&source, scalar);
     let (manipulator, _) = read.expect("a valid description");
     let claims = Claims::from_numbers(&generated.constants);
     // A fixed seed: the same changes in every run.

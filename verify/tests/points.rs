@@ -2,9 +2,9 @@
 
 mod common;
 
-use armgen_codegen::manipulator;
-use armgen_codegen::program::Scalar;
+use armgen_codegen::kinds::Scalar;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_verify::arithmetic::Stream;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
@@ -15,7 +15,7 @@ use armgen_verify::{certify, seed, verify, verify_with};
 
 /// The first bits of the points for a text.
 fn bits(source: &Source, text: &str, claims: &Claims) -> u64 {
-    let (manipulator, _) = manipulator::read(source).0.expect("a valid description");
+    let (manipulator, _) = validate::read(source).0.expect("a valid description");
     let module = Module::read(text).expect("a module");
     let mut stream: Stream = seed::stream(&manipulator, &module, &claims.used(&module, &[]), 0);
     stream.bits()

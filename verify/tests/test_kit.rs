@@ -5,7 +5,7 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use armgen_codegen::program::Scalar;
+use armgen_codegen::kinds::Scalar;
 use armgen_verify::test_kit;
 
 /// A user's project: the module beside its crate root, the test file in `tests`.

@@ -4,9 +4,11 @@ use std::path::Path;
 
 use armgen_codegen::catalogue::Absent;
 use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::manipulator::{self, Manipulator, Scalar};
-use armgen_codegen::program::Selection;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::schedule::Selection;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_codegen::Model;
 
 use crate::terminal;
@@ -39,7 +41,7 @@ pub(crate) enum Warnings {
 
 /// The valid arm of a file; what is wrong with it goes to standard error.
 pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -> Result<(Manipulator, Diagnostics), u8> {
-    let (valid, diagnostics) = manipulator::read_for(source, scalar);
+    let (valid, diagnostics) = validate::read_for(source, scalar);
     let (manipulator, _) = told(source, valid, &diagnostics, warnings)?;
     Ok((manipulator, diagnostics))
 }

@@ -19,7 +19,7 @@ mod terminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use armgen_codegen::program::Pass;
+use armgen_codegen::pass::Pass;
 use armgen_experiments::run::Arm;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::builder::{PossibleValuesParser, TypedValueParser};

@@ -13,7 +13,8 @@
 
 use super::parameters::{second_moments, Inertial, StandardParameter, View};
 use crate::exact::Number;
-use crate::manipulator::{JointKind, Manipulator, Placement};
+use crate::kinds::JointKind;
+use crate::manipulator::{Manipulator, Placement};
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 

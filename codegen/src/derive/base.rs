@@ -10,12 +10,14 @@ use super::newton_euler::Motion;
 use super::parameters::{Inertial, Parameter, ParameterKind, ParameterVector, StandardParameter, View};
 use super::passes::turn_last_link;
 use super::plan::Plan;
-use super::quantities::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
+use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::{Number, Rational};
-use crate::manipulator::{JointKind, Manipulator};
-use crate::ring::field::{scramble, Element, Field};
+use crate::kinds::JointKind;
+use crate::manipulator::Manipulator;
+use crate::ring::field::{Element, Field};
 use crate::ring::matrix::{IDENTITY, ZERO};
 use crate::ring::{ExprId, Node, Pool, Symbol};
+use crate::scramble::scramble;
 
 /// The columns of a regressor, sorted into those that are independent and the rest.
 #[derive(Clone, Debug)]

@@ -19,7 +19,8 @@
 use std::collections::BTreeMap;
 
 use super::arm::{Arm, Joint};
-use super::plan::{Pass, Place, Plan};
+use super::plan::{Place, Plan};
+use crate::pass::Pass;
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 

@@ -19,12 +19,6 @@ pub struct Derivation {
     pub parallel: Vec<Option<(u16, bool)>>,
 }
 
-/// A division counts like so many additions.
-pub const DIVISION: usize = 4;
-
-/// And a pair of sine and cosine.
-pub const PAIR: usize = 16;
-
 /// A closed form is tried up to so many terms an entry, on the way and at the end.
 pub const CLOSED_FORM_TERMS: usize = 300;
 

@@ -3,10 +3,22 @@
 use std::sync::OnceLock;
 
 use super::parameters::ParameterVector;
-use super::quantity::Sizes;
 use super::{base, constants, parameter_vector};
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
+
+/// What the dimensions of an arm's quantities depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// Number of joints.
+    pub dof: usize,
+    /// Number of parameters.
+    pub parameters: usize,
+    /// Number of base parameters.
+    pub base_parameters: usize,
+    /// Number of rows of the task.
+    pub task: usize,
+}
 
 /// A valid arm with what its equations are formed in.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@
 //! parent, and feels I_m k (k ddq + z_m · domega_p) itself.
 
 use super::arm::Arm;
-use super::quantities::inertia::{along, wrench_outward};
+use super::wrench::{along, wrench_outward};
 use crate::derive::arm::symmetric;
 use crate::ring::matrix::{Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};

@@ -3,7 +3,8 @@
 use std::cell::RefCell;
 
 use crate::exact::{Number, Polynomial, Rational};
-use crate::manipulator::{Body, LinkId, Manipulator, ParameterId};
+use crate::kinds::ParameterId;
+use crate::manipulator::{Body, LinkId, Manipulator};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// One of the parameters in which the dynamics of every arm are linear.

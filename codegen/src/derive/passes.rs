@@ -8,7 +8,8 @@ mod unit;
 use std::collections::BTreeSet;
 
 use super::arm::Arm;
-use super::plan::{Pass, Plan};
+use super::plan::Plan;
+use crate::pass::Pass;
 use crate::ring::Pool;
 pub(crate) use turn::{of_last_link, turn_last_link};
 

@@ -6,113 +6,7 @@
 
 use std::collections::BTreeMap;
 
-/// A named step that makes the emitted functions cheaper and leaves their values as they are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Pass {
-    /// Treat parallel axes in one orientation.
-    ParallelAxes,
-    /// Measure lengths in one of the arm's lengths.
-    UnitOfLength,
-    /// Move the origins of joint frames along the joint axes.
-    Slides,
-    /// Choose where a joint meets the wrench, or the gravity, that it feels.
-    Meeting,
-    /// Keep the moment that C' needs relative to the link that it is at.
-    RelativeMoment,
-    /// Hand inertial parameters that a joint does not feel on towards the base.
-    Grouping,
-    /// Choose how much of each such parameter is handed on.
-    Freedoms,
-    /// Turn the axes of the last link towards its centre of mass.
-    Turn,
-    /// Try the closed form beside the recursion.
-    ClosedForm,
-    /// Ask for the sines and cosines of sums of angles as such.
-    AngleSums,
-    /// Leave out what cancels in every output.
-    Cancellation,
-    /// Take common factors out of sums, and share partial sums and products.
-    Sharing,
-    /// Form a sum from another one that holds much of it.
-    Sums,
-    /// Compute a node from two others that are there anyway.
-    Resubstitution,
-}
-
-impl Pass {
-    /// All of them.
-    pub const ALL: [Pass; 14] = [
-        Pass::ParallelAxes,
-        Pass::UnitOfLength,
-        Pass::Slides,
-        Pass::Meeting,
-        Pass::RelativeMoment,
-        Pass::Grouping,
-        Pass::Freedoms,
-        Pass::Turn,
-        Pass::ClosedForm,
-        Pass::AngleSums,
-        Pass::Cancellation,
-        Pass::Sharing,
-        Pass::Sums,
-        Pass::Resubstitution,
-    ];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Pass::ParallelAxes => "parallel-axes",
-            Pass::UnitOfLength => "unit-of-length",
-            Pass::Slides => "slides",
-            Pass::Meeting => "meeting",
-            Pass::RelativeMoment => "relative-moment",
-            Pass::Grouping => "grouping",
-            Pass::Freedoms => "freedoms",
-            Pass::Turn => "turn",
-            Pass::ClosedForm => "closed-form",
-            Pass::AngleSums => "angle-sums",
-            Pass::Cancellation => "cancellation",
-            Pass::Sharing => "sharing",
-            Pass::Sums => "sums",
-            Pass::Resubstitution => "resubstitution",
-        }
-    }
-
-    /// The pass of a name.
-    pub fn named(name: &str) -> Option<Pass> {
-        Pass::ALL.into_iter().find(|pass| pass.name() == name)
-    }
-}
-
-/// A set of passes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Passes(u32);
-
-impl Passes {
-    /// No pass.
-    pub const NONE: Passes = Passes(0);
-
-    /// All passes.
-    pub fn all() -> Passes {
-        Pass::ALL.into_iter().collect()
-    }
-
-    /// Whether the set holds a pass.
-    pub fn contains(self, pass: Pass) -> bool {
-        self.0 >> pass as u32 & 1 == 1
-    }
-
-    /// Adds a pass.
-    pub fn insert(&mut self, pass: Pass) {
-        self.0 |= 1 << pass as u32;
-    }
-}
-
-impl FromIterator<Pass> for Passes {
-    fn from_iter<I: IntoIterator<Item = Pass>>(passes: I) -> Passes {
-        Passes(passes.into_iter().fold(0, |set, pass| set | 1 << pass as u32))
-    }
-}
+use crate::pass::{Pass, Passes};
 
 /// Where a derivation may go several ways; joints and links by index. A search takes the forks of a pass in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -197,8 +91,8 @@ impl Plan {
         self.forks.insert((pass, place), ways);
         #[cfg(test)]
         if let Some(seed) = self.scattered {
-            return crate::ring::field::scramble(
-                format!("{pass:?} {place:?}").bytes().fold(seed, |s, b| crate::ring::field::scramble(s ^ u64::from(b))),
+            return crate::scramble::scramble(
+                format!("{pass:?} {place:?}").bytes().fold(seed, |s, b| crate::scramble::scramble(s ^ u64::from(b))),
             ) as usize
                 % ways;
         }

@@ -7,11 +7,13 @@
 //! each written as a language writes it. What stands between back quotes is code, the same everywhere.
 
 use super::arm::Arm;
-use super::derivation::{Derivation, DIVISION, PAIR};
-use super::model::Model;
+use super::derivation::Derivation;
+use super::model::{Model, Sizes};
 use super::parameters::View;
 use super::passes::{self, Use};
-use super::plan::{Pass, Passes, Plan};
+use super::plan::Plan;
+use crate::pass::{Pass, Passes};
+use crate::ring::count::{DIVISION, PAIR};
 use crate::ring::{ExprId, Pool};
 
 /// A function of the emitted module.
@@ -111,19 +113,6 @@ pub enum Length {
     Task,
     /// That number.
     Fixed(usize),
-}
-
-/// What the dimensions of an arm's quantities depend on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sizes {
-    /// Number of joints.
-    pub dof: usize,
-    /// Number of parameters.
-    pub parameters: usize,
-    /// Number of base parameters.
-    pub base_parameters: usize,
-    /// Number of rows of the task.
-    pub task: usize,
 }
 
 /// An argument of an emitted function.

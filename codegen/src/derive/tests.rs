@@ -14,7 +14,10 @@ use super::quantities::inverse_dynamics::INVERSE_DYNAMICS;
 use super::quantities::kinematics::DIRECT_KINEMATICS;
 use super::quantities::operational_inertia::OPERATIONAL_INERTIA;
 use super::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
-use super::quantities::*;
+use super::quantities::{
+    coriolis, derivatives, first_moment, forward_dynamics, gravity, inertia, kinematics, kinetic_energy, momentum,
+    operational_inertia,
+};
 use super::quantity::Setting;
 use super::*;
 use crate::catalogue;
@@ -53,7 +56,7 @@ fn arms() -> Vec<Manipulator> {
         .into_iter()
         .map(|text| {
             let source = Source::new("everything.yaml", text);
-            let (read, diagnostics) = crate::manipulator::read(&source);
+            let (read, diagnostics) = crate::validate::read(&source);
             read.unwrap_or_else(|| panic!("{diagnostics:?}")).0
         })
         .collect()
@@ -218,7 +221,7 @@ fn reduced_arms() -> Vec<Manipulator> {
     let tilted = reduced.replace("alpha: 0.3", "alpha: pi/3");
     [parallel, sliding, tilted]
         .into_iter()
-        .map(|text| crate::manipulator::read(&Source::new("reduced.yaml", text)).0.expect("valid").0)
+        .map(|text| crate::validate::read(&Source::new("reduced.yaml", text)).0.expect("valid").0)
         .collect()
 }
 
@@ -279,8 +282,8 @@ fn a_searched_and_optimised_program_computes_the_same_without_any_pass() {
                 found.entries.iter().map(|&e| found.pool.fingerprint(e)).collect::<Vec<_>>()
             })
         };
-        let none = fingerprints(plan::Passes::all());
-        for pass in plan::Pass::ALL {
+        let none = fingerprints(crate::pass::Passes::all());
+        for pass in crate::pass::Pass::ALL {
             assert_eq!(fingerprints([pass].into_iter().collect()), none, "without {}", pass.name());
         }
     }
@@ -451,7 +454,7 @@ fn closed_forms_are_the_same_expressions() {
 #[track_caller]
 fn check_determinant(text: &str, form: &str, factors: &[(&str, Option<&str>)]) {
     let source = Source::new("arm.yaml", text);
-    let (read, diagnostics) = crate::manipulator::read(&source);
+    let (read, diagnostics) = crate::validate::read(&source);
     let model =
         crate::Model::new(read.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, crate::diagnostic::Colour::Never))).0);
     let found = determinant::determinant(&model, View::Nominal).expect("square");
@@ -523,7 +526,7 @@ fn zeros_of_one_angle_are_named() {
 fn six_axis_arms_have_their_textbook_factors() {
     let model = |text: &str| {
         let source = Source::new("arm.yaml", text);
-        crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0)
+        crate::Model::new(crate::validate::read(&source).0.expect("valid").0)
     };
     // Wrist, elbow and shoulder of the Puma. The elbow is stretched where the wrist centre lies on x2: a3 sin q3 + d4 cos q3 = 0.
     let puma = model(include_str!("../../../robots/puma560.yaml"));
@@ -657,7 +660,7 @@ fn a_task_that_the_arm_cannot_do_has_no_operational_inertia() {
     let missing = |task: &str| {
         let rows = ["type: revolute, a: 1, alpha: 0, d: 0, theta: 0"; 3];
         let source = Source::new("arm.yaml", arm_text(&rows, task));
-        let model = crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0);
+        let model = crate::Model::new(crate::validate::read(&source).0.expect("valid").0);
         (OPERATIONAL_INERTIA.missing)(&model, false)
     };
     assert_eq!(missing("task: [x, y, rz]\n"), None);
@@ -674,7 +677,7 @@ fn what_has_no_mass_has_no_center_of_mass_and_base_parameters_give_none() {
             "name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\nregressor: {regressor}\njoints:\n  - {{name: a, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}}}\n"
         );
         let source = Source::new("arm.yaml", text);
-        let model = crate::Model::new(crate::manipulator::read(&source).0.expect("valid").0);
+        let model = crate::Model::new(crate::validate::read(&source).0.expect("valid").0);
         [false, true].map(|with| (CENTER_OF_MASS.missing)(&model, with))
     };
     assert_eq!(missing(2, "standard"), [None, None]);

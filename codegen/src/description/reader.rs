@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, required, Fields, Key, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::document::Expression;
-use crate::manipulator::{JointKind, TaskRow};
+use crate::kinds::{JointKind, TaskRow};
 use crate::source::{Source, Span, Spanned};
 
 const ROBOT: &[Key] = &[

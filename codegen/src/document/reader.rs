@@ -3,9 +3,10 @@
 //! A reader goes on after every fault, so that all faults of a file come in one go: a value that cannot be read is `None`, and reported.
 
 use super::yaml::{Kind, Node};
-use super::{did_you_mean, excerpt, expression, Expression};
+use super::{excerpt, expression, Expression};
 use crate::diagnostic::{AnyCode, Code, Diagnostic, Diagnostics};
 use crate::source::{Source, Span, Spanned};
+use crate::suggest::did_you_mean;
 
 /// A key that a mapping may hold.
 #[derive(Clone, Copy, Debug)]

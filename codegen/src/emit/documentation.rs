@@ -1,10 +1,11 @@
 //! The documentation of emitted functions, in no language: formula, arguments, result, frames, units and signs, cost. Written for readers
 //! who never saw the generator. Each language writes the [`Block`]s as its comments are written, and its own names for the links.
 
+use crate::catalogue::Parameter;
 use crate::catalogue::{self, Argument, Documentation, Quantity};
 use crate::exact::Number;
 use crate::program::listing::decimal;
-use crate::program::{Cost, Function, Module, Operand, Parameter};
+use crate::program::{Cost, Function, Module, Operand};
 
 /// A piece of documentation; between two there is an empty line.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use super::enclosure::Known;
 use super::{multiply_monomials, Atom, Monomial, Number};
-use crate::ring::field::scramble;
+use crate::scramble::scramble;
 
 /// A sum or a product of more terms is not multiplied out.
 pub(super) const MOST_TERMS: usize = 32;

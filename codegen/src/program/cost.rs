@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Function, Operand, Operation};
-use crate::derive::derivation::{DIVISION, PAIR};
+use crate::ring::count::{DIVISION, PAIR};
 
 /// Operations of a function: one per binary `*`, `+` or `-`, `/`; sign changes and sines apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -21,7 +21,7 @@ mod share;
 mod sums;
 mod tidy;
 
-use super::{Pass, Passes};
+use crate::pass::{Pass, Passes};
 use crate::ring::{ExprId, Pool};
 use circuit::Circuit;
 
@@ -31,7 +31,7 @@ const GATES: usize = 8000;
 
 /// The same expressions with fewer operations, in a pool of their own. `parallel` has for each joint the one before it on a parallel axis, and
 /// whether that points the other way.
-pub(super) fn optimise(
+pub(crate) fn optimise(
     pool: &Pool,
     entries: &[ExprId],
     parallel: &[Option<(u16, bool)>],

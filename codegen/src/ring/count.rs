@@ -4,6 +4,12 @@ use std::collections::BTreeSet;
 
 use super::{AngleSum, ExprId, Node, Pool};
 
+/// A division counts like so many additions.
+pub(crate) const DIVISION: usize = 4;
+
+/// And a pair of sine and cosine.
+pub(crate) const PAIR: usize = 16;
+
 impl Pool {
     /// Operations that the expressions need together, each node once: one for a sum or product, `reciprocal` for a reciprocal.
     pub fn operations(&self, exprs: &[ExprId], reciprocal: usize) -> usize {

@@ -14,6 +14,7 @@ use dashu_int::UBig;
 use super::turn::Turn;
 use super::AngleSum;
 use crate::exact::{Atom, Number, Rational};
+use crate::scramble::scramble;
 
 /// 2^64 - 2^32 + 1.
 const FIRST_PRIME: u64 = 0xffff_ffff_0000_0001;
@@ -307,14 +308,6 @@ fn collect_roots(number: &Number, roots: &mut BTreeSet<Atom>) {
             _ => {}
         }
     }
-}
-
-/// A fixed bijection of 64 bits that leaves no visible pattern (the finaliser of splitmix64, Steele, Lea and Flood 2014).
-pub(crate) fn scramble(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
 }
 
 /// Whether n is prime: Miller and Rabin with the first twelve primes as bases, which decides below 3.3e24 (Sorenson and Webster 2015).

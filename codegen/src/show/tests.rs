@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::catalogue::Absent;
-use crate::manipulator;
 use crate::source::Source;
+use crate::validate;
 
 const PENDULUM: &str = "
 name: pendulum
@@ -22,7 +22,7 @@ regressor: [m]
 ";
 
 fn sheet(text: &str, names: &[&str], reading: Reading) -> Sheet {
-    let (valid, diagnostics) = manipulator::read(&Source::new("test.yaml", text));
+    let (valid, diagnostics) = validate::read(&Source::new("test.yaml", text));
     assert!(!diagnostics.has_errors(), "{:?}", diagnostics.iter().map(|d| &d.message).collect::<Vec<_>>());
     let model = Model::new(valid.expect("valid").0);
     let items: Vec<Item> = names.iter().flat_map(|name| Item::named(name, model.manipulator.dof())).collect();

@@ -1,10 +1,11 @@
 //! `expect`: what should come out.
 
 use armgen_codegen::diagnostic::Code as Shared;
+use armgen_codegen::document::excerpt;
 use armgen_codegen::document::reader::{required, Fields};
 use armgen_codegen::document::yaml::Node;
-use armgen_codegen::document::{did_you_mean, excerpt};
 use armgen_codegen::source::{Span, Spanned};
+use armgen_codegen::suggest::did_you_mean;
 
 use super::values::{optionals, Allowed, Reader};
 use super::Code;

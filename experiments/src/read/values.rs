@@ -3,10 +3,11 @@
 use std::time::Duration;
 
 use armgen_codegen::diagnostic::{AnyCode, Code as Shared};
+use armgen_codegen::document::excerpt;
 use armgen_codegen::document::reader::{self, optional, Fields, Key};
 use armgen_codegen::document::yaml::{Kind, Node};
-use armgen_codegen::document::{did_you_mean, excerpt};
 use armgen_codegen::source::{Span, Spanned};
+use armgen_codegen::suggest::did_you_mean;
 use armgen_runtime::task::Row;
 
 use super::Code;

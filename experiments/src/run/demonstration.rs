@@ -13,19 +13,8 @@ use armgen_runtime::stability::{analyse, Delay, Linearise, Report, StablePeriod}
 use armgen_runtime::trajectory::{JointSegment, JointTrajectory};
 
 use super::instance::Functions;
-use super::Instance;
+use super::{Demonstration, Instance};
 use crate::model::{Channel, JointQuantity, Quantity, Record};
-
-/// What a demonstration leaves behind.
-#[derive(Clone, Debug)]
-pub struct Demonstration {
-    /// What was done, a line each.
-    pub summary: Vec<String>,
-    /// All samples.
-    pub record: Record,
-    /// Why the motion is not as expected, if it is not.
-    pub fault: Option<String>,
-}
 
 type Postures<const N: usize> = JointTrajectory<f64, N, Vec<JointSegment<f64, N>>>;
 

@@ -3,7 +3,7 @@
 
 use armgen_codegen::{
     document::{parse_expression, yaml},
-    manipulator,
+    validate,
     source::{Source, Span},
 };
 use libfuzzer_sys::fuzz_target;
@@ -44,7 +44,7 @@ fuzz_target!(|data: &[u8]| {
          - {{name: j2, type: revolute, a: 1, alpha: 0, d: 0, theta: {theta}, link: {{mass: 1}}}}\n"
     );
     let source = Source::new("robot.yaml", robot);
-    let (valid, diagnostics) = manipulator::read(&source);
+    let (valid, diagnostics) = validate::read(&source);
     assert_eq!(valid.is_some(), !diagnostics.has_errors());
     armgen_fuzz::check_diagnostics(&source, &diagnostics);
 });

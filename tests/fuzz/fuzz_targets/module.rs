@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use armgen_codegen::program::Options;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;

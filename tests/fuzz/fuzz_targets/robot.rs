@@ -2,8 +2,10 @@
 #![no_main]
 
 use armgen_codegen::{
-    manipulator::{self, Scalar},
-    program::{Options, Trig},
+    kinds::Scalar,
+    program::Trig,
+    schedule::Options,
+    validate,
     source::Source,
 };
 use libfuzzer_sys::fuzz_target;
@@ -13,7 +15,7 @@ const JOINTS: usize = 3;
 
 fuzz_target!(|data: &[u8]| {
     let source = Source::new("robot.yaml", String::from_utf8_lossy(data));
-    let (valid, diagnostics) = manipulator::read(&source);
+    let (valid, diagnostics) = validate::read(&source);
     assert_eq!(valid.is_some(), !diagnostics.has_errors());
     armgen_fuzz::check_diagnostics(&source, &diagnostics);
     let Some((manipulator, _)) = valid.filter(|(manipulator, _)| manipulator.joints.len() <= JOINTS) else { return };

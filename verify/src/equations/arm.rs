@@ -1,7 +1,8 @@
 //! The arm with its constants as exact numbers, parameters filled in.
 
 use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::manipulator::{self, JointKind, Manipulator};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::{self, Manipulator};
 
 use super::vector::{Matrix, Vector};
 use crate::arithmetic::{Arithmetic, Element};

@@ -104,7 +104,9 @@ pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use armgen_codegen::program::{Options, Scalar, Trig};
+    use armgen_codegen::kinds::Scalar;
+    use armgen_codegen::program::Trig;
+    use armgen_codegen::schedule::Options;
     use armgen_codegen::source::Source;
 
     /// Where this fails, the generator's block has changed: decide whether the new one is right, then copy it.

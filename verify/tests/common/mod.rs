@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use armgen_codegen::program::{Options, Scalar};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
 

@@ -8,8 +8,9 @@ use armgen_codegen::description::{Convention, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::manipulator::{JointKind, Manipulator, RegressorChoice, Scalar};
-use armgen_codegen::program::Options;
+use armgen_codegen::kinds::{JointKind, Scalar};
+use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::{derive, Model};
 

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use armgen_codegen::program::{Cost, Options, Pass};
+use armgen_codegen::pass::Pass;
+use armgen_codegen::program::Cost;
+use armgen_codegen::schedule::Options;
 use serde_json::{json, Map, Value};
 
 use crate::table::{Align, Table};
@@ -14,7 +16,7 @@ pub(crate) fn run(file: &Path, format: CountFormat, functions: &[String], withou
         Ok(model) => model,
         Err(code) => return code,
     };
-    let module = armgen_codegen::program::module(
+    let module = armgen_codegen::schedule::module(
         &model,
         &Options { functions: functions.clone(), without: without.into_iter().collect(), ..Options::default() },
     );

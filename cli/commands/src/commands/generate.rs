@@ -2,9 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::manipulator::{self, Scalar};
-use armgen_codegen::program::{Options, Pass, Trig};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::pass::Pass;
+use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
+use armgen_codegen::validate;
 use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
 
@@ -162,11 +165,11 @@ fn write(path: &Path, text: &str) -> std::io::Result<()> {
 
 /// The name of a module of Rust that a file of this stem holds.
 fn module_name(stem: &str) -> String {
-    let fits = |c: &char| manipulator::is_rust_name(&format!("a{c}"));
+    let fits = |c: &char| validate::is_rust_name(&format!("a{c}"));
     let name: String = stem.chars().map(|c| if fits(&c) { c } else { '_' }).collect();
     // A digit in front, or a keyword.
     let others = [format!("_{name}"), format!("{name}_")];
-    [name].into_iter().chain(others).find(|name| manipulator::is_rust_name(name)).unwrap_or_else(|| "robot".into())
+    [name].into_iter().chain(others).find(|name| validate::is_rust_name(name)).unwrap_or_else(|| "robot".into())
 }
 
 /// All files to write, or why a module is not to be trusted with being written.

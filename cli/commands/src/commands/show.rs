@@ -3,8 +3,8 @@
 use armgen_codegen::catalogue::Absent;
 use std::path::Path;
 
-use armgen_codegen::document::did_you_mean;
 use armgen_codegen::show::{Item, Reading, Sheet};
+use armgen_codegen::suggest::did_you_mean;
 use armgen_codegen::Model;
 
 use crate::{input, terminal, ShowFormat, UNREADABLE};

@@ -33,7 +33,7 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
         false => None,
     };
     // What is wrong with the description is told as everywhere.
-    input::manipulator(&source, armgen_codegen::manipulator::Scalar::F64, input::Warnings::Counted)?;
+    input::manipulator(&source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
     let report = watched("verifying", || armgen_verify::verify(&source, text.text(), certificate.as_ref()));
     let mut printed = format!("{report}\n");
     if certificate.is_some() {

@@ -10,7 +10,8 @@
 //! The origin of a joint frame is free along the joint axis: at the foot of either common normal, or where Sxz or Syz vanishes.
 
 use super::super::arm::{Arm, Body};
-use super::super::plan::{Pass, Place, Plan};
+use super::super::plan::{Place, Plan};
+use crate::pass::Pass;
 use crate::ring::{ExprId, Pool};
 
 /// Groups all links towards the base.

@@ -6,7 +6,8 @@
 //! whose sine and cosine are asked for as such, or formed by the addition theorem.
 
 use super::super::arm::{Arm, Joint};
-use super::super::plan::{Pass, Place, Plan};
+use super::super::plan::{Place, Plan};
+use crate::pass::Pass;
 use crate::ring::matrix::IDENTITY;
 use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 

@@ -11,9 +11,10 @@
 
 use super::super::arm::Arm;
 use super::super::parameters::View;
-use super::super::plan::{Pass, Place, Plan};
+use super::super::plan::{Place, Plan};
 use crate::exact::Rational;
 use crate::manipulator::Manipulator;
+use crate::pass::Pass;
 use crate::ring::field::Field;
 use crate::ring::matrix::Matrix;
 use crate::ring::turn::Turn;
@@ -96,7 +97,7 @@ mod tests {
             "name: arm\nconvention: standard\ngravity: [0, -9.81, 1]\njoints:\n  - {{name: j1, type: revolute, a: 1, alpha: pi/2, d: 0, \
              theta: 0, link: {{mass: 1, com: [0.1, 0.2, 0.3]}}}}\n  - {{name: j2, type: revolute, {row}, link: {{{link}}}}}\n"
         );
-        crate::manipulator::read(&Source::new("robot.yaml", text)).0.expect("valid").0
+        crate::validate::read(&Source::new("robot.yaml", text)).0.expect("valid").0
     }
 
     const BODY: &str = "mass: 2, com: [-0.3, 0.4, 0.1], inertia: {xx: 1, yy: 2, zz: 2.5, xy: 0.1, xz: 0.2, yz: 0.3}";

@@ -4,7 +4,8 @@
 //! are L times what they were and the acceleration of gravity is one L-th. The length that occurs most often becomes 1, and products with it vanish.
 
 use super::super::arm::Arm;
-use super::super::plan::{Pass, Place, Plan};
+use super::super::plan::{Place, Plan};
+use crate::pass::Pass;
 use crate::ring::{ExprId, Pool};
 
 /// Lengths in units of one of them.

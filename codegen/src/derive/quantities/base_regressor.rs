@@ -1,10 +1,10 @@
 //! The regressor of the base parameters, Y_b(q, dq, ddq): columns of full rank, from `base.rs`.
 
-use super::regressor::STARTS;
 use crate::derive::base;
 use crate::derive::parameters::View;
 use crate::derive::passes::Use;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::regressor::STARTS;
 
 /// Y_b(q, dq, ddq).
 pub static BASE_REGRESSOR: Quantity = Quantity {

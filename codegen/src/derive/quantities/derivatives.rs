@@ -33,7 +33,7 @@
 
 use super::coriolis::{self, Flow};
 use super::gravity::gravity;
-use super::inertia::{along, composite_bodies, wrench_outward};
+use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::origin_rate;
 use crate::derive::factors::Factors;
@@ -41,6 +41,7 @@ use crate::derive::newton_euler::{friction, link_motions, wrenches, LinkMotion, 
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::wrench::{along, wrench_outward};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 

@@ -8,8 +8,9 @@
 
 use crate::derive::arm::Arm;
 use crate::derive::passes::Use;
-use crate::derive::plan::{Pass, Place, Plan};
+use crate::derive::plan::{Place, Plan};
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::pass::Pass;
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 

@@ -14,7 +14,8 @@ use crate::derive::columns::{Column, Ways};
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
-use crate::manipulator::JointKind;
+use crate::derive::wrench::along;
+use crate::kinds::JointKind;
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool};
 
@@ -85,22 +86,4 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
         }
     }
     b
-}
-
-/// A wrench on link i, about its origin, in its joint frame, as one on the parent.
-pub fn wrench_outward(pool: &mut Pool, arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> (Vector, Vector) {
-    let joint = &arm.joints[i];
-    let force = if *force == ZERO { ZERO } else { joint.outward(pool, force) };
-    let moment = joint.outward(pool, moment);
-    let lever = pool.cross(&joint.origin, &force);
-    (force, pool.add_vectors(&moment, &lever))
-}
-
-/// What a joint feels of a wrench in its frame.
-pub fn along(arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> ExprId {
-    if arm.joints[i].is_revolute() {
-        moment[2]
-    } else {
-        force[2]
-    }
 }

@@ -16,10 +16,10 @@
 //!
 //! The rotor of joint i has I_m k dq_i z_m beside what turns with its link, and p_i holds I_m k (k dq_i + z_m · ω).
 
-use super::inertia::{along, wrench_outward};
 use crate::derive::arm::{symmetric, Arm};
 use crate::derive::passes::Use;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::wrench::{along, wrench_outward};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 

@@ -15,8 +15,9 @@ use crate::derive::factors::Factors;
 use crate::derive::model::Model;
 use crate::derive::parameters::View;
 use crate::derive::passes::Use;
-use crate::derive::plan::{Pass, Plan};
+use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::pass::Pass;
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Pool};
 

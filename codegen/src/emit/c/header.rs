@@ -7,8 +7,9 @@ use crate::catalogue::Length;
 use crate::emit::documentation::{self, linked, rows, Block, Link};
 use crate::emit::origin::Origin;
 use crate::exact::Number;
+use crate::kinds::Scalar;
 use crate::program::listing::decimal;
-use crate::program::{Joint, Module, Scalar};
+use crate::program::{Joint, Module};
 
 /// A dimension: the macro of the header that holds it, or the number.
 fn macro_of(prefix: &str, length: Length) -> String {

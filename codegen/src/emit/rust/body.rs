@@ -5,8 +5,9 @@ use quote::{format_ident, quote};
 
 use super::literal::literal;
 use super::signature::{argument, input, name, usize_literal};
+use crate::kinds::Scalar;
 use crate::program::listing::{Expression, Line, Listing, Part};
-use crate::program::{Function, Module, Operation, Scalar};
+use crate::program::{Function, Module, Operation};
 
 /// What stands in a function.
 pub(super) struct Body {

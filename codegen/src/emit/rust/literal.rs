@@ -6,8 +6,8 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use crate::exact::Number;
+use crate::kinds::Scalar;
 use crate::program::listing::decimal;
-use crate::program::Scalar;
 
 /// A literal, with a minus sign in front where the value is negative.
 pub(super) fn literal(value: &Number, scalar: Scalar) -> TokenStream {

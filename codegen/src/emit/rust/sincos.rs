@@ -11,8 +11,9 @@ use syn::Item;
 
 use super::literal::literal;
 use super::signature::{self, usize_literal};
+use crate::kinds::Scalar;
 use crate::program::listing::{angles, Angle, Name};
-use crate::program::{Function, Module, Scalar, Trig};
+use crate::program::{Function, Module, Trig};
 use crate::ring::Symbol;
 
 const FAST_F64: &str = include_str!("sincos/fast_f64.rs");

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
-use crate::derive::derivation::PAIR;
+use crate::ring::count::PAIR;
 use crate::ring::{AngleSum, Node, Symbol};
 
 /// Sums of one run of parallel axes that are tried in all combinations; those beyond are tried one by one.

@@ -4,8 +4,8 @@
 //! fingerprints. Where it is 0 at both points, the gate is taken as 0, if all outputs then keep their values.
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
-use crate::ring::field::scramble;
 use crate::ring::Fingerprint;
+use crate::scramble::scramble;
 
 /// At most this many gates are removed from one function.
 const MOST_REMOVED: usize = 200;

@@ -216,7 +216,7 @@ fn take_factor(circuit: &mut Circuit, uses: &[u32], sum: GateId, factor: GateId)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::{Pass, Passes};
+    use crate::pass::{Pass, Passes};
     use crate::ring::field::Field;
     use crate::ring::{Pool, Symbol};
 

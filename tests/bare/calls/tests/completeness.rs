@@ -1,7 +1,7 @@
 //! The program that proves the absence of panics calls every public function there is.
 
 use armgen_bare_calls::{calls, method_calls, named_functions, public_functions};
-use armgen_codegen::{program::Options, source::Source, Generated};
+use armgen_codegen::{schedule::Options, source::Source, Generated};
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
 fn project(path: &str) -> PathBuf {

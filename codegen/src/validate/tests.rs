@@ -1,7 +1,8 @@
 use super::*;
 use crate::diagnostic::Colour;
 use crate::exact::{Number, Rational};
-use crate::manipulator::{Joint, JointKind, ParameterId, Placement, RegressorChoice, TaskRow};
+use crate::kinds::{JointKind, ParameterId, TaskRow};
+use crate::manipulator::{Joint, Placement, RegressorChoice};
 
 /// A one-joint arm; `edits` replace parts of it, and what is not found is appended.
 fn arm(edits: &[(&str, &str)]) -> String {

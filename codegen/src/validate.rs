@@ -3,7 +3,8 @@
 //! ```text
 //! names.rs       identifiers, reserved words, names used twice
 //! parameters.rs  which names stay symbols, which are numbers, which abbreviate an expression
-//! evaluate.rs    expression -> exact number, or polynomial in the symbols
+//! number.rs      expression -> exact number
+//! evaluate.rs    expression -> polynomial in the symbols
 //! geometry.rs    angles, Denavit-Hartenberg rows of both conventions -> placements
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
 //! joints.rs      limits, motor, friction
@@ -21,15 +22,17 @@ mod evaluate;
 mod geometry;
 mod joints;
 mod names;
+mod number;
 mod parameters;
 mod places;
 
 use std::collections::BTreeMap;
 
-use super::{LinkId, Manipulator};
 use crate::description::{JointDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Polynomial;
+use crate::kinds::{Scalar, MAX_JOINTS};
+use crate::manipulator::{Joint, LinkId, Manipulator};
 use crate::source::{Source, Span};
 pub use equations::product_out_of_range;
 use evaluate::Evaluator;
@@ -37,21 +40,8 @@ pub use names::is_rust_name;
 use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};
 
-/// Equations and emitted code grow with the number of joints; an arm of more than this is a mistake.
-pub const MAX_JOINTS: usize = 32;
-
 /// Named quantities: an arm of as many joints as can be, with a name for every number of its data sheet, has fewer.
 pub const MAX_PARAMETERS: usize = 1024;
-
-/// The floating-point type of the emitted code; its range bounds the numbers of a description.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Scalar {
-    /// 64 bits.
-    #[default]
-    F64,
-    /// 32 bits.
-    F32,
-}
 
 /// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
 /// There is an arm if and only if no diagnostic is an error.
@@ -117,7 +107,7 @@ fn validate(
     }
     let joints = joints?;
     let tip = LinkId(u32::try_from(joints.len() - 1).expect("the number of joints is bounded"));
-    let places = places::gather(description, &context.evaluator.parameters);
+    let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
     let manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
         parameters: context.evaluator.parameters.symbols(),
@@ -137,7 +127,7 @@ fn validate(
 }
 
 /// The joints, if all of them are valid.
-fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<Vec<super::Joint>> {
+fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<Vec<Joint>> {
     let list = description.joints.as_ref()?;
     if list.value.is_empty() {
         let help = "write one `- name: ...` per joint, from base to tip, with type, a, alpha, d, theta and link";

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use super::evaluate::text_of;
+use super::number::text_of;
 use super::{zeros, Context};
 use crate::description::{BodyDescription, InertiaDescription, Value, INERTIA_ELEMENTS};
 use crate::diagnostic::{Code, Diagnostic};

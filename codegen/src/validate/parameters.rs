@@ -7,15 +7,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::evaluate;
+use super::number::{self, Nominals};
 use super::places::{self, Role, Use};
-use super::Scalar;
 use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::document::{did_you_mean, excerpt, Expression, ExpressionKind, Operator};
+use crate::document::{excerpt, Expression, ExpressionKind, Operator};
 use crate::exact::Number;
-use crate::manipulator::{Parameter, ParameterId};
+use crate::kinds::ParameterId;
+use crate::kinds::Scalar;
+use crate::manipulator::Parameter;
 use crate::source::Span;
+use crate::suggest::did_you_mean;
 
 /// The named quantities of a description, in its order.
 pub(super) struct Parameters<'d> {
@@ -68,6 +70,12 @@ impl Reason {
     }
 }
 
+impl Nominals for Parameters<'_> {
+    fn nominal(&self, name: &str) -> Option<Number> {
+        self.get(name).and_then(|entry| entry.nominal.clone())
+    }
+}
+
 impl<'d> Parameters<'d> {
     /// Finds out what each name is, and reports names that are not defined.
     pub(super) fn resolve(description: &'d RobotDescription, scalar: Scalar, diagnostics: &mut Diagnostics) -> Parameters<'d> {
@@ -86,7 +94,7 @@ impl<'d> Parameters<'d> {
                 parameters.note_uses(value, Role::Parameter, &later, diagnostics);
             }
             let abbreviation = parameter.value.as_ref().is_some_and(|v| !v.named().is_empty()) && !listed.contains(name);
-            let nominal = parameter.value.as_ref().and_then(|v| evaluate::number(v, &parameters, scalar, diagnostics));
+            let nominal = parameter.value.as_ref().and_then(|v| number::number(v, &parameters, scalar, diagnostics));
             let entry = Entry {
                 name,
                 span: parameter.name.span,
@@ -143,6 +151,11 @@ impl<'d> Parameters<'d> {
     /// All names.
     pub(super) fn names(&self) -> Vec<&'d str> {
         self.entries.iter().map(|e| e.name).collect()
+    }
+
+    /// Where the names that stay symbols stand, and where they are used.
+    pub(super) fn places_of_symbols(&self) -> Vec<(Span, Vec<Use>)> {
+        self.entries.iter().filter(|e| e.symbol.is_some()).map(|e| (e.span, e.uses.clone())).collect()
     }
 
     /// Warns of names that no expression uses.

@@ -7,7 +7,7 @@
 
 use std::cmp::Ordering;
 
-use super::evaluate::text_of;
+use super::number::text_of;
 use super::{zeros, Context};
 use crate::description::{Convention, JointDescription, ToolDescription, Value};
 use crate::diagnostic::Code;

@@ -9,17 +9,19 @@
 
 use std::ops::Range;
 
-use super::{Places, Role, Scalar};
+use super::{Places, Role};
 use crate::derive::arm::Arm;
 use crate::derive::constants::find_field;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::{ParameterVector, View};
 use crate::derive::plan::Plan;
-use crate::derive::quantities::regressor::derivative_by_parameter;
 use crate::derive::quantities::{inertia, kinematics};
+use crate::derive::regressor::derivative_by_parameter;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Number;
-use crate::manipulator::{Manipulator, ParameterId, RegressorChoice};
+use crate::kinds::ParameterId;
+use crate::kinds::Scalar;
+use crate::manipulator::{Manipulator, RegressorChoice};
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::source::Span;

@@ -1,6 +1,5 @@
 //! Where the parts of an arm stand in its file: what diagnostics about its equations point at.
 
-use super::parameters::Parameters;
 use crate::description::{BodyDescription, RegressorDescription, RobotDescription, Value};
 use crate::document::Expression;
 use crate::source::{Span, Spanned};
@@ -163,10 +162,10 @@ impl<'d> Gathered<'d> {
     }
 }
 
-/// The places of a valid description.
-pub(super) fn gather(description: &RobotDescription, parameters: &Parameters<'_>) -> Places {
+/// The places of a valid description, whose names that stay symbols stand and are used at `symbols`.
+pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Use>)>) -> Places {
     let joints = description.joints.iter().flat_map(|joints| &joints.value);
-    let symbols = || parameters.entries.iter().filter(|e| e.symbol.is_some());
+    let (parameters, uses) = symbols.into_iter().unzip();
     Places {
         name: description.name.as_ref().map_or_else(Span::default, |n| n.span),
         gravity: description.gravity.as_ref().map_or_else(Span::default, |g| g.span),
@@ -188,7 +187,7 @@ pub(super) fn gather(description: &RobotDescription, parameters: &Parameters<'_>
             Some(RegressorDescription::Names(names)) => names.iter().map(|n| n.span).collect(),
             _ => Vec::new(),
         },
-        parameters: symbols().map(|e| e.span).collect(),
-        uses: symbols().map(|e| e.uses.clone()).collect(),
+        parameters,
+        uses,
     }
 }

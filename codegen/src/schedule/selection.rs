@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::catalogue::{self, Quantity};
-use crate::document::did_you_mean;
+use crate::suggest::did_you_mean;
 
 /// A choice of functions: all of them unless some are named.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

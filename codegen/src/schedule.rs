@@ -1,19 +1,23 @@
 //! From shared expressions to numbered steps, and from the derivations of each quantity to the cheapest.
 
+mod selection;
+
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::OnceLock;
 
-use super::optimise::optimise;
-use super::{Cost, Function, Joint, Module, Operand, Operation, Output, Selection, Step, Trig};
 use crate::catalogue::{self, Absent, Argument, Length, Quantity};
-use crate::derive::derivation::{Derivation, DIVISION};
+use crate::derive::derivation::Derivation;
 use crate::derive::parameters::{nominal, ParameterKind, View};
-use crate::derive::plan::{Pass, Passes};
 use crate::exact::Number;
-use crate::manipulator::{self, JointKind, Scalar};
+use crate::kinds::{JointKind, Scalar};
+use crate::manipulator;
+pub use crate::pass::{Pass, Passes};
+use crate::program::{optimise, Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
+use crate::ring::count::DIVISION;
 use crate::ring::{ExprId, Node, Pool};
 use crate::Model;
+pub use selection::{Selection, UnknownFunctions};
 
 /// Choices of generation.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

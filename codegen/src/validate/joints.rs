@@ -3,13 +3,14 @@
 use std::cmp::Ordering;
 
 use super::bodies::{self, optional_not_negative, warn_of_massless};
-use super::evaluate::text_of;
+use super::number::text_of;
 use super::{call, geometry, zeros, Context};
 use crate::description::{Convention, JointDescription, LimitsDescription, MotorDescription};
 use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::exact::{Number, Polynomial};
-use crate::manipulator::{Joint, JointKind, Limits, LinkId, Motor, Placement};
+use crate::kinds::JointKind;
+use crate::manipulator::{Joint, Limits, LinkId, Motor, Placement};
 
 /// The joint; faults are reported. `previous_frame` is the previous link's frame in its joint frame.
 pub(super) fn joint(

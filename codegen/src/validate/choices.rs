@@ -1,11 +1,13 @@
 //! Task and regressor: rows and names, each at most once, each known.
 
-use super::evaluate::text_of;
+use super::number::text_of;
 use super::{Context, FirstSeen};
 use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::document::{did_you_mean, excerpt};
-use crate::manipulator::{RegressorChoice, TaskRow};
+use crate::document::excerpt;
+use crate::kinds::TaskRow;
+use crate::manipulator::RegressorChoice;
+use crate::suggest::did_you_mean;
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
 const GUESSES: usize = 50;

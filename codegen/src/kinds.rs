@@ -1,0 +1,59 @@
+//! Small types that all stages share: what a number, a joint and a row of the task can be.
+
+/// Equations and emitted code grow with the number of joints; an arm of more than this is a mistake.
+pub const MAX_JOINTS: usize = 32;
+
+/// The floating-point type of the emitted code; its range bounds the numbers of a description.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scalar {
+    /// 64 bits.
+    #[default]
+    F64,
+    /// 32 bits.
+    F32,
+}
+
+/// Kinds of joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns about the z axis of the joint frame; q in rad.
+    Revolute,
+    /// Slides along the z axis of the joint frame; q in m.
+    Prismatic,
+}
+
+/// A row of the operational space: rows of the geometric Jacobian in the base frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum TaskRow {
+    /// Linear along x0.
+    X,
+    /// Linear along y0.
+    Y,
+    /// Linear along z0.
+    Z,
+    /// Angular about x0.
+    Rx,
+    /// Angular about y0.
+    Ry,
+    /// Angular about z0.
+    Rz,
+}
+
+impl TaskRow {
+    /// All rows, in the order of the geometric Jacobian.
+    pub const ALL: [TaskRow; 6] = [TaskRow::X, TaskRow::Y, TaskRow::Z, TaskRow::Rx, TaskRow::Ry, TaskRow::Rz];
+
+    /// Index of the row in the geometric Jacobian.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The word of the file.
+    pub fn name(self) -> &'static str {
+        ["x", "y", "z", "rx", "ry", "rz"][self.index()]
+    }
+}
+
+/// A named quantity of a description by its place in the list of them; the variables of every polynomial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ParameterId(pub u32);
