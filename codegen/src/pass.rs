@@ -7,18 +7,18 @@ pub enum Pass {
     ParallelAxes,
     /// Measure lengths in one of the arm's lengths.
     UnitOfLength,
-    /// Move the origins of joint frames along the joint axes.
-    Slides,
-    /// Choose where a joint meets the wrench, or the gravity, that it feels.
-    Meeting,
+    /// Choose the origins of joint frames along the joint axes.
+    OriginAlongAxis,
+    /// Choose the frame in which a wrench, or gravity, is projected on a joint axis.
+    WrenchFrame,
     /// Keep the moment that C' needs relative to the link that it is at.
     RelativeMoment,
-    /// Hand inertial parameters that a joint does not feel on towards the base.
+    /// Regroup inertial parameters that a joint does not feel with those of its parent link.
     Grouping,
-    /// Choose how much of each such parameter is handed on.
-    Freedoms,
-    /// Turn the axes of the last link towards its centre of mass.
-    Turn,
+    /// Choose how much of each such parameter is regrouped.
+    GroupingAmount,
+    /// Rotate the axes of the last link towards its centre of mass.
+    LastLinkRotation,
     /// Try the closed form beside the recursion.
     ClosedForm,
     /// Ask for the sines and cosines of sums of angles as such.
@@ -38,12 +38,12 @@ impl Pass {
     pub const ALL: [Pass; 14] = [
         Pass::ParallelAxes,
         Pass::UnitOfLength,
-        Pass::Slides,
-        Pass::Meeting,
+        Pass::OriginAlongAxis,
+        Pass::WrenchFrame,
         Pass::RelativeMoment,
         Pass::Grouping,
-        Pass::Freedoms,
-        Pass::Turn,
+        Pass::GroupingAmount,
+        Pass::LastLinkRotation,
         Pass::ClosedForm,
         Pass::AngleSums,
         Pass::Cancellation,
@@ -57,12 +57,12 @@ impl Pass {
         match self {
             Pass::ParallelAxes => "parallel-axes",
             Pass::UnitOfLength => "unit-of-length",
-            Pass::Slides => "slides",
-            Pass::Meeting => "meeting",
+            Pass::OriginAlongAxis => "origin-along-axis",
+            Pass::WrenchFrame => "wrench-frame",
             Pass::RelativeMoment => "relative-moment",
             Pass::Grouping => "grouping",
-            Pass::Freedoms => "freedoms",
-            Pass::Turn => "turn",
+            Pass::GroupingAmount => "grouping-amount",
+            Pass::LastLinkRotation => "last-link-rotation",
             Pass::ClosedForm => "closed-form",
             Pass::AngleSums => "angle-sums",
             Pass::Cancellation => "cancellation",

@@ -219,7 +219,7 @@ pub struct Pool {
     at_origin: Vec<Option<Rc<Number>>>,
     symbols: BTreeMap<Symbol, ExprId>,
     /// Whether constants are known by their fingerprints alone.
-    sketch: bool,
+    fingerprints_only: bool,
 }
 
 impl ExprId {
@@ -282,7 +282,7 @@ impl Pool {
             known: HashMap::default(),
             at_origin: Vec::new(),
             symbols: BTreeMap::new(),
-            sketch: false,
+            fingerprints_only: false,
         };
         assert_eq!((pool.constant(&Number::zero()), pool.constant(&Number::one())), (ExprId::ZERO, ExprId::ONE));
         pool
@@ -291,9 +291,9 @@ impl Pool {
     /// A copy to try things in: constants are known by their fingerprints alone, so that arithmetic with them costs nothing. What is
     /// derived there has the operations that it has in an exact pool (but for one over a constant without a simple inverse, which costs nothing
     /// here), and no values to print.
-    pub fn sketch(&self) -> Pool {
+    pub fn fingerprints_only(&self) -> Pool {
         let mut copy = self.clone();
-        copy.sketch = true;
+        copy.fingerprints_only = true;
         copy
     }
 
@@ -404,6 +404,11 @@ impl Pool {
         sum
     }
 
+    /// Forms a sum before anything needs it, so that a later sum of the same value is found to be this node.
+    pub fn intern_sum(&mut self, a: ExprId, b: ExprId) {
+        let _ = self.add(a, b);
+    }
+
     /// a + b.
     pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == ExprId::ZERO {
@@ -470,9 +475,9 @@ impl Pool {
         assert_ne!(a, ExprId::ZERO, "one over 0");
         let negate = a.is_negated();
         let a = a.unsigned();
-        if self.sketch && self.is_constant(a) {
+        if self.fingerprints_only && self.is_constant(a) {
             let inverse = self.field.inverse(self.fingerprint(a)[0]);
-            return self.sketched(inverse).signed(negate);
+            return self.by_fingerprint(inverse).signed(negate);
         }
         // A number 1/n that only stands for itself would grow with every pivot that it enters, and n (1/n) - 1 would not be seen to be 0; as a
         // node it is found by its fingerprint.
@@ -501,8 +506,8 @@ impl Pool {
         }
         // The two points differ in every symbol: where both give the same, no symbol is left in the polynomial.
         if fingerprint[0] == fingerprint[1] {
-            if self.sketch {
-                return self.sketched(fingerprint[0]);
+            if self.fingerprints_only {
+                return self.by_fingerprint(fingerprint[0]);
             }
             let value = self.value_at_origin(node);
             if self.field.number(&value) == fingerprint[0] {

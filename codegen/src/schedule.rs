@@ -35,7 +35,7 @@ pub struct Options {
 }
 
 /// A closed form with so many times the operations of the recursion is not looked at further.
-const HOPELESS: usize = 2;
+const CLOSED_FORM_FACTOR: usize = 2;
 
 /// How many nodes the search for the cheapest derivation of a quantity may form.
 const EFFORT: usize = 500_000;
@@ -52,7 +52,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
             None => wanted.push((quantity, with_parameters)),
         }
     }
-    let functions = side_by_side(&wanted, |&(quantity, with_parameters)| function(model, quantity, with_parameters, options));
+    let functions = parallel_map(&wanted, |&(quantity, with_parameters)| function(model, quantity, with_parameters, options));
     let base = wanted.iter().any(|(quantity, _)| quantity.has_length(Length::BaseParameters));
     let manipulator = &model.manipulator;
     Module {
@@ -86,7 +86,7 @@ fn joint(joint: &manipulator::Joint) -> Joint {
 const STACK: usize = 8 << 20;
 
 /// What `of` gives for each item, on as many threads as there are processors; the last items, which take longest, first.
-fn side_by_side<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
+fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let results: Vec<OnceLock<R>> = items.iter().map(|_| OnceLock::new()).collect();
     let left = AtomicUsize::new(items.len());
     let work = || {
@@ -113,7 +113,7 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
     let recursion = quantity.by_search(model, view, without, EFFORT);
     let closed = if without.contains(Pass::ClosedForm) { Vec::new() } else { recursion.by_closed_form() };
     // A closed form that is far longer than the recursion does not become shorter than it.
-    let most = HOPELESS * recursion.pool.operations(&recursion.entries, DIVISION);
+    let most = CLOSED_FORM_FACTOR * recursion.pool.operations(&recursion.entries, DIVISION);
     closed
         .into_iter()
         .filter(|closed| closed.pool.operations(&closed.entries, DIVISION) <= most)

@@ -103,7 +103,7 @@ pub struct Shown {
 /// The entries of a quantity.
 #[derive(Clone)]
 pub enum Content {
-    /// Each a sum of waves.
+    /// Each a sum of harmonics.
     Closed(Vec<NormalForm>),
     /// Expressions that share steps.
     Program(Box<Derivation>),

@@ -32,7 +32,8 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
 
     // Everything chosen at once gives the text that the same options give.
     let names = ["gravity", "inertia_matrix_with"];
-    let build = Robot::new(&scara).scalar(Scalar::F32).trig(Trig::Fast).without(Pass::Grouping).without(Pass::Slides).batch(4);
+    let build =
+        Robot::new(&scara).scalar(Scalar::F32).trig(Trig::Fast).without(Pass::Grouping).without(Pass::OriginAlongAxis).batch(4);
     let build = build.functions(names).c_abi().file_stem("chosen");
     let written: Vec<(String, String)> =
         build.try_generate().expect("a valid description").iter().map(|file| read(file)).collect();
@@ -42,7 +43,7 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
     let options = Options {
         scalar: Scalar::F32,
         trig: Trig::Fast,
-        without: [Pass::Grouping, Pass::Slides].into_iter().collect(),
+        without: [Pass::Grouping, Pass::OriginAlongAxis].into_iter().collect(),
         batch: Some(4),
         functions: Selection::named(names.map(String::from)).expect("names of functions"),
     };

@@ -42,12 +42,17 @@ pub(crate) enum Warnings {
 /// The valid arm of a file; what is wrong with it goes to standard error.
 pub(crate) fn manipulator(source: &Source, scalar: Scalar, warnings: Warnings) -> Result<(Manipulator, Diagnostics), u8> {
     let (valid, diagnostics) = validate::read_for(source, scalar);
-    let (manipulator, _) = told(source, valid, &diagnostics, warnings)?;
+    let (manipulator, _) = report_or_exit_code(source, valid, &diagnostics, warnings)?;
     Ok((manipulator, diagnostics))
 }
 
 /// What a file gave, or the exit code; what is wrong with the file goes to standard error.
-pub(crate) fn told<T>(source: &Source, given: Option<T>, diagnostics: &Diagnostics, warnings: Warnings) -> Result<T, u8> {
+pub(crate) fn report_or_exit_code<T>(
+    source: &Source,
+    given: Option<T>,
+    diagnostics: &Diagnostics,
+    warnings: Warnings,
+) -> Result<T, u8> {
     if warnings == Warnings::Shown || diagnostics.has_errors() {
         if !diagnostics.is_empty() {
             terminal::diagnose(&diagnostics.render(source, terminal::colour(&std::io::stderr())));

@@ -145,7 +145,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
   armgen count robot.yaml
   armgen count robot.yaml --format json
   armgen count robot.yaml --functions inverse_dynamics,gravity
-  armgen count robot.yaml --without grouping,slides       what these passes are worth
+  armgen count robot.yaml --without grouping,origin-along-axis       what these passes are worth
 
 mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine.")]
     Count {

@@ -127,9 +127,10 @@ impl Body {
     }
 }
 
-/// What grouping leaves zero in the body of a revolute joint, besides mass and first moment along the axis.
+/// Which second moment the regrouping of inertial parameters sets to zero in the body of a revolute joint, besides mass and first moment along
+/// the axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rest {
+pub enum GroupingConvention {
     /// Szz = 0.
     NoSecondMomentAlongAxis,
     /// Iyy = 0.
@@ -320,9 +321,9 @@ impl Arm {
     /// joint angle, and joint i does not feel them: m, hz and Szz move to the parent. The second moments of a link behind a prismatic
     /// joint never change their direction: all six move. What reaches the base is dropped.
     ///
-    /// How much second moment along the axis moves is free: all of Szz ([`Rest::NoSecondMomentAlongAxis`]), which leaves the least
-    /// work, or Iyy = Sxx + Szz, which leaves the base parameters of the literature ([`Rest::NoInertiaAboutY`]).
-    pub fn group_towards_base(&mut self, pool: &mut Pool, rest: Rest) {
+    /// How much second moment along the axis moves is free: all of Szz ([`GroupingConvention::NoSecondMomentAlongAxis`]), which leaves the least
+    /// work, or Iyy = Sxx + Szz, which leaves the base parameters of the literature ([`GroupingConvention::NoInertiaAboutY`]).
+    pub fn group_towards_base(&mut self, pool: &mut Pool, convention: GroupingConvention) {
         for i in (0..self.dof()).rev() {
             if !self.joints[i].is_revolute() {
                 self.hand_second_moments_on(pool, i);
@@ -332,9 +333,9 @@ impl Arm {
             let body = &mut self.joints[i].body;
             handed.mass = std::mem::replace(&mut body.mass, ExprId::ZERO);
             handed.first[2] = std::mem::replace(&mut body.first[2], ExprId::ZERO);
-            let along = match rest {
-                Rest::NoSecondMomentAlongAxis => body.second[5],
-                Rest::NoInertiaAboutY => pool.add(body.second[0], body.second[5]),
+            let along = match convention {
+                GroupingConvention::NoSecondMomentAlongAxis => body.second[5],
+                GroupingConvention::NoInertiaAboutY => pool.add(body.second[0], body.second[5]),
             };
             body.second[5] = pool.sub(body.second[5], along);
             handed.second[5] = along;

@@ -5,10 +5,10 @@
 //! (Gautier and Khalil 1990). The rank and the choice of columns are found in the prime field from random states, where a state more never
 //! changes the answer but for odds of 1/p; each row of K is then solved for exactly, over the exact constants, from rational states.
 
-use super::arm::{Arm, Rest};
+use super::arm::{Arm, GroupingConvention};
 use super::newton_euler::Motion;
 use super::parameters::{Inertial, Parameter, ParameterKind, ParameterVector, StandardParameter, View};
-use super::passes::turn_last_link;
+use super::passes::rotate_last_link;
 use super::plan::Plan;
 use super::regressor::{columns_in_joint_frames, derivative_by_parameter, regressor};
 use crate::exact::{Number, Rational};
@@ -313,10 +313,10 @@ pub fn regressor_of(manipulator: &Manipulator, field: &Field, vector: &Parameter
     (pool, y)
 }
 
-/// Moves the origin of each joint frame along its axis to where that meets, or comes nearest to, the axis before: most torques of a force there
-/// have no lever. And turns the axes of the last link to its centre of mass, where its first moment has one component. The base parameters of the
-/// arm's own regressor are those in these frames.
-pub fn settle(pool: &mut Pool, arm: &mut Arm) {
+/// Moves the origin of each joint frame to the foot of the common normal with the axis before, so that most lever arms vanish, and rotates the
+/// axes of the last link towards its centre of mass, where its first moment has one component. The base parameters of `base_regressor` are
+/// those in these frames.
+pub fn place_frames_for_base_parameters(pool: &mut Pool, arm: &mut Arm) {
     for i in (0..arm.dof()).filter(|&i| arm.joints[i].parent.is_some() && arm.joints[i].is_revolute()).collect::<Vec<_>>() {
         let axis = arm.joints[i].fixed.map(|row| row[2]);
         let along = pool.dot3(&arm.joints[i].origin, &axis);
@@ -324,13 +324,13 @@ pub fn settle(pool: &mut Pool, arm: &mut Arm) {
             arm.slide(pool, i, -along);
         }
     }
-    turn_last_link(pool, arm);
+    rotate_last_link(pool, arm);
     for joint in &mut arm.joints {
         (joint.own_origin, joint.own_axes) = (ZERO, IDENTITY);
     }
 }
 
-/// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction; of an arm that has been settled.
+/// Y_b(q, dq, ddq): tau is Y_b times the base parameters, links, rotors and friction; of an arm whose frames have been placed for base parameters.
 pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let ParameterKind::Base(columns) = &vector.kind else { unreachable!("asked for base parameters only") };
     let motion = Motion::plain(pool, arm);
@@ -342,13 +342,13 @@ pub fn base_regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector, plan
 /// What no joint feels is first grouped towards the base in joint frames, exactly and without a division. What still depends on others
 /// then, because a motion near the base is restricted or a rotor turns with a link, is found by rank.
 pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    grouped(manipulator, field, Rest::NoInertiaAboutY, false)
+    grouped(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
 }
 
 /// The base parameters of an arm that its own regressor asks for: those that are not zero, with the masses of its rotors among the values, so that
 /// Y pi is the whole torque. Links keep no second moment along their axes, for a mass on the x or y axis has a moment of two components only.
 pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> ParameterVector {
-    let ParameterVector { entries, kind } = grouped(manipulator, field, Rest::NoSecondMomentAlongAxis, true);
+    let ParameterVector { entries, kind } = grouped(manipulator, field, GroupingConvention::NoSecondMomentAlongAxis, true);
     let ParameterKind::Base(columns) = kind else { unreachable!("base parameters are grouped") };
     let used = entries.into_iter().zip(columns).filter(|(entry, _)| !entry.nominal.is_zero());
     let (entries, columns) = used.unzip();
@@ -356,15 +356,15 @@ pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> 
 }
 
 /// The base parameters. The masses of rotors are no parameters; they are known, or, for the arm's `own` regressor, part of the links' values.
-fn grouped(manipulator: &Manipulator, field: &Field, rest: Rest, own: bool) -> ParameterVector {
+fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvention, own: bool) -> ParameterVector {
     let mut pool = Pool::new(field.clone());
     let standard = ParameterVector::standard(manipulator);
     let mut arm = Arm::new(&mut pool, manipulator, View::Vector(&standard));
     if own {
-        settle(&mut pool, &mut arm);
+        place_frames_for_base_parameters(&mut pool, &mut arm);
     }
-    arm.group_towards_base(&mut pool, rest);
-    let mut columns = candidates(manipulator, rest);
+    arm.group_towards_base(&mut pool, convention);
+    let mut columns = candidates(manipulator, convention);
     columns.sort_by_key(|&column| preference(column));
     let mut values: Vec<Vec<Number>> = columns.iter().map(|&c| combination(&mut pool, &arm, &standard, c)).collect();
     if !own {
@@ -396,12 +396,12 @@ fn grouped(manipulator: &Manipulator, field: &Field, rest: Rest, own: bool) -> P
 
 /// What can be left after grouping: links without m, mcz and Iyy or the second moment along the axis (revolute) or without inertia
 /// (prismatic), rotors, friction.
-fn candidates(manipulator: &Manipulator, rest: Rest) -> Vec<StandardParameter> {
-    let left = |parameter: StandardParameter| match (rest, parameter) {
-        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, Inertial::Ixx)) => {
+fn candidates(manipulator: &Manipulator, convention: GroupingConvention) -> Vec<StandardParameter> {
+    let left = |parameter: StandardParameter| match (convention, parameter) {
+        (GroupingConvention::NoSecondMomentAlongAxis, StandardParameter::Link(i, Inertial::Ixx)) => {
             StandardParameter::Link(i, Inertial::PlanarIxx)
         }
-        (Rest::NoSecondMomentAlongAxis, StandardParameter::Link(i, Inertial::Izz)) => {
+        (GroupingConvention::NoSecondMomentAlongAxis, StandardParameter::Link(i, Inertial::Izz)) => {
             StandardParameter::Link(i, Inertial::PlanarIyy)
         }
         _ => parameter,

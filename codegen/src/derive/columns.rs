@@ -49,21 +49,21 @@ pub(super) struct Entries {
     pub(super) transposed: ExprId,
 }
 
-/// A column on its way.
-pub(super) struct Traveller {
+/// The wrenches of one column of B (and C) at the link that the recursion towards the base has reached.
+pub(super) struct PropagatedColumn {
     column: Column,
     /// The link in whose frame it is.
     link: usize,
-    /// Whether it is still in the axes of the parent turned by `fixed`.
-    fresh: bool,
+    /// Whether it is expressed in the joint frame at q = 0, before the rotation of the joint itself.
+    before_joint_rotation: bool,
     /// The joint whose origin the moments are about.
     about: usize,
     /// The link that E is relative to; none for the base.
     relative: Option<usize>,
 }
 
-/// Vectors between origins, found when first asked for.
-pub(super) struct Ways<'a> {
+/// Vectors between the origins of joint frames, each computed when first needed.
+pub(super) struct OriginOffsets<'a> {
     arm: &'a Arm,
     /// Angular velocities of the joint frames, for C.
     omega: Option<&'a [Vector]>,
@@ -79,13 +79,13 @@ struct Offset {
     relative: Vector,
 }
 
-impl<'a> Ways<'a> {
-    pub(super) fn new(arm: &'a Arm, omega: Option<&'a [Vector]>) -> Ways<'a> {
-        Ways { arm, omega, offsets: BTreeMap::new() }
+impl<'a> OriginOffsets<'a> {
+    pub(super) fn new(arm: &'a Arm, omega: Option<&'a [Vector]>) -> OriginOffsets<'a> {
+        OriginOffsets { arm, omega, offsets: BTreeMap::new() }
     }
 
-    /// A column at its own joint, in the axes of the parent turned by `fixed`, E relative to the parent.
-    pub(super) fn start(&self, pool: &mut Pool, plan: &mut Plan, mut column: Column, joint: usize) -> Traveller {
+    /// A column at its own joint, expressed in the joint frame at q = 0, E relative to the parent.
+    pub(super) fn start(&self, pool: &mut Pool, plan: &mut Plan, mut column: Column, joint: usize) -> PropagatedColumn {
         let mut relative = self.arm.joints[joint].parent;
         if let (Some(moving), Some(p), Some(omega)) = (&mut column.rate, relative, self.omega) {
             if plan.way(Pass::RelativeMoment, Place::Joint(joint), 2) == 1 {
@@ -95,7 +95,7 @@ impl<'a> Ways<'a> {
                 relative = None;
             }
         }
-        Traveller { column, link: joint, fresh: true, about: joint, relative }
+        PropagatedColumn { column, link: joint, before_joint_rotation: true, about: joint, relative }
     }
 
     /// o_i - o_parent, in the parent's frame.
@@ -139,17 +139,17 @@ impl<'a> Ways<'a> {
         found
     }
 
-    /// Hands a column on to the parent of the link that it is at, if there is one.
-    pub(super) fn go(&mut self, pool: &mut Pool, plan: &mut Plan, t: &mut Traveller) -> Option<usize> {
+    /// Transforms the wrenches into the frame of the parent link and gives its index; None at the base.
+    pub(super) fn propagate_to_parent(&mut self, pool: &mut Pool, plan: &mut Plan, t: &mut PropagatedColumn) -> Option<usize> {
         let from = t.link;
         let joint = &self.arm.joints[from];
         let parent = joint.parent?;
-        let place = Place::Column(from, t.fresh);
+        let place = Place::Column(from, t.before_joint_rotation);
         // The parent's angular velocity in the axes that the column is in.
         let mut outer = ZERO;
         if let Some(omega) = self.omega {
             let hat = pool.transform_back(&joint.fixed, &omega[parent]);
-            outer = if t.fresh { hat } else { joint.about_axis_back(pool, &hat) };
+            outer = if t.before_joint_rotation { hat } else { joint.about_axis_back(pool, &hat) };
         }
         if let (Some(moving), Some(omega)) = (&mut t.column.rate, self.omega) {
             if t.relative == Some(from) {
@@ -164,16 +164,16 @@ impl<'a> Ways<'a> {
                 moving.transposed = pool.add_vectors(&moving.transposed, &change);
             }
         }
-        let way = plan.way(Pass::Meeting, place, 3);
+        let way = plan.way(Pass::WrenchFrame, place, 3);
         if way == 1 {
             let mut total = self.offset(pool, t.about, from);
             let step = self.step(pool, from);
             let swept = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.spin], &total.d);
             total.relative = pool.add_vectors(&total.relative, &swept);
-            let fresh = t.fresh;
+            let before_joint_rotation = t.before_joint_rotation;
             let mut sum = |beyond: &Vector, step: &Vector| {
                 let hat = pool.transform_back(&joint.fixed, step);
-                let own = if fresh { hat } else { joint.about_axis_back(pool, &hat) };
+                let own = if before_joint_rotation { hat } else { joint.about_axis_back(pool, &hat) };
                 pool.add_vectors(beyond, &own)
             };
             let total = Offset {
@@ -184,8 +184,8 @@ impl<'a> Ways<'a> {
             t.shift(pool, &total, &outer);
             t.about = parent;
         }
-        let fresh = t.fresh;
-        let mut turn = |v: &Vector| if fresh { pool.transform(&joint.fixed, v) } else { outward(pool, joint, v) };
+        let before_joint_rotation = t.before_joint_rotation;
+        let mut turn = |v: &Vector| if before_joint_rotation { pool.transform(&joint.fixed, v) } else { outward(pool, joint, v) };
         t.column = Column {
             inertial: (turn(&t.column.inertial.0), turn(&t.column.inertial.1)),
             rate: t.column.rate.map(|rate| Rate {
@@ -199,12 +199,12 @@ impl<'a> Ways<'a> {
             t.shift(pool, &offset, &outer);
             t.about = parent;
         }
-        (t.link, t.fresh) = (parent, false);
+        (t.link, t.before_joint_rotation) = (parent, false);
         Some(parent)
     }
 
-    /// What the joint of the link that the column is at feels.
-    pub(super) fn entries(&mut self, pool: &mut Pool, t: &Traveller) -> Entries {
+    /// The entries of the joint of the link that the column has reached: its wrenches projected on the joint axis.
+    pub(super) fn entries(&mut self, pool: &mut Pool, t: &PropagatedColumn) -> Entries {
         let i = t.link;
         let revolute = self.arm.joints[i].is_revolute();
         let Offset { d, rate, .. } = self.offset(pool, t.about, i);
@@ -237,7 +237,7 @@ impl<'a> Ways<'a> {
     }
 }
 
-impl Traveller {
+impl PropagatedColumn {
     /// Adds the moment of a rotor, which is about no point, and its rate ½ ω × `moment`.
     pub(super) fn add_moment(&mut self, pool: &mut Pool, moment: &Vector, omega: &Vector, frame: &Vector) {
         self.column.inertial.1 = pool.add_vectors(&self.column.inertial.1, moment);

@@ -8,7 +8,7 @@ use crate::ring::field::Field;
 /// A field in which the constants of a valid arm have their roots, and the angle by which its last link may be turned its sine and cosine.
 pub fn field_of(manipulator: &Manipulator) -> Field {
     let plain = find_field(manipulator).expect("validation refuses an arm without a field");
-    let turn = passes::of_last_link(&plain, manipulator);
+    let turn = passes::angle_of_last_link(&plain, manipulator);
     turn.and_then(|turn| Field::with_turn(&constants(manipulator), turn)).unwrap_or(plain)
 }
 

@@ -6,7 +6,7 @@
 //!
 //! The determinant is expanded by minors, each set of columns once. Joint variables that it does not depend on, which their zero
 //! derivative proves, are set to 0 first. What is left is factored as far as single joint variables go: seen as a polynomial in one
-//! variable, with the other waves as coefficients' carriers, its content in that variable is the greatest common divisor of
+//! variable, with the other harmonics as coefficients' carriers, its content in that variable is the greatest common divisor of
 //! univariate polynomials, in tan(q/2) for an angle.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +15,7 @@ use super::arm::Arm;
 use super::parameters::View;
 use super::quantities::kinematics::geometric_jacobian;
 use crate::exact::{Angle, Number, Rational};
-use crate::ring::normal_form::{Factors, NormalForm, Wave};
+use crate::ring::normal_form::{Factors, Harmonic, NormalForm};
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::Model;
@@ -151,7 +151,7 @@ fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
             found.extend(parts);
         }
     }
-    let constant = rest.terms().all(|(wave, factors, _)| wave.angles.is_empty() && factors.is_empty());
+    let constant = rest.terms().all(|(harmonic, factors, _)| harmonic.angles.is_empty() && factors.is_empty());
     if constant || found.is_empty() {
         let scale = rest;
         match found.first_mut() {
@@ -211,12 +211,12 @@ fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<
         return None;
     }
     let mut quotient = NormalForm::default();
-    for ((wave, factors), polynomial) in &groups {
+    for ((harmonic, factors), polynomial) in &groups {
         let part = univariate::divide(&mut field, &polynomial.to_degree(degree, is_angle), &divisor);
         let part = from_univariate(&part, variable, degree - total);
-        let carrier = NormalForm::term(wave.clone(), factors.clone(), Number::one());
-        for (wave, factors, c) in part.times(&carrier, usize::MAX)?.terms() {
-            quotient.add_term(wave.clone(), factors.clone(), c.clone());
+        let carrier = NormalForm::term(harmonic.clone(), factors.clone(), Number::one());
+        for (harmonic, factors, c) in part.times(&carrier, usize::MAX)?.terms() {
+            quotient.add_term(harmonic.clone(), factors.clone(), c.clone());
         }
     }
     let parts = univariate::split_known_roots(&mut field, &divisor, infinite, is_angle)
@@ -229,7 +229,7 @@ fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<
         .collect();
     // The pieces carry scales (sin q is 2t/(1 + t²)): what they have too much is divided out of the quotient.
     let (parts, scale) = normalised(parts);
-    let quotient = quotient.times(&NormalForm::term(Wave::one(), Vec::new(), scale), usize::MAX)?;
+    let quotient = quotient.times(&NormalForm::term(Harmonic::one(), Vec::new(), scale), usize::MAX)?;
     Some((parts, quotient))
 }
 
@@ -243,7 +243,7 @@ fn normalised(parts: Vec<(NormalForm, Zeros)>) -> (Vec<(NormalForm, Zeros)>, Num
             let leading = groups[0].1[0].1.clone();
             let inverse = Number::one().checked_div(&leading).expect("a term is not zero");
             scale = &scale * &leading;
-            let scaled = form.times(&NormalForm::term(Wave::one(), Vec::new(), inverse), usize::MAX).expect("no limit");
+            let scaled = form.times(&NormalForm::term(Harmonic::one(), Vec::new(), inverse), usize::MAX).expect("no limit");
             (scaled, zeros)
         })
         .collect();
@@ -251,18 +251,18 @@ fn normalised(parts: Vec<(NormalForm, Zeros)>) -> (Vec<(NormalForm, Zeros)>, Num
 }
 
 /// A form as polynomials in one variable, by what they are multiplied with.
-fn split(form: &NormalForm, variable: Variable) -> BTreeMap<(Wave, Factors), Univariate> {
-    let mut groups: BTreeMap<(Wave, Factors), Univariate> = BTreeMap::new();
-    for (wave, factors, c) in form.terms() {
+fn split(form: &NormalForm, variable: Variable) -> BTreeMap<(Harmonic, Factors), Univariate> {
+    let mut groups: BTreeMap<(Harmonic, Factors), Univariate> = BTreeMap::new();
+    for (harmonic, factors, c) in form.terms() {
         match variable {
             Variable::Position(i) => {
                 let power = factors.iter().find(|(s, _)| *s == Symbol::Position(i)).map_or(0, |(_, p)| *p as usize);
                 let others = factors.iter().filter(|(s, _)| *s != Symbol::Position(i)).copied().collect();
-                groups.entry((wave.clone(), others)).or_default().add(&Univariate::monomial(power, c.clone()));
+                groups.entry((harmonic.clone(), others)).or_default().add(&Univariate::monomial(power, c.clone()));
             }
             Variable::Angle(i) => {
-                let k = wave.angles.iter().find(|(a, _)| *a == i).map_or(0, |(_, k)| *k);
-                let others: Vec<(u16, i32)> = wave.angles.iter().filter(|(a, _)| *a != i).copied().collect();
+                let k = harmonic.angles.iter().find(|(a, _)| *a == i).map_or(0, |(_, k)| *k);
+                let others: Vec<(u16, i32)> = harmonic.angles.iter().filter(|(a, _)| *a != i).copied().collect();
                 // sin(r + kq) = sin r cos kq + cos r sin kq, cos(r + kq) = cos r cos kq - sin r sin kq; r leads with a positive coefficient or flips.
                 let flip = others.first().is_some_and(|(_, k)| *k < 0);
                 let carrier: Vec<(u16, i32)> = others.iter().map(|(a, k)| (*a, if flip { -k } else { *k })).collect();
@@ -271,11 +271,11 @@ fn split(form: &NormalForm, variable: Variable) -> BTreeMap<(Wave, Factors), Uni
                         return;
                     }
                     let negative = negative != (sine && flip);
-                    let key = (Wave { angles: carrier.clone(), sine }, factors.clone());
+                    let key = (Harmonic { angles: carrier.clone(), sine }, factors.clone());
                     groups.entry(key).or_default().add(&if negative { part.negated() } else { part });
                 };
-                let (cosine, sine) = (Univariate::wave(k, false, c), Univariate::wave(k, true, c));
-                if wave.sine {
+                let (cosine, sine) = (Univariate::harmonic(k, false, c), Univariate::harmonic(k, true, c));
+                if harmonic.sine {
                     push(true, cosine, false);
                     push(false, sine, false);
                 } else {
@@ -296,12 +296,12 @@ fn from_univariate(polynomial: &Univariate, variable: Variable, degree: usize) -
         let term = match variable {
             Variable::Position(i) => {
                 let factors = if power == 0 { Vec::new() } else { vec![(Symbol::Position(i), power as u32)] };
-                NormalForm::term(Wave::one(), factors, c.clone())
+                NormalForm::term(Harmonic::one(), factors, c.clone())
             }
             Variable::Angle(i) => half_angle_term(i, power, degree - power, c),
         };
-        for (wave, factors, c) in term.terms() {
-            form.add_term(wave.clone(), factors.clone(), c.clone());
+        for (harmonic, factors, c) in term.terms() {
+            form.add_term(harmonic.clone(), factors.clone(), c.clone());
         }
     }
     form
@@ -310,15 +310,15 @@ fn from_univariate(polynomial: &Univariate, variable: Variable, degree: usize) -
 /// c sin^a(q/2) cos^b(q/2), a + b even.
 fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
     let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
-    let wave = |sine: bool, c: Number| NormalForm::term(Wave { angles: vec![(angle, 1)], sine }, Vec::new(), c);
-    let mut form = NormalForm::term(Wave::one(), Vec::new(), c.clone());
+    let harmonic = |sine: bool, c: Number| NormalForm::term(Harmonic { angles: vec![(angle, 1)], sine }, Vec::new(), c);
+    let mut form = NormalForm::term(Harmonic::one(), Vec::new(), c.clone());
     let mut multiply = |factor: &NormalForm| form = form.times(factor, usize::MAX).expect("no limit");
     if a % 2 == 1 {
-        multiply(&wave(true, half.clone()));
+        multiply(&harmonic(true, half.clone()));
     }
     let with_cosine = |negative: bool| {
-        let mut sum = wave(false, if negative { -&half } else { half.clone() });
-        sum.add_term(Wave::one(), Vec::new(), half.clone());
+        let mut sum = harmonic(false, if negative { -&half } else { half.clone() });
+        sum.add_term(Harmonic::one(), Vec::new(), half.clone());
         sum
     };
     (0..a / 2).for_each(|_| multiply(&with_cosine(true)));
@@ -385,7 +385,7 @@ fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Numbe
         return Zeros::Never;
     }
     let radius = square.sqrt().expect("a sum of squares");
-    let ratio = (-c).checked_div(&radius).expect("a wave is there");
+    let ratio = (-c).checked_div(&radius).expect("a harmonic is there");
     let centre = if b.is_zero() && a.sign() == std::cmp::Ordering::Greater {
         String::new()
     } else {

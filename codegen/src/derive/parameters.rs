@@ -48,7 +48,7 @@ pub enum Inertial {
     /// Izz.
     Izz,
     /// Ixx of a planar body: one without extent along z, Izz = Ixx + Iyy. That is what
-    /// [`Rest::NoSecondMomentAlongAxis`](super::arm::Rest) leaves.
+    /// [`GroupingConvention::NoSecondMomentAlongAxis`](super::arm::GroupingConvention) leaves.
     PlanarIxx,
     /// Iyy of a planar body.
     PlanarIyy,

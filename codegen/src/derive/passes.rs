@@ -1,8 +1,8 @@
 //! Passes that rewrite an arm into one that moves alike and costs less: `Arm` -> `Arm`, each an exact identity.
 
 mod grouping;
+mod last_link;
 mod orientation;
-mod turn;
 mod unit;
 
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use super::arm::Arm;
 use super::plan::Plan;
 use crate::pass::Pass;
 use crate::ring::Pool;
-pub(crate) use turn::{of_last_link, turn_last_link};
+pub(crate) use last_link::{angle_of_last_link, rotate_last_link};
 
 /// What a derivation asks of an arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,9 +27,9 @@ pub enum Use {
 /// With more different roots than this among its constants an arm keeps the plain ways: each root may double a sum that is divided by.
 const ROOTS: usize = 3;
 
-/// Keeps off the passes that compare and divide the constants of an arm, where these have no short normal form: where sines and cosines
+/// Disables the passes that compare and divide the constants of an arm, where these have no short canonical form: where sines and cosines
 /// of general angles are among them (two expressions of those may be equal and not look it), or many roots.
-pub fn suit(pool: &Pool, arm: &Arm, plan: &mut Plan) {
+pub fn disable_unsuitable(pool: &Pool, arm: &Arm, plan: &mut Plan) {
     let joints = arm.joints.iter().flat_map(|joint| {
         let vectors = joint.fixed.into_iter().chain([joint.origin, joint.body.first]).flatten();
         vectors.chain(joint.body.second).chain([joint.body.mass])
@@ -43,7 +43,9 @@ pub fn suit(pool: &Pool, arm: &Arm, plan: &mut Plan) {
         })
     });
     if !short {
-        [Pass::Slides, Pass::Freedoms, Pass::Turn, Pass::UnitOfLength].into_iter().for_each(|pass| plan.keep_off(pass));
+        [Pass::OriginAlongAxis, Pass::GroupingAmount, Pass::LastLinkRotation, Pass::UnitOfLength]
+            .into_iter()
+            .for_each(|pass| plan.disable(pass));
     }
 }
 
@@ -51,11 +53,11 @@ pub fn suit(pool: &Pool, arm: &Arm, plan: &mut Plan) {
 pub fn rewrite(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, used: Use) {
     match used {
         Use::Dynamics => {
-            turn::turn(pool, arm, plan);
+            last_link::rotate(pool, arm, plan);
             grouping::group(pool, arm, plan);
             unit::unit_of_length(pool, arm, plan);
         }
-        Use::Frames => grouping::slide_all(pool, arm, plan),
+        Use::Frames => grouping::choose_origins(pool, arm, plan),
         Use::Plain => {}
     }
     orientation::parallel_axes(pool, arm, plan);

@@ -1,7 +1,7 @@
 //! Which way a derivation goes where several are exact, and the search for the cheapest.
 //!
 //! A derivation asks its [`Plan`] at each fork, by the pass that the fork belongs to and a place (a joint, say); way 0 is the plain one.
-//! The search tries the other ways fork by fork, counts the operations of each in a sketch of the pool, and keeps what is cheaper, until
+//! The search tries the other ways fork by fork, counts the operations of each in a fingerprints_only of the pool, and keeps what is cheaper, until
 //! no single change helps. It is bounded by counts, never by time, and takes the forks in a fixed order.
 
 use std::collections::BTreeMap;
@@ -70,13 +70,14 @@ impl Plan {
     }
 
     /// Takes the plain way at the forks of a pass, besides those that are switched off.
-    pub fn keep_off(&mut self, pass: Pass) {
+    pub fn disable(&mut self, pass: Pass) {
         self.without.insert(pass);
     }
 
-    /// Where forks with many ways begin to count them: a search goes downhill, and finds another valley from another start.
+    /// Added to the choice at forks with many ways. The search is a descent and ends in a local minimum; it is restarted from several initial
+    /// choices.
     pub fn start(&self) -> usize {
-        if self.has(Pass::Meeting) {
+        if self.has(Pass::WrenchFrame) {
             self.start
         } else {
             0
@@ -142,9 +143,9 @@ mod tests {
     #[test]
     fn the_search_finds_the_cheapest_way_and_keeps_off_what_is_switched_off() {
         let cost = |plan: &mut Plan| {
-            let slide = plan.way(Pass::Slides, Place::Joint(3), 4);
+            let slide = plan.way(Pass::OriginAlongAxis, Place::Joint(3), 4);
             // A fork that only one way leads to.
-            let extra = if slide == 2 { plan.way(Pass::Meeting, Place::Joint(0), 3) } else { 0 };
+            let extra = if slide == 2 { plan.way(Pass::WrenchFrame, Place::Joint(0), 3) } else { 0 };
             (20 - [0, 3, 5, 4][slide] - 2 * extra, 1)
         };
         let best = |without, effort| {
@@ -152,8 +153,8 @@ mod tests {
             cost(&mut plan).0
         };
         assert_eq!(best(Passes::NONE, 100), 11);
-        assert_eq!(best([Pass::Meeting].into_iter().collect(), 100), 15);
-        assert_eq!(best([Pass::Slides].into_iter().collect(), 100), 20);
+        assert_eq!(best([Pass::WrenchFrame].into_iter().collect(), 100), 15);
+        assert_eq!(best([Pass::OriginAlongAxis].into_iter().collect(), 100), 20);
         assert_eq!(best(Passes::NONE, 3), 15, "the effort is bounded");
     }
 

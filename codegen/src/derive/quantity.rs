@@ -369,12 +369,12 @@ impl Quantity {
             passes::rewrite(pool, &mut arm, plan, rewriting);
             entries(pool, &arm, plan, &setting)
         };
-        without.iter().for_each(|&pass| plan.keep_off(pass));
-        passes::suit(&pool, &arm, &mut plan);
+        without.iter().for_each(|&pass| plan.disable(pass));
+        passes::disable_unsuitable(&pool, &arm, &mut plan);
         if effort > 0 {
-            let (sketch, mut nodes) = (pool.sketch(), 0);
+            let (fingerprints_only, mut nodes) = (pool.fingerprints_only(), 0);
             plan = plan.search_from(starts, effort, &mut |plan| {
-                let mut pool = sketch.clone();
+                let mut pool = fingerprints_only.clone();
                 pool.reserve(nodes);
                 let entries = derive(&mut pool, plan);
                 nodes = pool.len();

@@ -154,7 +154,7 @@ fn inertia_is_the_textbook_sum() {
 #[test]
 fn grouping_changes_nothing() {
     check(|pool, arm, _| {
-        for rest in [arm::Rest::NoSecondMomentAlongAxis, arm::Rest::NoInertiaAboutY] {
+        for rest in [arm::GroupingConvention::NoSecondMomentAlongAxis, arm::GroupingConvention::NoInertiaAboutY] {
             let mut grouped = arm.clone();
             grouped.group_towards_base(pool, rest);
             let motion = Motion::plain(pool, arm);
@@ -570,7 +570,7 @@ fn torque_is_the_base_regressor_times_the_base_parameters() {
         let vector = model.base_parameters();
         let mut pool = Pool::new(model.field.clone());
         let mut arm = Arm::new(&mut pool, &model.manipulator, View::Vector(vector));
-        base::settle(&mut pool, &mut arm);
+        base::place_frames_for_base_parameters(&mut pool, &mut arm);
         let y = base::base_regressor(&mut pool, &arm, vector, &mut Plan::default());
         assert_eq!(base::rank(&pool, &y), vector.len());
         let values: Vec<ExprId> = vector.entries.iter().map(|entry| pool.constant(&entry.nominal)).collect();

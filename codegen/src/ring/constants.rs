@@ -36,9 +36,9 @@ impl Pool {
 
     /// An exact constant.
     pub fn constant(&mut self, value: &Number) -> ExprId {
-        if self.sketch {
+        if self.fingerprints_only {
             let value = self.field.number(value);
-            return self.sketched(value);
+            return self.by_fingerprint(value);
         }
         // Most are known, and their signs with them.
         let minus = -value;
@@ -71,8 +71,8 @@ impl Pool {
 
     pub(super) fn sum_of_constants(&mut self, a: ExprId, b: ExprId) -> ExprId {
         let element = self.field.add(self.fingerprint(a)[0], self.fingerprint(b)[0]);
-        if self.sketch {
-            return self.sketched(element);
+        if self.fingerprints_only {
+            return self.by_fingerprint(element);
         }
         let sum = self.value(a).plus(&self.value(b));
         let sign = (a.is_negated() == b.is_negated()).then_some(a.is_negated());
@@ -83,8 +83,8 @@ impl Pool {
     /// reduced, r r to what stands under the root: its value in the field is one on which nothing is known.
     pub(super) fn product_of_constants(&mut self, a: ExprId, b: ExprId) -> Option<ExprId> {
         let element = self.field.mul(self.fingerprint(a)[0], self.fingerprint(b)[0]);
-        if self.sketch {
-            return Some(self.sketched(element));
+        if self.fingerprints_only {
+            return Some(self.by_fingerprint(element));
         }
         let product = self.value(a).times(&self.value(b));
         if self.value(a).has_roots() && self.value(b).has_roots() {
@@ -99,8 +99,8 @@ impl Pool {
         (self.fingerprint(constant)[0] == expected).then_some(constant)
     }
 
-    /// A constant of a sketch.
-    pub(super) fn sketched(&mut self, value: Element) -> ExprId {
+    /// A constant of a fingerprints_only.
+    pub(super) fn by_fingerprint(&mut self, value: Element) -> ExprId {
         let fingerprint = [value; 2];
         if value == self.field.zero() {
             return ExprId::ZERO;
@@ -116,8 +116,8 @@ impl Pool {
 
     /// A constant with its value in the field, and whether it is negative if that is known.
     fn interned(&mut self, value: Number, element: Element, negative: Option<bool>) -> ExprId {
-        if self.sketch {
-            return self.sketched(element);
+        if self.fingerprints_only {
+            return self.by_fingerprint(element);
         }
         let known = |pool: &Pool, size: &Number| pool.constant_nodes.get(size).copied();
         if negative != Some(true) {

@@ -9,9 +9,9 @@ use crate::exact::Number;
 /// A constant with more terms and factors stays the expression that it arises from.
 const LONGEST_CONSTANT: usize = 500;
 
-/// What has no value at the origin that is a simple number is no constant, and what is too long should not become one: any value will do, since
-/// the caller checks it against the fingerprint.
-fn short_or_any(value: Option<Number>) -> Number {
+/// A value at the origin that may be that of a constant; 0 where there is none or it is too long to be one. Callers compare with the fingerprint,
+/// and reject what is wrong.
+fn value_if_short(value: Option<Number>) -> Number {
     value.filter(|value| value.is_within(LONGEST_CONSTANT)).unwrap_or_default()
 }
 
@@ -83,13 +83,13 @@ impl Pool {
             .collect();
             if pending.is_empty() {
                 let value = self.combine(self.nodes[index], &origin, |e| self.origin_value(e));
-                self.at_origin[index] = Some(Rc::new(short_or_any(value)));
+                self.at_origin[index] = Some(Rc::new(value_if_short(value)));
                 stack.pop();
             } else {
                 stack.extend(pending);
             }
         }
-        short_or_any(self.combine(node, &origin, |e| self.origin_value(e)))
+        value_if_short(self.combine(node, &origin, |e| self.origin_value(e)))
     }
 
     fn origin_value(&self, expr: ExprId) -> Number {

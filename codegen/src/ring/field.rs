@@ -38,8 +38,8 @@ impl Element {
 pub struct Field {
     /// The constant angle of [`AngleSum::turned`], with its sine and cosine.
     turn: Option<(Arc<Turn>, (Element, Element))>,
-    /// A root of an integer that need not be prime, but is prime to all others under roots: as free in its sign as that of a prime.
-    lone: Option<Atom>,
+    /// The root of a composite integer that is coprime to all other radicands: its sign is independent of theirs, as that of a prime's root is.
+    coprime_radicand: Option<Atom>,
     p: u64,
     /// -1/p mod 2^64.
     minus_inverse: u64,
@@ -75,8 +75,8 @@ impl Field {
         collect_roots(&turn.cosine, &mut of_turn);
         collect_roots(&turn.sine, &mut of_turn);
         let mut rest = of_turn.iter().filter(|root| !is_of_prime(root));
-        let lone = rest.next().cloned();
-        let tied = |root: &Atom| match (&lone, root) {
+        let coprime_radicand = rest.next().cloned();
+        let tied = |root: &Atom| match (&coprime_radicand, root) {
             (Some(Atom::Root(n)), Atom::Root(m)) => !n.gcd(m).is_one(),
             _ => false,
         };
@@ -85,17 +85,17 @@ impl Field {
         }
         roots.retain(is_of_prime);
         roots.extend(of_turn);
-        let mut field = Field::with_roots(&roots, lone)?;
+        let mut field = Field::with_roots(&roots, coprime_radicand)?;
         let circle = (field.number(&turn.sine), field.number(&turn.cosine));
         field.turn = Some((Arc::new(turn), circle));
         Some(field)
     }
 
     /// A field that has roots.
-    fn with_roots(roots: &BTreeSet<Atom>, lone: Option<Atom>) -> Option<Field> {
+    fn with_roots(roots: &BTreeSet<Atom>, coprime_radicand: Option<Atom>) -> Option<Field> {
         let mut candidates = std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24)).filter(|&p| is_prime(p));
         (0..PRIMES_TRIED)
-            .filter_map(|_| candidates.next().map(|p| Field { lone: lone.clone(), ..Field::modulo(p) }))
+            .filter_map(|_| candidates.next().map(|p| Field { coprime_radicand: coprime_radicand.clone(), ..Field::modulo(p) }))
             .find(|field| roots.iter().all(|root| field.root_atom(root).is_some()))
     }
 
@@ -103,8 +103,8 @@ impl Field {
         // Newton's iteration doubles the correct bits of the inverse modulo 2^64.
         let inverse = (0..6).fold(p, |x, _| x.wrapping_mul(2u64.wrapping_sub(p.wrapping_mul(x))));
         let r = (u128::MAX % u128::from(p) + 1) % u128::from(p);
-        let (turn, lone, atoms) = (None, None, BTreeMap::new());
-        Field { turn, lone, p, minus_inverse: inverse.wrapping_neg(), r_squared: r as u64, atoms }
+        let (turn, coprime_radicand, atoms) = (None, None, BTreeMap::new());
+        Field { turn, coprime_radicand, p, minus_inverse: inverse.wrapping_neg(), r_squared: r as u64, atoms }
     }
 
     /// The constant angle of sums that are turned.
@@ -262,7 +262,9 @@ impl Field {
         let square = match atom {
             // A root of a product that was not factored or nested might be tied to others, with a sign that
             // the field does not know: only roots of primes get their algebraic value, and one that is known to be tied to none.
-            Atom::Root(n) if is_of_prime(atom) || self.lone.as_ref() == Some(atom) => self.rational(&Rational::from(n.clone())),
+            Atom::Root(n) if is_of_prime(atom) || self.coprime_radicand.as_ref() == Some(atom) => {
+                self.rational(&Rational::from(n.clone()))
+            }
             _ => return None,
         };
         self.sqrt(square)

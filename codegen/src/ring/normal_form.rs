@@ -1,7 +1,7 @@
 //! The normal form for people: a sum of sines and cosines of integer combinations of the joint angles.
 //!
-//! Every polynomial in the sines and cosines of angles is one such sum, in exactly one way, because products of waves are sums of
-//! waves:
+//! Every polynomial in the sines and cosines of angles is one such sum, in exactly one way, because products of harmonics are sums of
+//! harmonics:
 //!
 //! ```text
 //! 2 cos a cos b = cos(a - b) + cos(a + b),   2 sin a sin b = cos(a - b) - cos(a + b),   2 sin a cos b = sin(a + b) + sin(a - b)
@@ -20,8 +20,8 @@ use crate::exact::{Number, Rational};
 
 /// cos or sin of an integer combination of joint angles; the first coefficient that is not 0 is positive.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Wave {
-    /// Angle index and its coefficient, by index; empty for the constant wave 1 (= cos 0).
+pub struct Harmonic {
+    /// Angle index and its coefficient, by index; empty for the constant harmonic 1 (= cos 0).
     pub angles: Vec<(u16, i32)>,
     /// Whether this is a sine.
     pub sine: bool,
@@ -30,16 +30,16 @@ pub struct Wave {
 /// Powers of the symbols that are no sines or cosines, by symbol.
 pub type Factors = Vec<(Symbol, u32)>;
 
-/// A sum of terms: coefficient · factors · wave.
+/// A sum of terms: coefficient · factors · harmonic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct NormalForm {
-    terms: BTreeMap<(Wave, Factors), Number>,
+    terms: BTreeMap<(Harmonic, Factors), Number>,
 }
 
-impl Wave {
+impl Harmonic {
     /// The constant 1.
-    pub fn one() -> Wave {
-        Wave { angles: Vec::new(), sine: false }
+    pub fn one() -> Harmonic {
+        Harmonic { angles: Vec::new(), sine: false }
     }
 
     /// Sum of the absolute values of the coefficients.
@@ -50,8 +50,8 @@ impl Wave {
 
 impl NormalForm {
     /// The terms, in a fixed order.
-    pub fn terms(&self) -> impl Iterator<Item = (&Wave, &Factors, &Number)> {
-        self.terms.iter().map(|((wave, factors), coefficient)| (wave, factors, coefficient))
+    pub fn terms(&self) -> impl Iterator<Item = (&Harmonic, &Factors, &Number)> {
+        self.terms.iter().map(|((harmonic, factors), coefficient)| (harmonic, factors, coefficient))
     }
 
     /// Number of terms.
@@ -69,35 +69,35 @@ impl NormalForm {
         self.terms.is_empty()
     }
 
-    /// The terms gathered by wave, those of the highest order first: what a reader expects of `10 cos q2 + 10763/500`.
-    pub fn by_wave(&self) -> Vec<(&Wave, Vec<(&Factors, &Number)>)> {
-        let mut groups: BTreeMap<&Wave, Vec<(&Factors, &Number)>> = BTreeMap::new();
-        for (wave, factors, coefficient) in self.terms() {
-            groups.entry(wave).or_default().push((factors, coefficient));
+    /// The terms gathered by harmonic, those of the highest order first: what a reader expects of `10 cos q2 + 10763/500`.
+    pub fn by_wave(&self) -> Vec<(&Harmonic, Vec<(&Factors, &Number)>)> {
+        let mut groups: BTreeMap<&Harmonic, Vec<(&Factors, &Number)>> = BTreeMap::new();
+        for (harmonic, factors, coefficient) in self.terms() {
+            groups.entry(harmonic).or_default().push((factors, coefficient));
         }
         let mut groups: Vec<_> = groups.into_iter().collect();
-        groups.sort_by_key(|(wave, _)| (Reverse(wave.order()), wave.sine));
+        groups.sort_by_key(|(harmonic, _)| (Reverse(harmonic.order()), harmonic.sine));
         groups
     }
 
-    /// The angles that occur in a wave.
+    /// The angles that occur in a harmonic.
     pub fn angles(&self) -> Vec<u16> {
-        let mut angles: Vec<u16> = self.terms.keys().flat_map(|(wave, _)| wave.angles.iter().map(|(i, _)| *i)).collect();
+        let mut angles: Vec<u16> = self.terms.keys().flat_map(|(harmonic, _)| harmonic.angles.iter().map(|(i, _)| *i)).collect();
         angles.sort_unstable();
         angles.dedup();
         angles
     }
 
     /// The form of a single term.
-    pub fn term(wave: Wave, factors: Factors, coefficient: Number) -> NormalForm {
+    pub fn term(harmonic: Harmonic, factors: Factors, coefficient: Number) -> NormalForm {
         let mut form = NormalForm::default();
-        form.add_term(wave, factors, coefficient);
+        form.add_term(harmonic, factors, coefficient);
         form
     }
 
-    /// Adds a term; `wave` is in its canonical form.
-    pub fn add_term(&mut self, wave: Wave, factors: Factors, coefficient: Number) {
-        let key = (wave, factors);
+    /// Adds a term; `harmonic` is in its canonical form.
+    pub fn add_term(&mut self, harmonic: Harmonic, factors: Factors, coefficient: Number) {
+        let key = (harmonic, factors);
         let sum = self.terms.get(&key).map_or_else(|| coefficient.clone(), |c| c.plus(&coefficient));
         if sum.is_zero() {
             self.terms.remove(&key);
@@ -109,8 +109,8 @@ impl NormalForm {
     /// self + sign · other.
     fn plus(&self, other: &NormalForm, negate: bool) -> NormalForm {
         let mut sum = self.clone();
-        for ((wave, factors), c) in &other.terms {
-            sum.add_term(wave.clone(), factors.clone(), if negate { -c } else { c.clone() });
+        for ((harmonic, factors), c) in &other.terms {
+            sum.add_term(harmonic.clone(), factors.clone(), if negate { -c } else { c.clone() });
         }
         sum
     }
@@ -128,8 +128,8 @@ impl NormalForm {
                 let factors = merge(factors_a, factors_b);
                 let c = ca.times(cb);
                 if wave_a.angles.is_empty() || wave_b.angles.is_empty() {
-                    let wave = if wave_a.angles.is_empty() { wave_b } else { wave_a };
-                    product.add_term(wave.clone(), factors, c);
+                    let harmonic = if wave_a.angles.is_empty() { wave_b } else { wave_a };
+                    product.add_term(harmonic.clone(), factors, c);
                     continue;
                 }
                 let c = &c * &half;
@@ -158,10 +158,10 @@ fn add_wave(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, fact
     if angles.is_empty() && sine {
         return;
     }
-    form.add_term(Wave { angles, sine }, factors, if negative && sine { -&c } else { c });
+    form.add_term(Harmonic { angles, sine }, factors, if negative && sine { -&c } else { c });
 }
 
-fn combine(a: &Wave, b: &Wave, sign: i32) -> Vec<(u16, i32)> {
+fn combine(a: &Harmonic, b: &Harmonic, sign: i32) -> Vec<(u16, i32)> {
     let mut sum: BTreeMap<u16, i32> = a.angles.iter().copied().collect();
     for (i, k) in &b.angles {
         *sum.entry(*i).or_default() += sign * k;
@@ -253,7 +253,7 @@ impl Pool {
                 Node::Constant(id) => {
                     let value = &self.constants[id.0 as usize];
                     (!value.is_zero())
-                        .then(|| NormalForm::term(Wave::one(), Vec::new(), (**value).clone()))
+                        .then(|| NormalForm::term(Harmonic::one(), Vec::new(), (**value).clone()))
                         .or(Some(NormalForm::default()))
                 }
                 Node::Symbol(symbol) => Some(symbol_form(symbol, self.field().turn())),
@@ -274,13 +274,13 @@ impl Pool {
 }
 
 fn symbol_form(symbol: Symbol, turn: Option<&Turn>) -> NormalForm {
-    let (wave, factors) = match symbol {
-        Symbol::Sine(i) => (Wave { angles: vec![(i, 1)], sine: true }, vec![]),
-        Symbol::Cosine(i) => (Wave { angles: vec![(i, 1)], sine: false }, vec![]),
+    let (harmonic, factors) = match symbol {
+        Symbol::Sine(i) => (Harmonic { angles: vec![(i, 1)], sine: true }, vec![]),
+        Symbol::Cosine(i) => (Harmonic { angles: vec![(i, 1)], sine: false }, vec![]),
         Symbol::SineOf(sum) | Symbol::CosineOf(sum) => return sum_form(sum, matches!(symbol, Symbol::SineOf(_)), turn),
-        other => (Wave::one(), vec![(other, 1)]),
+        other => (Harmonic::one(), vec![(other, 1)]),
     };
-    NormalForm::term(wave, factors, Number::one())
+    NormalForm::term(harmonic, factors, Number::one())
 }
 
 /// The sine or cosine of a sum of angles; of a turned one by the addition theorem.
@@ -288,24 +288,24 @@ fn sum_form(sum: AngleSum, sine: bool, turn: Option<&Turn>) -> NormalForm {
     let (unsigned, flipped) = sum.unsigned();
     let mut angles: Vec<(u16, i32)> = unsigned.terms().map(|(i, minus)| (i, if minus { -1 } else { 1 })).collect();
     angles.sort_unstable();
-    let wave = |sine: bool, factor: &Number| {
+    let harmonic = |sine: bool, factor: &Number| {
         let factor = if flipped && sine { -factor } else { factor.clone() };
-        NormalForm::term(Wave { angles: angles.clone(), sine }, vec![], factor)
+        NormalForm::term(Harmonic { angles: angles.clone(), sine }, vec![], factor)
     };
     match turn.filter(|_| sum.turned) {
-        None => wave(sine, &Number::one()),
-        Some(turn) => wave(sine, &turn.cosine).plus(&wave(!sine, &turn.sine), !sine),
+        None => harmonic(sine, &Number::one()),
+        Some(turn) => harmonic(sine, &turn.cosine).plus(&harmonic(!sine, &turn.sine), !sine),
     }
 }
 
 /// How a normal form becomes shared products again; which order is cheapest depends on what else is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrangement {
-    /// Each term as ((coefficient · wave) · factors): waves scaled by numbers are shared.
+    /// Each term as ((coefficient · harmonic) · factors): harmonics scaled by numbers are shared.
     ScaledWaves,
-    /// Each wave once, times the sum of its coefficients and factors.
+    /// Each harmonic once, times the sum of its coefficients and factors.
     ByWave,
-    /// Each term as ((wave · factors) · coefficient).
+    /// Each term as ((harmonic · factors) · coefficient).
     BareProducts,
 }
 
@@ -328,15 +328,15 @@ impl Pool {
         meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId,
     ) -> ExprId {
         let mut sum = ExprId::ZERO;
-        for (wave, group) in form.by_wave() {
-            let wave = self.wave(wave);
+        for (harmonic, group) in form.by_wave() {
+            let harmonic = self.harmonic(harmonic);
             let mut inner = ExprId::ZERO;
             for (factors, coefficient) in group {
                 let coefficient = self.constant(coefficient);
                 let start = match arrangement {
-                    Arrangement::ScaledWaves => self.mul(coefficient, wave),
+                    Arrangement::ScaledWaves => self.mul(coefficient, harmonic),
                     Arrangement::ByWave => coefficient,
-                    Arrangement::BareProducts => wave,
+                    Arrangement::BareProducts => harmonic,
                 };
                 let mut term = start;
                 for &(symbol, power) in factors {
@@ -351,7 +351,7 @@ impl Pool {
                 inner = self.add(inner, term);
             }
             if arrangement == Arrangement::ByWave {
-                inner = self.mul(inner, wave);
+                inner = self.mul(inner, harmonic);
             }
             sum = self.add(sum, inner);
         }
@@ -359,9 +359,9 @@ impl Pool {
     }
 
     /// sin or cos of a combination of angles, by the addition theorems from the sines and cosines of single angles.
-    pub fn wave(&mut self, wave: &Wave) -> ExprId {
-        let (sine, cosine) = self.sine_cosine_of(&wave.angles);
-        if wave.sine {
+    pub fn harmonic(&mut self, harmonic: &Harmonic) -> ExprId {
+        let (sine, cosine) = self.sine_cosine_of(&harmonic.angles);
+        if harmonic.sine {
             sine
         } else {
             cosine
@@ -410,7 +410,7 @@ mod tests {
         let (s, c) = (p.symbol(Symbol::Sine(0)), p.symbol(Symbol::Cosine(0)));
         let (ss, cc) = (p.mul(s, s), p.mul(c, c));
         let difference = p.sub(cc, ss);
-        let double = Wave { angles: vec![(0, 2)], sine: false };
+        let double = Harmonic { angles: vec![(0, 2)], sine: false };
         assert_eq!(p.normal_forms(&[difference], 10)[0], Some(NormalForm::term(double, vec![], Number::one())));
     }
 }

@@ -5,7 +5,7 @@
 
 use dashu_base::{Abs, Signed};
 
-use super::normal_form::{Factors, NormalForm, Wave};
+use super::normal_form::{Factors, Harmonic, NormalForm};
 use super::{ExprId, Node, Pool, Symbol};
 use crate::exact::{Atom, Number, Rational};
 
@@ -79,10 +79,10 @@ impl Printer<'_> {
     /// A formula.
     pub fn form(&self, form: &NormalForm) -> String {
         let mut sum = Sum::default();
-        for (wave, group) in form.by_wave() {
+        for (harmonic, group) in form.by_wave() {
             if let [(factors, coefficient)] = group[..] {
-                self.term(&mut sum, coefficient, factors, Some(wave));
-            } else if wave.angles.is_empty() {
+                self.term(&mut sum, coefficient, factors, Some(harmonic));
+            } else if harmonic.angles.is_empty() {
                 group.iter().for_each(|(factors, coefficient)| self.term(&mut sum, coefficient, factors, None));
             } else {
                 let content = content(&group);
@@ -92,7 +92,7 @@ impl Printer<'_> {
                     self.term(&mut inner, &rest, factors, None);
                 }
                 let inner = format!("({})", inner.text);
-                self.product(&mut sum, &Number::from(content), [inner, self.wave(wave)]);
+                self.product(&mut sum, &Number::from(content), [inner, self.harmonic(harmonic)]);
             }
         }
         if sum.text.is_empty() {
@@ -102,10 +102,10 @@ impl Printer<'_> {
         }
     }
 
-    fn term(&self, sum: &mut Sum, coefficient: &Number, factors: &Factors, wave: Option<&Wave>) {
+    fn term(&self, sum: &mut Sum, coefficient: &Number, factors: &Factors, harmonic: Option<&Harmonic>) {
         let mut parts: Vec<String> = Vec::new();
-        if let Some(wave) = wave.filter(|w| !w.angles.is_empty()) {
-            parts.push(self.wave(wave));
+        if let Some(harmonic) = harmonic.filter(|w| !w.angles.is_empty()) {
+            parts.push(self.harmonic(harmonic));
         }
         for &(symbol, power) in factors {
             let name = self.symbol(symbol);
@@ -193,9 +193,9 @@ impl Printer<'_> {
         }
     }
 
-    fn wave(&self, wave: &Wave) -> String {
+    fn harmonic(&self, harmonic: &Harmonic) -> String {
         let mut sum = Sum::default();
-        for (index, k) in &wave.angles {
+        for (index, k) in &harmonic.angles {
             let name = match self.notation {
                 Notation::Text => format!("q{}", index + 1),
                 Notation::Latex => format!("q_{{{}}}", index + 1),
@@ -208,10 +208,10 @@ impl Printer<'_> {
             };
             sum.push(*k < 0, &text);
         }
-        let name = if wave.sine { "sin" } else { "cos" };
+        let name = if harmonic.sine { "sin" } else { "cos" };
         match self.notation {
             Notation::Text => format!("{name}({})", sum.text),
-            Notation::Latex if wave.order() == 1 => format!("\\{name} {}", sum.text),
+            Notation::Latex if harmonic.order() == 1 => format!("\\{name} {}", sum.text),
             Notation::Latex => format!("\\{name}\\left({}\\right)", sum.text),
         }
     }

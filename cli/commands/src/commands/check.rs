@@ -17,7 +17,7 @@ use armgen_codegen::{derive, Model};
 use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY};
 
-use super::verify::watched;
+use super::verify::with_spinner;
 
 /// Checks every file; the exit code is the worst of them.
 pub(crate) fn run(files: &[PathBuf]) -> u8 {
@@ -37,7 +37,7 @@ fn checked(file: &Path) -> Result<String, u8> {
     let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64, input::Warnings::Shown)?;
     let (description, _) = RobotDescription::parse(&source);
     // Whether products of valid numbers still fit, only the module itself shows.
-    let (module, all) = watched("deriving", || armgen_codegen::generate(&source, &Options::default()));
+    let (module, all) = with_spinner("deriving", || armgen_codegen::generate(&source, &Options::default()));
     if module.is_none() {
         terminal::diagnose(&all.render(&source, terminal::colour(&std::io::stderr())));
         return Err(FAULTY);

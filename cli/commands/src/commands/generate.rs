@@ -11,7 +11,7 @@ use armgen_codegen::validate;
 use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
 
-use super::verify::{certificate_beside, watched};
+use super::verify::{certificate_beside, with_spinner};
 use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
 /// What the module is to be.
@@ -92,7 +92,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     let without = choices.without.iter().copied().collect();
     let options = Options { scalar, trig, without, batch: choices.batch.map(usize::from), functions: functions.clone() };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
-    let mut generated = match input::told(&source, generated, &diagnostics, input::Warnings::Counted) {
+    let mut generated = match input::report_or_exit_code(&source, generated, &diagnostics, input::Warnings::Counted) {
         Ok(generated) => generated,
         Err(code) => return code,
     };
@@ -177,7 +177,7 @@ fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> 
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let mut files = Vec::new();
     if beside.verify {
-        let report = watched("verifying", || armgen_verify::certify(source, &generated));
+        let report = with_spinner("verifying", || armgen_verify::certify(source, &generated));
         if let Some(fault) = report.first_fault() {
             return Err(format!(
                 "nothing is written: the module does not equal the equations, {fault}; this is a fault of armgen"
@@ -190,7 +190,7 @@ fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> 
     if beside.tests {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let import = format!("#[path = {name:?}]\nmod robot;");
-        let tests = watched("computing reference values", || armgen_verify::test_kit(source, &generated.module, &import))?;
+        let tests = with_spinner("computing reference values", || armgen_verify::test_kit(source, &generated.module, &import))?;
         files.push((out.with_file_name(format!("{stem}_test.rs")), tests));
     }
     if beside.bounds {

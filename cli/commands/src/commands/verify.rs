@@ -32,9 +32,9 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
         })?),
         false => None,
     };
-    // What is wrong with the description is told as everywhere.
+    // What is wrong with the description is report_or_exit_code as everywhere.
     input::manipulator(&source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
-    let report = watched("verifying", || armgen_verify::verify(&source, text.text(), certificate.as_ref()));
+    let report = with_spinner("verifying", || armgen_verify::verify(&source, text.text(), certificate.as_ref()));
     let mut printed = format!("{report}\n");
     if certificate.is_some() {
         printed += &format!("certificate: {}\n", beside.display());
@@ -71,15 +71,15 @@ pub(crate) fn summary(report: &Report) -> String {
     )
 }
 
-/// As long a wait needs no words.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Work shorter than this shows no spinner.
+const SPINNER_DELAY: Duration = Duration::from_secs(2);
 
 /// Does `work`; a terminal shows that and how long, if it takes long.
-pub(crate) fn watched<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+pub(crate) fn with_spinner<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
     let (done, waiting) = channel::<()>();
     std::thread::scope(|scope| {
         scope.spawn(move || {
-            if waiting.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+            if waiting.recv_timeout(SPINNER_DELAY) != Err(RecvTimeoutError::Timeout) {
                 return;
             }
             // Drawn on a terminal only.

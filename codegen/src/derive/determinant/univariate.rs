@@ -1,4 +1,4 @@
-//! Polynomials in one variable over the exact constants: division, greatest common divisor, and the waves of an angle in t = tan(q/2):
+//! Polynomials in one variable over the exact constants: division, greatest common divisor, and the harmonics of an angle in t = tan(q/2):
 //!
 //! ```text
 //! cos kq + i sin kq = (1 + i t)^2k / (1 + t²)^k
@@ -24,7 +24,7 @@ impl Univariate {
     }
 
     /// The numerator over (1 + t²)^|k| of c cos kq or c sin kq; its formal degree is 2|k|.
-    pub(super) fn wave(k: i32, sine: bool, c: &Number) -> Univariate {
+    pub(super) fn harmonic(k: i32, sine: bool, c: &Number) -> Univariate {
         let n = 2 * k.unsigned_abs() as usize;
         let mut coefficients = vec![Number::zero(); n + 1];
         let mut binomial = Number::one();

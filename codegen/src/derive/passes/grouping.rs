@@ -1,5 +1,5 @@
-//! Grouping towards the base, with the freedoms that it has: which entry each handed parameter makes vanish, and where on its axis a
-//! joint frame has its origin.
+//! Regrouping of inertial parameters towards the base, with its two choices: how much of each parameter moves, and where on its axis a joint frame
+//! has its origin.
 //!
 //! A mass on the axis of a revolute joint, its moment and second moment along the axis, look the same to the parent whatever the
 //! joint angle, and the joint does not feel them (Gautier and Khalil 1990, "Direct calculation of minimum set of inertial
@@ -14,16 +14,16 @@ use super::super::plan::{Place, Plan};
 use crate::pass::Pass;
 use crate::ring::{ExprId, Pool};
 
-/// Groups all links towards the base.
+/// Regroups the parameters of all links towards the base.
 pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     for i in (0..arm.dof()).rev() {
-        slide(pool, arm, plan, i);
+        choose_origin(pool, arm, plan, i);
         if !plan.has(Pass::Grouping) {
             continue;
         }
         if arm.joints[i].is_revolute() {
             for (k, unit) in [unit_mass(), unit_moment(), unit_second_moment()].iter().enumerate() {
-                hand_on(pool, arm, plan, i, k, unit);
+                regroup(pool, arm, plan, i, k, unit);
             }
         } else {
             arm.hand_second_moments_on(pool, i);
@@ -31,10 +31,10 @@ pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     }
 }
 
-/// Slides alone.
-pub(super) fn slide_all(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+/// Chooses the origins alone.
+pub(super) fn choose_origins(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     for i in (0..arm.dof()).rev() {
-        slide(pool, arm, plan, i);
+        choose_origin(pool, arm, plan, i);
     }
 }
 
@@ -58,8 +58,8 @@ fn entries(body: &Body) -> Vec<ExprId> {
     std::iter::once(body.mass).chain(body.first).chain(body.second).collect()
 }
 
-/// Moves an amount of a body that joint i does not feel to the parent.
-fn hand_on(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usize, unit: &Body) {
+/// Moves a part of a body that joint i does not feel to the parent.
+fn regroup(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usize, unit: &Body) {
     let joint = arm.joints[i];
     let own = [joint.body.mass, joint.body.first[2], joint.body.second[5]][kind];
     let mut amount = own;
@@ -72,7 +72,7 @@ fn hand_on(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usiz
             .skip(1)
             .filter(|&(_, gain)| gain != ExprId::ZERO)
             .collect();
-        let way = plan.way(Pass::Freedoms, Place::Parameter(i, kind), there.len() + 1);
+        let way = plan.way(Pass::GroupingAmount, Place::Parameter(i, kind), there.len() + 1);
         if way > 0 {
             let (entry, gain) = there[way - 1];
             let inverse = pool.reciprocal(gain);
@@ -93,8 +93,8 @@ fn hand_on(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usiz
 }
 
 /// Moves the origin of joint frame i along its axis.
-fn slide(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
-    if !plan.has(Pass::Slides) {
+fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
+    if !plan.has(Pass::OriginAlongAxis) {
         return;
     }
     let joint = arm.joints[i];
@@ -121,7 +121,7 @@ fn slide(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
             ways.push(shift);
         }
     }
-    let way = plan.way(Pass::Slides, Place::Joint(i), ways.len() + 1);
+    let way = plan.way(Pass::OriginAlongAxis, Place::Joint(i), ways.len() + 1);
     if way > 0 {
         arm.slide(pool, i, ways[way - 1]);
     }

@@ -22,7 +22,7 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
          that carry them. With {NOMINAL_BASE_PARAMETERS} it is the torque of {inverse_dynamics}. For identification take {regressor} with \
          `regressor: base` in the description: it has all base parameters, zero or not.",
     ),
-    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::settle, starts: &STARTS, ..Recursion::new(Use::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
+    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(Use::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: None,

@@ -29,7 +29,7 @@
 
 use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body, Joint};
-use crate::derive::columns::{origin_rate, Column, Rate, Ways};
+use crate::derive::columns::{origin_rate, Column, OriginOffsets, Rate};
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -82,7 +82,7 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
     let composite = composite_bodies(pool, arm);
     let omega = angular_velocities(pool, arm);
     let flows = flows(pool, arm, &composite);
-    let mut ways = Ways::new(arm, Some(&omega));
+    let mut ways = OriginOffsets::new(arm, Some(&omega));
     let mut b = vec![vec![ExprId::ZERO; n]; n];
     let mut c = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
@@ -92,16 +92,16 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
         let (body, flow) = about_axis(pool, joint, &composite[j], &flows[j]);
         let column = column(pool, joint, &turning, &body, &flow);
         (b[j][j], c[j][j]) = own_entries(pool, joint, &column);
-        let mut traveller = ways.start(pool, plan, column, j);
-        while let Some(parent) = ways.go(pool, plan, &mut traveller) {
+        let mut propagated = ways.start(pool, plan, column, j);
+        while let Some(parent) = ways.propagate_to_parent(pool, plan, &mut propagated) {
             if let (Some(rotor), true) = (joint.rotor, joint.parent == Some(parent)) {
                 let coupling = pool.mul(rotor.inertia, rotor.ratio);
                 let momentum = pool.scale(coupling, &rotor.axis);
                 let mut w = omega[parent];
                 w[2] = pool.add(w[2], arm.joints[parent].drift);
-                traveller.add_moment(pool, &momentum, &w, &omega[parent]);
+                propagated.add_moment(pool, &momentum, &w, &omega[parent]);
             }
-            let entries = ways.entries(pool, &traveller);
+            let entries = ways.entries(pool, &propagated);
             b[parent][j] = entries.inertia;
             b[j][parent] = entries.inertia;
             c[parent][j] = entries.coriolis;
@@ -190,9 +190,9 @@ fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &Flow) -> Flow {
 
 /// A composite body in the axes of its parent turned by `fixed`, and its motion relative to that parent.
 pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flow) -> (Body, Flow) {
-    // Traces do not turn: taken here, they are found again.
-    pool.add(body.second[0], body.second[2]);
-    pool.add(flow.second[0][0], flow.second[1][1]);
+    // Traces of the upper left blocks are invariant under rotation about z: formed before it, they are the nodes that later sums are found to equal.
+    pool.intern_sum(body.second[0], body.second[2]);
+    pool.intern_sum(flow.second[0][0], flow.second[1][1]);
     let turned = joint.body_about_axis(pool, body);
     let flow = Flow {
         first: joint.about_axis(pool, &flow.first),

@@ -183,7 +183,7 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
         }
         // What the joints before j change at it.
         let mut travelling = Travelling::start(pool, arm, j, &omega, &composite[j], &flows[j]);
-        while let Some(parent) = travelling.go(pool, arm, &omega) {
+        while let Some(parent) = travelling.propagate_to_parent(pool, arm, &omega) {
             derivative[j][parent] = travelling.felt(pool, arm.joints[parent].is_revolute(), &before[parent]);
         }
     }
@@ -288,7 +288,7 @@ impl Travelling {
     }
 
     /// On to the parent, if there is one.
-    fn go(&mut self, pool: &mut Pool, arm: &Arm, omega: &[Vector]) -> Option<usize> {
+    fn propagate_to_parent(&mut self, pool: &mut Pool, arm: &Arm, omega: &[Vector]) -> Option<usize> {
         let joint = &arm.joints[self.link];
         let parent = joint.parent?;
         if !self.fresh {

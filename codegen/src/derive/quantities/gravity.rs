@@ -65,7 +65,7 @@ pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
         direction.push(own);
         let (mass, mut h) = composite[i];
         let mut meets = own;
-        if plan.way(Pass::Meeting, Place::Gravity(i), 2) == 1 {
+        if plan.way(Pass::WrenchFrame, Place::Gravity(i), 2) == 1 {
             h = joint.about_axis(pool, &h);
             meets = hat;
         }

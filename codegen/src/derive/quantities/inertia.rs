@@ -10,7 +10,7 @@
 //! The rotor of joint i adds I_m k² on the diagonal and, as it rides on the parent link, the moment I_m k z_m there: this couples the joints.
 
 use crate::derive::arm::{Arm, Body};
-use crate::derive::columns::{Column, Ways};
+use crate::derive::columns::{Column, OriginOffsets};
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -56,13 +56,12 @@ pub fn composite_bodies(pool: &mut Pool, arm: &Arm) -> Vec<Body> {
 pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let n = arm.dof();
     let composite = composite_bodies(pool, arm);
-    let mut ways = Ways::new(arm, None);
+    let mut ways = OriginOffsets::new(arm, None);
     let mut b = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         let joint = &arm.joints[j];
-        // The trace does not turn: known before the two entries turn, it is what their sum is found to be. The other entries are those that the
-        // parent's composite body takes, turned already.
-        let _ = pool.add(composite[j].second[0], composite[j].second[2]);
+        // The trace xx + yy is invariant under rotation about z: formed before the rotation, it is the node that their sum is found to equal.
+        pool.intern_sum(composite[j].second[0], composite[j].second[2]);
         let Body { mass, first: h, second: [xx, _, yy, xz, yz, _] } = joint.body_about_axis(pool, &composite[j]);
         let (force, moment): (Vector, Vector) = match joint.kind {
             JointKind::Revolute => ([-h[1], h[0], ExprId::ZERO], [-xz, -yz, pool.add(xx, yy)]),
@@ -75,13 +74,13 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
             own = pool.add(own, seen);
         }
         b[j][j] = own;
-        let mut traveller = ways.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
-        while let Some(parent) = ways.go(pool, plan, &mut traveller) {
+        let mut propagated = ways.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
+        while let Some(parent) = ways.propagate_to_parent(pool, plan, &mut propagated) {
             if let (Some((coupling, rotor)), true) = (coupling, joint.parent == Some(parent)) {
                 let spin = pool.scale(coupling, &rotor.axis);
-                traveller.add_moment(pool, &spin, &ZERO, &ZERO);
+                propagated.add_moment(pool, &spin, &ZERO, &ZERO);
             }
-            b[parent][j] = ways.entries(pool, &traveller).inertia;
+            b[parent][j] = ways.entries(pool, &propagated).inertia;
             b[j][parent] = b[parent][j];
         }
     }

@@ -35,7 +35,7 @@ fn last(arm: &Arm) -> Option<usize> {
 
 /// The constant angle after the joint variable q at which the axes of the last link point to its centre of mass, seen along the joint axis.
 /// None where that is no angle of its own, or not that of a point with rational coordinates.
-pub(crate) fn of_last_link(field: &Field, manipulator: &Manipulator) -> Option<Turn> {
+pub(crate) fn angle_of_last_link(field: &Field, manipulator: &Manipulator) -> Option<Turn> {
     let mut pool = Pool::new(field.clone());
     let arm = Arm::new(&mut pool, manipulator, View::Nominal);
     let i = last(&arm)?;
@@ -56,15 +56,15 @@ pub(crate) fn of_last_link(field: &Field, manipulator: &Manipulator) -> Option<T
     Turn::towards(&x, &y)
 }
 
-/// Turns the axes of the last link, or leaves them.
-pub(super) fn turn(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
-    if pool.field().turn().is_some() && plan.way(Pass::Turn, Place::Joint(arm.tip), 2) == 1 {
-        turn_last_link(pool, arm);
+/// Rotates the axes of the last link, or leaves them.
+pub(super) fn rotate(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
+    if pool.field().turn().is_some() && plan.way(Pass::LastLinkRotation, Place::Joint(arm.tip), 2) == 1 {
+        rotate_last_link(pool, arm);
     }
 }
 
 /// Turns the axes of the last link by the angle that the field knows, if there is one.
-pub(crate) fn turn_last_link(pool: &mut Pool, arm: &mut Arm) {
+pub(crate) fn rotate_last_link(pool: &mut Pool, arm: &mut Arm) {
     let Some((turn, i)) = pool.field().turn().cloned().zip(last(arm)) else { return };
     let Some(quarters) = quarters(pool, arm.joints[i].sine, i as u16) else { return };
     let (s, c) = (pool.constant(&turn.sine), pool.constant(&turn.cosine));
@@ -109,7 +109,7 @@ mod tests {
             let mut pool = Pool::new(field_of(&manipulator));
             let arm = Arm::new(&mut pool, &manipulator, View::Nominal);
             let mut turned = arm.clone();
-            turn_last_link(&mut pool, &mut turned);
+            rotate_last_link(&mut pool, &mut turned);
             let [x, y, _] = turned.joints[1].body.first;
             // 2 kg at (0.2, 0.4) in the joint frame, whose origin lies 0.5 further in.
             assert_eq!((pool.as_constant(x), y), (Number::from(Rational::from_parts(4.into(), 5u8.into())).sqrt(), ExprId::ZERO));
