@@ -34,7 +34,7 @@ use crate::exact::Polynomial;
 use crate::kinds::{Scalar, MAX_JOINTS};
 use crate::manipulator::{Joint, LinkId, Manipulator};
 use crate::source::{Source, Span};
-pub use equations::product_out_of_range;
+pub use equations::{product_out_of_range, values_leave_the_scalar};
 use evaluate::Evaluator;
 pub use names::is_rust_name;
 use parameters::Parameters;

@@ -9,8 +9,11 @@
 //!
 //! Divisors are pivots of B, positive for every arm; how small they can become intervals do not show. A bound for a function that divides is
 //! therefore one for states where every divisor is at least half of the smallest among some thousand states of the box, and says so.
+//!
+//! A value that can leave the scalar has no bound. One that can come below the normal numbers may be off by what they are spaced there, after an exact product
+//! with ½ too. Sines and cosines of angles beyond 10⁶ rad take any value.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::emit::Notes;
 use armgen_codegen::kinds::JointKind;
@@ -39,6 +42,9 @@ pub fn literal_errors(program: &Program, values: &[Formula], real: Float) -> Vec
         let same = exact.as_rational().is_some_and(|e| Rational::try_from(literal.value).is_ok_and(|f| f == *e));
         if same {
             0.0
+        } else if literal.value.abs() < real.smallest_normal() {
+            // Below the normal numbers a literal may have lost all its digits.
+            real.smallest()
         } else {
             real.unit() * literal.value.abs()
         }
@@ -58,9 +64,23 @@ pub struct Bound {
     pub smallest_divisor: Option<f64>,
     /// For accelerations: how far they are from solving the equations of motion.
     pub residual: Option<Residual>,
+    /// Of a function that divides: the largest error of what no reciprocal takes part in, where it meets one. Infinite where such a value can leave the
+    /// scalar.
+    pub undivided: f64,
 }
 
 impl Bound {
+    /// In a few words: over the box, of the torques where that is what is bounded, or nothing.
+    pub fn short(&self) -> String {
+        let largest = self.largest();
+        match (self.residual, largest.is_finite()) {
+            (Some(r), _) => format!("of torques {} + {} max|ddq|", two_digits(r.constant), two_digits(r.factor)),
+            (None, true) if largest == 0.0 => "none".into(),
+            (None, true) => two_digits(largest),
+            (None, false) => "bounded at a state alone".into(),
+        }
+    }
+
     /// The largest of all entries.
     pub fn largest(&self) -> f64 {
         self.entries.iter().fold(0.0, |a, &b| if b > a || b.is_nan() { b } else { a })
@@ -103,7 +123,10 @@ pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
 /// A random point of a domain, each entry rounded to the scalar.
 pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
     let mut uniform = |&(low, high): &(f64, f64)| {
-        let value = low + (high - low) * ((stream.bits() >> 11) as f64 / (1u64 << 53) as f64);
+        let part = (stream.bits() >> 11) as f64 / (1u64 << 53) as f64;
+        let width = high - low;
+        // A box from end to end of the scalar is wider than any number of it.
+        let value = if width.is_finite() { low + width * part } else { low * (1.0 - part) + high * part };
         real.rounded(value).clamp(low, high)
     };
     let mut all = |v: &[(f64, f64)]| v.iter().map(&mut uniform).collect();
@@ -116,6 +139,17 @@ pub fn draw(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64>
         tau: all(&domain.tau),
         pi: all(&domain.pi),
     }
+}
+
+/// A state of a domain whose entries are at its ends, at 0 where that lies within, or anywhere, with the same odds.
+pub fn corner(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
+    let drawn = draw(domain, stream, real);
+    drawn.beside(domain, |x, (low, high)| match stream.below(4) {
+        0 => low,
+        1 => high,
+        2 => 0f64.clamp(low, high),
+        _ => x,
+    })
 }
 
 /// An interval around the exact value, and how far the computed one can be from it.
@@ -137,7 +171,22 @@ impl Range {
         Range { low, high, error: 0.0 }
     }
 
+    /// No bound at all.
+    const ANYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
+
+    /// The range, if no value of it and none that can be computed for it leaves the scalar.
+    fn within(self, real: Float) -> Range {
+        if self.size() + self.error <= real.largest() {
+            self
+        } else {
+            Range::ANYTHING
+        }
+    }
+
     fn of(ends: &[f64], error: f64) -> Range {
+        if ends.iter().any(|end| end.is_nan()) {
+            return Range::ANYTHING;
+        }
         let low = ends.iter().fold(f64::INFINITY, |a, &b| a.min(b));
         let high = ends.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
         let widen = |x: f64, sign: f64| x + sign * (x.abs() * 1e-15 + f64::MIN_POSITIVE);
@@ -150,10 +199,17 @@ impl Range {
     }
 }
 
+/// Angles beyond this may be any.
+const FARTHEST: f64 = 1e6;
+
 /// The range of sine (or cosine, a quarter turn on) over an interval.
 fn wave(low: f64, high: f64, shift: f64) -> (f64, f64) {
     use std::f64::consts::{FRAC_PI_2, PI};
     let (a, b) = (low + shift, high + shift);
+    // So far out additions round by more than the slack below.
+    if !(a.abs() <= FARTHEST && b.abs() <= FARTHEST) {
+        return (-1.0, 1.0);
+    }
     // Whether a quarter turn plus k turns lies in the interval, with some slack.
     let contains = |peak: f64| ((a - peak - 1e-9) / (2.0 * PI)).ceil() * 2.0 * PI + peak <= b + 1e-9;
     let ends = [a.sin(), b.sin()];
@@ -191,10 +247,7 @@ fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f
 /// Values and errors of all steps of a program over a domain; `errors` are those of its literals, no divisor is below `smallest`.
 fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f64>, real: Float) -> Vec<Range> {
     let u = real.unit();
-    let tiny = match real {
-        Float::F64 => f64::MIN_POSITIVE,
-        Float::F32 => f64::from(f32::MIN_POSITIVE),
-    };
+    let tiny = real.smallest_normal();
     let angle = |angle: &Angle, shift: f64| {
         let terms = &angle.terms;
         let (mut low, mut high) = (0.0, 0.0);
@@ -261,7 +314,9 @@ fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f
                     ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
                 }
                 if power_of_two(x) || power_of_two(y) {
-                    Range::of(&ends, carried)
+                    // A product with ½ or less of what is hardly normal loses digits.
+                    let factor = if power_of_two(x) { a.size() } else { b.size() };
+                    Range::of(&ends, carried + if factor < 1.0 { real.smallest() } else { 0.0 })
                 } else {
                     rounded(&ends, carried + tiny, 1.0)
                 }
@@ -281,12 +336,12 @@ fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f
                     let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
                     rounded(&ends, (a.error + size * b.error) / left + tiny, 1.0)
                 } else {
-                    Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY }
+                    Range::ANYTHING
                 }
             }
         };
         debug_assert_eq!(ranges.len(), i);
-        ranges.push(range);
+        ranges.push(range.within(real));
     }
     ranges
 }
@@ -310,7 +365,33 @@ pub fn of_function(program: &Program, values: &[Formula], domain: &Domain, modul
         let state = draw(domain, &mut Stream::new(31), real);
         residual(program, &literals, &equations, &state, &ranges, real)
     };
-    Bound { entries: program.outputs.iter().map(|o| error(o.step)).collect(), smallest_divisor, residual: residual() }
+    let undivided = undivided_operands(program).into_iter().map(error).fold(0.0, f64::max);
+    Bound { entries: program.outputs.iter().map(|o| error(o.step)).collect(), smallest_divisor, residual: residual(), undivided }
+}
+
+/// Of a function that divides: the steps that no quotient takes part in and that are divisors, or operands of those that a quotient takes part in, or entries.
+pub fn undivided_operands(program: &Program) -> Vec<usize> {
+    let mut divided: Vec<bool> = Vec::with_capacity(program.steps.len());
+    let mut operands = BTreeSet::new();
+    for step in &program.steps {
+        let (of, quotient): (&[usize], bool) = match step {
+            Step::Divide(a, b) => (&[*a, *b], true),
+            Step::Negate(a) => (&[*a], false),
+            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) => (&[*a, *b], false),
+            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => (&[], false),
+        };
+        let takes_part = quotient || of.iter().any(|&operand| divided[operand]);
+        if takes_part {
+            operands.extend(of.iter().copied().filter(|&operand| !divided[operand]));
+        }
+        divided.push(takes_part);
+    }
+    if operands.is_empty() {
+        return Vec::new();
+    }
+    let entries = program.outputs.iter().map(|output| output.step).filter(|&step| !divided[step]);
+    operands.extend(entries);
+    operands.into_iter().collect()
 }
 
 /// The nominal parameters as the module holds them.
@@ -388,6 +469,11 @@ fn sentence(bound: &Bound) -> String {
     match (of_torques, of_entries) {
         (Some(torques), Some(entries)) => format!("Rounding error: {torques}. Also {entries}."),
         (Some(one), None) | (None, Some(one)) => format!("Rounding error: {one}."),
+        (None, None) if bound.smallest_divisor.is_none() || bound.undivided.is_infinite() => {
+            "Rounding error: no bound over the whole box of the head of this file, values can leave the range of Real there; \
+             at a state see the companion (`--bounds`)."
+                .into()
+        }
         (None, None) => "Rounding error: no bound over the whole box of the head of this file, divisors can come near 0; \
                          at a state see the companion (`--bounds`)."
             .into(),

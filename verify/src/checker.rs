@@ -9,10 +9,11 @@ use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
 use crate::arithmetic::prime::Prime;
 use crate::arithmetic::roots::{dependent, Dependent};
 use crate::arithmetic::tower::Tower;
-use crate::arithmetic::{Arithmetic, Element};
+use crate::arithmetic::{Arithmetic, Element, Stream};
 use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::claims::{Claims, Resolved};
 use crate::contract::{self, Promise};
+use crate::divisors::{divisors, is_needed, needed};
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
@@ -107,6 +108,16 @@ impl<K: Arithmetic> Point<K> {
         self.base.as_ref()?.fault(program, &literals, &base.named, &nominal)
     }
 
+    /// Whether a function may divide by the results of a program.
+    fn may_divide(&self, function: &str, by: &Program, literals: &[Formula]) -> bool {
+        let (Some((here, there, pivots_there)), Some(literals)) = (&self.reference.pivots, self.literals_of(by, literals)) else {
+            return false;
+        };
+        let values = by.run(&self.reference.state, &literals).into_iter().zip(by.run(there, &literals));
+        let mut divisors = values.map(|(a, b)| Some([a?, b?]));
+        divisors.all(|values| values.is_some_and(|[a, b]| is_needed(function, [&a, &b], [here, pivots_there])))
+    }
+
     /// With base parameters the potential energy is defined up to a constant: its change between two configurations is compared.
     fn energy_difference(&self, program: &Program, literals: &[K::Element], here: &[Option<K::Element>]) -> Option<usize> {
         let (there, expected_there) = self.reference.elsewhere.as_ref()?;
@@ -167,6 +178,8 @@ pub struct Checker {
     log2_odds: BTreeMap<String, f64>,
     base: Option<OwnParameters>,
     sizes: Sizes,
+    /// Random bits that nothing has been drawn from.
+    rest: Stream,
 }
 
 /// Collects the constants of a description: an arithmetic whose numbers are of no interest.
@@ -233,7 +246,8 @@ impl Checker {
         base: Option<OwnParameters>,
     ) -> Result<Checker, String> {
         let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
-        let wanted = |base: BaseParameters| Wanted { extras, base };
+        let divides = module.programs().any(|(_, program)| !divisors(program).is_empty());
+        let wanted = |base: BaseParameters, pivots: bool| Wanted { extras, base, pivots };
         let constants = Constants::of(&manipulator, &claims)?;
         let Constants { atoms, dependent } = &constants;
         let mut log2_odds = Odds::of_functions(&manipulator, &vector, &claims, &constants, module, base.as_ref());
@@ -247,7 +261,7 @@ impl Checker {
         for _ in 0..count {
             let mut field =
                 Prime::new(&mut stream, atoms, dependent).ok_or("the constants have too many square roots for a prime field")?;
-            let reference = Reference::new(&mut field, &manipulator, &vector, wanted(BaseParameters::Solved))?;
+            let reference = Reference::new(&mut field, &manipulator, &vector, wanted(BaseParameters::Solved, divides))?;
             let samples = match &base {
                 Some(base) => Some(Samples::draw(&mut field, &manipulator, &base.named, &reference, FITTED).ok_or(DIVIDED)?),
                 None => None,
@@ -256,12 +270,12 @@ impl Checker {
         }
         for _ in 0..effort.exact_points {
             let Some(mut tower) = Tower::new(&mut stream, atoms, dependent) else { break };
-            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::Kept))?;
+            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::Kept, false))?;
             let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
             exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
         let sizes = Sizes::of(&manipulator, &vector, base.as_ref());
-        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, base, sizes })
+        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, base, sizes, rest: stream })
     }
 
     /// The arm.
@@ -292,6 +306,11 @@ impl Checker {
     /// The same, to draw from their fields.
     pub fn points_mut(&mut self) -> &mut [Point<Prime>] {
         &mut self.points
+    }
+
+    /// Random bits for other states, which follow from the module as the points do.
+    pub fn rest(&self) -> Stream {
+        self.rest.clone()
     }
 
     /// Number of entries of the parameter vector.
@@ -337,7 +356,10 @@ impl Checker {
         let resolved = self.claims.resolve(&program.name, &program.literals, real);
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
-            None => self.misprint(program, &chosen, real).unwrap_or(Verdict::Equal),
+            None => {
+                let wrong = self.misprint(program, &chosen, real).or_else(|| self.foreign_divisor(program, &chosen));
+                wrong.unwrap_or(Verdict::Equal)
+            }
             Some((entry, why)) => {
                 let suspect = self.claims.suspect(program, &entry, real);
                 Verdict::Different { entry, why: why + &suspect.map_or_else(String::new, |suspect| format!("; {suspect}")) }
@@ -353,6 +375,7 @@ impl Checker {
             log2_odds: self.log2_odds.get(&program.name).copied().unwrap_or(0.0),
             literals: literals.map(|(l, value)| Exact { literal: l.text.clone(), value: value.clone() }).collect(),
             bound: None,
+            unfit: None,
         }
     }
 
@@ -403,6 +426,20 @@ impl Checker {
         modular.or_else(exact).or_else(dependent)
     }
 
+    /// A divisor that the equations do not ask for.
+    fn foreign_divisor(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
+        let divisors = divisors(program);
+        let by = program.part(&divisors);
+        if divisors.is_empty() || self.points.iter().all(|point| point.may_divide(&program.name, &by, chosen)) {
+            return None;
+        }
+        Some(Verdict::Refused(if needed(&program.name).is_empty() {
+            "it divides, which its equations do not ask for".into()
+        } else {
+            "it divides by what is no pivot of a matrix that its equations invert".into()
+        }))
+    }
+
     /// A literal that is not the float nearest to the exact value with which the function is right.
     fn misprint(&self, program: &Program, chosen: &[Formula], real: Float) -> Option<Verdict> {
         let (index, literal) =
@@ -445,7 +482,7 @@ impl Odds {
         let own = constants_of(manipulator);
         let nominal = base.iter().flat_map(|base| &base.nominal);
         let mut degrees = Degrees::new(own.iter().chain(literals.iter().flat_map(|(_, values)| values)).chain(nominal));
-        let wanted = Wanted { extras: true, base: BaseParameters::Free };
+        let wanted = Wanted { extras: true, base: BaseParameters::Free, pivots: false };
         let Ok(reference) = Reference::new(&mut degrees, manipulator, vector, wanted) else { return BTreeMap::new() };
         let base = base.and_then(|own| {
             let samples = Samples::draw(&mut degrees, manipulator, &own.named, &reference, 0)?;
@@ -480,7 +517,16 @@ impl Odds {
 
 fn refused(name: &str, why: String) -> FunctionReport {
     let verdict = Verdict::Refused(why);
-    FunctionReport { name: name.into(), verdict, points: 0, exact_points: 0, log2_odds: 0.0, literals: Vec::new(), bound: None }
+    FunctionReport {
+        name: name.into(),
+        verdict,
+        points: 0,
+        exact_points: 0,
+        log2_odds: 0.0,
+        literals: Vec::new(),
+        bound: None,
+        unfit: None,
+    }
 }
 
 /// An index that its argument does not have: the reader knows arguments by name only.

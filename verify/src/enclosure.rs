@@ -39,7 +39,7 @@ pub fn enclose(formula: &Formula, bits: usize) -> Option<(Rational, Rational)> {
     })
 }
 
-/// Sine and cosine of a fraction below 256 in size, as integers over 2^bits with the number of bits, off by less than two units of 2^-`fine`.
+/// Sine and cosine of a fraction, as integers over 2^bits with the number of bits, off by less than two units of 2^-`fine`.
 pub fn sine_cosine_of(angle: &Rational, fine: usize) -> Option<(IBig, IBig, usize)> {
     let bits = fine + 8;
     let scaled = (angle * Rational::from(UBig::ONE << bits)).floor();
@@ -178,11 +178,34 @@ fn arctangent_of(tangent: Interval, bits: usize) -> Option<Interval> {
     Some(Interval { low: (&sum - &slack) * &eight, high: (sum + slack) * eight })
 }
 
-/// sin (first = 1) or cos (first = 0) of an angle below 256 rad, by the series at its lower end, widened by its width (slopes are at most 1).
+/// Angles are taken less whole turns from here on.
+const LARGE_ANGLE: u32 = 256;
+
+/// Angles of more bits before the point have no sine here.
+const LONGEST_ANGLE: usize = 4096;
+
+/// An angle less as many whole turns as fit below its lower end.
+fn less_turns(angle: &Interval, bits: usize) -> Option<Interval> {
+    let extra = (angle.low.clone() >> bits).bit_len() + 8;
+    if extra > LONGEST_ANGLE {
+        return None;
+    }
+    let (half, third) = (arctangent(2, bits + extra), arctangent(3, bits + extra));
+    let eight = IBig::from(8);
+    let turn = Interval { low: (half.low + third.low) * &eight, high: (half.high + third.high) * eight };
+    let turns = floor_div(&(angle.low.clone() << extra), &turn.low);
+    let (least, most) = if turns.is_negative() { (&turn.low, &turn.high) } else { (&turn.high, &turn.low) };
+    Some(Interval {
+        low: floor_shift((angle.low.clone() << extra) - &turns * least, extra),
+        high: ceil_shift((angle.high.clone() << extra) - &turns * most, extra),
+    })
+}
+
+/// sin (first = 1) or cos (first = 0) of an angle, by the series at its lower end, widened by its width (slopes are at most 1).
 fn series(angle: &Interval, first: u32, bits: usize) -> Option<Interval> {
     let size = angle.low.clone().abs() >> bits;
-    if size >= IBig::from(256) {
-        return None;
+    if size >= IBig::from(LARGE_ANGLE) {
+        return series(&less_turns(angle, bits)?, first, bits);
     }
     // Terms first grow, up to e^x < 2^(1.5 x), and so do the errors carried along.
     let guard = 24 + 3 * (usize::try_from(size).unwrap_or(256) + 1);
@@ -221,6 +244,38 @@ impl Float {
         }
     }
 
+    /// The largest finite number.
+    pub fn largest(self) -> f64 {
+        match self {
+            Float::F64 => f64::MAX,
+            Float::F32 => f64::from(f32::MAX),
+        }
+    }
+
+    /// The smallest normal number: below it the spacing shrinks no more.
+    pub fn smallest_normal(self) -> f64 {
+        match self {
+            Float::F64 => f64::MIN_POSITIVE,
+            Float::F32 => f64::from(f32::MIN_POSITIVE),
+        }
+    }
+
+    /// The smallest positive number, the spacing below [`Float::smallest_normal`].
+    pub fn smallest(self) -> f64 {
+        match self {
+            Float::F64 => f64::from_bits(1),
+            Float::F32 => f64::from(f32::from_bits(1)),
+        }
+    }
+
+    /// Its name in Rust.
+    pub fn name(self) -> &'static str {
+        match self {
+            Float::F64 => "f64",
+            Float::F32 => "f32",
+        }
+    }
+
     /// The value that a literal has in this format; exact as f64.
     pub fn read(self, text: &str) -> Option<f64> {
         match self {
@@ -255,10 +310,15 @@ impl Float {
         }
     }
 
-    /// The outermost numbers of this format between two others.
+    /// The outermost numbers of this format between two others; where there is none, those next to both, so that the interval is never empty. What lies
+    /// beyond the largest number is taken to be that.
     pub fn between(self, low: f64, high: f64) -> (f64, f64) {
+        let most = self.largest();
+        let (low, high) = (low.clamp(-most, most), high.clamp(-most, most));
         let (first, last) = (self.rounded(low), self.rounded(high));
-        (if first < low { self.neighbours(first).1 } else { first }, if last > high { self.neighbours(last).0 } else { last })
+        let above = if first < low { self.neighbours(first).1 } else { first };
+        let below = if last > high { self.neighbours(last).0 } else { last };
+        (above.min(below), above.max(below))
     }
 
     fn round(self, value: &Rational) -> f64 {
@@ -349,9 +409,33 @@ mod tests {
     }
 
     #[test]
+    fn between_two_numbers_there_is_always_one() {
+        for real in [Float::F64, Float::F32] {
+            for (low, high) in [
+                (0.1, 0.1),
+                (0.1, 0.100_000_000_1),
+                (-0.3, 0.7),
+                (5e12, 5e12 + 0.25),
+                (0.0, 1e-50),
+                (-1e300, 1e300),
+                (1e39, 1e40),
+            ] {
+                let (first, last) = real.between(low, high);
+                assert!(first <= last && first.is_finite() && last.is_finite(), "{low} {high}: {first} {last}");
+                assert_eq!((real.rounded(first), real.rounded(last)), (first, last));
+            }
+        }
+        assert_eq!(Float::F64.between(0.1, 0.7), (0.1, 0.7));
+        assert_eq!(Float::F32.between(0.1, 0.7), (f64::from(0.1f32), f64::from(0.7f32)));
+    }
+
+    #[test]
     fn large_angles_and_impossible_numbers() {
         assert_eq!(Float::F64.nearest(&parse("sin(200)")), Some(200f64.sin()));
-        assert_eq!(Float::F64.nearest(&parse("sin(1000)")), None);
+        for (angle, value) in [("1000", 1e3), ("-1000", -1e3), ("1e6", 1e6), ("-1e22", -1e22), ("2^400", 2f64.powi(400))] {
+            assert_eq!(Float::F64.nearest(&parse(&format!("sin({angle})"))), Some(value.sin()), "{angle}");
+            assert_eq!(Float::F64.nearest(&parse(&format!("cos({angle})"))), Some(value.cos()), "{angle}");
+        }
         assert_eq!(Float::F64.nearest(&parse("sqrt(1 - sqrt(2))")), None);
         assert_eq!(Float::F64.nearest(&parse("1/(sqrt(2) - sqrt(2))")), None);
         assert!(!Float::F64.is_nearest(f64::INFINITY, &parse("1e400")));

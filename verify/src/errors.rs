@@ -13,7 +13,7 @@ use armgen_codegen::manipulator::Manipulator;
 use crate::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::{Element, Stream};
-use crate::bounds::{domain_of, draw, literal_errors, of_function, Bound, Domain};
+use crate::bounds::{corner, domain_of, draw, literal_errors, of_function, Bound, Domain};
 use crate::claims::Claims;
 use crate::companion::{LaneArguments, LaneTable, Table, LANES};
 use crate::enclosure::Float;
@@ -277,8 +277,14 @@ fn neighbour(state: &Arguments<f64>, domain: &Domain, stream: &mut Stream, real:
     })
 }
 
-/// A state of the box; one in 16 has about half of its entries at 0, or at the end of the box that is next to 0.
+/// Batches of a run that are corners of the box alone.
+const BATCHES_OF_CORNERS: u64 = 32;
+
+/// A state of the box; one in 8 is a corner, and one in 16 has about half of its entries at 0, or at the end of the box that is next to 0.
 fn state(domain: &Domain, stream: &mut Stream, real: Float) -> Arguments<f64> {
+    if stream.below(8) == 0 {
+        return corner(domain, stream, real);
+    }
     let mut drawn = draw(domain, stream, real);
     if stream.below(16) > 0 {
         return drawn;
@@ -298,6 +304,7 @@ pub struct Run {
     /// Neighbours have draws of their own: which states are tried does not depend on what is seen.
     of_neighbours: Stream,
     scratch: Vec<Twofold>,
+    batches: u64,
     /// What has been seen of each function.
     pub seen: Vec<Seen>,
 }
@@ -314,13 +321,16 @@ impl Run {
             stream: Stream::new(seed),
             of_neighbours: Stream::new(!seed),
             scratch: Vec::new(),
+            batches: 0,
         }
     }
 
     /// Goes on over so many batches of [`LANES`] states.
     pub fn go_on(&mut self, batches: u64) -> Result<(), String> {
         for _ in 0..batches {
-            let states = std::array::from_fn(|_| state(&self.domain, &mut self.stream, self.real));
+            let of = if self.batches < BATCHES_OF_CORNERS { corner } else { state };
+            let states = std::array::from_fn(|_| of(&self.domain, &mut self.stream, self.real));
+            self.batches += 1;
             let batch = Batch::new(states, &self.circle, self.real)?;
             for (subject, seen) in self.subjects.iter_mut().zip(&mut self.seen) {
                 let mut look = |batch: &Batch, seen: &mut Seen| {

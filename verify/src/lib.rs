@@ -33,6 +33,7 @@ pub mod claims;
 pub mod companion;
 pub mod constants;
 pub mod contract;
+pub mod divisors;
 pub mod enclosure;
 pub mod equations;
 pub mod errors;
@@ -46,8 +47,10 @@ pub mod reference;
 pub mod report;
 pub mod residual;
 pub mod seed;
+pub mod stability;
 pub mod test_kit;
 
+use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
@@ -63,6 +66,7 @@ use equations::parameters::Vector;
 use formula::Formula;
 use reader::{Constant, Module};
 use report::{Report, Verdict};
+use stability::Trial;
 
 /// SHA-256 of a text, hexadecimal.
 pub fn hash(text: &str) -> String {
@@ -119,6 +123,16 @@ pub fn verify(source: &Source, text: &str, certificate: Option<&Certificate>) ->
 /// Verifies what the generator has just made from a description.
 pub fn certify(source: &Source, generated: &Generated) -> Report {
     verify_with(source, &generated.module, Claims::from_numbers(&generated.constants), Effort::default())
+}
+
+/// That a value of a function can leave the scalar within the limits of the joints, with the place in the description.
+pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Diagnostics {
+    let (read, mut diagnostics) = validate::read_for(source, scalar);
+    if let Some((manipulator, places)) = read {
+        diagnostics = Diagnostics::default();
+        diagnostics.push(validate::values_leave_the_scalar(&manipulator, &places, scalar, function));
+    }
+    diagnostics
 }
 
 /// The constants of the generator for the scalar of a text.
@@ -190,10 +204,16 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     // The box is of the module's constants, the residual of its equations of motion: what is wrong has no bounds.
     let right = report.constants.iter().all(|constant| constant.verdict == Verdict::Equal)
         && report.functions.iter().all(|function| function.verdict == Verdict::Equal);
-    for function in report.functions.iter_mut().filter(|_| right) {
+    let trial = right.then(|| {
+        let task = checker.manipulator().task_rows();
+        Trial::new(module, &report.domain, task, &mut checker.rest())
+    });
+    for (function, trial) in report.functions.iter_mut().zip(trial.iter().cycle()) {
         let Some(program) = module.program(&function.name) else { continue };
         let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
-        function.bound = Some(bounds::of_function(program, &values, &report.domain, module, checker.claims()));
+        let bound = bounds::of_function(program, &values, &report.domain, module, checker.claims());
+        function.unfit = trial.fault(program, &values, &bound);
+        function.bound = Some(bound);
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));

@@ -7,6 +7,7 @@ use armgen_codegen::manipulator::Manipulator;
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::{Arithmetic, Element};
 use crate::contract::{Array, Length, Promise, Returned};
+use crate::divisors::{Matrix, Pivots};
 use crate::equations::arm::{Arm, Frame};
 use crate::equations::lagrange::{
     accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, times_vector,
@@ -109,6 +110,8 @@ pub struct Reference<E> {
     pub nominal_base: Option<Vec<E>>,
     /// Whether Lagrange's and Newton and Euler's torques agree.
     pub two_derivations_agree: bool,
+    /// What may be divided by, if that is wanted: at the state, and at another one with the same parameters.
+    pub pivots: Option<(Pivots<E>, State<E>, Pivots<E>)>,
 }
 
 /// What the equations of motion are made of: B and C row by row, g, F and U.
@@ -170,12 +173,17 @@ fn of_parts<E: Element>(arm: &Arm<E>, state: &State<E>, parts: Parts<E>, values:
     Some(without_friction)
 }
 
-/// Σ m p / Σ m: the sum on top is -U where free fall is along an axis at 1. None where there is no mass.
-fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> {
+/// Σ m.
+fn mass<E: Element>(arm: &Arm<E>) -> E {
     let links = arm.joints.iter().map(|joint| &joint.link.mass);
     let rotors = arm.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
     let load = arm.payload.iter().map(|body| &body.mass);
-    let total = links.chain(rotors).chain(load).fold(arm.zero.clone(), |sum, mass| sum.plus(mass));
+    links.chain(rotors).chain(load).fold(arm.zero.clone(), |sum, mass| sum.plus(mass))
+}
+
+/// Σ m p / Σ m: the sum on top is -U where free fall is along an axis at 1. None where there is no mass.
+fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> {
+    let total = mass(arm);
     let along = |axis: usize| {
         let mut falling = arm.clone();
         falling.gravity = [0, 1, 2].map(|i| if i == axis { arm.one.clone() } else { arm.zero.clone() });
@@ -206,15 +214,39 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> (Vec<Vec<E>
     (by_q, by_dq)
 }
 
+fn identity<E: Element>(arm: &Arm<E>, n: usize) -> Vec<Vec<E>> {
+    (0..n).map(|i| (0..n).map(|j| if i == j { arm.one.clone() } else { arm.zero.clone() }).collect()).collect()
+}
+
+/// J B^-1 J' for rows of the geometric Jacobian.
+fn mobility<E: Element>(jacobian: &[E], inverse: &[Vec<E>], task: &[usize]) -> Vec<Vec<E>> {
+    let n = inverse.len();
+    let rows: Vec<&[E]> = task.iter().map(|&row| &jacobian[row * n..(row + 1) * n]).collect();
+    let dot = |a: &[E], b: &[E]| a.iter().zip(b).map(|(a, b)| a.times(b)).reduce(|a, b| a.plus(&b)).expect("at least one joint");
+    let column = |j: usize| -> Vec<E> { inverse.iter().map(|row| row[j].clone()).collect() };
+    let half_way = |row: &&[E]| -> Vec<E> { (0..n).map(|j| dot(row, &column(j))).collect() };
+    rows.iter().map(half_way).map(|along| rows.iter().map(|row| dot(&along, row)).collect()).collect()
+}
+
+/// The pivots that functions may divide by, at a state.
+fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>, task: Option<&[usize]>) -> Pivots<E> {
+    let b = inertia_matrix(arm, state);
+    let inverse = task.and_then(|task| Some((task, solve(&b, &identity(arm, arm.dof()))?)));
+    let of_task = inverse.map(|(task, inverse)| {
+        let jacobian = Pose::new(arm, state).geometric_jacobian(arm.tip);
+        (Matrix::Mobility, mobility(&jacobian, &inverse, task))
+    });
+    let with = run_time.map(|arm| (Matrix::InertiaWith, inertia_matrix(arm, state)));
+    let mass = Some((Matrix::Mass, vec![vec![mass(arm)]]));
+    let mass_with = run_time.map(|arm| (Matrix::MassWith, vec![vec![self::mass(arm)]]));
+    Pivots::of([Some((Matrix::Inertia, b)), with, of_task, mass, mass_with].into_iter().flatten().collect())
+}
+
 /// The functions that only some modules have.
 fn extras<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &mut Values<E>) -> Option<()> {
     let n = arm.dof();
     let b = inertia_matrix(arm, state);
-    let unit: Vec<Vec<E>> =
-        (0..n).map(|i| (0..n).map(|j| if i == j { arm.one.clone() } else { arm.zero.clone() }).collect()).collect();
-    let inverse = solve(&b, &unit)?;
-    let jacobian = &values["geometric_jacobian"];
-    let rows: Vec<Vec<E>> = task.iter().map(|&row| jacobian[row * n..(row + 1) * n].to_vec()).collect();
+    let inverse = solve(&b, &identity(arm, n))?;
     let product = |a: &[Vec<E>], b: &dyn Fn(usize, usize) -> E, columns: usize| -> Vec<Vec<E>> {
         a.iter()
             .map(|row| {
@@ -224,12 +256,8 @@ fn extras<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &m
             })
             .collect()
     };
-    let half_way = product(&rows, &|k, j| inverse[k][j].clone(), n);
-    let mobility = product(&half_way, &|k, j| rows[j][k].clone(), task.len());
-    let task_unit: Vec<Vec<E>> = (0..task.len())
-        .map(|i| (0..task.len()).map(|j| if i == j { arm.one.clone() } else { arm.zero.clone() }).collect())
-        .collect();
-    if let Some(inertia) = solve(&mobility, &task_unit) {
+    let mobility = mobility(&values["geometric_jacobian"], &inverse, task);
+    if let Some(inertia) = solve(&mobility, &identity(arm, task.len())) {
         values.insert("operational_inertia".into(), inertia.concat());
     }
     let (by_q, by_dq) = torque_derivatives(arm, state);
@@ -271,6 +299,8 @@ pub struct Wanted {
     pub extras: bool,
     /// How the functions at run-time base parameters are had.
     pub base: BaseParameters,
+    /// The pivots that functions may divide by.
+    pub pivots: bool,
 }
 
 /// Base parameters follow from the standard ones by a matrix that is the solution of a system of equations. To those that they are named after
@@ -387,10 +417,16 @@ impl<E: Element> Reference<E> {
         let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
         values.insert("regressor".into(), y);
         values.insert("known_torque".into(), known);
-        if let Some(arm) = run_time {
-            agree &= quantities(&arm, &state, &mut values, "_with").ok_or_else(singular)?;
+        if let Some(arm) = &run_time {
+            agree &= quantities(arm, &state, &mut values, "_with").ok_or_else(singular)?;
         }
-        Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree })
+        let pivots = wanted.pivots.then(|| {
+            let there = State { pi: state.pi.clone(), ..State::draw(arithmetic, n) };
+            let task = wanted.extras.then(|| manipulator.task_rows());
+            let at = |state: &State<E>| pivots(&arm, run_time.as_ref(), state, task.as_deref());
+            (at(&state), there.clone(), at(&there))
+        });
+        Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree, pivots })
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::bounds::{Bound, Domain};
 use crate::formula::Formula;
+use crate::stability::Unfit;
 
 /// What is not known by odds of a miss of at most 2^-168 is not verified: 2^40 tries of somebody who looks for a miss leave 2^-128.
 pub const MOST_LOG2_ODDS: f64 = -168.0;
@@ -50,6 +51,8 @@ pub struct FunctionReport {
     pub literals: Vec<Exact>,
     /// How far rounding can take its entries from the exact ones over the box, where it equals the equations.
     pub bound: Option<Bound>,
+    /// Why it is useless in floats although it equals the equations, if it is ([`mod@crate::stability`]).
+    pub unfit: Option<Unfit>,
 }
 
 /// What is said of a constant.
@@ -121,6 +124,15 @@ impl Report {
         !self.functions.is_empty() && self.first_fault().is_none()
     }
 
+    /// The function of which alone is wrong that a value of it can leave the scalar: not its fault, but that of the limits.
+    pub fn beyond_the_scalar(&self) -> Option<&str> {
+        let leaves = |f: &&FunctionReport| matches!(f.unfit, Some(Unfit::Leaves(_)));
+        let first = self.functions.iter().find(leaves)?;
+        let mut others = self.clone();
+        others.functions.iter_mut().filter(|f| leaves(&&**f)).for_each(|f| f.unfit = None);
+        others.passed().then_some(first.name.as_str())
+    }
+
     /// The first thing that is wrong: a function or a constant with the entry, the whole, or an identity.
     pub fn first_fault(&self) -> Option<String> {
         let named = |name: &str, verdict: &Verdict| match verdict {
@@ -137,7 +149,9 @@ impl Report {
         let uncertain = |f: &FunctionReport| {
             f.is_uncertain().then(|| format!("{}: the odds of a miss are 2^{:.0}", f.name, f.log2_odds.ceil()))
         };
-        let functions = self.functions.iter().filter_map(|f| named(&f.name, &f.verdict).or_else(|| uncertain(f)));
+        let unfit = |f: &FunctionReport| f.unfit.as_ref().map(|why| format!("{}: {why}", f.name));
+        let of_function = |f: &FunctionReport| named(&f.name, &f.verdict).or_else(|| uncertain(f)).or_else(|| unfit(f));
+        let functions = self.functions.iter().filter_map(of_function);
         let identities = self.identities.iter().filter_map(identity);
         functions.chain(constants).chain(self.faults.iter().cloned()).chain(identities).next()
     }
@@ -172,14 +186,19 @@ impl fmt::Display for Report {
         }
         let width = self.functions.iter().map(|r| r.name.len()).chain([24]).max().unwrap_or(24);
         if !self.functions.is_empty() {
-            writeln!(f, "{:width$}  verdict  points: modular  rational  odds of a miss below", "function")?;
+            writeln!(f, "{:width$}  verdict  points: modular  rational  odds of a miss  rounding error", "function")?;
         }
         for report in &self.functions {
             write!(f, "{:width$}  {}", report.name, report.verdict)?;
             if report.verdict == Verdict::Equal {
-                write!(f, "    {:15}  {:8}  2^{:.0}", report.points, report.exact_points, report.log2_odds.ceil())?;
+                let odds = format!("2^{:.0}", report.log2_odds.ceil());
+                let error = report.bound.as_ref().map_or_else(String::new, Bound::short);
+                write!(f, "    {:15}  {:8}  {odds:<14}  {error}", report.points, report.exact_points)?;
             }
             writeln!(f)?;
+            if let Some(why) = &report.unfit {
+                writeln!(f, "{:width$}  UNFIT for {}: {why}", "", self.scalar)?;
+            }
         }
         for report in self.constants.iter().filter(|c| c.verdict != Verdict::Equal) {
             writeln!(f, "{:width$}  {}", report.name, report.verdict)?;

@@ -125,7 +125,7 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
             write(&arguments.pi)
         );
         let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
-        let wanted = Wanted { extras, base: BaseParameters::LeftOut };
+        let wanted = Wanted { extras, base: BaseParameters::LeftOut, pivots: false };
         let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
         for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
             let Some((promise, with)) = Promise::of(name) else { continue };

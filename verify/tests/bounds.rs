@@ -125,10 +125,10 @@ fn the_companion_returns_the_same_bounds() {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("companion").join(name);
         std::fs::create_dir_all(folder.join("src")).expect("a folder");
         let write = |file: &str, text: &str| std::fs::write(folder.join(file), text).expect("written");
-        write(
-            "Cargo.toml",
-            "[package]\nname = \"companion\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n",
-        );
+        let manifest = |edition: &str| {
+            let text = "[package]\nname = \"companion\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n";
+            write("Cargo.toml", &text.replace("2021", edition));
+        };
         write("src/robot.rs", &text);
         write("src/robot_bounds.rs", &companion);
         write(
@@ -138,13 +138,22 @@ fn the_companion_returns_the_same_bounds() {
                  for word in words.filter(|w| w.parse::<robot::Real>().is_ok()) {{\n        println!(\"{{word}}\");\n    }}\n}}\nfn main() {{\n{calls}}}\n"
             ),
         );
-        let output = Command::new(env!("CARGO"))
-            .args(["run", "--offline", "--quiet"])
-            .current_dir(&folder)
-            .env("CARGO_TARGET_DIR", folder.join("target"))
-            .env("RUSTFLAGS", "-D warnings")
-            .output()
-            .expect("cargo runs");
+        let cargo = |command: &str| {
+            Command::new(env!("CARGO"))
+                .args([command, "--offline", "--quiet"])
+                .current_dir(&folder)
+                .env("CARGO_TARGET_DIR", folder.join("target"))
+                .env("RUSTFLAGS", "-D warnings")
+                .output()
+                .expect("cargo runs")
+        };
+        for edition in ["2015", "2018", "2024"].iter().filter(|_| name == "scara") {
+            manifest(edition);
+            let output = cargo("check");
+            assert!(output.status.success(), "edition {edition}: {}", String::from_utf8_lossy(&output.stderr));
+        }
+        manifest("2021");
+        let output = cargo("run");
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let found: Vec<f64> = printed.lines().map(|word| word.parse().expect("a number")).collect();

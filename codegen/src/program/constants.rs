@@ -2,28 +2,26 @@
 
 use std::collections::BTreeMap;
 
-use super::{Module, Operand};
+use super::listing::{angles, Listing};
+use super::Module;
 use crate::exact::Number;
-use crate::ring::Symbol;
 
 impl Module {
-    /// The constants of each function by its name, each once in the order of the steps, and the nominal parameters as `NOMINAL_PARAMETERS`.
+    /// The constants of each function by its name, one for each literal in the order of the text and without its sign, so that it is known which of two
+    /// that round to one float a literal stands for; and the nominal parameters as `NOMINAL_PARAMETERS`.
     pub fn constants(&self) -> BTreeMap<String, Vec<Number>> {
         let mut constants: BTreeMap<String, Vec<Number>> = BTreeMap::new();
+        let mut sizes: BTreeMap<Number, Number> = BTreeMap::new();
         for function in &self.functions {
-            let steps = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
-            let mut list: Vec<Number> = Vec::new();
-            for operand in steps.chain(function.outputs.iter().map(|output| &output.operand)) {
-                let value = match operand {
-                    Operand::Constant(value) => Some(value),
-                    Operand::Input(Symbol::SineOf(sum) | Symbol::CosineOf(sum)) if sum.turned => self.turn.as_ref(),
-                    _ => None,
-                };
-                if let Some(value) = value.filter(|value| !list.contains(value)) {
-                    list.push(value.clone());
-                }
-            }
-            constants.insert(function.name(), list);
+            // Angles stand in front.
+            let angles = angles(&function.symbols());
+            let turns = angles.iter().filter(|angle| angle.turned).filter_map(|_| self.turn.as_ref());
+            let listing = Listing::of(function);
+            let mut size = |value: &Number| {
+                let size = || if value.is_negative() { -value } else { value.clone() };
+                sizes.entry(value.clone()).or_insert_with(size).clone()
+            };
+            constants.insert(function.name(), turns.chain(listing.constants()).map(&mut size).collect());
         }
         let nominal = self.parameters.iter().map(|parameter| parameter.nominal.clone());
         constants.insert("NOMINAL_PARAMETERS".into(), nominal.collect());

@@ -242,6 +242,18 @@ impl Expression {
         Expression::Negation(Box::new(if bare { self } else { Expression::Brackets(Box::new(self)) }))
     }
 
+    fn collect_constants<'a>(&'a self, constants: &mut Vec<&'a Number>) {
+        match self {
+            Expression::Constant(value) => constants.push(value),
+            Expression::Input(_) | Expression::Step(_) => {}
+            Expression::Operation(_, left, right) => {
+                left.collect_constants(constants);
+                right.collect_constants(constants);
+            }
+            Expression::Negation(inner) | Expression::Brackets(inner) => inner.collect_constants(constants),
+        }
+    }
+
     fn collect_names(&self, names: &mut BTreeSet<Name>) {
         match self {
             Expression::Input(symbol) => {
@@ -313,6 +325,14 @@ impl Listing {
         });
         let entries = entries.collect();
         Listing { lines, entries }
+    }
+
+    /// The constants in the order in which they are printed, with their signs.
+    pub fn constants(&self) -> Vec<&Number> {
+        let mut constants = Vec::new();
+        let all = self.lines.iter().map(|line| &line.value).chain(&self.entries);
+        all.for_each(|expression| expression.collect_constants(&mut constants));
+        constants
     }
 
     /// The lines of a long body in parts; none where it is not long.

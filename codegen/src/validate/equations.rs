@@ -21,7 +21,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Number;
 use crate::kinds::ParameterId;
 use crate::kinds::Scalar;
-use crate::manipulator::{Manipulator, RegressorChoice};
+use crate::manipulator::{Limits, Manipulator, RegressorChoice};
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::source::Span;
@@ -197,4 +197,25 @@ pub fn product_out_of_range(places: &Places, scalar: Scalar, value: &Number) -> 
     );
     let help = "look for a length, mass, inertia or ratio of an unlikely size: SI units throughout";
     Diagnostic::new(Code::OutOfRange, places.name, message, "the equations of this arm", help)
+}
+
+/// A value of the functions can leave the scalar within the limits of the joints.
+pub fn values_leave_the_scalar(manipulator: &Manipulator, places: &Places, scalar: Scalar, function: &str) -> Diagnostic {
+    let (name, other) = match scalar {
+        Scalar::F64 => ("f64", ""),
+        Scalar::F32 => ("f32", ", or generate for f64"),
+    };
+    let message = format!("within the limits of the joints a value of `{function}` can be beyond the range of {name}");
+    let help = format!("write narrower limits of position, velocity and effort, or look for a number of an unlikely size: SI units throughout{other}");
+    let widest = |limits: &Limits| {
+        let ends = limits.position.iter().flatten().chain(&limits.velocity).chain(&limits.effort);
+        ends.map(|end| end.to_f64().abs()).fold(0.0, f64::max)
+    };
+    // The joint with the widest limits, if there are any that are wider than a machine has.
+    let widest = manipulator.joints.iter().zip(&places.joints).map(|(joint, place)| (widest(&joint.limits), place.name));
+    let joint = widest.filter(|(size, _)| *size > 1e6).max_by(|a, b| a.0.total_cmp(&b.0));
+    match joint {
+        Some((_, place)) => Diagnostic::new(Code::OutOfRange, place, message, "the joint with the widest limits", help),
+        None => Diagnostic::new(Code::OutOfRange, places.name, message, "the equations of this arm", help),
+    }
 }

@@ -165,7 +165,7 @@ impl Circle {
         Circle { table: (0..=ANGLES).map(entry).collect(), reciprocals }
     }
 
-    /// Sine and cosine of an angle below 200 rad.
+    /// Sine and cosine of an angle.
     pub fn wave(&self, q: f64) -> Option<(Pair, Pair)> {
         let size = q.abs();
         let j = (size * STEPS).round();
@@ -224,7 +224,7 @@ pub struct TwofoldArguments {
 }
 
 impl TwofoldArguments {
-    /// At the floats given, exactly; joint variables below 200 in size.
+    /// At the floats given, exactly.
     pub fn new(circle: &Circle, states: &[Arguments<f64>; LANES]) -> Option<TwofoldArguments> {
         let arguments = Arguments::gather(states, |states| states);
         let wave = |q: &[f64; LANES]| {

@@ -197,7 +197,7 @@ impl Element for Wide {
     }
 }
 
-/// Sine and cosine of a float below 200 in size.
+/// Sine and cosine of a float.
 fn circle(angle: f64) -> Option<(Wide, Wide)> {
     if angle == 0.0 {
         return Some((ZERO, Wide::from_f64(1.0)));
@@ -229,7 +229,7 @@ pub struct WideArguments {
 }
 
 impl WideArguments {
-    /// At the floats given, exactly; joint variables below 200 in size.
+    /// At the floats given, exactly.
     pub fn new(arguments: &Arguments<f64>) -> Option<WideArguments> {
         let angles: Option<Vec<(Wide, Wide)>> = arguments.q.iter().map(|&q| circle(q)).collect();
         Some(WideArguments { arguments: arguments.clone(), angles: angles? })

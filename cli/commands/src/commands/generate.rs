@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::pass::Pass;
 use armgen_codegen::program::Trig;
@@ -110,7 +111,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
         return UNREADABLE;
     }
-    let files = match files(&source, generated, out, beside) {
+    let files = match files(&source, generated, scalar, out, beside) {
         Ok(files) => files,
         Err(error) => {
             terminal::error(&error);
@@ -173,11 +174,24 @@ fn module_name(stem: &str) -> String {
 }
 
 /// All files to write, or why a module is not to be trusted with being written.
-fn files(source: &Source, generated: Generated, out: &Path, beside: &Beside) -> Result<Vec<(PathBuf, String)>, String> {
+fn files(
+    source: &Source,
+    generated: Generated,
+    scalar: Scalar,
+    out: &Path,
+    beside: &Beside,
+) -> Result<Vec<(PathBuf, String)>, String> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let mut files = Vec::new();
     if beside.verify {
         let report = with_spinner("verifying", || armgen_verify::certify(source, &generated));
+        if let Some(function) = report.beyond_the_scalar() {
+            let diagnostics = armgen_verify::beyond_the_scalar(source, function, scalar);
+            return Err(format!(
+                "nothing is written: its errors have no bound\n{}",
+                diagnostics.render(source, Colour::Never).trim_end()
+            ));
+        }
         if let Some(fault) = report.first_fault() {
             return Err(format!(
                 "nothing is written: the module does not equal the equations, {fault}; this is a fault of armgen"

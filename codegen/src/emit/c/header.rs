@@ -19,9 +19,16 @@ fn macro_of(prefix: &str, length: Length) -> String {
     }
 }
 
+/// What the macros of a robot begin with: its name with large letters for small ones, and small ones for large ones, so that names which differ
+/// in case alone have macros that differ.
+fn macros_of(name: &str) -> String {
+    let turned = |c: char| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() };
+    name.chars().map(turned).collect()
+}
+
 pub(super) fn header(module: &Module, origin: &Origin) -> String {
     let name = prefix(module);
-    let upper = name.to_uppercase();
+    let upper = macros_of(&name);
     let real = match module.scalar {
         Scalar::F64 => "double",
         Scalar::F32 => "float",
@@ -147,5 +154,18 @@ fn constant(value: &Number, scalar: Scalar) -> String {
     match scalar {
         Scalar::F64 => digits,
         Scalar::F32 => format!("{digits}f"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::macros_of;
+
+    #[test]
+    fn robots_whose_names_differ_in_case_have_other_macros() {
+        assert_eq!(macros_of("scara"), "SCARA");
+        let names = ["fn_1", "Fn_1", "fN_1", "FN_1"];
+        let macros: std::collections::BTreeSet<String> = names.iter().map(|name| macros_of(name)).collect();
+        assert_eq!(macros.len(), names.len());
     }
 }
