@@ -325,7 +325,7 @@ fn verify_tells_what_it_cannot_read() {
     check(&["verify", &file("robots/none.yaml"), &yaml], 2);
     fs::write(&module, "fn main() { loop {} }").expect("a file");
     let output = check(&["verify", &yaml, path], 1);
-    assert!(err(&output).contains("robot.rs: line 1: `main` is not"), "{}", err(&output));
+    assert!(err(&output).contains("robot.rs:1: `main` is not"), "{}", err(&output));
     let output = check(&["verify", &file("tests/bad/many-faults.yaml"), path], 1);
     assert!(err(&output).contains("many-faults.yaml:"), "{}", err(&output));
 }

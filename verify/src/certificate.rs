@@ -4,14 +4,17 @@
 use std::collections::BTreeMap;
 
 use serde_derive::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::bounds::two_digits;
 use crate::claims::Claims;
 use crate::formula::definitions::{self, Definitions};
+use crate::reader::Module;
 use crate::report::{Exact, Report, Verdict};
 
 /// A certificate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Certificate {
     /// Version of this format.
     pub certificate: u32,
@@ -44,6 +47,7 @@ pub struct Certificate {
 
 /// A text by its hash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Text {
     /// SHA-256, hexadecimal.
     pub sha256: String,
@@ -51,6 +55,7 @@ pub struct Text {
 
 /// A function.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FunctionEntry {
     /// Its name.
     pub name: String,
@@ -76,6 +81,7 @@ pub struct FunctionEntry {
 
 /// A constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ConstantEntry {
     /// Its name.
     pub name: String,
@@ -87,6 +93,7 @@ pub struct ConstantEntry {
 
 /// An identity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct IdentityEntry {
     /// The identity as a formula.
     pub identity: String,
@@ -99,8 +106,42 @@ pub struct IdentityEntry {
 /// The version that is written.
 const FORMAT: u32 = 1;
 
+/// The longest text that is read, in bytes; that of a chain of 32 joints has an eighth of it.
+pub const LONGEST: usize = 32 << 20;
+
+/// As many differences of a certificate are named.
+const MOST_NAMED: usize = 8;
+
 fn literals(exact: &[Exact]) -> Vec<(String, String)> {
     exact.iter().map(|e| (e.literal.clone(), e.value.to_string())).collect()
+}
+
+/// Names the places at which two values differ, objects of a list by their names.
+fn compare(given: &Value, found: &Value, place: String, into: &mut Vec<String>) {
+    match (given, found) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => {
+            for (key, given) in a {
+                compare(given, &b[key], format!("{place}{}{key}", if place.is_empty() { "" } else { "." }), into);
+            }
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            for (i, (given, found)) in a.iter().zip(b).enumerate() {
+                let name = found.get("name").or_else(|| found.get("identity")).and_then(Value::as_str);
+                compare(given, found, name.map_or_else(|| format!("{place}[{i}]"), |name| format!("{place}[{name}]")), into);
+            }
+        }
+        (given, found) if given != found => {
+            let short = |value: &Value| {
+                let text = value.to_string();
+                match text.char_indices().nth(60) {
+                    None => text,
+                    Some((end, _)) => format!("{}...", &text[..end]),
+                }
+            };
+            into.push(format!("the certificate says {place}: {}, the checker finds {}", short(given), short(found)));
+        }
+        _ => {}
+    }
 }
 
 impl Certificate {
@@ -178,13 +219,67 @@ impl Certificate {
         text
     }
 
-    /// Reads a certificate.
+    /// Reads a certificate. Its text must be the one that [`to_json`](Certificate::to_json) gives: so no key stands twice and nothing beside.
     pub fn from_json(text: &str) -> Result<Certificate, String> {
+        if text.len() > LONGEST {
+            return Err(format!("the certificate is longer than {} MiB", LONGEST >> 20));
+        }
         let certificate: Certificate = serde_json::from_str(text).map_err(|e| format!("the certificate cannot be read: {e}"))?;
         if certificate.certificate != FORMAT {
             return Err(format!("the certificate has format {}, this program reads {FORMAT}", certificate.certificate));
         }
-        Ok(certificate)
+        let written = certificate.to_json();
+        match text.lines().zip(written.lines()).position(|(found, wanted)| found != wanted) {
+            None if written == text => Ok(certificate),
+            at => {
+                let line = at.unwrap_or(text.lines().count().min(written.lines().count())) + 1;
+                Err(format!(
+                    "line {line} of the certificate is not as armgen writes it: `armgen generate --verify` writes it again"
+                ))
+            }
+        }
+    }
+
+    /// The exact values that it claims for the literals of a module, or what is wrong with it as far as that is known before anything is computed:
+    /// other texts, other functions, other literals, values that are not theirs.
+    pub fn claims_for(&self, module: &Module, input: &str, output: &str) -> Result<Claims, Vec<String>> {
+        let mut faults = Vec::new();
+        if self.input.sha256 != input {
+            faults.push("the certificate is of another description: its hash of the input differs".into());
+        }
+        if self.output.sha256 != output {
+            faults.push("the certificate is of another module: its hash of the output differs".into());
+        }
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        let listed = self.functions.iter().map(|entry| (&entry.name, entry.literals.iter().map(|(literal, _)| literal)));
+        let there = module.programs().map(|(name, program)| (name, program.literals.iter().map(|literal| &literal.text)));
+        let mut fits = self.functions.len() == module.programs().count();
+        for ((claimed, of_claims), (name, literals)) in listed.zip(there) {
+            fits &= *claimed == name && of_claims.eq(literals);
+        }
+        if !fits {
+            return Err(vec!["the certificate lists other functions or literals than the module has".into()]);
+        }
+        let claims = self.claims().map_err(|fault| vec![format!("the certificate: {fault}")])?;
+        match claims.misfit(module) {
+            Some(fault) => Err(vec![format!("the certificate: {fault}")]),
+            None => Ok(claims),
+        }
+    }
+
+    /// What this certificate says otherwise than `found`, the one that was written on the same texts just now; each with its place.
+    pub fn differences(&self, found: &Certificate) -> Vec<String> {
+        let value = |certificate: &Certificate| serde_json::to_value(certificate).unwrap_or_default();
+        let mut all = Vec::new();
+        compare(&value(self), &value(found), String::new(), &mut all);
+        let more = all.len().saturating_sub(MOST_NAMED);
+        all.truncate(MOST_NAMED);
+        if more > 0 {
+            all.push(format!("the certificate differs in {more} more places"));
+        }
+        all
     }
 
     /// The exact values that it claims for literals.

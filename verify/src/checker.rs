@@ -245,9 +245,7 @@ impl Checker {
         module: &Module,
         base: Option<OwnParameters>,
     ) -> Result<Checker, String> {
-        let extras = module.functions.iter().any(|(name, _)| Promise::of(name).is_some_and(|(promise, _)| !promise.required));
         let divides = module.programs().any(|(_, program)| !divisors(program).is_empty());
-        let wanted = |base: BaseParameters, pivots: bool| Wanted { extras, base, pivots };
         let constants = Constants::of(&manipulator, &claims)?;
         let Constants { atoms, dependent } = &constants;
         let mut log2_odds = Odds::of_functions(&manipulator, &vector, &claims, &constants, module, base.as_ref());
@@ -261,7 +259,8 @@ impl Checker {
         for _ in 0..count {
             let mut field =
                 Prime::new(&mut stream, atoms, dependent).ok_or("the constants have too many square roots for a prime field")?;
-            let reference = Reference::new(&mut field, &manipulator, &vector, wanted(BaseParameters::Solved, divides))?;
+            let reference =
+                Reference::new(&mut field, &manipulator, &vector, Wanted { base: BaseParameters::Solved, pivots: divides })?;
             let samples = match &base {
                 Some(base) => Some(Samples::draw(&mut field, &manipulator, &base.named, &reference, FITTED).ok_or(DIVIDED)?),
                 None => None,
@@ -270,7 +269,8 @@ impl Checker {
         }
         for _ in 0..effort.exact_points {
             let Some(mut tower) = Tower::new(&mut stream, atoms, dependent) else { break };
-            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted(BaseParameters::Kept, false))?;
+            let reference =
+                Reference::new(&mut tower, &manipulator, &vector, Wanted { base: BaseParameters::Kept, pivots: false })?;
             let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
             exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
@@ -332,7 +332,9 @@ impl Checker {
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
         let mut reports: Vec<FunctionReport> =
             module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
-        for name in Promise::required() {
+        // An optional one is missing where the arm has it.
+        let of_arm = |name: &str| !self.points.is_empty() && self.points.iter().all(|point| point.knows(name));
+        for name in Promise::required().into_iter().chain(Promise::optional().filter(|name| of_arm(name))) {
             if !module.functions.iter().any(|(other, _)| *other == name) {
                 reports.push(refused(&name, "the module does not have it".into()));
             }
@@ -482,7 +484,7 @@ impl Odds {
         let own = constants_of(manipulator);
         let nominal = base.iter().flat_map(|base| &base.nominal);
         let mut degrees = Degrees::new(own.iter().chain(literals.iter().flat_map(|(_, values)| values)).chain(nominal));
-        let wanted = Wanted { extras: true, base: BaseParameters::Free, pivots: false };
+        let wanted = Wanted { base: BaseParameters::Free, pivots: false };
         let Ok(reference) = Reference::new(&mut degrees, manipulator, vector, wanted) else { return BTreeMap::new() };
         let base = base.and_then(|own| {
             let samples = Samples::draw(&mut degrees, manipulator, &own.named, &reference, 0)?;

@@ -30,6 +30,11 @@ impl Claims {
     /// What a generator hands over. A constant that is longer than a formula may be is left out: its literal stands for the decimal number
     /// that it is, and the function does not equal the equations.
     pub fn from_numbers(constants: &BTreeMap<String, Vec<Number>>) -> Claims {
+        Claims::read(constants).0
+    }
+
+    /// With the definitions that they refer to.
+    fn read(constants: &BTreeMap<String, Vec<Number>>) -> (Claims, Definitions) {
         let mut texts = exact::Definitions::default();
         let lists: Vec<(&String, Vec<String>)> = constants
             .iter()
@@ -40,10 +45,9 @@ impl Claims {
             // Without one of them, those that refer to it are left out too.
             let _ = definitions.define(index, text);
         }
-        let read = |text: &String| Formula::parse_with(text, &definitions).ok();
-        Claims {
-            by_name: lists.into_iter().map(|(name, texts)| (name.clone(), texts.iter().filter_map(read).collect())).collect(),
-        }
+        let read = |text: &String| definitions.formula(text).ok();
+        let of = |(name, texts): (&String, Vec<String>)| (name.clone(), texts.iter().filter_map(read).collect());
+        (Claims { by_name: lists.into_iter().map(of).collect() }, definitions)
     }
 
     /// Formulas without names, by function.
@@ -58,8 +62,7 @@ impl Claims {
     ) -> Result<Claims, String> {
         let mut by_name = BTreeMap::new();
         for (name, texts) in constants {
-            let formulas: Result<Vec<Formula>, String> =
-                texts.iter().map(|text| Formula::parse_with(text, definitions)).collect();
+            let formulas: Result<Vec<Formula>, String> = texts.iter().map(|text| definitions.formula(text)).collect();
             by_name.insert(name.to_string(), formulas.map_err(|e| format!("`{name}`: {e}"))?);
         }
         Ok(Claims { by_name })
@@ -77,6 +80,21 @@ impl Claims {
             by_name.insert((*name).to_string(), self.of(name).to_vec());
         }
         Claims { by_name }
+    }
+
+    /// What a certificate claims in vain: a constant that does not round to the literal it stands for, or that lies so near to the boundary between
+    /// two floats that no constant of a robot does.
+    pub fn misfit(&self, module: &Module) -> Option<String> {
+        module.programs().find_map(|(name, program)| {
+            let mut pairs = self.of(name).iter().zip(&program.literals);
+            pairs.find_map(|(claim, literal)| match module.real.decides(literal.value, claim, MOST_BITS) {
+                Some(true) => None,
+                Some(false) => Some(format!("{name}: the literal {} is not the float nearest to {claim}", literal.text)),
+                None => {
+                    Some(format!("{name}: {MOST_BITS} bits do not tell whether {} is the float nearest to {claim}", literal.text))
+                }
+            })
+        })
     }
 
     /// All claimed constants.
@@ -157,6 +175,9 @@ pub struct Resolved {
     pub others: BTreeMap<usize, Vec<Formula>>,
 }
 
+/// Bits that tell the float nearest to a constant of a robot; a few more than twice those of a float do.
+const MOST_BITS: usize = 1024;
+
 /// As many choices among constants with the same float are tried.
 const MOST_CHOICES: usize = 256;
 
@@ -178,5 +199,25 @@ impl Resolved {
             }
         }
         choices
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use armgen_codegen::schedule::Options;
+    use armgen_codegen::source::Source;
+
+    /// A limit that a robot comes near is none.
+    #[test]
+    fn constants_of_robots_cost_little() {
+        for name in ["robots/panda7", "tests/robots/everything", "tests/robots/general_angles", "tests/robots/base_set"] {
+            let path = format!("{}/../{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+            let source = Source::new("robot.yaml", std::fs::read_to_string(path).expect("a robot"));
+            let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
+            let (_, definitions) = Claims::read(&generated.constants);
+            println!("{name}: {:.4} of what formulas may cost", definitions.spent());
+            assert!(definitions.spent() < 0.1, "{name}");
+        }
     }
 }

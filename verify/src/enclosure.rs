@@ -342,35 +342,40 @@ impl Float {
 
     /// Whether `value` is the float nearest to the constant (ties to even): by comparison with the midpoints to its neighbours.
     pub fn is_nearest(self, value: f64, formula: &Formula) -> bool {
+        self.decides(value, formula, usize::MAX).unwrap_or(false)
+    }
+
+    /// The same, with enclosures of so many bits at most; `None` where they do not tell.
+    pub fn decides(self, value: f64, formula: &Formula, bits: usize) -> Option<bool> {
         if !value.is_finite() {
-            return false;
+            return Some(false);
         }
         let exact = |x: f64| Rational::try_from(x).ok();
-        let Some(own) = exact(value) else { return false };
+        let own = exact(value)?;
         let (below, above) = self.neighbours(value);
         // Beyond the largest float the midpoint is where the next one would be.
         let midpoint = |neighbour: f64, other: f64| match exact(neighbour) {
             Some(neighbour) => Some((&own + neighbour) / Rational::from(2)),
             None => Some((&own * Rational::from(3) - exact(other)?) / Rational::from(2)),
         };
-        let (Some(low), Some(high)) = (midpoint(below, above), midpoint(above, below)) else { return false };
+        let (low, high) = (midpoint(below, above)?, midpoint(above, below)?);
         let inside = |x: &Rational| match (x.cmp(&low), x.cmp(&high)) {
             (Ordering::Greater, Ordering::Less) => Some(true),
             (Ordering::Equal, _) | (_, Ordering::Equal) => None,
             _ => Some(false),
         };
         if let Some(x) = formula.as_rational() {
-            return inside(x).unwrap_or(self.is_even(value));
+            return Some(inside(x).unwrap_or(self.is_even(value)));
         }
-        for bits in PRECISIONS {
-            let Some((x, y)) = enclose(formula, bits) else { return false };
+        for precision in PRECISIONS.into_iter().take_while(|precision| *precision <= bits) {
+            let (x, y) = enclose(formula, precision)?;
             match (inside(&x), inside(&y)) {
-                (Some(true), Some(true)) => return true,
-                (Some(false), Some(false)) if (x < low) == (y < low) => return false,
+                (Some(true), Some(true)) => return Some(true),
+                (Some(false), Some(false)) if (x < low) == (y < low) => return Some(false),
                 _ => {}
             }
         }
-        false
+        None
     }
 }
 

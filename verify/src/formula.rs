@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 
-use dashu_base::{Abs, Gcd, Signed, SquareRoot, UnsignedAbs};
+use dashu_base::{Abs, BitTest, Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use crate::arithmetic::{Arithmetic, Element};
@@ -92,6 +92,21 @@ const DEEPEST: usize = 64;
 const LARGEST_POWER: i32 = 400;
 const TRIAL_DIVISION: u32 = 10_000;
 
+/// Bits of a power.
+const LARGEST_BITS: usize = 1 << 14;
+
+/// What formulas cost, in nanoseconds: reading, enclosing to some hundred bits, evaluating in some fields.
+const WORK_OF_PRIMARY: u64 = 500;
+const WORK_OF_FACTOR: u64 = 5_000;
+const WORK_OF_WAVE: u64 = 30_000;
+/// For each 64 bits of an integer: the trial division by primes.
+const WORK_OF_ROOT: u64 = 20_000;
+
+/// The length of a fraction, in words of 64 bits.
+fn words(value: &Rational) -> u64 {
+    (value.numerator().bit_len() + value.denominator().bit_len()) as u64 / 64 + 1
+}
+
 impl Formula {
     /// Reads a formula without names.
     pub fn parse(text: &str) -> Result<Formula, String> {
@@ -164,10 +179,14 @@ impl Formula {
 
     /// The product, fractions taken together in front.
     fn by(self, other: Formula) -> Formula {
+        Formula::product_of(vec![self, other])
+    }
+
+    fn product_of(formulas: Vec<Formula>) -> Formula {
         let mut scale = Rational::ONE;
         let mut under_root = UBig::ONE;
         let mut factors = Vec::new();
-        for formula in [self, other] {
+        for formula in formulas {
             let parts = if let Formula::Product(parts) = formula { parts } else { vec![formula] };
             for part in parts {
                 match part {
@@ -499,27 +518,55 @@ impl Parser<'_> {
             }
         }
         self.depth -= 1;
-        if let Some(sum) = terms.iter().map(Formula::as_rational).try_fold(Rational::ZERO, |sum, r| Some(sum + r?)) {
+        if let Some(terms) = terms.iter().map(Formula::as_rational).collect::<Option<Vec<&Rational>>>() {
+            let mut sum = Rational::ZERO;
+            for term in terms {
+                self.charge_words(&[words(&sum), words(term)])?;
+                sum += term;
+            }
             return Ok(Formula::Rational(sum));
         }
         Ok(if terms.len() == 1 { terms.remove(0) } else { Formula::Sum(terms) })
     }
 
+    /// Counts the work of a product or a sum of numbers of so many words.
+    fn charge_words(&self, words: &[u64]) -> Result<(), String> {
+        let all: u64 = words.iter().sum();
+        self.definitions.charge(all.saturating_mul(all))
+    }
+
     fn product(&mut self) -> Result<Formula, String> {
-        let mut product = self.power()?;
+        let mut factors = vec![self.power()?];
         loop {
             if self.take('*') {
-                product = product.by(self.power()?);
+                factors.push(self.power()?);
             } else if self.take('/') {
-                product = match self.power()? {
+                factors.push(match self.power()? {
                     Formula::Rational(r) if r.is_zero() => return Err("a division by zero".into()),
-                    Formula::Rational(r) => product.by(Formula::Rational(Rational::ONE / r)),
-                    divisor => product.by(Formula::Power(Box::new(divisor), -1)),
-                };
+                    Formula::Rational(r) => Formula::Rational(Rational::ONE / r),
+                    divisor => Formula::Power(Box::new(divisor), -1),
+                });
             } else {
-                return Ok(product);
+                break;
             }
         }
+        if factors.len() == 1 {
+            return Ok(factors.remove(0));
+        }
+        // The fractions and the numbers under roots are multiplied.
+        let mut all = 0;
+        for factor in &factors {
+            let parts = if let Formula::Product(parts) = factor { parts.as_slice() } else { std::slice::from_ref(factor) };
+            for part in parts {
+                all += match part {
+                    Formula::Rational(value) => words(value),
+                    Formula::Root(Root::Integer(n)) => n.bit_len() as u64 / 64 + 1,
+                    _ => 0,
+                };
+                self.charge_words(&[all])?;
+            }
+        }
+        Ok(Formula::product_of(factors))
     }
 
     fn power(&mut self) -> Result<Formula, String> {
@@ -536,7 +583,12 @@ impl Parser<'_> {
         if size > LARGEST_POWER {
             return Err(format!("an exponent of {size}"));
         }
-        Ok(Formula::Power(Box::new(base), if negative { -size } else { size }))
+        let power = Formula::Power(Box::new(base), if negative { -size } else { size });
+        self.definitions.charge(size as u64 * WORK_OF_FACTOR)?;
+        match definitions::size(&power) {
+            bits if bits > LARGEST_BITS => Err(format!("a power of about {bits} bits is no constant of a robot")),
+            _ => Ok(power),
+        }
     }
 
     fn digits(&mut self) -> String {
@@ -549,6 +601,7 @@ impl Parser<'_> {
 
     fn primary(&mut self) -> Result<Formula, String> {
         self.skip();
+        self.definitions.charge(WORK_OF_PRIMARY)?;
         if self.take('(') {
             let inner = self.sum()?;
             self.expect(')')?;
@@ -561,6 +614,7 @@ impl Parser<'_> {
         let (word, rest) = self.rest.split_at(end);
         self.rest = rest;
         if word == "pi" {
+            self.definitions.charge(WORK_OF_WAVE)?;
             return Ok(Formula::Pi);
         }
         if word == definitions::PREFIX {
@@ -573,6 +627,11 @@ impl Parser<'_> {
         self.expect('(')?;
         let inner = self.sum()?;
         self.expect(')')?;
+        self.definitions.charge(match (word, &inner) {
+            // Numerator and denominator are multiplied.
+            ("sqrt", Formula::Rational(value)) => words(value).saturating_mul(WORK_OF_ROOT),
+            _ => WORK_OF_WAVE,
+        })?;
         Ok(match (word, inner) {
             ("sqrt", Formula::Rational(value)) => root_of_rational(&value)?,
             ("sqrt", inner) => Formula::Root(Root::Nested(Box::new(inner))),
@@ -603,6 +662,7 @@ impl Parser<'_> {
             let exponent: i32 = self.digits().parse().ok().filter(|&e| e <= 400).ok_or("an exponent beyond every float")?;
             scale += if negative { -exponent } else { exponent };
         }
+        self.charge_words(&[digits.len() as u64 / 19 + 1, u64::from(scale.unsigned_abs()) / 19 + 1])?;
         let size: UBig = digits.parse().map_err(|_| "digits expected".to_string())?;
         let power = UBig::from(10u8).pow(scale.unsigned_abs() as usize);
         let value = if scale < 0 { Rational::from_parts(IBig::from(size), power) } else { Rational::from(size * power) };

@@ -48,6 +48,7 @@ pub mod report;
 pub mod residual;
 pub mod seed;
 pub mod stability;
+pub mod stated;
 pub mod test_kit;
 
 use armgen_codegen::diagnostic::Diagnostics;
@@ -98,26 +99,31 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
 
 /// Verifies the text of a module against the text of its description.
 ///
-/// The exact values of literals come from `certificate` or, without one, from a run of the generator; neither is trusted. A certificate of
-/// other texts is a fault. Faults of the description are rendered into [`Report::faults`].
+/// The exact values of literals come from `certificate` or, without one, from a run of the generator; neither is trusted. A certificate must say
+/// what the one says that is written on what is found: each difference is a fault. Faults of the description are rendered into [`Report::faults`].
 pub fn verify(source: &Source, text: &str, certificate: Option<&Certificate>) -> Report {
-    let claims = match certificate {
-        Some(certificate) => certificate.claims(),
-        None => Ok(generated_claims(source, text)),
+    let report = Report::of(hash(source.text()), hash(text));
+    let module = match Module::read(text) {
+        Ok(module) => module,
+        Err(fault) => return Report { faults: vec![fault.into()], ..report },
     };
-    let mut report = match claims {
-        Ok(claims) => verify_with(source, text, claims, Effort::default()),
-        Err(fault) => Report { faults: vec![fault], ..Report::of(hash(source.text()), hash(text)) },
-    };
-    if let Some(certificate) = certificate {
-        if certificate.input.sha256 != report.input {
-            report.faults.push("the certificate is of another description: its hash of the input differs".into());
+    let by_generator = || verify_with(source, text, generated_claims(source, module.real), Effort::default());
+    let Some(certificate) = certificate else { return by_generator() };
+    match certificate.claims_for(&module, &report.input, &report.output) {
+        Ok(claims) => {
+            let mut report = verify_with(source, text, claims, Effort::default());
+            if report.passed() {
+                report.faults = certificate.differences(&Certificate::of(&report));
+            }
+            report
         }
-        if certificate.output.sha256 != report.output {
-            report.faults.push("the certificate is of another module: its hash of the output differs".into());
+        // Which function is wrong, if one is, is worth knowing all the same.
+        Err(faults) => {
+            let mut report = by_generator();
+            report.faults.extend(faults);
+            report
         }
     }
-    report
 }
 
 /// Verifies what the generator has just made from a description.
@@ -135,12 +141,11 @@ pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Dia
     diagnostics
 }
 
-/// The constants of the generator for the scalar of a text.
-fn generated_claims(source: &Source, text: &str) -> Claims {
-    let scalar = match Module::read(text) {
-        Ok(Module { real: Float::F32, .. }) => Scalar::F32,
-        Ok(_) => Scalar::F64,
-        Err(_) => return Claims::none(),
+/// The constants of the generator for a scalar.
+fn generated_claims(source: &Source, real: Float) -> Claims {
+    let scalar = match real {
+        Float::F32 => Scalar::F32,
+        Float::F64 => Scalar::F64,
     };
     // Whatever else the text was generated with, a constant has its exact value all the same.
     #[allow(clippy::needless_update)]
@@ -216,5 +221,6 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         function.bound = Some(bound);
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
+    report.faults.extend(stated::faults(module, report));
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
 }

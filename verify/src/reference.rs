@@ -35,8 +35,8 @@ impl Promise {
         Promise { parameters: true, ..self }
     }
 
-    /// Not of every module.
-    const fn optional(self) -> Promise {
+    /// An arm may lack it.
+    const fn not_of_every_arm(self) -> Promise {
         Promise { required: false, ..self }
     }
 }
@@ -47,7 +47,7 @@ pub const PROMISES: [Promise; 23] = [
     promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
     promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)),
     promise("geometric_jacobian_dot", &["q", "dq"], Returned::One(JACOBIAN)),
-    promise("link_jacobians", &["q"], Returned::One(&[N, Length::Of(6), N])).optional(),
+    promise("link_jacobians", &["q"], Returned::One(&[N, Length::Of(6), N])),
     promise("inertia_matrix", &["q"], Returned::One(SQUARE)).with_parameters(),
     promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
     promise("gravity", &["q"], Returned::One(VECTOR)).with_parameters(),
@@ -64,13 +64,13 @@ pub const PROMISES: [Promise; 23] = [
     promise("known_torque", &["q", "dq", "dqr", "ddqr"], Returned::One(VECTOR)),
     promise("kinetic_energy", &["q", "dq"], Returned::One(&[])).with_parameters(),
     promise("potential_energy", &["q"], Returned::One(&[])).with_parameters(),
-    promise("center_of_mass", &["q"], Returned::One(&[Length::Of(3)])).with_parameters().optional(),
-    promise("momentum", &["q", "dq"], Returned::One(VECTOR)).optional(),
-    promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)).optional(),
-    promise("base_regressor", &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])).optional(),
-    promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).optional(),
-    promise("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])).optional(),
-    promise("forward_dynamics_derivatives", &["q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])).optional(),
+    promise("center_of_mass", &["q"], Returned::One(&[Length::Of(3)])).with_parameters().not_of_every_arm(),
+    promise("momentum", &["q", "dq"], Returned::One(VECTOR)),
+    promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)),
+    promise("base_regressor", &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])),
+    promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).not_of_every_arm(),
+    promise("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])),
+    promise("forward_dynamics_derivatives", &["q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])),
 ];
 
 impl Promise {
@@ -81,16 +81,19 @@ impl Promise {
         plain.or_else(|| PROMISES.iter().find(|p| p.parameters && Some(p.name) == base).map(|p| (p, true)))
     }
 
-    /// Names of all functions that a module must have.
+    /// Names of all functions that every module must have.
     pub fn required() -> Vec<String> {
-        let mut names = Vec::new();
-        for promise in PROMISES.iter().filter(|p| p.required) {
-            names.push(promise.name.to_string());
-            if promise.parameters {
-                names.push(format!("{}_with", promise.name));
-            }
-        }
-        names
+        PROMISES.iter().filter(|promise| promise.required).flat_map(Promise::names).collect()
+    }
+
+    /// Names of those that an arm may lack.
+    pub fn optional() -> impl Iterator<Item = String> {
+        PROMISES.iter().filter(|promise| !promise.required).flat_map(Promise::names)
+    }
+
+    fn names(&self) -> impl Iterator<Item = String> {
+        let with = self.parameters.then(|| format!("{}_with", self.name));
+        [self.name.to_string()].into_iter().chain(with)
     }
 }
 
@@ -229,10 +232,9 @@ fn mobility<E: Element>(jacobian: &[E], inverse: &[Vec<E>], task: &[usize]) -> V
 }
 
 /// The pivots that functions may divide by, at a state.
-fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>, task: Option<&[usize]>) -> Pivots<E> {
+fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>, task: &[usize]) -> Pivots<E> {
     let b = inertia_matrix(arm, state);
-    let inverse = task.and_then(|task| Some((task, solve(&b, &identity(arm, arm.dof()))?)));
-    let of_task = inverse.map(|(task, inverse)| {
+    let of_task = solve(&b, &identity(arm, arm.dof())).map(|inverse| {
         let jacobian = Pose::new(arm, state).geometric_jacobian(arm.tip);
         (Matrix::Mobility, mobility(&jacobian, &inverse, task))
     });
@@ -242,8 +244,8 @@ fn pivots<E: Element>(arm: &Arm<E>, run_time: Option<&Arm<E>>, state: &State<E>,
     Pivots::of([Some((Matrix::Inertia, b)), with, of_task, mass, mass_with].into_iter().flatten().collect())
 }
 
-/// The functions that only some modules have.
-fn extras<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &mut Values<E>) -> Option<()> {
+/// The derivatives of the dynamics, and the inertia in the rows of the task where the arm moves these independently.
+fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usize], values: &mut Values<E>) -> Option<()> {
     let n = arm.dof();
     let b = inertia_matrix(arm, state);
     let inverse = solve(&b, &identity(arm, n))?;
@@ -295,8 +297,6 @@ fn kinematics<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
 /// Which of the equations a reference is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// The functions that only some modules have.
-    pub extras: bool,
     /// How the functions at run-time base parameters are had.
     pub base: BaseParameters,
     /// The pivots that functions may divide by.
@@ -345,10 +345,8 @@ impl<E: Element> Reference<E> {
         kinematics(&arm, &state, &mut values);
         let singular = || "the inertia matrix is singular at a random state".to_string();
         let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
-        if wanted.extras {
-            let task: Vec<usize> = manipulator.task.iter().map(|row| row.index()).collect();
-            extras(&arm, &state, &task, &mut values).ok_or_else(singular)?;
-        }
+        let task = manipulator.task_rows();
+        derivatives_and_task(&arm, &state, &task, &mut values).ok_or_else(singular)?;
 
         let (mut elsewhere, mut nominal_base) = (None, None);
         let (columns, known, run_time) = match vector {
@@ -420,10 +418,13 @@ impl<E: Element> Reference<E> {
         if let Some(arm) = &run_time {
             agree &= quantities(arm, &state, &mut values, "_with").ok_or_else(singular)?;
         }
+        if matches!(vector, Vector::Base(..)) {
+            // The whole mass does not follow from base parameters.
+            values.remove("center_of_mass_with");
+        }
         let pivots = wanted.pivots.then(|| {
             let there = State { pi: state.pi.clone(), ..State::draw(arithmetic, n) };
-            let task = wanted.extras.then(|| manipulator.task_rows());
-            let at = |state: &State<E>| pivots(&arm, run_time.as_ref(), state, task.as_deref());
+            let at = |state: &State<E>| pivots(&arm, run_time.as_ref(), state, &task);
             (at(&state), there.clone(), at(&there))
         });
         Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree, pivots })

@@ -18,7 +18,6 @@ use crate::float::Arguments;
 use crate::formula::Formula;
 use crate::program::Inputs;
 use crate::reader::Module;
-use crate::reference::PROMISES;
 use crate::reference::{BaseParameters, Reference, Wanted};
 
 /// Floats of 256 bits as an arithmetic.
@@ -107,7 +106,6 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
         env!("CARGO_PKG_VERSION")
     );
     let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
-    let extras = PROMISES.iter().any(|p| !p.required && present(p.name));
     let mut states = String::new();
     let mut values = String::new();
     for index in 0..STATES {
@@ -125,7 +123,7 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
             write(&arguments.pi)
         );
         let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
-        let wanted = Wanted { extras, base: BaseParameters::LeftOut, pivots: false };
+        let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
         let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
         for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
             let Some((promise, with)) = Promise::of(name) else { continue };

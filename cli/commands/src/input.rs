@@ -1,5 +1,7 @@
 //! Descriptions from files: read, checked, and what is wrong with them on standard error.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use armgen_codegen::catalogue::Absent;
@@ -10,6 +12,7 @@ use armgen_codegen::schedule::Selection;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Model;
+use armgen_verify::reader::LONGEST;
 
 use crate::terminal;
 use crate::{FAULTY, UNREADABLE};
@@ -17,10 +20,17 @@ use crate::{FAULTY, UNREADABLE};
 /// The text of a file, or the exit code after a message that says why there is none.
 pub(crate) fn source(path: &Path) -> Result<Source, u8> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|error| {
+    let mut bytes = Vec::new();
+    // Never more than that, whatever the file is: a device may have no end.
+    let read = File::open(path).and_then(|file| file.take(LONGEST as u64 + 1).read_to_end(&mut bytes));
+    read.map_err(|error| {
         terminal::error(&format!("cannot read {name}: {error}"));
         UNREADABLE
     })?;
+    if bytes.len() > LONGEST {
+        terminal::error(&format!("{name} is longer than {} MiB: no file that armgen reads or writes is", LONGEST >> 20));
+        return Err(UNREADABLE);
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count() + 1;

@@ -40,14 +40,29 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
         printed += &format!("certificate: {}\n", beside.display());
     }
     let code = terminal::print(&printed);
-    match report.first_fault() {
-        None => Ok(code),
-        Some(fault) => {
-            let line = line_of(text.text(), &fault).map_or_else(String::new, |line| format!(":{line}"));
-            terminal::error(&format!("{}{line}: {fault}", text.name()));
-            Err(FAULTY)
+    if report.passed() {
+        return Ok(code);
+    }
+    let (line, fault) = placed(text.text(), &report.first_fault().unwrap_or_else(|| "the module has no functions".into()));
+    let line = line.map_or_else(String::new, |line| format!(":{line}"));
+    terminal::error(&format!("{}{line}: {fault}", text.name()));
+    let (description, module) = (description.display(), module.display());
+    terminal::note(&format!("`armgen generate {description} --out {module} --verify` writes module and certificate again"));
+    Err(FAULTY)
+}
+
+/// The line that a fault is of, and the fault without it: the line that the reader gives, or where the function or constant begins.
+fn placed(module: &str, fault: &str) -> (Option<usize>, String) {
+    if let Some((name, (line, reason))) = fault
+        .split_once("line ")
+        .filter(|(name, _)| name.is_empty() || name.strip_suffix(": ").is_some_and(|name| line_of(module, name).is_some()))
+        .and_then(|(name, rest)| Some((name, rest.split_once(": ")?)))
+    {
+        if let Ok(line) = line.parse() {
+            return (Some(line), format!("{name}{reason}"));
         }
     }
+    (line_of(module, fault), fault.to_string())
 }
 
 /// The line where the function or constant begins that a fault is of, counted from 1.
