@@ -13,12 +13,20 @@
 //! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only those combinations are
 //! states that are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
-//! [`SampledLoop`] is one posture; [`analyse`] is a path, and what a run says first.
+//! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model ([`Settle`]). A start from
+//! another estimate is a transient, not a verdict ([`analyse_start`]).
+//!
+//! What this proves: that small deviations from rest die away at these postures. It proves nothing of a motion, in which
+//! Y(q, dq, dq_r, ddq_r) excites what rest does not, and nothing of a start far from the truth. That is what a [`Rehearsal`] looks at.
+//!
+//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`Rehearsal::of`] is the motion. A run says all of it first.
 
 mod eigenvalues;
 mod exponential;
 mod feedback;
+mod motion;
 mod sampled_loop;
 
-pub use feedback::{Feedback, Linearise};
-pub use sampled_loop::{analyse, Delay, Report, SampledLoop, StabilityError, StablePeriod};
+pub use feedback::{Feedback, Linearise, Settle};
+pub use motion::{Growth, Left, Motion, Rehearsal, Rehearse, Weights};
+pub use sampled_loop::{analyse, analyse_start, Delay, Report, SampledLoop, StabilityError, StablePeriod};

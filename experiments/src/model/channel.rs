@@ -46,12 +46,22 @@ pub enum Quantity {
     Estimate(usize),
 
     // Of the whole run.
-    /// The largest spectral radius of the sampled loop along the path.
+    /// The largest spectral radius of the sampled loop along the path, about the estimate from which it begins.
     SpectralRadius,
     /// The same with one sample of delay.
     DelayedSpectralRadius,
-    /// The sampling period up to which the loop is stable.
+    /// The sampling period up to which the loop is stable, about the estimate from which it begins.
     StablePeriod,
+    /// The largest spectral radius about rest, where the arm can rest.
+    RestRadius,
+    /// The sampling period up to which the loop is stable at rest.
+    RestPeriod,
+    /// The largest growth of a small deviation in motion.
+    MotionGrowth,
+    /// The rate at which it goes on growing.
+    MotionRate,
+    /// When the rehearsed motion leaves its reference.
+    MotionLostAt,
     /// When a joint was first off by more than a tenth.
     LostAt,
     /// When a rate was first cut.
@@ -183,6 +193,11 @@ impl Channel {
             Quantity::SpectralRadius => ("radius".into(), Unit::None),
             Quantity::DelayedSpectralRadius => ("radius_delayed".into(), Unit::None),
             Quantity::StablePeriod => ("stable_period".into(), Unit::Second),
+            Quantity::RestRadius => ("rest_radius".into(), Unit::None),
+            Quantity::RestPeriod => ("rest_period".into(), Unit::Second),
+            Quantity::MotionGrowth => ("motion_growth".into(), Unit::None),
+            Quantity::MotionRate => ("motion_rate".into(), Unit::PerSecond),
+            Quantity::MotionLostAt => ("motion_lost_at".into(), Unit::Second),
             Quantity::LostAt => ("lost_at".into(), Unit::Second),
             Quantity::RateLimitedAt => ("rate_limited_at".into(), Unit::Second),
             Quantity::EndsAt => ("ends_at".into(), Unit::Second),

@@ -235,7 +235,17 @@ impl Body {
             Body::Clik(run) if matches!(run.algorithm, Algorithm::SecondOrder { .. }) => Vec::new(),
             Body::Clik(_) => vec![Quantity::RateLimitedAt],
             Body::Control(_) => {
-                vec![Quantity::SpectralRadius, Quantity::StablePeriod, Quantity::DelayedSpectralRadius, Quantity::LostAt]
+                vec![
+                    Quantity::SpectralRadius,
+                    Quantity::StablePeriod,
+                    Quantity::DelayedSpectralRadius,
+                    Quantity::RestRadius,
+                    Quantity::RestPeriod,
+                    Quantity::MotionGrowth,
+                    Quantity::MotionRate,
+                    Quantity::MotionLostAt,
+                    Quantity::LostAt,
+                ]
             }
         };
         quantities.into_iter().map(|quantity| Channel::new(quantity, robot)).collect()

@@ -1,18 +1,20 @@
 //! A controller along a path: first its sampled loop, linearised; then the run, with a plant that has parameters of its own.
 
 use std::fmt;
+use std::slice::from_ref;
 use std::time::{Duration, Instant};
 
 use armgen_runtime::clik::Integration;
 use armgen_runtime::control::{
-    Adaptive, BoundaryLayer, ControlError, Controller, Interval, InverseDynamics, OperationalSpace, PdGravity, Robust,
-    TorqueLimits,
+    Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, OperationalSpace, PdGravity, Robust, TorqueLimits,
 };
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::parameters::ParameterError;
 use armgen_runtime::reference::{JointReference, OperationalReference, Pose, State};
 use armgen_runtime::simulation::{run as simulate, run_continuous, ContinuousOptions, Integrator, RunError, RunOptions, Sensor};
-use armgen_runtime::stability::{analyse, Delay, Linearise, Report, StablePeriod};
+use armgen_runtime::stability::{
+    analyse, analyse_start, Delay, Motion, Rehearsal, Rehearse, Report, Settle, StabilityError, StablePeriod,
+};
 
 use super::instance::{sized, Functions};
 use super::{Instance, Run};
@@ -20,12 +22,16 @@ use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, Law
 
 /// Distance between the postures at which the loop is linearised.
 const POSTURE_STEP: Duration = Duration::from_millis(250);
+/// Parts of the period at which a loop is tried that does not hold.
+const SHORTER: [u32; 6] = [2, 5, 10, 20, 50, 100];
+/// Samples of the longest rehearsal at a shorter period.
+const MAX_REHEARSED: u128 = 400_000;
 /// An error of a joint, rad or m, from which on the arm counts as lost, and one at which the run ends.
 const LOST: f64 = 0.1;
 const GIVEN_UP: f64 = 1.0;
 
 /// A sampled controller behind a pointer, so that linearisation and simulation are compiled once for all of them.
-trait SampledLaw<R: Functions<N, P>, const N: usize, const P: usize>: Send {
+trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P: usize>: Send {
     /// The torque of one sample: which of the two references counts is the controller's affair.
     fn torque(
         &mut self,
@@ -38,22 +44,31 @@ trait SampledLaw<R: Functions<N, P>, const N: usize, const P: usize>: Send {
     /// What it told before the last torque, in the order of [`LawKind::watched`].
     fn watched(&self) -> &[f64];
 
-    fn linearised(&self) -> &dyn Linearise<R, N>;
+    /// The law where the arm can rest, and where it begins.
+    fn at_rest(&self) -> &dyn Settle<W, R, N>;
+
+    /// How the motion goes.
+    fn rehearse(
+        &self,
+        rehearsal: &Rehearsal<'_, W, f64, N>,
+        model: &R,
+        tip: &[OperationalReference<f64>],
+    ) -> Result<Motion<f64>, StabilityError>;
 }
 
-/// A reference as one of those of a sample.
-trait OfSample<const N: usize> {
-    fn of<'s>(joints: &'s JointReference<f64, N>, tip: &'s OperationalReference<f64>) -> &'s Self;
+/// References of one of the two kinds.
+trait OfKind<const N: usize>: Sized {
+    fn of<'s>(joints: &'s [JointReference<f64, N>], tip: &'s [OperationalReference<f64>]) -> &'s [Self];
 }
 
-impl<const N: usize> OfSample<N> for JointReference<f64, N> {
-    fn of<'s>(joints: &'s JointReference<f64, N>, _: &'s OperationalReference<f64>) -> &'s Self {
+impl<const N: usize> OfKind<N> for JointReference<f64, N> {
+    fn of<'s>(joints: &'s [JointReference<f64, N>], _: &'s [OperationalReference<f64>]) -> &'s [Self] {
         joints
     }
 }
 
-impl<const N: usize> OfSample<N> for OperationalReference<f64> {
-    fn of<'s>(_: &'s JointReference<f64, N>, tip: &'s OperationalReference<f64>) -> &'s Self {
+impl<const N: usize> OfKind<N> for OperationalReference<f64> {
+    fn of<'s>(_: &'s [JointReference<f64, N>], tip: &'s [OperationalReference<f64>]) -> &'s [Self] {
         tip
     }
 }
@@ -65,11 +80,12 @@ struct Watched<C, F> {
     watched: Vec<f64>,
 }
 
-impl<R, C, F, const N: usize, const P: usize> SampledLaw<R, N, P> for Watched<C, F>
+impl<R, W, C, F, const N: usize, const P: usize> SampledLaw<R, W, N, P> for Watched<C, F>
 where
     R: Functions<N, P>,
-    C: Controller<R, N> + Linearise<R, N> + Send,
-    C::Reference: OfSample<N>,
+    W: Functions<N, P>,
+    C: Settle<W, R, N> + Rehearse<W, R, N> + Send,
+    C::Reference: OfKind<N>,
     F: Fn(&C, &C::Reference, &State<f64, N>, &mut Vec<f64>) + Send,
 {
     fn torque(
@@ -79,7 +95,7 @@ where
         tip: &OperationalReference<f64>,
         measured: &State<f64, N>,
     ) -> Result<SVector<f64, N>, ControlError> {
-        let reference = C::Reference::of(joints, tip);
+        let reference = &C::Reference::of(from_ref(joints), from_ref(tip))[0];
         self.watched.clear();
         (self.watch)(&self.controller, reference, measured, &mut self.watched);
         self.controller.torque(model, reference, measured).map(|torque| torque.tau)
@@ -89,14 +105,23 @@ where
         &self.watched
     }
 
-    fn linearised(&self) -> &dyn Linearise<R, N> {
+    fn at_rest(&self) -> &dyn Settle<W, R, N> {
         &self.controller
+    }
+
+    fn rehearse(
+        &self,
+        rehearsal: &Rehearsal<'_, W, f64, N>,
+        model: &R,
+        tip: &[OperationalReference<f64>],
+    ) -> Result<Motion<f64>, StabilityError> {
+        rehearsal.of(model, &self.controller, C::Reference::of(rehearsal.joints, tip))
     }
 }
 
 /// The law of a run: a sampled one, or the adaptive one in continuous time.
-enum Drive<'a, R, const N: usize, const P: usize> {
-    Sampled(Box<dyn SampledLaw<R, N, P> + 'a>),
+enum Drive<'a, R, W, const N: usize, const P: usize> {
+    Sampled(Box<dyn SampledLaw<R, W, N, P> + 'a>),
     Continuous(Adaptive<f64, N, P>),
 }
 
@@ -105,13 +130,23 @@ struct Prepared<'a, R, W, const N: usize, const M: usize, const P: usize> {
     arm: &'a Instance<R, W, N, M, P>,
     run: &'a ControlRun,
     body: &'a Body,
-    drive: Drive<'a, R, N, P>,
+    drive: Drive<'a, R, W, N, P>,
     /// What is desired at each sample.
     joints: Vec<JointReference<f64, N>>,
     tip: Vec<OperationalReference<f64>>,
-    report: Report<f64>,
+    analysis: Analysis,
     /// The radius with one sample of delay, where it is asked for.
     delayed: Option<f64>,
+}
+
+/// What is known of the sampled loop.
+struct Analysis {
+    /// At rest and in motion.
+    report: Report<f64>,
+    /// About the estimate from which it begins.
+    start: Report<f64>,
+    /// Where it does not hold: the largest period of [`SHORTER`] at which it does, if any, s; and the shortest one tried.
+    holds_at: Option<(Option<f64>, f64)>,
 }
 
 /// What is desired at every sample, and some postures on the way.
@@ -128,30 +163,80 @@ where
         run: &'a ControlRun,
         experiment: &'a Experiment,
     ) -> Result<Box<dyn Run + 'a>, String> {
-        let (joints, tip, postures) = self.desired(run)?;
+        let (joints, tip, postures) = self.desired(run, run.sampling.period)?;
         let period = run.sampling.period.as_secs_f64();
         let refused = |error: ParameterError| format!("the controller is refused: {error}");
         let drive = match run.continuous {
             true => Drive::Continuous(adaptive(&run.law, period).map_err(refused)?),
             false => Drive::Sampled(self.sampled_law(&run.law, period).map_err(refused)?),
         };
-        let linearised = match &drive {
-            Drive::Sampled(law) => law.linearised(),
+        let plant = (self.with_parameters)(sized(&run.plant));
+        let no_answer = |error: StabilityError| format!("the loop cannot be linearised: {error}");
+        let at_rest: &dyn Settle<W, R, N> = match &drive {
+            Drive::Sampled(law) => law.at_rest(),
             Drive::Continuous(law) => law,
         };
-        let report = |delay: usize| {
-            let plant = (self.with_parameters)(sized(&run.plant));
-            analyse(&plant, &self.nominal, linearised, &postures, period, Delay::samples(delay))
-                .map_err(|error| format!("the loop cannot be linearised: {error}"))
-        };
+        let rest =
+            |delay: usize| analyse(&plant, &self.nominal, at_rest, &postures, period, Delay::samples(delay)).map_err(no_answer);
+        let start =
+            analyse_start(&plant, &self.nominal, at_rest, &postures, period, Delay::samples(run.delay)).map_err(no_answer)?;
         let asked = experiment.expect.iter().any(|e| e.channel.quantity == Quantity::DelayedSpectralRadius);
-        let delayed = if asked { Some(report(1)?.radius) } else { None };
-        let report = report(run.delay)?;
-        Ok(Box::new(Prepared { arm: self, run, body: &experiment.body, drive, joints, tip, report, delayed }))
+        let delayed = if asked {
+            let delay = Delay::samples(1);
+            Some(analyse_start(&plant, &self.nominal, at_rest, &postures, period, delay).map_err(no_answer)?.radius)
+        } else {
+            None
+        };
+        let mut report = rest(run.delay)?;
+        if let Drive::Sampled(law) = &drive {
+            let rehearsal = self.rehearsal(run, &plant, &joints, period);
+            // What has no linear loop in motion has one at rest still.
+            report.motion = law.rehearse(&rehearsal, &self.nominal, &tip).ok();
+        }
+        let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, &plant, &postures)) };
+        let analysis = Analysis { report, start, holds_at };
+        Ok(Box::new(Prepared { arm: self, run, body: &experiment.body, drive, joints, tip, analysis, delayed }))
     }
 
-    fn desired(&self, run: &ControlRun) -> Result<Desired<N>, String> {
-        let (period, trajectory) = (run.sampling.period, &run.sampling.motion.trajectory);
+    fn rehearsal<'r>(
+        &self,
+        run: &ControlRun,
+        plant: &'r W,
+        joints: &'r [JointReference<f64, N>],
+        period: f64,
+    ) -> Rehearsal<'r, W, f64, N> {
+        Rehearsal { plant, joints, start: State::at_rest(Self::joints(&run.start)), period, delay: Delay::samples(run.delay) }
+    }
+
+    /// The largest period of [`SHORTER`] at which the loop holds, s, and the shortest that was tried.
+    fn shorter(&self, run: &ControlRun, plant: &W, postures: &[SVector<f64, N>]) -> (Option<f64>, f64) {
+        let mut shortest = run.sampling.period.as_secs_f64();
+        for part in SHORTER {
+            let period = run.sampling.period / part;
+            if period.is_zero() || run.sampling.duration.as_nanos() / period.as_nanos() > MAX_REHEARSED {
+                break;
+            }
+            shortest = period.as_secs_f64();
+            let delay = Delay::samples(run.delay);
+            let holds = || {
+                let law = self.sampled_law(&run.law, shortest).ok()?;
+                let mut report = analyse(plant, &self.nominal, law.at_rest(), postures, shortest, delay).ok()?;
+                if report.is_stable() {
+                    let (joints, tip, _) = self.desired(run, period).ok()?;
+                    let rehearsal = self.rehearsal(run, plant, &joints, shortest);
+                    report.motion = Some(law.rehearse(&rehearsal, &self.nominal, &tip).ok()?);
+                }
+                Some(report.holds())
+            };
+            if holds() == Some(true) {
+                return (Some(shortest), shortest);
+            }
+        }
+        (None, shortest)
+    }
+
+    fn desired(&self, run: &ControlRun, period: Duration) -> Result<Desired<N>, String> {
+        let trajectory = &run.sampling.motion.trajectory;
         let gains = (run.reference.0.as_slice(), run.reference.1.as_slice());
         let clik = self.second_order(gains, period.as_secs_f64(), Integration::HoldConsistent);
         let clik = clik.map_err(|error| format!("the gains of the reference are refused: {error}"))?;
@@ -175,9 +260,10 @@ where
     }
 
     /// The controller of a law: the one place that knows all of them.
-    fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, N, P> + 'a>, ParameterError>
+    fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, ParameterError>
     where
         R: 'a,
+        W: 'a,
     {
         let limits = limits(law)?;
         let scalar = |key: &str| law.gain(key).first().copied().unwrap_or(f64::NAN);
@@ -217,11 +303,12 @@ where
 }
 
 /// A controller that has nothing to tell.
-fn unwatched<'a, R, C, const N: usize, const P: usize>(controller: C) -> Box<dyn SampledLaw<R, N, P> + 'a>
+fn unwatched<'a, R, W, C, const N: usize, const P: usize>(controller: C) -> Box<dyn SampledLaw<R, W, N, P> + 'a>
 where
     R: Functions<N, P>,
-    C: Controller<R, N> + Linearise<R, N> + Send + 'a,
-    C::Reference: OfSample<N>,
+    W: Functions<N, P>,
+    C: Settle<W, R, N> + Rehearse<W, R, N> + Send + 'a,
+    C::Reference: OfKind<N>,
 {
     let nothing = |_: &C, _: &C::Reference, _: &State<f64, N>, _: &mut Vec<f64>| {};
     Box::new(Watched { controller, watch: nothing, watched: Vec::new() })
@@ -277,31 +364,56 @@ where
     R: Functions<N, P>,
     W: Functions<N, P>,
 {
-    /// What has to be said of an unstable loop: its radius and the period that would hold.
+    /// What has to be said of an unstable loop: at rest, in motion, and the period that would hold.
     fn warning(&self) -> Option<String> {
-        if self.report.is_stable() {
-            return None;
-        }
-        let period = number(self.run.sampling.period.as_secs_f64() * 1e3);
-        let holds = match self.report.period {
-            StablePeriod::UpTo(limit) => format!("a period up to {} ms would hold", number((limit * 1e7).round() / 1e4)),
-            StablePeriod::AtLeast(limit) => format!("it holds at {} ms", number(limit * 1e3)),
-            StablePeriod::NotEvenAt(limit) => format!("not even {} ms would hold", number(limit * 1e3)),
-        };
+        let Analysis { report, holds_at, .. } = &self.analysis;
         let delay = match self.run.delay {
             0 => String::new(),
             1 => " with a delay of one sample".to_owned(),
             samples => format!(" with a delay of {samples} samples"),
         };
-        // Two decimals, more where these would say 1.00.
-        let radius = self.report.radius;
-        let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
+        let mut said = Vec::new();
+        if !report.is_stable() {
+            let holds = match report.period {
+                StablePeriod::UpTo(limit) => format!("a period up to {} ms would hold", number((limit * 1e7).round() / 1e4)),
+                StablePeriod::AtLeast(limit) => format!("it holds at {} ms", number(limit * 1e3)),
+                StablePeriod::NotEvenAt(limit) => format!("not even {} ms would hold", number((limit * 1e7).round() / 1e4)),
+            };
+            // Two decimals, more where these would say 1.00.
+            let radius = report.radius;
+            let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
+            said.push(format!("unstable at rest: spectral radius {radius}; {holds}"));
+        }
+        let seconds = |t: f64| number((t * 1e4).round() / 1e4);
+        if let Some(motion) = report.motion.filter(Motion::diverges) {
+            said.push(match motion.left {
+                Some(left) => {
+                    let joint = &self.arm.robot.joints[left.joint].name;
+                    format!("diverges in motion: rehearsed, joint `{joint}` is lost at {} s", seconds(left.at))
+                }
+                None => format!(
+                    "diverges in motion: a small deviation grows by a factor of {:.0e} within {} s",
+                    motion.growth.largest,
+                    seconds(motion.growth.at)
+                ),
+            });
+        }
+        if said.is_empty() {
+            return None;
+        }
+        if let (true, Some((holds, shortest))) = (report.motion.is_some_and(|motion| motion.diverges()), holds_at) {
+            said.push(match holds {
+                Some(period) => format!("at {} ms it holds at rest and in motion", number(period * 1e3)),
+                None => format!("nor does it hold at {} ms", number(shortest * 1e3)),
+            });
+        }
+        let period = number(self.run.sampling.period.as_secs_f64() * 1e3);
         let then = if self.run.continuous { "; it runs in continuous time" } else { "" };
-        Some(format!("unstable when sampled at {period} ms{delay}: spectral radius {radius}; {holds}{then}"))
+        Some(format!("sampled at {period} ms{delay}, {}{then}", said.join("; ")))
     }
 
     fn run(self: Box<Self>) -> Record {
-        let Prepared { arm, run, body, drive, joints, tip, report, delayed } = *self;
+        let Prepared { arm, run, body, drive, joints, tip, analysis: Analysis { report, start, .. }, delayed } = *self;
         let mut writer =
             Writer { arm, joints: &joints, tip: &tip, record: Record::new(body.channels(&arm.robot)), lost_at: f64::INFINITY };
         let begun = Instant::now();
@@ -312,10 +424,18 @@ where
         };
         let took = begun.elapsed().as_secs_f64();
         let Writer { mut record, lost_at, .. } = writer;
-        let (StablePeriod::UpTo(limit) | StablePeriod::AtLeast(limit) | StablePeriod::NotEvenAt(limit)) = report.period;
+        let limit = |report: &Report<f64>| match report.period {
+            StablePeriod::UpTo(limit) | StablePeriod::AtLeast(limit) | StablePeriod::NotEvenAt(limit) => limit,
+        };
+        let motion = |of: fn(Motion<f64>) -> f64| report.motion.map_or(f64::NAN, of);
         let value = |quantity: Quantity| match quantity {
-            Quantity::SpectralRadius => report.radius,
-            Quantity::StablePeriod => limit,
+            Quantity::SpectralRadius => start.radius,
+            Quantity::StablePeriod => limit(&start),
+            Quantity::RestRadius => report.radius,
+            Quantity::RestPeriod => limit(&report),
+            Quantity::MotionGrowth => motion(|motion| motion.growth.largest),
+            Quantity::MotionRate => motion(|motion| motion.growth.rate),
+            Quantity::MotionLostAt => motion(|motion| motion.left.map_or(f64::INFINITY, |left| left.at)),
             Quantity::DelayedSpectralRadius => delayed.unwrap_or(f64::NAN),
             Quantity::LostAt => lost_at,
             _ => f64::NAN,
@@ -364,7 +484,7 @@ where
         });
     }
 
-    fn sampled(&mut self, run: &ControlRun, law: Box<dyn SampledLaw<R, N, P> + '_>) -> Result<(), RunError<Stop>> {
+    fn sampled(&mut self, run: &ControlRun, law: Box<dyn SampledLaw<R, W, N, P> + '_>) -> Result<(), RunError<Stop>> {
         let plant = (self.arm.with_parameters)(sized(&run.plant));
         let mut options = RunOptions::new(run.sampling.period, run.sampling.duration);
         options.integrator = Integrator::RungeKutta4 { substeps: run.substeps };

@@ -49,9 +49,9 @@ pub struct Adaptive<T, const N: usize, const P: usize> {
     /// Diagonal of K_pi^-1, zero for frozen parameters.
     pub(crate) rate: SVector<T, P>,
     pub(crate) estimate: SVector<T, P>,
-    period: T,
-    interval: Option<Interval<T, P>>,
-    limits: Option<TorqueLimits<T, N>>,
+    pub(crate) period: T,
+    pub(crate) interval: Option<Interval<T, P>>,
+    pub(crate) limits: Option<TorqueLimits<T, N>>,
 }
 
 impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
@@ -96,6 +96,25 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     #[must_use]
     pub fn with_torque_limits(self, limits: TorqueLimits<T, N>) -> Self {
         Self { limits: Some(limits), ..self }
+    }
+
+    /// The same where nothing drives the estimate on: at the true parameters, at the bound of the interval that excludes them, and at
+    /// the present estimate of what is frozen. What is held by a bound moves no more than what is frozen.
+    #[cfg(feature = "std")]
+    pub(crate) fn at_rest(&self, parameters: &SVector<T, P>) -> Self {
+        let mut settled = *self;
+        for i in 0..P {
+            if self.rate[i] > T::zero() {
+                settled.estimate[i] = parameters[i];
+                if let Some(interval) = &self.interval {
+                    settled.estimate[i] = parameters[i].max(interval.lower[i]).min(interval.upper[i]);
+                }
+                if settled.estimate[i] != parameters[i] {
+                    settled.rate[i] = T::zero();
+                }
+            }
+        }
+        settled
     }
 
     /// The present estimate pi^.

@@ -64,12 +64,12 @@ pub struct OperationalSpace<T, const N: usize, const M: usize> {
     pub(crate) k_p: SVector<T, M>,
     pub(crate) k_d: SVector<T, M>,
     pub(crate) k_i: SVector<T, M>,
-    period: T,
-    integral: SVector<T, M>,
-    integral_limit: Option<SVector<T, M>>,
-    damping: Option<Damping<T>>,
+    pub(crate) period: T,
+    pub(crate) integral: SVector<T, M>,
+    pub(crate) integral_limit: Option<SVector<T, M>>,
+    pub(crate) damping: Option<Damping<T>>,
     pub(crate) null_space: Option<NullSpace<T, N>>,
-    limits: Option<TorqueLimits<T, N>>,
+    pub(crate) limits: Option<TorqueLimits<T, N>>,
 }
 
 impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N, M> {

@@ -16,7 +16,7 @@ use nalgebra::{RealField, SVector};
 pub struct PdGravity<T, const N: usize> {
     pub(crate) k_p: SVector<T, N>,
     pub(crate) k_d: SVector<T, N>,
-    limits: Option<TorqueLimits<T, N>>,
+    pub(crate) limits: Option<TorqueLimits<T, N>>,
 }
 
 impl<T: RealField + Copy, const N: usize> PdGravity<T, N> {

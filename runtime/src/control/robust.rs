@@ -36,7 +36,7 @@ pub struct Robust<T, const N: usize> {
     pub(crate) k_d: SVector<T, N>,
     pub(crate) q: LyapunovBlocks<T, N>,
     pub(crate) layer: BoundaryLayer<T>,
-    limits: Option<TorqueLimits<T, N>>,
+    pub(crate) limits: Option<TorqueLimits<T, N>>,
 }
 
 impl<T: RealField + Copy, const N: usize> Robust<T, N> {

@@ -44,6 +44,24 @@ pub trait Linearise<R: Dynamics<N>, const N: usize> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>>;
 }
 
+/// A controller that can be linearised where the arm can rest under it.
+///
+/// Rest asks the torque of the plant's gravity: estimates are then the parameters of the plant (the bound of their projection where that
+/// excludes them; frozen ones stay), and integrals are what makes up for the model.
+pub trait Settle<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>: Linearise<R, N> {
+    /// Its feedback about rest at `q`; `None` where the law is singular.
+    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>>;
+}
+
+/// y = B^^-1 (g - g^): what the law must add at rest, where g of the plant is not g^ of the model.
+fn offset<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
+    plant: &P,
+    model: &R,
+    q: &SVector<R::Real, N>,
+) -> Option<SVector<R::Real, N>> {
+    Some(model.inertia_matrix(q).cholesky()?.solve(&(plant.gravity(q) - model.gravity(q))))
+}
+
 /// Jacobian of `f` at `x` by central differences.
 pub(crate) fn derivative<T: RealField + Copy, const N: usize>(
     x: &SVector<T, N>,
@@ -106,6 +124,29 @@ impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for InverseDynamics<R::Real
     }
 }
 
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for PdGravity<R::Real, N> {
+    fn settle(&self, _: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        self.linearise(model, q)
+    }
+}
+
+/// At rest B^ y holds the arm, y the same at all times; so B^ y joins the derivative by q.
+macro_rules! settle_with_offset {
+    ($controller:ident) => {
+        impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for $controller<R::Real, N> {
+            fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+                let mut feedback = self.linearise(model, q)?;
+                let y = offset(plant, model, q)?;
+                feedback.position += derivative(q, |q| model.inertia_matrix(q) * y);
+                Some(feedback)
+            }
+        }
+    };
+}
+
+settle_with_offset!(InverseDynamics);
+settle_with_offset!(Robust);
+
 /// Inside the boundary layer, where the law is linear: the added term raises the gains to K_P + rho/eps Q12 and K_D + rho/eps Q22.
 impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for Robust<R::Real, N> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
@@ -140,6 +181,16 @@ impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Ada
         let transpose = l.transpose();
         let lambda = DMatrix::from_fn(N, N, |i, j| if i == j { self.lambda[i] } else { nalgebra::zero() });
         Some(Feedback { position, velocity, memory_position: -(&transpose * lambda), memory_velocity: -transpose, memory: l })
+    }
+}
+
+impl<P, R, const N: usize, const K: usize> Settle<P, R, N> for Adaptive<R::Real, N, K>
+where
+    P: Regressor<N, K>,
+    R: Regressor<N, K, Real = P::Real>,
+{
+    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        self.at_rest(&plant.parameters()).linearise(model, q)
     }
 }
 
@@ -184,5 +235,23 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
             memory_position: DMatrix::from_fn(rows.len(), N, |k, i| -j[(rows[k], i)]),
             memory_velocity: DMatrix::zeros(rows.len(), N),
         })
+    }
+}
+
+/// At rest B^ J^+ K_I int holds the arm, J^+ K_I int = y; it joins the derivative by q.
+impl<P, R, const N: usize, const M: usize> Settle<P, R, N> for OperationalSpace<R::Real, N, M>
+where
+    P: Dynamics<N>,
+    R: Dynamics<N, Real = P::Real>,
+{
+    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        let mut feedback = self.linearise(model, q)?;
+        let a = self.task.jacobian(&model.geometric_jacobian(q)) * offset(plant, model, q)?;
+        let torque = |q: &SVector<R::Real, N>| {
+            let inverse = RightInverse::new(&self.task.jacobian(&model.geometric_jacobian(q)));
+            inverse.map_or_else(SVector::zeros, |inverse| model.inertia_matrix(q) * inverse.solve(&a))
+        };
+        feedback.position += derivative(q, torque);
+        Some(feedback)
     }
 }

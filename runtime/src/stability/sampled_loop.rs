@@ -3,7 +3,8 @@
 use super::{
     eigenvalues,
     exponential::exponential,
-    feedback::{derivative, viscous, Feedback, Linearise},
+    feedback::{derivative, viscous, Feedback, Linearise, Settle},
+    motion::Motion,
 };
 use crate::{linalg::lit, robot::Dynamics};
 use nalgebra::{linalg::balancing::balance_parlett_reinsch, DMatrix, RealField, SMatrix, SVector};
@@ -20,6 +21,11 @@ impl Delay {
     #[must_use]
     pub const fn samples(samples: usize) -> Self {
         Delay(samples)
+    }
+
+    /// How many samples.
+    pub(super) const fn count(self) -> usize {
+        self.0
     }
 }
 
@@ -73,12 +79,19 @@ pub struct Report<T> {
     pub posture: usize,
     /// Up to which sampling period the loop is stable at all postures.
     pub period: StablePeriod<T>,
+    /// The loop in motion, where it was asked for.
+    pub motion: Option<Motion<T>>,
 }
 
 impl<T: RealField + Copy> Report<T> {
-    /// Whether the loop is stable at all postures.
+    /// Whether the loop is stable at rest, at all postures.
     pub fn is_stable(&self) -> bool {
         self.radius < T::one()
+    }
+
+    /// Whether it is stable at rest and, where that is known, does not diverge in motion.
+    pub fn holds(&self) -> bool {
+        self.is_stable() && !self.motion.is_some_and(|motion| motion.diverges())
     }
 }
 
@@ -96,7 +109,8 @@ pub struct SampledLoop<T, const N: usize> {
 const TRIALS: usize = 30;
 
 impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
-    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest at `q`.
+    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest at `q`: with the memories of the controller
+    /// where the arm can rest.
     ///
     /// # Errors
     /// [`StabilityError::Singular`] or [`StabilityError::Inertia`], for posture 0.
@@ -104,9 +118,31 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
     where
         P: Dynamics<N, Real = T>,
         R: Dynamics<N, Real = T>,
+        C: Settle<P, R, N> + ?Sized,
+    {
+        Self::with_feedback(plant, controller.settle(plant, model, q), q)
+    }
+
+    /// The same about the memories that the controller has at present, from which the arm may set out: what the loop does until its
+    /// estimates have moved. This is no verdict, since the arm cannot rest there.
+    ///
+    /// # Errors
+    /// Those of [`SampledLoop::new`].
+    pub fn at_start<P, R, C>(plant: &P, model: &R, controller: &C, q: &SVector<T, N>) -> Result<Self, StabilityError>
+    where
+        P: Dynamics<N, Real = T>,
+        R: Dynamics<N, Real = T>,
         C: Linearise<R, N> + ?Sized,
     {
-        let feedback = controller.linearise(model, q).ok_or(StabilityError::Singular { posture: 0 })?;
+        Self::with_feedback(plant, controller.linearise(model, q), q)
+    }
+
+    fn with_feedback<P: Dynamics<N, Real = T>>(
+        plant: &P,
+        feedback: Option<Feedback<T, N>>,
+        q: &SVector<T, N>,
+    ) -> Result<Self, StabilityError> {
+        let feedback = feedback.ok_or(StabilityError::Singular { posture: 0 })?;
         let inertia = plant.inertia_matrix(q).cholesky().ok_or(StabilityError::Inertia { posture: 0 })?;
         let mobility = inertia.inverse();
         let dg = derivative(q, |q| plant.gravity(q));
@@ -230,7 +266,8 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
     }
 }
 
-/// Spectral radius and largest stable period of `controller` at all `postures`, at the sampling period `period`, s.
+/// Spectral radius and largest stable period of `controller` at all `postures`, at the sampling period `period`, s: about rest, with the
+/// memories of the controller where the arm can rest.
 ///
 /// # Errors
 /// With the index of the posture that has no answer; [`StabilityError::NoPosture`] without any.
@@ -246,12 +283,42 @@ where
     T: RealField + Copy,
     P: Dynamics<N, Real = T>,
     R: Dynamics<N, Real = T>,
+    C: Settle<P, R, N> + ?Sized,
+{
+    worst_of(postures, |q| SampledLoop::new(plant, model, controller, q), period, delay)
+}
+
+/// The same about the memories that the controller has at present: see [`SampledLoop::at_start`].
+///
+/// # Errors
+/// Those of [`analyse`].
+pub fn analyse_start<P, R, C, T, const N: usize>(
+    plant: &P,
+    model: &R,
+    controller: &C,
+    postures: &[SVector<T, N>],
+    period: T,
+    delay: Delay,
+) -> Result<Report<T>, StabilityError>
+where
+    T: RealField + Copy,
+    P: Dynamics<N, Real = T>,
+    R: Dynamics<N, Real = T>,
     C: Linearise<R, N> + ?Sized,
 {
+    worst_of(postures, |q| SampledLoop::at_start(plant, model, controller, q), period, delay)
+}
+
+fn worst_of<T: RealField + Copy, const N: usize>(
+    postures: &[SVector<T, N>],
+    at: impl Fn(&SVector<T, N>) -> Result<SampledLoop<T, N>, StabilityError>,
+    period: T,
+    delay: Delay,
+) -> Result<Report<T>, StabilityError> {
     let mut worst: Option<(T, usize)> = None;
     let mut loops = Vec::with_capacity(postures.len());
     for (posture, q) in postures.iter().enumerate() {
-        let sampled = SampledLoop::new(plant, model, controller, q).map_err(|error| match error {
+        let sampled = at(q).map_err(|error| match error {
             StabilityError::Singular { .. } => StabilityError::Singular { posture },
             StabilityError::Inertia { .. } => StabilityError::Inertia { posture },
             other => other,
@@ -274,5 +341,5 @@ where
             limit = sampled.largest_stable_period(bound, delay)?;
         }
     }
-    Ok(Report { radius, posture, period: limit })
+    Ok(Report { radius, posture, period: limit, motion: None })
 }

@@ -12,6 +12,27 @@ pub mod scara {
     include!(concat!(env!("OUT_DIR"), "/scara_runtime.rs"));
 }
 
+/// A UR10 with the standard parameters of all links.
+#[allow(missing_docs)]
+#[rustfmt::skip]
+pub mod ur10 {
+    include!(concat!(env!("OUT_DIR"), "/ur10.rs"));
+    include!(concat!(env!("OUT_DIR"), "/ur10_runtime.rs"));
+}
+
+/// A UR10 with a load that is its only parameter.
+#[allow(missing_docs)]
+#[rustfmt::skip]
+pub mod ur10_load {
+    include!(concat!(env!("OUT_DIR"), "/ur10_load.rs"));
+    include!(concat!(env!("OUT_DIR"), "/ur10_load_runtime.rs"));
+}
+
+/// The UR10 with a load.
+pub fn ur10_load() -> Box<dyn Arm> {
+    Box::new(armgen_experiments::instance!(crate::ur10_load))
+}
+
 /// The robot of the experiments.
 pub fn scara() -> Box<dyn Arm> {
     Box::new(armgen_experiments::instance!(crate::scara))
