@@ -5,7 +5,7 @@ mod common;
 use armgen_runtime::{
     control::OperationalSpace,
     reference::State,
-    simulation::{run, Integrator, Plant, RunError, RunOptions, Sensor},
+    simulation::{run, Integrator, Passed, Plant, RunError, RunOptions, Sensor},
 };
 use common::{below, ghost, scara::Scara};
 use nalgebra::{vector, Vector4};
@@ -122,7 +122,17 @@ fn a_run_that_ends_early_says_when() {
     assert_eq!(broken, Err(RunError::Controller { time: Duration::from_millis(5), error: "brake" }));
     assert_eq!(logged, 5);
     let lost = run(&plant, start, options(), |_, _| Ok::<_, ()>(Vector4::repeat(f64::NAN)), |_| {});
-    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1) }));
+    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1), passed: Passed::Rate(0) }));
+    // A torque that is finite, and a rate that no arm has.
+    let torn = run(
+        &plant,
+        start,
+        options(),
+        |_, _| Ok::<_, armgen_runtime::control::ControlError>(Vector4::new(0.0, 0.0, 0.0, 1e12)),
+        |_| {},
+    );
+    // The wrist's torque tears at the elbow most: the Coriolis terms do.
+    assert_eq!(torn.unwrap_err().to_string(), "diverged at 0.001 s: joint 1 (from 0) passed 1e6 rad/s or m/s");
     let mut none = options();
     none.integrator = Integrator::RungeKutta4 { substeps: 0 };
     assert!(matches!(run(&plant, start, none, |_, _| Ok::<_, ()>(Vector4::zeros()), |_| {}), Err(RunError::Integrator { .. })));

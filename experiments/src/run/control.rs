@@ -1,6 +1,5 @@
 //! A controller along a path: first its sampled loop, linearised; then the run, with a plant that has parameters of its own.
 
-use std::fmt;
 use std::slice::from_ref;
 use std::time::{Duration, Instant};
 
@@ -11,14 +10,16 @@ use armgen_runtime::control::{
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::parameters::ParameterError;
 use armgen_runtime::reference::{JointReference, OperationalReference, Pose, State};
-use armgen_runtime::simulation::{run as simulate, run_continuous, ContinuousOptions, Integrator, RunError, RunOptions, Sensor};
+use armgen_runtime::simulation::{
+    run as simulate, run_continuous, ContinuousOptions, Integrator, Passed, RunError, RunOptions, Sensor, BEYOND,
+};
 use armgen_runtime::stability::{
     analyse, analyse_start, Delay, Motion, Rehearsal, Rehearse, Report, Settle, StabilityError, StablePeriod,
 };
 
 use super::instance::{sized, Functions};
 use super::{Instance, Run};
-use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, LawKind, Quantity, Record, Speed};
+use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, LawKind, Quantity, Record, Robot, Speed};
 
 /// Distance between the postures at which the loop is linearised.
 const POSTURE_STEP: Duration = Duration::from_millis(250);
@@ -335,27 +336,41 @@ fn adaptive<const N: usize, const P: usize>(law: &Law, period: f64) -> Result<Ad
 #[derive(Debug)]
 enum Stop {
     Control(ControlError),
-    GivenUp,
+    /// This joint is off by more than [`GIVEN_UP`].
+    GivenUp(usize),
 }
 
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Stop::Control(error) => error.fmt(f),
-            Stop::GivenUp => write!(f, "a joint is off by more than {GIVEN_UP} rad or m"),
-        }
+/// Whether a joint is off so much that the run ends.
+fn off<const N: usize>(desired: &SVector<f64, N>, found: &SVector<f64, N>) -> Result<(), Stop> {
+    let error = (desired - found).abs();
+    let joint = error.imax();
+    // What is not finite is the affair of the run.
+    if error[joint] > GIVEN_UP && error[joint].is_finite() {
+        return Err(Stop::GivenUp(joint));
     }
+    Ok(())
 }
 
-/// Why a run ended, and when.
-fn explain(error: RunError<Stop>) -> String {
-    let ms = |t: Duration| number(t.as_secs_f64() * 1e3);
+/// Why a run ended, when, and which joint it was.
+fn explain(error: RunError<Stop>, robot: &Robot) -> String {
+    let s = |t: Duration| format!("{} s", number(t.as_secs_f64()));
+    let joint = |i: usize| (format!("joint `{}`", robot.joints[i].name), &robot.joints[i]);
     match error {
-        RunError::Controller { time, error: error @ Stop::GivenUp } => format!("given up after {} ms: {error}", ms(time)),
-        RunError::Controller { time, error } => format!("no torque after {} ms: {error}", ms(time)),
-        RunError::Diverged { time } => format!("diverged after {} ms", ms(time)),
-        RunError::Integrator { time, error } => format!("not integrable after {} ms: {error}", ms(time)),
-        RunError::NoPeriod => error.to_string(),
+        RunError::Controller { time, error: Stop::GivenUp(i) } => {
+            let (name, joint) = joint(i);
+            format!("given up at {}: {name} is off by more than {GIVEN_UP} {}", s(time), joint.unit())
+        }
+        RunError::Controller { time, error: Stop::Control(error) } => format!("no torque at {}: {error}", s(time)),
+        RunError::Diverged { time, passed } => {
+            let passed = match passed {
+                Passed::Rate(i) => format!("{} passed {BEYOND:e} {}", joint(i).0, joint(i).1.rate_unit()),
+                Passed::Position(i) => format!("{} passed {BEYOND:e} {}", joint(i).0, joint(i).1.unit()),
+                Passed::Memory => passed.to_string(),
+            };
+            format!("diverged at {}: {passed}", s(time))
+        }
+        RunError::Integrator { time, error } => format!("not integrable at {}: {error}", s(time)),
+        RunError::NoPeriod => "the sampling period is zero".to_owned(),
     }
 }
 
@@ -441,7 +456,7 @@ where
             _ => f64::NAN,
         };
         record.numbers = body.numbers(&arm.robot).into_iter().map(|channel| (channel.clone(), value(channel.quantity))).collect();
-        record.ended = outcome.err().map(explain);
+        record.ended = outcome.err().map(|error| explain(error, &arm.robot));
         if is_sampled {
             record.speed = Speed { simulated: record.end(), took };
         }
@@ -494,9 +509,7 @@ where
         let (model, joints, tip, mut index) = (&self.arm.nominal, self.joints, self.tip, 0);
         let controller = |_: Duration, measured: &State<f64, N>| {
             let (joints, tip) = (&joints[index], &tip[index]);
-            if (joints.q - measured.q).amax() > GIVEN_UP {
-                return Err(Stop::GivenUp);
-            }
+            off(&joints.q, &measured.q)?;
             index += 1;
             law.borrow_mut().torque(model, joints, tip, measured).map_err(Stop::Control)
         };
@@ -513,9 +526,7 @@ where
         let (model, joints) = (&self.arm.nominal, self.joints);
         let law = |k: u64, t: f64, state: &State<f64, N>, estimate: &SVector<f64, P>| {
             let reference = joints[k as usize].held(t);
-            if (reference.q - state.q).amax() > GIVEN_UP {
-                return Err(Stop::GivenUp);
-            }
+            off(&reference.q, &state.q)?;
             let step = controller.law(model, &reference, state, estimate).map_err(Stop::Control);
             step.map(|(torque, rate)| (torque.tau, rate))
         };

@@ -2,7 +2,11 @@
 //!
 //! What a proof by Lyapunov speaks of. A controller that is stable here may be unstable when sampled, and the comparison shows it.
 
-use super::{integrator::rk4, Phase, RunError};
+use super::{
+    integrator::rk4,
+    run::{beyond, Passed},
+    Phase, RunError,
+};
 use crate::{linalg::is_finite, linalg::lit, reference::State, robot::Dynamics};
 use core::time::Duration;
 use nalgebra::{RealField, SVector};
@@ -79,8 +83,8 @@ where
     let (mut index, mut time) = (0, Duration::ZERO);
     loop {
         let state = State { q: x.q, dq: x.dq };
-        if !(state.is_finite() && is_finite(&x.memory)) {
-            return Err(RunError::Diverged { time });
+        if let Some(passed) = beyond(&state).or_else(|| (!is_finite(&x.memory)).then_some(Passed::Memory)) {
+            return Err(RunError::Diverged { time, passed });
         }
         log(&ContinuousSample { index, time, state, memory: x.memory });
         let next = time.saturating_add(period);

@@ -45,6 +45,41 @@ pub struct Sample<T, const N: usize> {
     pub energy: Option<Energy<T>>,
 }
 
+/// Joint variables, rad or m, and rates, per s, that no arm reaches: beyond, a run has diverged.
+pub const BEYOND: f64 = 1e6;
+
+/// What went beyond [`BEYOND`], or became infinite or NaN; joints count from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passed {
+    /// The rate of this joint.
+    Rate(usize),
+    /// The variable of this joint.
+    Position(usize),
+    /// The memory of a law in continuous time.
+    Memory,
+}
+
+impl fmt::Display for Passed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Passed::Rate(joint) => write!(f, "joint {joint} (from 0) passed {BEYOND:e} rad/s or m/s"),
+            Passed::Position(joint) => write!(f, "joint {joint} (from 0) passed {BEYOND:e} rad or m"),
+            Passed::Memory => write!(f, "the memory of the law is no longer finite"),
+        }
+    }
+}
+
+/// What of this state is beyond, rates first: they are where it begins.
+pub(super) fn beyond<T: RealField + Copy, const N: usize>(state: &State<T, N>) -> Option<Passed> {
+    let first = |x: &SVector<T, N>| {
+        // The largest, and what is no number before all others.
+        let size = |i: usize| if x[i].is_finite() { x[i].abs() } else { lit(f64::MAX) };
+        let largest = (0..N).reduce(|a, b| if size(b) > size(a) { b } else { a })?;
+        (size(largest) > lit(BEYOND)).then_some(largest)
+    };
+    first(&state.dq).map(Passed::Rate).or_else(|| first(&state.q).map(Passed::Position))
+}
+
 /// Why a run ended early, and when; the samples before were logged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunError<E> {
@@ -55,10 +90,12 @@ pub enum RunError<E> {
         /// The controller's error.
         error: E,
     },
-    /// The state is no longer finite: the loop is unstable.
+    /// The state has left what any arm does: the loop is unstable.
     Diverged {
-        /// The time of the first state that is not finite.
+        /// The time of the first such state.
         time: Duration,
+        /// What went beyond all bounds.
+        passed: Passed,
     },
     /// The integrator gave up.
     Integrator {
@@ -75,9 +112,7 @@ impl<E: fmt::Display> fmt::Display for RunError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             RunError::Controller { time, error } => write!(f, "at {} s: {error}", time.as_secs_f64()),
-            RunError::Diverged { time } => {
-                write!(f, "at {} s the state is no longer finite: the loop is unstable", time.as_secs_f64())
-            }
+            RunError::Diverged { time, passed } => write!(f, "diverged at {} s: {passed}", time.as_secs_f64()),
             RunError::Integrator { time, error } => write!(f, "at {} s: {error}", time.as_secs_f64()),
             RunError::NoPeriod => write!(f, "the period is zero, or is to be covered in no steps"),
         }
@@ -124,8 +159,8 @@ where
     let (mut index, mut time) = (0, Duration::ZERO);
     loop {
         let state = *plant.state();
-        if !state.is_finite() {
-            return Err(RunError::Diverged { time });
+        if let Some(passed) = beyond(&state) {
+            return Err(RunError::Diverged { time, passed });
         }
         let measured = sensor.measure(&state);
         let tau = controller(time, &measured).map_err(|error| RunError::Controller { time, error })?;
