@@ -15,28 +15,60 @@
 //! warnings of the description become warnings of the build.
 
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::diagnostic::Colour;
+use crate::diagnostic::{Colour, Diagnostics};
 pub use crate::kinds::Scalar;
 pub use crate::pass::Pass;
 pub use crate::program::Trig;
 
 use crate::catalogue::Absent;
-use crate::schedule::{Options, Selection};
+use crate::schedule::{Options, Selection, UnknownFunctions};
 use crate::source::Source;
 
-/// Why nothing was generated: every fault of the description with its place, or the file that cannot be read or written.
-#[derive(Clone, Debug)]
-pub struct BuildError(String);
+/// Why nothing was generated.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// The description cannot be read, or is not UTF-8.
+    Read(PathBuf, io::Error),
+    /// The description is faulty: every fault with its place.
+    Description(Source, Diagnostics),
+    /// A name that no function has.
+    Functions(UnknownFunctions),
+    /// A function that was asked for and that this arm does not have.
+    Absent(PathBuf, Absent),
+    /// `OUT_DIR` is not set: this is no build script.
+    NoOutDir,
+    /// A file cannot be written.
+    Write(PathBuf, io::Error),
+}
 
 impl fmt::Display for BuildError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
+        match self {
+            BuildError::Read(path, error) => write!(f, "error: cannot read {}: {error}", path.display()),
+            BuildError::Description(source, diagnostics) => f.write_str(&diagnostics.render(source, Colour::Never)),
+            BuildError::Functions(unknown) => write!(f, "error: {unknown}"),
+            BuildError::Absent(path, Absent { function, reason }) => {
+                write!(f, "error: {} has no `{function}`: {reason}", path.display())
+            }
+            BuildError::NoOutDir => f.write_str("error: OUT_DIR is not set: this is for build scripts"),
+            BuildError::Write(path, error) => write!(f, "error: cannot write {}: {error}", path.display()),
+        }
     }
 }
 
-impl std::error::Error for BuildError {}
+impl std::error::Error for BuildError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            BuildError::Read(_, error) | BuildError::Write(_, error) => Some(error),
+            BuildError::Functions(unknown) => Some(unknown),
+            BuildError::Description(..) | BuildError::Absent(..) | BuildError::NoOutDir => None,
+        }
+    }
+}
 
 /// A description to generate from.
 #[derive(Clone, Debug)]
@@ -123,30 +155,27 @@ impl Robot {
     /// # Errors
     /// Where the description cannot be read or is faulty, or a file cannot be written.
     pub fn try_generate(&self) -> Result<Vec<PathBuf>, BuildError> {
-        self.write().map_err(BuildError)
-    }
-
-    fn write(&self) -> Result<Vec<PathBuf>, String> {
         let path = self.description.display();
         // One colon: cargo refuses two where the user's crate declares a Rust older than 1.77.
         println!("cargo:rerun-if-changed={path}");
-        let bytes = std::fs::read(&self.description).map_err(|e| format!("error: cannot read {path}: {e}"))?;
-        let text = String::from_utf8(bytes).map_err(|e| format!("error: {path} is not UTF-8: {e}"))?;
+        // Reading as a string refuses what is not UTF-8.
+        let text =
+            std::fs::read_to_string(&self.description).map_err(|error| BuildError::Read(self.description.clone(), error))?;
         let source = Source::new(path.to_string(), text);
         let mut options = self.options.clone();
         if !self.functions.is_empty() {
-            options.functions = Selection::named(&self.functions).map_err(|unknown| format!("error: {unknown}"))?;
+            options.functions = Selection::named(&self.functions).map_err(BuildError::Functions)?;
         }
         let (generated, diagnostics) = crate::generate(&source, &options);
-        let generated = generated.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
-        if let (false, Some(Absent { function, reason })) = (options.functions.is_all(), generated.absent.first()) {
-            return Err(format!("error: {path} has no `{function}`: {reason}"));
+        let Some(generated) = generated else { return Err(BuildError::Description(source, diagnostics)) };
+        if let (false, Some(absent)) = (options.functions.is_all(), generated.absent.first()) {
+            return Err(BuildError::Absent(self.description.clone(), absent.clone()));
         }
         for warning in diagnostics.iter() {
             let place = source.place(warning.span().range().start);
             println!("cargo:warning={path}:{}:{}: {}", place.line, place.column, warning.message);
         }
-        let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
+        let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or(BuildError::NoOutDir)?;
         let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
         let stem = self.stem.clone().unwrap_or_else(own);
         let mut files = vec![(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)];
@@ -156,7 +185,7 @@ impl Robot {
         let mut written = Vec::new();
         for (name, text) in files {
             let file = out.join(name);
-            std::fs::write(&file, text).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;
+            std::fs::write(&file, text).map_err(|error| BuildError::Write(file.clone(), error))?;
             written.push(file);
         }
         Ok(written)

@@ -65,6 +65,7 @@ macro_rules! codes {
     }) => {
         $(#[$about])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
         $visibility enum $code {
             $($(#[$doc])* $variant,)*
         }

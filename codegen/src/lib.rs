@@ -11,37 +11,59 @@
 //! | emit | `Module` | text | no |
 //!
 //! Text goes in, text comes out; only [`build_script`] touches files and environment.
+//!
+//! A project that has a robot needs [`build_script::Robot`], or [`generate`] with [`Options`]. The modules that documentation leaves out hold
+//! the stages themselves; the program and the checker stand on them, and they change as the stages do.
 
 pub mod build_script;
-pub mod catalogue;
-pub mod derive;
-pub mod description;
 pub mod diagnostic;
+pub mod source;
+
+#[doc(hidden)]
+pub mod catalogue;
+#[doc(hidden)]
+pub mod derive;
+#[doc(hidden)]
+pub mod description;
+#[doc(hidden)]
 pub mod document;
+#[doc(hidden)]
 pub mod emit;
+#[doc(hidden)]
 pub mod exact;
+#[doc(hidden)]
 pub mod kinds;
+#[doc(hidden)]
 pub mod manipulator;
+#[doc(hidden)]
 pub mod pass;
+#[doc(hidden)]
 pub mod program;
+#[doc(hidden)]
 pub mod ring;
+#[doc(hidden)]
 pub mod schedule;
 mod scramble;
+#[doc(hidden)]
 pub mod show;
-pub mod source;
+#[doc(hidden)]
 pub mod suggest;
+#[doc(hidden)]
 pub mod validate;
 
 use std::collections::BTreeMap;
 
-use catalogue::Absent;
+pub use catalogue::Absent;
 pub use derive::Model;
 use diagnostic::Diagnostics;
 use emit::c::CFace;
 use emit::{Notes, Origin};
 use exact::Number;
+pub use kinds::Scalar;
+pub use pass::{Pass, Passes};
 use program::Module;
-use schedule::Options;
+pub use program::Trig;
+pub use schedule::{Options, Selection, UnknownFunctions};
 use source::Source;
 
 /// The text of an emitted module and of the trait implementation that goes with it.

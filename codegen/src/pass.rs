@@ -2,6 +2,7 @@
 
 /// A named step that makes the emitted functions cheaper and leaves their values as they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Pass {
     /// Treat parallel axes in one orientation.
     ParallelAxes,

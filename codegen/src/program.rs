@@ -18,6 +18,7 @@ use crate::ring::Symbol;
 
 /// Where the sines and cosines of the emitted module come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Trig {
     /// The crate `libm`, angle by angle: the same bits on every machine.
     #[default]

@@ -24,30 +24,50 @@
 //! What is not covered: that the compiler and libm do what they promise, and documentation comments. How far rounding takes the functions
 //! from the equations is bounded a priori ([`bounds`](mod@bounds)) and at a state ([`companion`](mod@companion)), and measured ([`errors`]).
 
+#[doc(hidden)]
 pub mod arithmetic;
+#[doc(hidden)]
 pub mod base;
 pub mod bounds;
 pub mod certificate;
+#[doc(hidden)]
 pub mod checker;
+#[doc(hidden)]
 pub mod claims;
 pub mod companion;
+#[doc(hidden)]
 pub mod constants;
+#[doc(hidden)]
 pub mod contract;
+#[doc(hidden)]
 pub mod divisors;
+#[doc(hidden)]
 pub mod enclosure;
+#[doc(hidden)]
 pub mod equations;
 pub mod errors;
+#[doc(hidden)]
 pub mod float;
+#[doc(hidden)]
 pub mod formula;
+#[doc(hidden)]
 pub mod identities;
+#[doc(hidden)]
 pub mod influence;
+#[doc(hidden)]
 pub mod program;
+#[doc(hidden)]
 pub mod reader;
+#[doc(hidden)]
 pub mod reference;
 pub mod report;
+#[doc(hidden)]
 pub mod residual;
+#[doc(hidden)]
 pub mod seed;
+#[doc(hidden)]
 pub mod stability;
+#[doc(hidden)]
 pub mod stated;
 pub mod test_kit;
 

@@ -21,9 +21,9 @@ pub struct Places {
     pub regressor: Option<Span>,
     /// The names that it lists, in its order.
     pub regressor_names: Vec<Span>,
-    /// Definitions of the names that are symbols, by [`ParameterId`](crate::manipulator::ParameterId).
+    /// Definitions of the names that are symbols, by [`ParameterId`](crate::kinds::ParameterId).
     pub parameters: Vec<Span>,
-    /// Where these names stand in expressions, abbreviations included, by [`ParameterId`](crate::manipulator::ParameterId).
+    /// Where these names stand in expressions, abbreviations included, by [`ParameterId`](crate::kinds::ParameterId).
     pub uses: Vec<Vec<Use>>,
 }
 
