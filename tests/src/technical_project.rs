@@ -352,7 +352,7 @@ fn potential(shown: &Shown, reading: Reading) -> Result<Vec<String>, String> {
     Ok(if left.is_empty() { vec![] } else { vec![format!("potential_energy = {found}, not {expected} and a constant")] })
 }
 
-/// The determinant's factors multiply to it but for a constant, and it vanishes at q2 = k pi only.
+/// The determinant's factors multiply to it but for a constant, and it vanishes at multiples of pi of q2 only.
 fn singularity(shown: &Shown) -> Result<Vec<String>, String> {
     let determinant = shown.get("determinant")?;
     let mut faults = Vec::new();
@@ -367,7 +367,7 @@ fn singularity(shown: &Shown) -> Result<Vec<String>, String> {
     let plain = |text: &String| text.replace('π', "pi").replace([' ', '*'], "");
     let singular = determinant.singular.as_ref().ok_or("determinant has no singular configurations")?;
     if singular.iter().flatten().map(plain).collect::<Vec<_>>() != ["q2=kpi"] {
-        faults.push(format!("singular at {singular:?}, not at q2 = k pi"));
+        faults.push(format!("singular at {singular:?}, not where q2 = 0 mod pi"));
     }
     Ok(faults)
 }

@@ -55,8 +55,8 @@ pub enum Zeros {
     Everywhere,
     /// Where the parameters that alone stand in it make it so.
     OfParameters,
-    /// At values of one joint variable: `q2 = k pi`.
-    Of(String),
+    /// At values of one joint variable: `q2 = 0 mod pi`, in plain text and in LaTeX.
+    Of([String; 2]),
     /// Where several joints together make it so.
     OfSeveralJoints,
 }
@@ -68,7 +68,7 @@ impl Zeros {
             Zeros::Never => Some("never"),
             Zeros::Everywhere => Some("at every q"),
             Zeros::OfParameters => Some("where its parameters alone make it so"),
-            Zeros::Of(values) => Some(values),
+            Zeros::Of([text, _]) => Some(text),
             Zeros::OfSeveralJoints => None,
         }
     }
@@ -79,7 +79,7 @@ impl Zeros {
             Zeros::Never => "never zero".into(),
             Zeros::Everywhere => "zero at every q".into(),
             Zeros::OfParameters => "zero where its parameters alone make it so".into(),
-            Zeros::Of(values) => format!("zero at {values}"),
+            Zeros::Of([text, _]) => format!("zero at {text}"),
             Zeros::OfSeveralJoints => "zero where several joints together make it so".into(),
         }
     }
@@ -239,7 +239,7 @@ fn normalised(parts: Vec<(NormalForm, Zeros)>) -> (Vec<(NormalForm, Zeros)>, Num
     let parts = parts
         .into_iter()
         .map(|(form, zeros)| {
-            let groups = form.by_wave();
+            let groups = form.by_harmonic();
             let leading = groups[0].1[0].1.clone();
             let inverse = Number::one().checked_div(&leading).expect("a term is not zero");
             scale = &scale * &leading;
@@ -326,84 +326,145 @@ fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
     form
 }
 
+/// Values of a joint variable in both notations, each as `print` gives it.
+fn at(print: impl Fn(&Printer<'_>) -> String) -> Zeros {
+    Zeros::Of([Notation::Text, Notation::Latex].map(|notation| print(&Printer { notation, parameters: &[] })))
+}
+
 /// Where a factor in one variable is zero.
 fn zeros(form: &NormalForm, variable: Variable, polynomial: &Univariate) -> Zeros {
-    let printer = Printer { notation: Notation::Text, parameters: &[] };
     let coefficient = |angles: Vec<(u16, i32)>, sine: bool| {
         form.terms().find(|(w, _, _)| w.angles == angles && w.sine == sine).map_or(Number::zero(), |(_, _, c)| c.clone())
     };
-    match variable {
-        Variable::Position(i) => {
-            let name = format!("q{}", i + 1);
-            match polynomial.coefficients() {
-                [zero, one] => {
-                    let root = (-zero).checked_div(one).expect("the leading coefficient is not zero");
-                    Zeros::Of(format!("{name} = {}", printer.number(&root)))
-                }
-                [zero, one, two] => quadratic(&printer, &name, zero, one, two),
-                _ => Zeros::Of(format!("{name} with {} = 0", printer.form(form))),
+    let (Variable::Position(i) | Variable::Angle(i)) = variable;
+    let name = |printer: &Printer<'_>| printer.symbol(Symbol::Position(i));
+    let implicitly = || {
+        at(|printer| match printer.notation {
+            Notation::Text => format!("{} with {} = 0", name(printer), printer.form(form)),
+            Notation::Latex => format!("{} \\text{{ with }} {} = 0", name(printer), printer.form(form)),
+        })
+    };
+    if let Variable::Position(_) = variable {
+        return match polynomial.coefficients() {
+            [zero, one] => {
+                let root = (-zero).checked_div(one).expect("the leading coefficient is not zero");
+                at(|printer| format!("{} = {}", name(printer), printer.number(&root)))
+            }
+            [zero, one, two] => quadratic(&name, zero, one, two),
+            _ => implicitly(),
+        };
+    }
+    let highest = form.terms().map(|(w, _, _)| w.order()).max().unwrap_or(0);
+    let (a, b, c) = (coefficient(vec![(i, 1)], false), coefficient(vec![(i, 1)], true), coefficient(Vec::new(), false));
+    if highest != 1 {
+        return implicitly();
+    }
+    let modulo_pi = |value: &dyn Fn(&Printer<'_>) -> String| at(|p| format!("{} = {}{}", name(p), value(p), modulo(p, "")));
+    match (a.is_zero(), b.is_zero(), c.is_zero()) {
+        (true, false, true) => modulo_pi(&|_| "0".into()),
+        (false, true, true) => modulo_pi(&|printer| fraction_of_pi(printer, 1, 2)),
+        (false, false, true) => {
+            let ratio = (-&a).checked_div(&b).expect("b is not zero");
+            modulo_pi(&|printer| call(printer, "atan", "\\arctan", &printer.number(&ratio)))
+        }
+        _ => linear_with_constant(&name, &a, &b, &c),
+    }
+}
+
+/// ` mod 2 pi`, with what stands before pi.
+fn modulo(printer: &Printer<'_>, factor: &str) -> String {
+    match (printer.notation, factor) {
+        (Notation::Text, "") => " mod pi".into(),
+        (Notation::Text, _) => format!(" mod {factor} pi"),
+        (Notation::Latex, "") => " \\pmod{\\pi}".into(),
+        (Notation::Latex, _) => format!(" \\pmod{{{factor} \\pi}}"),
+    }
+}
+
+fn fraction_of_pi(printer: &Printer<'_>, numerator: i64, denominator: i64) -> String {
+    match (printer.notation, numerator, denominator) {
+        (Notation::Text, n, 1) => {
+            if n == 0 {
+                "0".into()
+            } else {
+                "pi".into()
             }
         }
-        Variable::Angle(i) => {
-            let name = format!("q{}", i + 1);
-            let highest = form.terms().map(|(w, _, _)| w.order()).max().unwrap_or(0);
-            let (a, b, c) = (coefficient(vec![(i, 1)], false), coefficient(vec![(i, 1)], true), coefficient(Vec::new(), false));
-            if highest != 1 {
-                return Zeros::Of(format!("{name} with {} = 0", printer.form(form)));
-            }
-            match (a.is_zero(), b.is_zero(), c.is_zero()) {
-                (true, false, true) => Zeros::Of(format!("{name} = k pi")),
-                (false, true, true) => Zeros::Of(format!("{name} = pi/2 + k pi")),
-                (false, false, true) => {
-                    let ratio = (-&a).checked_div(&b).expect("b is not zero");
-                    Zeros::Of(format!("{name} = atan({}) + k pi", printer.number(&ratio)))
-                }
-                _ => linear_with_constant(&printer, &name, &a, &b, &c),
+        (Notation::Text, 1, d) => format!("pi/{d}"),
+        (Notation::Text, n, d) => format!("{n} pi/{d}"),
+        (Notation::Latex, n, 1) => {
+            if n == 0 {
+                "0".into()
+            } else {
+                "\\pi".into()
             }
         }
+        (Notation::Latex, 1, d) => format!("\\frac{{\\pi}}{{{d}}}"),
+        (Notation::Latex, n, d) => format!("\\frac{{{n} \\pi}}{{{d}}}"),
+    }
+}
+
+/// A function of a name in plain text and one in LaTeX.
+fn call(printer: &Printer<'_>, text: &str, latex: &str, inside: &str) -> String {
+    match printer.notation {
+        Notation::Text => format!("{text}({inside})"),
+        Notation::Latex => format!("{latex}\\left({inside}\\right)"),
     }
 }
 
 /// c + b q + a q² = 0.
-fn quadratic(printer: &Printer<'_>, name: &str, c: &Number, b: &Number, a: &Number) -> Zeros {
-    let root = |numerator: Number| {
-        let root = numerator.checked_div(&(a * &Number::from(2))).expect("the leading coefficient is not zero");
-        printer.number(&root)
-    };
+fn quadratic(name: &dyn Fn(&Printer<'_>) -> String, c: &Number, b: &Number, a: &Number) -> Zeros {
+    let root = |numerator: Number| numerator.checked_div(&(a * &Number::from(2))).expect("the leading coefficient is not zero");
     let discriminant = &(b * b) - &(&(a * c) * &Number::from(4));
     match discriminant.sqrt() {
         None => Zeros::Never,
-        Some(zero) if zero.is_zero() => Zeros::Of(format!("{name} = {}", root(-b))),
-        Some(width) => Zeros::Of(format!("{name} = {} or {}", root(&-b - &width), root(&-b + &width))),
+        Some(zero) if zero.is_zero() => {
+            let root = root(-b);
+            at(|printer| format!("{} = {}", name(printer), printer.number(&root)))
+        }
+        Some(width) => {
+            let roots = [root(&-b - &width), root(&-b + &width)];
+            at(|printer| {
+                let [low, high] = roots.each_ref().map(|root| printer.number(root));
+                let or = if printer.notation == Notation::Text { " or " } else { " \\text{ or } " };
+                format!("{} = {low}{or}{high}", name(printer))
+            })
+        }
     }
 }
 
 /// a cos q + b sin q + c = 0.
-fn linear_with_constant(printer: &Printer<'_>, name: &str, a: &Number, b: &Number, c: &Number) -> Zeros {
+fn linear_with_constant(name: &dyn Fn(&Printer<'_>) -> String, a: &Number, b: &Number, c: &Number) -> Zeros {
     let square = &(a * a) + &(b * b);
     if (&square - &(c * c)).sign() == std::cmp::Ordering::Less {
         return Zeros::Never;
     }
     let radius = square.sqrt().expect("a sum of squares");
     let ratio = (-c).checked_div(&radius).expect("a harmonic is there");
-    let centre = if b.is_zero() && a.sign() == std::cmp::Ordering::Greater {
-        String::new()
-    } else {
-        format!("atan2({}, {}) ", printer.number(b), printer.number(a))
-    };
+    let at_origin = b.is_zero() && a.sign() == std::cmp::Ordering::Greater;
     // cos(q - centre) = ratio
     let exact = [(0i64, 1i64), (1, 6), (1, 4), (1, 3), (1, 2), (2, 3), (3, 4), (5, 6), (1, 1)].into_iter().find(|&(n, d)| {
         let part = Number::from(Rational::from(n) / Rational::from(d));
         Angle::new(&part * &Number::pi()).cos() == ratio
     });
-    let opening = match exact {
-        Some((0, _)) => return Zeros::Of(format!("{name} = {centre}{}2 k pi", if centre.is_empty() { "" } else { "+ " })),
-        Some((1, 1)) => return Zeros::Of(format!("{name} = {centre}{}pi + 2 k pi", if centre.is_empty() { "" } else { "+ " })),
-        Some((1, d)) => format!("pi/{d}"),
-        Some((n, d)) => format!("{n} pi/{d}"),
-        None => format!("acos({})", printer.number(&ratio)),
-    };
-    Zeros::Of(format!("{name} = {centre}+- {opening} + 2 k pi"))
+    at(|printer| {
+        let text = printer.notation == Notation::Text;
+        let centre = call(printer, "atan2", "\\operatorname{atan2}", &format!("{}, {}", printer.number(b), printer.number(a)));
+        let opening = match exact {
+            Some((n, d)) => fraction_of_pi(printer, n, d),
+            None => call(printer, "acos", "\\arccos", &printer.number(&ratio)),
+        };
+        let both = if text { "+-" } else { "\\pm" };
+        let value = match (exact, at_origin) {
+            (Some((0, _)), true) => "0".into(),
+            (Some((0, _)), false) => centre,
+            (Some((1, 1)), true) => opening,
+            (Some((1, 1)), false) => format!("{centre} + {opening}"),
+            (_, true) => format!("{both}{}{opening}", if text { "" } else { " " }),
+            (_, false) => format!("{centre} {both} {opening}"),
+        };
+        format!("{} = {value}{}", name(printer), modulo(printer, "2"))
+    })
 }
 
 #[cfg(test)]
@@ -412,8 +473,8 @@ mod tests {
 
     #[test]
     fn zeros_of_a_quadratic_factor() {
-        let printer = Printer { notation: Notation::Text, parameters: &[] };
-        let zeros = |c: i64, b: i64, a: i64| quadratic(&printer, "q1", &c.into(), &b.into(), &a.into());
+        let name = |printer: &Printer<'_>| printer.symbol(Symbol::Position(0));
+        let zeros = |c: i64, b: i64, a: i64| quadratic(&name, &c.into(), &b.into(), &a.into());
         assert_eq!(zeros(1, 2, 1).words(), Some("q1 = -1"));
         assert_eq!(zeros(3, -4, 1).words(), Some("q1 = 1 or 3"));
         assert_eq!(zeros(-2, 0, 1).words(), Some("q1 = -sqrt(2) or sqrt(2)"));

@@ -70,7 +70,7 @@ impl NormalForm {
     }
 
     /// The terms gathered by harmonic, those of the highest order first: what a reader expects of `10 cos q2 + 10763/500`.
-    pub fn by_wave(&self) -> Vec<(&Harmonic, Vec<(&Factors, &Number)>)> {
+    pub fn by_harmonic(&self) -> Vec<(&Harmonic, Vec<(&Factors, &Number)>)> {
         let mut groups: BTreeMap<&Harmonic, Vec<(&Factors, &Number)>> = BTreeMap::new();
         for (harmonic, factors, coefficient) in self.terms() {
             groups.entry(harmonic).or_default().push((factors, coefficient));
@@ -328,7 +328,7 @@ impl Pool {
         meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId,
     ) -> ExprId {
         let mut sum = ExprId::ZERO;
-        for (harmonic, group) in form.by_wave() {
+        for (harmonic, group) in form.by_harmonic() {
             let harmonic = self.harmonic(harmonic);
             let mut inner = ExprId::ZERO;
             for (factors, coefficient) in group {

@@ -6,7 +6,7 @@
 use dashu_base::{Abs, Signed};
 
 use super::normal_form::{Factors, Harmonic, NormalForm};
-use super::{ExprId, Node, Pool, Symbol};
+use super::Symbol;
 use crate::exact::{Atom, Number, Rational};
 
 /// The notation of a formula.
@@ -79,7 +79,7 @@ impl Printer<'_> {
     /// A formula.
     pub fn form(&self, form: &NormalForm) -> String {
         let mut sum = Sum::default();
-        for (harmonic, group) in form.by_wave() {
+        for (harmonic, group) in form.by_harmonic() {
             if let [(factors, coefficient)] = group[..] {
                 self.term(&mut sum, coefficient, factors, Some(harmonic));
             } else if harmonic.angles.is_empty() {
@@ -216,25 +216,31 @@ impl Printer<'_> {
         }
     }
 
-    /// The operation of one node in terms of its operands' names: a step of a program for people.
-    pub fn step(&self, pool: &Pool, expr: ExprId, name: &dyn Fn(ExprId) -> String) -> String {
-        let times = if self.notation == Notation::Text { "*" } else { "\\," };
-        match pool.node(expr) {
-            Node::Constant(_) => self.number(&pool.as_constant(expr.unsigned()).expect("a constant")),
-            Node::Symbol(symbol) => self.symbol(symbol),
-            Node::Add(a, b) => format!("{} {} {}", name(a), if b.is_negated() { '-' } else { '+' }, name(b.unsigned())),
-            Node::Mul(a, b) => {
-                let factor = |e: ExprId| {
-                    let text = name(e);
-                    if text.contains(" + ") || text.contains(" - ") {
-                        format!("({text})")
-                    } else {
-                        text
-                    }
-                };
-                format!("{}{times}{}", factor(a), factor(b))
+    /// A sum of products: of each a coefficient and its factors, printed already, with their powers; those below 0 are divided by.
+    pub fn sum_of_products<'t>(&self, terms: impl IntoIterator<Item = (&'t Number, &'t [(String, i32)])>) -> String {
+        let mut sum = Sum::default();
+        for (coefficient, factors) in terms {
+            let part = |(name, power): &(String, i32)| match power.unsigned_abs() {
+                1 => name.clone(),
+                power => self.power(name, power as i32),
+            };
+            let (above, below): (Vec<_>, Vec<_>) = factors.iter().partition(|(_, power)| *power > 0);
+            let mut parts: Vec<String> = above.into_iter().map(part).collect();
+            let below: Vec<String> = below.into_iter().map(part).collect();
+            if !below.is_empty() {
+                let numerator = parts.join(if self.notation == Notation::Text { "*" } else { "\\," });
+                let numerator = if parts.is_empty() { "1".into() } else { numerator };
+                parts = vec![match self.notation {
+                    Notation::Text => format!("{numerator}/{}", below.join("/")),
+                    Notation::Latex => format!("\\frac{{{numerator}}}{{{}}}", below.join("\\,")),
+                }];
             }
-            Node::Reciprocal(a) => format!("1/{}", name(a)),
+            self.product(&mut sum, coefficient, parts);
+        }
+        if sum.text.is_empty() {
+            "0".into()
+        } else {
+            sum.text
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::catalogue::Absent;
 use std::fmt::Write;
 
 use super::{break_sum, Formulas, Sheet, Shown};
+use crate::derive::determinant::Zeros;
 use crate::ring::print::Notation;
 
 /// Width of a displayed line, in characters as [`measure`] counts them.
@@ -46,8 +47,10 @@ impl Shown {
         let mut lines = Vec::new();
         for (factor, zeros) in self.factors(Notation::Latex).unwrap_or_default() {
             lines.extend(break_sum(&factor, WIDTH, &measure).into_iter().map(|piece| format!("& {piece}")));
-            let words = zeros.sentence().replace('_', "\\_").replace('^', "\\textasciicircum ");
-            lines.push(format!("&\\qquad\\text{{{words}}}"));
+            lines.push(match zeros {
+                Zeros::Of([_, latex]) => format!("&\\qquad\\text{{zero at }} {latex}"),
+                _ => format!("&\\qquad\\text{{{}}}", zeros.sentence()),
+            });
         }
         if lines.is_empty() {
             return String::new();

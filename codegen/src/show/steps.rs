@@ -1,39 +1,108 @@
 //! Expressions as numbered steps: what is used more than once gets a name, what is used once is written where it is used, up to a length.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Formulas;
 use crate::derive::Derivation;
+use crate::exact::Number;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Node};
 
 /// A step that is used once is written inside the one that uses it, up to so many operands.
 const OPERANDS_IN_A_STEP: usize = 6;
 
-/// How a text binds, from loose to tight.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Binding {
-    Sum,
-    Product,
-    Quotient,
-    Whole,
+/// A product: an exact coefficient, and factors as they are printed, with their powers.
+#[derive(Clone)]
+struct Term {
+    coefficient: Number,
+    factors: Vec<(String, i32)>,
 }
 
+/// What is written for a node: a sum of products, so that equal terms are collected, constants multiplied, and signs taken in.
 #[derive(Clone)]
-struct Text {
-    text: String,
-    operands: usize,
-    binding: Binding,
-}
+struct Text(Vec<Term>);
 
 impl Text {
-    /// In parentheses if it binds more loosely than `least`.
-    fn at_least(&self, least: Binding, notation: Notation) -> String {
-        match (self.binding >= least, notation) {
-            (true, _) => self.text.clone(),
-            (false, Notation::Text) => format!("({})", self.text),
-            (false, Notation::Latex) => format!("\\left({}\\right)", self.text),
+    fn constant(value: Number) -> Text {
+        Text(if value.is_zero() { Vec::new() } else { vec![Term { coefficient: value, factors: Vec::new() }] })
+    }
+
+    fn factor(name: String) -> Text {
+        Text(vec![Term { coefficient: Number::one(), factors: vec![(name, 1)] }])
+    }
+
+    /// How many operands it shows.
+    fn operands(&self) -> usize {
+        let of = |term: &Term| term.factors.len() + usize::from(!term.coefficient.is_one() || term.factors.is_empty());
+        self.0.iter().map(of).sum()
+    }
+
+    fn signed(&self, negated: bool) -> Text {
+        let of = |term: &Term| Term { coefficient: -&term.coefficient, factors: term.factors.clone() };
+        if negated {
+            Text(self.0.iter().map(of).collect())
+        } else {
+            self.clone()
         }
+    }
+
+    /// The sum; terms with the same factors become one, and none if they cancel.
+    fn plus(mut self, other: &Text) -> Text {
+        for term in &other.0 {
+            match self.0.iter_mut().find(|own| own.factors == term.factors) {
+                Some(own) => own.coefficient += &term.coefficient,
+                None => self.0.push(term.clone()),
+            }
+        }
+        self.0.retain(|term| !term.coefficient.is_zero());
+        self
+    }
+
+    /// The product of two that are products each; a sum is a factor in parentheses.
+    fn times(&self, other: &Text, printer: &Printer<'_>) -> Text {
+        let (Some(left), Some(right)) = (self.as_product(printer), other.as_product(printer)) else { return Text(Vec::new()) };
+        let mut product = left;
+        product.coefficient = &product.coefficient * &right.coefficient;
+        for (name, power) in right.factors {
+            match product.factors.iter_mut().find(|(own, _)| *own == name) {
+                Some((_, own)) => *own += power,
+                None => product.factors.push((name, power)),
+            }
+        }
+        product.factors.retain(|(_, power)| *power != 0);
+        Text(vec![product])
+    }
+
+    /// As one product; nothing for 0.
+    fn as_product(&self, printer: &Printer<'_>) -> Option<Term> {
+        match &self.0[..] {
+            [] => None,
+            [term] => Some(term.clone()),
+            _ => Some(Term { coefficient: Number::one(), factors: vec![(self.in_parentheses(printer), 1)] }),
+        }
+    }
+
+    fn in_parentheses(&self, printer: &Printer<'_>) -> String {
+        match printer.notation {
+            Notation::Text => format!("({})", self.print(printer)),
+            Notation::Latex => format!("\\left({}\\right)", self.print(printer)),
+        }
+    }
+
+    /// One over it: a factor that is divided by.
+    fn reciprocal(&self, printer: &Printer<'_>) -> Text {
+        let name = match (&self.0[..], printer.notation) {
+            ([Term { coefficient, factors }], _) if coefficient.is_one() && matches!(factors[..], [(_, 1)]) => {
+                factors[0].0.clone()
+            }
+            (_, Notation::Text) => self.in_parentheses(printer),
+            (_, Notation::Latex) => self.print(printer),
+        };
+        Text(vec![Term { coefficient: Number::one(), factors: vec![(name, -1)] }])
+    }
+
+    fn print(&self, printer: &Printer<'_>) -> String {
+        printer.sum_of_products(self.0.iter().map(|term| (&term.coefficient, &term.factors[..])))
     }
 }
 
@@ -43,68 +112,42 @@ pub(super) fn formulas(derivation: &Derivation, printer: &Printer<'_>, letter: &
     let order = order(derivation);
     let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
     for &expr in &order {
-        operands(pool.node(expr)).iter().for_each(|e| *uses.entry(e.index()).or_default() += 1);
+        // t + t is written as 2 t, and uses t once.
+        let used: BTreeSet<usize> = operands(pool.node(expr)).iter().map(|e| e.index()).collect();
+        used.into_iter().for_each(|index| *uses.entry(index).or_default() += 1);
     }
     derivation.entries.iter().for_each(|e| *uses.entry(e.index()).or_default() += 1);
 
-    let notation = printer.notation;
-    let times = if notation == Notation::Text { "*" } else { "\\," };
     let mut steps: Vec<(String, String)> = Vec::new();
     let mut texts: BTreeMap<usize, Text> = BTreeMap::new();
     for expr in order {
-        let of = |e: ExprId| &texts[&e.index()];
-        let (text, count, binding) = match pool.node(expr) {
-            Node::Constant(_) => {
-                let number = pool.as_constant(expr).expect("a constant");
-                let text = printer.number(&number);
-                let binding = match (number.terms().count(), text.contains(['/', '*', '\\'])) {
-                    (0 | 1, false) => Binding::Whole,
-                    (0 | 1, true) => Binding::Product,
-                    _ => Binding::Sum,
-                };
-                (text, 1, binding)
-            }
-            Node::Symbol(symbol) => (printer.symbol(symbol), 1, Binding::Whole),
-            Node::Add(a, b) => {
-                let (left, right) = (of(a), of(b));
-                let sign = if b.is_negated() { '-' } else { '+' };
-                let least = if b.is_negated() { Binding::Product } else { Binding::Sum };
-                let text = format!("{} {sign} {}", left.text, right.at_least(least, notation));
-                (text, left.operands + right.operands, Binding::Sum)
-            }
-            Node::Mul(a, b) => {
-                let (left, right) = (of(a), of(b));
-                let (l, r) = (left.at_least(Binding::Product, notation), right.at_least(Binding::Quotient, notation));
-                (format!("{l}{times}{r}"), left.operands + right.operands, Binding::Product)
-            }
-            Node::Reciprocal(a) => {
-                let of = of(a);
-                match notation {
-                    Notation::Text => (format!("1/{}", of.at_least(Binding::Whole, notation)), of.operands + 1, Binding::Product),
-                    Notation::Latex => (format!("\\frac{{1}}{{{}}}", of.text), of.operands + 1, Binding::Quotient),
-                }
-            }
+        let of = |e: ExprId| texts[&e.index()].signed(e.is_negated());
+        let text = match pool.node(expr) {
+            Node::Constant(_) => Text::constant(pool.as_constant(expr).expect("a constant")),
+            Node::Symbol(symbol) => Text::factor(printer.symbol(symbol)),
+            Node::Add(a, b) => of(a).plus(&of(b)),
+            Node::Mul(a, b) => of(a).times(&of(b), printer),
+            Node::Reciprocal(a) => of(a).reciprocal(printer),
         };
         let leaf = operands(pool.node(expr)).is_empty();
-        let text = if leaf || (uses[&expr.index()] == 1 && count <= OPERANDS_IN_A_STEP) {
-            Text { text, operands: count, binding }
+        let text = if leaf || (uses[&expr.index()] == 1 && text.operands() <= OPERANDS_IN_A_STEP) {
+            text
         } else {
-            let name = match notation {
+            let name = match printer.notation {
                 Notation::Text => format!("{letter}{}", steps.len() + 1),
                 Notation::Latex => format!("{letter}_{{{}}}", steps.len() + 1),
             };
-            steps.push((name.clone(), text));
-            Text { text: name, operands: 1, binding: Binding::Whole }
+            steps.push((name.clone(), text.print(printer)));
+            Text::factor(name)
         };
         texts.insert(expr.index(), text);
     }
     let entries = derivation
         .entries
         .iter()
-        .map(|&e| match (pool.as_constant(e), &texts[&e.index()]) {
-            (Some(value), _) => printer.number(&value),
-            (None, text) if e.is_negated() => format!("-{}", text.at_least(Binding::Product, notation)),
-            (None, text) => text.text.clone(),
+        .map(|&e| match pool.as_constant(e) {
+            Some(value) => printer.number(&value),
+            None => texts[&e.index()].signed(e.is_negated()).print(printer),
         })
         .collect();
     Formulas { steps, entries }

@@ -37,9 +37,10 @@ pub(super) fn report(model: &Model) -> String {
             let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
             let rank = rank(&pool, &y);
             format!(
-                "  The regressor has {} parameters and rank {rank}: a motion can identify {rank} combinations of them.\n  \
+                "  The regressor has {} and rank {rank}: a motion can identify {} of them.\n  \
                  With `regressor: base` this program lists them.\n",
-                vector.len()
+                counted(vector.len(), "parameter"),
+                counted(rank, "combination")
             )
         }
         ParameterKind::Names(_) => {
@@ -47,6 +48,11 @@ pub(super) fn report(model: &Model) -> String {
             of_names(&names, &dependence(&pool, &y))
         }
     }
+}
+
+/// `1 parameter`, `2 parameters`.
+fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 fn of_names(names: &[&str], dependence: &Dependence) -> String {
@@ -60,7 +66,7 @@ fn of_names(names: &[&str], dependence: &Dependence) -> String {
     let silent: BTreeSet<usize> = dependence.dependent.iter().filter(|(_, c)| c.is_empty()).map(|(column, _)| *column).collect();
     let alone: Vec<&str> = dependence.independent.iter().filter(|c| !sums.contains_key(c)).map(|&c| names[c]).collect();
 
-    let mut text = format!("  The regressor has {} parameters and rank {rank}: ", names.len());
+    let mut text = format!("  The regressor has {} and rank {rank}: ", counted(names.len(), "parameter"));
     if rank == names.len() {
         text += "a motion can identify each of them.\n";
         return text;
