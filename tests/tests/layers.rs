@@ -177,7 +177,7 @@ impl Crate {
             file.visit_file(&syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display())));
             for child in &file.children {
                 let name = child.trim_start_matches("r#").to_owned();
-                let next = [module.as_slice(), &[child.clone()]].concat();
+                let next = [module.as_slice(), std::slice::from_ref(child)].concat();
                 open.push((next, folder.join(format!("{name}.rs")), folder.join(name)));
             }
             files.insert(module, file);
