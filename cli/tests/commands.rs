@@ -237,7 +237,7 @@ fn no_file_beside_the_module_is_written_over_another() {
         let out = folder.join(out);
         let paths = [&description, &out].map(|path| path.to_str().expect("UTF-8"));
         let output = check(&["generate", paths[0], "--out", paths[1], "--c-abi"], 2);
-        assert!(err(&output).contains("would be written over"), "{}", err(&output));
+        assert!(err(&output).contains("two of the files to write would both be"), "{}", err(&output));
         assert!(!out.exists());
         assert_eq!(fs::read(&description).expect("still there"), before);
     }

@@ -1,4 +1,4 @@
-//! What the file says, every value with its place, nothing judged that takes more than reading.
+//! The file as read: every value with its place, not yet validated.
 //!
 //! ```text
 //! Source -> document: tree of nodes -> reader.rs: which keys there are, and what stands under each -> RobotDescription
@@ -163,7 +163,7 @@ pub struct ToolDescription {
 /// The choice of the regressor's columns.
 #[derive(Clone, Debug)]
 pub enum RegressorDescription {
-    /// Ten per link, and so on.
+    /// All standard parameters: ten per link, then rotors, friction and payload.
     Standard,
     /// The minimal set.
     Base,

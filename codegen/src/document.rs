@@ -14,7 +14,7 @@ pub mod yaml;
 pub(crate) use expression::out_of_range;
 pub use expression::{parse as parse_expression, Expression, ExpressionKind, Operator};
 
-/// `text` shortened for a message, control characters made visible.
+/// `text` shortened for a message, control characters replaced by blanks.
 pub fn excerpt(text: &str) -> String {
     const LONGEST: usize = 40;
     let shown: String = text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();

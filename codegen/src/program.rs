@@ -1,7 +1,7 @@
 //! Straight-line programs: what a machine does, in order, in no language.
 //!
 //! A function is a list of steps, each an operation on inputs, constants and earlier steps, and a list of outputs.
-//! Absent from here on: graphs, sharing, mathematics.
+//! Absent from a `Function` on: graphs, sharing, mathematics. `optimise` runs before: it works on shared expressions.
 
 mod constants;
 mod cost;

@@ -189,9 +189,9 @@ pub type Fingerprint = [Element; 2];
 
 /// A hash for fingerprints: they are random already.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct Identity(u64);
+pub(crate) struct FingerprintHasher(u64);
 
-impl std::hash::Hasher for Identity {
+impl std::hash::Hasher for FingerprintHasher {
     fn finish(&self) -> u64 {
         self.0
     }
@@ -215,7 +215,7 @@ pub struct Pool {
     constants: Vec<Rc<Number>>,
     constant_nodes: BTreeMap<Rc<Number>, ExprId>,
     /// Look-up only: its order reaches nothing.
-    known: HashMap<Fingerprint, ExprId, BuildHasherDefault<Identity>>,
+    known: HashMap<Fingerprint, ExprId, BuildHasherDefault<FingerprintHasher>>,
     at_origin: Vec<Option<Rc<Number>>>,
     symbols: BTreeMap<Symbol, ExprId>,
     /// Whether constants are known by their fingerprints alone.

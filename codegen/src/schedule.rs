@@ -14,7 +14,7 @@ use crate::kinds::{JointKind, Scalar};
 use crate::manipulator;
 pub use crate::pass::{Pass, Passes};
 use crate::program::{optimise, Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
-use crate::ring::count::DIVISION;
+use crate::ring::count::DIVISION_COST;
 use crate::ring::{ExprId, Node, Pool};
 use crate::Model;
 pub use selection::{Selection, UnknownFunctions};
@@ -113,10 +113,10 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
     let recursion = quantity.by_search(model, view, without, EFFORT);
     let closed = if without.contains(Pass::ClosedForm) { Vec::new() } else { recursion.by_closed_form() };
     // A closed form that is far longer than the recursion does not become shorter than it.
-    let most = CLOSED_FORM_FACTOR * recursion.pool.operations(&recursion.entries, DIVISION);
+    let most = CLOSED_FORM_FACTOR * recursion.pool.operations(&recursion.entries, DIVISION_COST);
     closed
         .into_iter()
-        .filter(|closed| closed.pool.operations(&closed.entries, DIVISION) <= most)
+        .filter(|closed| closed.pool.operations(&closed.entries, DIVISION_COST) <= most)
         .chain([recursion])
         .map(|derivation| {
             let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, without);

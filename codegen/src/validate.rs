@@ -40,7 +40,7 @@ pub use names::is_rust_name;
 use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};
 
-/// Named quantities: an arm of as many joints as can be, with a name for every number of its data sheet, has fewer.
+/// Most named quantities: more than all numbers of an arm with `MAX_JOINTS` joints.
 pub const MAX_PARAMETERS: usize = 1024;
 
 /// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
@@ -63,7 +63,7 @@ struct Context<'d> {
     source: &'d Source,
     evaluator: Evaluator<'d>,
     diagnostics: &'d mut Diagnostics,
-    /// Inertias that give one moment alone, of which one warning tells.
+    /// Inertias of which only one moment is given, collected for a single warning.
     planar: Vec<(Span, String)>,
 }
 

@@ -42,7 +42,7 @@ impl<'a> Job<'a> {
         &self.record
     }
 
-    /// Finds out what can be known before anything moves.
+    /// Analyses the stability of the sampled loop; nothing is simulated yet.
     pub fn prepare(&mut self) {
         self.prepared = Some(self.arm.prepare(self.experiment));
     }
@@ -72,7 +72,7 @@ impl<'a> Job<'a> {
         (format!("{}.csv", self.experiment.name), self.record.csv())
     }
 
-    /// The lines of the table; an early end that nothing accounts for is one of them.
+    /// The lines of the table; a run that ended early is one of them, unless an expectation is about `lost_at`.
     pub fn lines(&self) -> Vec<Line> {
         let expect = &self.experiment.expect;
         let mut lines: Vec<Line> = expect.iter().map(|expectation| judge(expectation, &self.record)).collect();

@@ -5,15 +5,15 @@ use crate::model::{digits, number, Expectation, Record, Take, Target, Unit};
 /// One line of the table of results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Which number it is.
+    /// The quantity, and how it was taken: `max |e_z| in [5, 20] s`.
     pub what: String,
-    /// What it is.
+    /// The value found, formatted.
     pub found: String,
     /// Its unit.
     pub unit: Unit,
-    /// What it should be.
+    /// The expected value or bound, formatted.
     pub expected: String,
-    /// Whether it is.
+    /// Whether the expectation is met.
     pub met: bool,
 }
 
@@ -24,7 +24,7 @@ impl Line {
     }
 }
 
-/// What the run gave, in the light of what was expected.
+/// Compares an expectation with the record of a run.
 pub fn judge(expectation: &Expectation, record: &Record) -> Line {
     let Expectation { channel, take, target } = expectation;
     let found = find(expectation, record);

@@ -6,7 +6,7 @@
 //! demonstration.rs for a robot without experiments: from posture to posture within its limits
 //! ```
 //!
-//! [`Arm`] is the border: the runs behind it are generic over the robot and its numbers of joints, rows and parameters, and are compiled
+//! [`Arm`] separates generic code from the rest: the runs behind it are generic over the robot and its numbers of joints, rows and parameters, and are compiled
 //! where an [`Instance`] is made; whoever holds an `Arm` is compiled without the robot.
 
 mod clik;

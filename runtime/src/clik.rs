@@ -35,7 +35,7 @@ pub enum ClikError {
     StateNotFinite,
     /// The reference is infinite or NaN.
     ReferenceNotFinite,
-    /// The Jacobian has lost a row of the task and the algorithm has no damping: use [`DampedLeastSquares`], or keep away.
+    /// The Jacobian of the task has lost rank and the algorithm has no damping: use [`DampedLeastSquares`], or keep away.
     Singular,
     /// The law gave infinite or NaN rates: gains or model are beyond the range of the scalar.
     RatesNotFinite,
@@ -44,8 +44,8 @@ pub enum ClikError {
 messages! { ClikError,
     ClikError::StateNotFinite => "joint variables or rates are infinite or NaN";
     ClikError::ReferenceNotFinite => "the reference is infinite or NaN";
-    ClikError::Singular => "the Jacobian has lost a row of the task: use damped least squares, or keep away from singular postures";
-    ClikError::RatesNotFinite => "the rates are infinite or NaN: gains or model are beyond the range of the scalar";
+    ClikError::Singular => "the Jacobian of the task has lost rank: use damped least squares, or keep away from singular postures";
+    ClikError::RatesNotFinite => "the rates or accelerations are infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
 /// What a step, or a whole approach, came to.

@@ -61,7 +61,7 @@ pub enum ControlError {
 messages! { ControlError,
     ControlError::MeasurementNotFinite => "a measured joint variable or rate is infinite or NaN";
     ControlError::ReferenceNotFinite => "the reference is infinite or NaN";
-    ControlError::Singular => "the Jacobian has lost a row of the task: allow damping, or keep away from singular postures";
+    ControlError::Singular => "the Jacobian of the task has lost rank: allow damping, or keep away from singular postures";
     ControlError::TorqueNotFinite => "the torque is infinite or NaN: gains or model are beyond the range of the scalar";
     ControlError::AccelerationNotFinite => "the damped inverse gives no joint acceleration: Jacobian or gains are beyond the range of the scalar";
     ControlError::MemoryNotFinite => "the next estimate or integral is infinite or NaN: gains or model are beyond the range of the scalar";

@@ -1,4 +1,4 @@
-//! What a robot is to the rest of this crate: three traits, from kinematics alone to the regressor, and one for each function that not
+//! The traits of a robot: `Kinematics`, `Dynamics` and `Regressor`, each extending the one before it, and one for each function that not
 //! every robot has.
 //!
 //! The emitted module of a robot comes with implementations of these traits (feature `runtime` of the crate that holds it):

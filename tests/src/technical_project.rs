@@ -366,7 +366,7 @@ fn singularity(shown: &Shown) -> Result<Vec<String>, String> {
     }
     let plain = |text: &String| text.replace('π', "pi").replace([' ', '*'], "");
     let singular = determinant.singular.as_ref().ok_or("determinant has no singular configurations")?;
-    if singular.iter().flatten().map(plain).collect::<Vec<_>>() != ["q2=kpi"] {
+    if singular.iter().flatten().map(plain).collect::<Vec<_>>() != ["q2=0modpi"] {
         faults.push(format!("singular at {singular:?}, not where q2 = 0 mod pi"));
     }
     Ok(faults)

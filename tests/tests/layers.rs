@@ -43,7 +43,7 @@ const CODEGEN: Layers = &[
     ("program", &["catalogue", "exact", "kinds", "pass", "ring", "scramble"]),
     ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "pass", "program", "ring", "suggest"]),
     ("emit", &["catalogue", "exact", "kinds", "program", "ring", "source"]),
-    ("show", &["catalogue", "derive", "ring"]),
+    ("show", &["catalogue", "derive", "exact", "ring"]),
     ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source"]),
 ];
 

@@ -95,7 +95,7 @@ pub struct Arm {
 }
 
 impl Body {
-    /// Nothing.
+    /// A body without mass.
     pub const EMPTY: Body = Body { mass: ExprId::ZERO, first: ZERO, second: [ExprId::ZERO; 6] };
 
     /// The body in a parallel frame in which its own frame has the origin p: x_outer = x + p.
@@ -164,7 +164,7 @@ impl Joint {
         self.about_axis_back(pool, &turned)
     }
 
-    /// Rz' v.
+    /// A vector of the parent's axes turned by `fixed`, in this joint frame: Rz' v.
     pub fn about_axis_back(&self, pool: &mut Pool, v: &Vector) -> Vector {
         let (s, c) = (self.sine, self.cosine);
         [pool.dot(&[c, s], &[v[0], v[1]]), pool.dot(&[c, -s], &[v[1], v[0]]), v[2]]
@@ -207,7 +207,7 @@ impl Joint {
         turned.moved(pool, &self.origin)
     }
 
-    /// Rz.
+    /// The rotation Rz(theta) about the joint axis.
     pub fn about_axis_matrix(&self) -> Matrix {
         let (s, c) = (self.sine, self.cosine);
         [[c, -s, ExprId::ZERO], [s, c, ExprId::ZERO], [ExprId::ZERO, ExprId::ZERO, ExprId::ONE]]
@@ -281,15 +281,15 @@ impl Arm {
             .collect()
     }
 
-    /// What turns about z alone, of joint frame i in its parent's, whatever the joint angle.
+    /// A body in joint frame i with mass, first and second moment along z only, in the parent's joint frame: the same for every joint angle.
     pub fn fixed_outward(&self, pool: &mut Pool, i: usize, body: &Body) -> Body {
         let joint = &self.joints[i];
         let turned = body.turned(pool, &joint.fixed);
         turned.moved(pool, &joint.origin)
     }
 
-    /// Hands the second moments of a link behind a prismatic joint on to the parent: they never change their direction.
-    pub fn hand_second_moments_on(&mut self, pool: &mut Pool, i: usize) {
+    /// Moves the second moments of a prismatic joint's link to its parent, in whose frame they are constant.
+    pub fn move_second_moments_to_parent(&mut self, pool: &mut Pool, i: usize) {
         let second = std::mem::replace(&mut self.joints[i].body.second, [ExprId::ZERO; 6]);
         if let Some(p) = self.joints[i].parent {
             let rotation = self.joints[i].rotation(pool);
@@ -326,7 +326,7 @@ impl Arm {
     pub fn group_towards_base(&mut self, pool: &mut Pool, convention: GroupingConvention) {
         for i in (0..self.dof()).rev() {
             if !self.joints[i].is_revolute() {
-                self.hand_second_moments_on(pool, i);
+                self.move_second_moments_to_parent(pool, i);
                 continue;
             }
             let mut handed = Body::EMPTY;

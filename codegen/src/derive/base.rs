@@ -28,7 +28,7 @@ pub struct Dependence {
     pub dependent: Vec<(usize, Vec<(usize, Number)>)>,
 }
 
-/// So many states with small numbers are tried first.
+/// Number of states with small numbers that are tried first.
 const SIMPLE_STATES: u64 = 24;
 
 /// The dependence among the columns of `y`, `y[joint][column]`, taken in order: a column is kept unless those before it span it.
@@ -217,7 +217,7 @@ fn simplest_pivot(system: &[Vec<Number>], rows: &[usize], unknowns: &[usize]) ->
     simple.min().map(|(_, _, r, c)| (r, c))
 }
 
-/// The number; 0 where it is 0 without looking it: the field knows.
+/// The number, or an exact 0 where the field shows that an unreduced number is 0.
 fn zero_if_zero(field: &mut Field, number: Number) -> Number {
     if !number.is_reduced() && field.number(&number) == field.zero() {
         Number::zero()
@@ -345,8 +345,8 @@ pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVec
     grouped(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
 }
 
-/// The base parameters of an arm that its own regressor asks for: those that are not zero, with the masses of its rotors among the values, so that
-/// Y pi is the whole torque. Links keep no second moment along their axes, for a mass on the x or y axis has a moment of two components only.
+/// The base parameters of `base_regressor`: those that are not zero, with the masses of its rotors among the values, so that
+/// Y pi is the whole torque. Links keep no second moment along their axes, because the moment of a point mass on the x or y axis has two components only.
 pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> ParameterVector {
     let ParameterVector { entries, kind } = grouped(manipulator, field, GroupingConvention::NoSecondMomentAlongAxis, true);
     let ParameterKind::Base(columns) = kind else { unreachable!("base parameters are grouped") };
@@ -355,7 +355,7 @@ pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> 
     ParameterVector { entries, kind: ParameterKind::Base(columns) }
 }
 
-/// The base parameters. The masses of rotors are no parameters; they are known, or, for the arm's `own` regressor, part of the links' values.
+/// The base parameters. The masses of rotors are no parameters; they are known, or, for `base_regressor`, part of the links' values.
 fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvention, own: bool) -> ParameterVector {
     let mut pool = Pool::new(field.clone());
     let standard = ParameterVector::standard(manipulator);
@@ -420,7 +420,7 @@ fn candidates(manipulator: &Manipulator, convention: GroupingConvention) -> Vec<
         .collect()
 }
 
-/// A parameter of the grouped arm as coefficients of the standard parameters, and last the rest that depends on none.
+/// A parameter of the grouped arm as coefficients of the standard parameters, and last its constant part.
 fn combination(pool: &mut Pool, arm: &Arm, standard: &ParameterVector, parameter: StandardParameter) -> Vec<Number> {
     let expr = match parameter {
         StandardParameter::Link(i, k) => {

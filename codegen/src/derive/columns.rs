@@ -29,7 +29,7 @@ use crate::ring::{ExprId, Pool, Symbol};
 pub(super) struct Column {
     /// f, n.
     pub(super) inertial: (Vector, Vector),
-    /// For C.
+    /// What C needs besides; none where only B is formed.
     pub(super) rate: Option<Rate>,
 }
 
@@ -54,7 +54,7 @@ pub(super) struct PropagatedColumn {
     column: Column,
     /// The link in whose frame it is.
     link: usize,
-    /// Whether it is expressed in the joint frame at q = 0, before the rotation of the joint itself.
+    /// Whether it is expressed in the joint frame at theta = 0 (the parent's axes turned by `fixed`), before the rotation of the joint itself.
     before_joint_rotation: bool,
     /// The joint whose origin the moments are about.
     about: usize,
@@ -63,7 +63,7 @@ pub(super) struct PropagatedColumn {
 }
 
 /// Vectors between the origins of joint frames, each computed when first needed.
-pub(super) struct OriginOffsets<'a> {
+pub(super) struct ColumnPropagator<'a> {
     arm: &'a Arm,
     /// Angular velocities of the joint frames, for C.
     omega: Option<&'a [Vector]>,
@@ -79,12 +79,12 @@ struct Offset {
     relative: Vector,
 }
 
-impl<'a> OriginOffsets<'a> {
-    pub(super) fn new(arm: &'a Arm, omega: Option<&'a [Vector]>) -> OriginOffsets<'a> {
-        OriginOffsets { arm, omega, offsets: BTreeMap::new() }
+impl<'a> ColumnPropagator<'a> {
+    pub(super) fn new(arm: &'a Arm, omega: Option<&'a [Vector]>) -> ColumnPropagator<'a> {
+        ColumnPropagator { arm, omega, offsets: BTreeMap::new() }
     }
 
-    /// A column at its own joint, expressed in the joint frame at q = 0, E relative to the parent.
+    /// A column at its own joint, expressed in the joint frame at theta = 0, E relative to the parent.
     pub(super) fn start(&self, pool: &mut Pool, plan: &mut Plan, mut column: Column, joint: usize) -> PropagatedColumn {
         let mut relative = self.arm.joints[joint].parent;
         if let (Some(moving), Some(p), Some(omega)) = (&mut column.rate, relative, self.omega) {
@@ -254,7 +254,7 @@ impl PropagatedColumn {
         }
     }
 
-    /// Takes the moments about a point from which the old one is at d; `outer` is Ω if E is relative to a link.
+    /// Moves the reference point of the moments: `offset` leads from the new point to the old one, `outer` is the Ω of the link that E is relative to.
     fn shift(&mut self, pool: &mut Pool, offset: &Offset, outer: &Vector) {
         let mut moved = |at: &Vector, force: &Vector, moment: &Vector| {
             let lever = pool.cross(at, force);

@@ -5,7 +5,7 @@ use crate::exact::Number;
 use crate::manipulator::Manipulator;
 use crate::ring::field::Field;
 
-/// A field in which the constants of a valid arm have their roots, and the angle by which its last link may be turned its sine and cosine.
+/// A field that has the roots of a valid arm's constants, and the sine and cosine of the angle by which its last link may be turned.
 pub fn field_of(manipulator: &Manipulator) -> Field {
     let plain = find_field(manipulator).expect("validation refuses an arm without a field");
     let turn = passes::angle_of_last_link(&plain, manipulator);

@@ -19,7 +19,7 @@ pub struct Derivation {
     pub parallel: Vec<Option<(u16, bool)>>,
 }
 
-/// A closed form is tried up to so many terms an entry, on the way and at the end.
+/// Most terms of an entry, intermediate forms included, up to which a closed form is tried.
 pub const CLOSED_FORM_TERMS: usize = 300;
 
 impl Derivation {
@@ -69,12 +69,12 @@ impl Derivation {
         (entries != self.entries || pool.len() != self.pool.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
     }
 
-    /// The joint before that of a symbol whose axis is parallel.
+    /// The joint before the symbol's own whose axis is parallel, and whether it points the other way.
     fn before(&self, symbol: Symbol) -> Option<(u16, bool)> {
         self.parallel.get(usize::from(symbol.index())).copied().flatten()
     }
 
-    /// What such a rate is: w_i = w_p ± dq_i.
+    /// The rate (or acceleration) of a link about the axis that it shares with links before it: w_i = w_p ± dq_i.
     fn absolute(&self, pool: &mut Pool, symbol: Symbol) -> ExprId {
         let own = pool.symbol(symbol);
         let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else { return own };
@@ -83,7 +83,7 @@ impl Derivation {
     }
 }
 
-/// The kind of a rate or an acceleration.
+/// The constructor of the symbol, if it is a rate or an acceleration.
 fn moving(symbol: Symbol) -> Option<fn(u16) -> Symbol> {
     match symbol {
         Symbol::Rate(_) => Some(Symbol::Rate),

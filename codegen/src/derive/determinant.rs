@@ -85,7 +85,7 @@ impl Zeros {
     }
 }
 
-/// Up to so many terms, on the way too, the determinant is sought in closed form.
+/// Most terms, intermediate forms included, of a closed form of the determinant.
 const TERMS: usize = 4000;
 
 /// The determinant, or why there is none.
@@ -175,7 +175,7 @@ fn positions(form: &NormalForm) -> Vec<u16> {
     all.into_iter().collect()
 }
 
-/// Where a factor is zero that is no product of ones in a single joint variable.
+/// Where the factor that is left after all contents is zero.
 fn zeros_without_joints(form: &NormalForm) -> Zeros {
     if !form.angles().is_empty() || !positions(form).is_empty() {
         Zeros::OfSeveralJoints
@@ -227,7 +227,7 @@ fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<
             (form, zeros)
         })
         .collect();
-    // The pieces carry scales (sin q is 2t/(1 + t²)): what they have too much is divided out of the quotient.
+    // The pieces carry scales (sin q is 2t/(1 + t²)): each is scaled to a leading coefficient of 1, and the quotient takes the product of the scales.
     let (parts, scale) = normalised(parts);
     let quotient = quotient.times(&NormalForm::term(Harmonic::one(), Vec::new(), scale), usize::MAX)?;
     Some((parts, quotient))

@@ -19,7 +19,7 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Of a matrix none of whose leading minors is identically zero.
+    /// Factors a matrix none of whose leading minors is identically zero.
     pub fn new(pool: &mut Pool, m: &[Vec<ExprId>]) -> Factors {
         let n = m.len();
         // Columns of L D as they come (undivided) and of L (unit): an entry of L D L' needs one of each.

@@ -152,7 +152,7 @@ impl StandardParameter {
         }
     }
 
-    /// What it is an entry of, and which.
+    /// The value or the body that gives it.
     fn part(self, manipulator: &Manipulator) -> Part<'_> {
         let joint = |i: u16| &manipulator.joints[usize::from(i)];
         let motor = |i: u16| joint(i).motor.as_ref();

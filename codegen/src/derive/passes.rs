@@ -13,22 +13,22 @@ use crate::pass::Pass;
 use crate::ring::Pool;
 pub(crate) use last_link::{angle_of_last_link, rotate_last_link};
 
-/// What a derivation asks of an arm.
+/// Which passes may rewrite the arm for a derivation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// Motion and forces; the parameters of the links are numbers and may be mixed.
     Dynamics,
-    /// Motion and forces; the parameters of the links are symbols, or the potential counts, which grouping drops.
+    /// Motion and forces; the parameters of the links are symbols, or the potential energy is needed, whose constant grouping drops.
     Plain,
     /// Frames, and columns of parameters that stay in them.
     Frames,
 }
 
-/// With more different roots than this among its constants an arm keeps the plain ways: each root may double a sum that is divided by.
+/// With more different roots than this among its constants an arm keeps the plain ways: each root may double the terms of a divisor.
 const ROOTS: usize = 3;
 
 /// Disables the passes that compare and divide the constants of an arm, where these have no short canonical form: where sines and cosines
-/// of general angles are among them (two expressions of those may be equal and not look it), or many roots.
+/// of general angles are among them (two expressions of those may be equal and differ in form), or many roots.
 pub fn disable_unsuitable(pool: &Pool, arm: &Arm, plan: &mut Plan) {
     let joints = arm.joints.iter().flat_map(|joint| {
         let vectors = joint.fixed.into_iter().chain([joint.origin, joint.body.first]).flatten();

@@ -1,7 +1,7 @@
 //! Which way a derivation goes where several are exact, and the search for the cheapest.
 //!
 //! A derivation asks its [`Plan`] at each fork, by the pass that the fork belongs to and a place (a joint, say); way 0 is the plain one.
-//! The search tries the other ways fork by fork, counts the operations of each in a fingerprints_only of the pool, and keeps what is cheaper, until
+//! The search tries the other ways fork by fork, counts the operations of each in a copy of the pool that holds fingerprints only, and keeps what is cheaper, until
 //! no single change helps. It is bounded by counts, never by time, and takes the forks in a fixed order.
 
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ pub enum Place {
     Leaving(usize),
     /// A joint, and which of the parameters that it may hand on.
     Parameter(usize, usize),
-    /// The link that a column leaves, and whether it is still in the axes of that link's parent.
+    /// The link that a column leaves, and whether it is still in the joint frame at theta = 0.
     Column(usize, bool),
     /// A joint that feels gravity.
     Gravity(usize),
@@ -100,13 +100,13 @@ impl Plan {
         self.ways.get(&(pass, place)).copied().filter(|&way| way < ways).unwrap_or(0)
     }
 
-    /// The cheapest of the plans that searches from several starts find, each with what effort those before have left.
+    /// The cheapest of the plans that searches from several starts find, which share `effort`.
     pub fn search_from(self, starts: &[usize], mut effort: usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> Plan {
         let found = starts.iter().map(|&start| Plan { start, ..self.clone() }.search(&mut effort, cost));
         found.min_by_key(|(cost, _)| *cost).map_or(self.clone(), |(_, plan)| plan)
     }
 
-    /// The plan that costs least, after its cost. `cost` tells the cost of a plan and the effort of finding out, of which `effort` is there.
+    /// The plan that costs least, after its cost. `cost` gives the cost of a plan and the effort spent on it, which is taken from `effort`.
     fn search(mut self, effort: &mut usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> (usize, Plan) {
         let (mut best, spent) = cost(&mut self);
         *effort = effort.saturating_sub(spent);

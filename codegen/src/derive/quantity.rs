@@ -13,7 +13,7 @@ use super::parameters::View;
 use super::passes::{self, Use};
 use super::plan::Plan;
 use crate::pass::{Pass, Passes};
-use crate::ring::count::{DIVISION, PAIR};
+use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
 use crate::ring::{ExprId, Pool};
 
 /// A function of the emitted module.
@@ -36,9 +36,9 @@ pub struct Quantity {
     pub recursion: Recursion,
     /// Why an arm does not have the function, or its form with parameters at run time, if it does not.
     pub missing: fn(&Model, bool) -> Option<String>,
-    /// Other quantities that it only gathers, if it does.
+    /// Quantities whose values this one returns together; empty for all others.
     pub gathers: &'static [&'static Quantity],
-    /// The trait of the runtime that it is a method of.
+    /// The trait of the runtime that it is a method of; any name but Kinematics, Dynamics, Regressor is a trait of its own, written by a test.
     pub interface: Option<&'static str>,
 }
 
@@ -78,7 +78,7 @@ pub struct Part {
     pub unit: &'static str,
     /// Of a list of matrices, one of them.
     pub element: Option<Element>,
-    /// What it is where it is one of several: its first words, and the rest of the sentence.
+    /// Its description where a result has several parts: a title, and what follows it in full documentation.
     pub meaning: [&'static str; 2],
 }
 
@@ -379,7 +379,7 @@ impl Quantity {
                 let entries = derive(&mut pool, plan);
                 nodes = pool.len();
                 let pairs = pool.angles(&entries).len();
-                (pool.operations(&entries, DIVISION) + PAIR * pairs, pool.len())
+                (pool.operations(&entries, DIVISION_COST) + SINE_COSINE_COST * pairs, pool.len())
             });
         }
         let entries = derive(&mut pool, &mut plan);

@@ -22,10 +22,10 @@ use crate::pass::Pass;
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
-/// Where searches for the plan of a regressor start: its wrenches stop at their links, by twists; and two links further in, where axes meet.
+/// Where searches for the plan of a regressor start: 0: wrenches stay at their link and are felt by twists; 5 = 2·2 + 1: they go two links towards the base and are felt by moments.
 pub(crate) static STARTS: [usize; 2] = [0, 5];
 
-/// Y, for an arm whose parameter vector are symbols (named parameters) or for the standard parameters of any arm.
+/// Y, for an arm whose parameters are symbols (named parameters) or for the standard parameters of any arm.
 pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
     regressor_by_plan(pool, arm, vector, &mut Plan::default())
 }
@@ -230,7 +230,7 @@ fn link_columns(
     while let Some(p) = arm.joints[*path.last().expect("not empty")].parent {
         path.push(p);
     }
-    // Each frame of the path in either form, except the last, where nothing is left.
+    // Two forms (twist, moment) for each link of the path where a wrench may stop; one at the base, behind which no joint is left.
     let ways = 2 * path.len() - 1;
     let forces = (plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::Wrench::Force), ways) + plan.start()) % ways;
     // Couples go as far as forces (way 0), so that one set of twists will do, or stop elsewhere.

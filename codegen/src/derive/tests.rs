@@ -468,7 +468,7 @@ fn check_determinant(text: &str, form: &str, factors: &[(&str, Option<&str>)]) {
     let mut pool = Pool::new(model.field.clone());
     let mut product = ExprId::ONE;
     for factor in &found.factors {
-        let expr = pool.from_normal_form(&factor.form, crate::ring::normal_form::Arrangement::ByWave);
+        let expr = pool.from_normal_form(&factor.form, crate::ring::normal_form::Arrangement::ByHarmonic);
         product = pool.mul(product, expr);
     }
     assert_eq!(pool.fingerprint(product), found.pool.fingerprint(found.value));

@@ -98,7 +98,7 @@ impl<'d> Reader<'d> {
         self.diagnostics.has_errors()
     }
 
-    /// The mapping that a whole file must be; `what` it is otherwise not, and how it begins, are said in words.
+    /// The top-level mapping of a file. `what` names the kind of file and `begin` its first keys, for messages.
     pub fn root<'n>(&mut self, source: &Source, root: Option<&'n Node>, what: &str, begin: &str) -> Option<&'n Node> {
         let Some(root) = root.filter(|node| !matches!(&node.kind, Kind::Scalar(s) if s.is_nothing())) else {
             if !self.has_errors() {

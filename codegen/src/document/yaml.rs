@@ -339,7 +339,7 @@ fn key(node: Node, seen: &mut BTreeMap<String, Span>, diagnostics: &mut Diagnost
     Some(Spanned::new(scalar.text, node.span))
 }
 
-/// Where the fault is that the reader stumbled over later, and what it is, if that can be told: a quote that was opened above, a tab in the
+/// The likely cause of a parse error that surfaced at `at`, with its place, if it can be found: a quote that was opened above, a tab in the
 /// indentation of the line or of one beside it, a key without a colon in the line above.
 fn cause(text: &str, at: usize, kind: &ErrorKind) -> Option<(Span, ErrorKind)> {
     use ErrorKind as E;

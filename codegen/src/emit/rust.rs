@@ -58,7 +58,7 @@ fn absent(module: &Module) -> String {
     }
 }
 
-/// The implementation of the runtime's traits for the module in `path`, as text for a file beside it.
+/// The implementation of the runtime's traits for the module, as text for a file beside it.
 pub fn print_runtime(module: &Module, origin: &Origin) -> String {
     let missing = runtime::missing(module);
     if missing.is_empty() {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{Function, Operand, Operation};
-use crate::ring::count::{DIVISION, PAIR};
+use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
 
 /// Operations of a function: one per binary `*`, `+` or `-`, `/`; sign changes and sines apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,6 +46,6 @@ impl Cost {
 
     /// A single figure to compare derivations by: a sine and cosine pair or a division counts like some additions, a sign change not at all.
     pub fn weight(&self) -> usize {
-        self.mul + self.add + DIVISION * self.div + PAIR * self.sincos
+        self.mul + self.add + DIVISION_COST * self.div + SINE_COSINE_COST * self.sincos
     }
 }

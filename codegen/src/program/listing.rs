@@ -30,7 +30,7 @@ pub enum Name {
     /// An argument of the function.
     Argument(Argument),
     /// A sine or cosine.
-    Angle(Symbol),
+    SineOrCosine(Symbol),
     /// A line.
     Step(usize),
 }
@@ -114,7 +114,7 @@ impl Argument {
 impl Name {
     fn of(symbol: Symbol) -> Name {
         if symbol.angle().is_some() {
-            Name::Angle(symbol)
+            Name::SineOrCosine(symbol)
         } else {
             Name::Argument(Argument::of(symbol))
         }
@@ -125,10 +125,10 @@ impl Name {
     pub fn text(self) -> String {
         match self {
             Name::Argument(argument) => argument.name().into(),
-            Name::Angle(Symbol::Cosine(i)) => format!("c{}", i + 1),
-            Name::Angle(Symbol::SineOf(sum)) => format!("s{}", of_sum(sum)),
-            Name::Angle(Symbol::CosineOf(sum)) => format!("c{}", of_sum(sum)),
-            Name::Angle(other) => format!("s{}", other.index() + 1),
+            Name::SineOrCosine(Symbol::Cosine(i)) => format!("c{}", i + 1),
+            Name::SineOrCosine(Symbol::SineOf(sum)) => format!("s{}", of_sum(sum)),
+            Name::SineOrCosine(Symbol::CosineOf(sum)) => format!("c{}", of_sum(sum)),
+            Name::SineOrCosine(other) => format!("s{}", other.index() + 1),
             Name::Step(i) => format!("t{i}"),
         }
     }
@@ -189,7 +189,7 @@ pub fn angles(symbols: &[Symbol]) -> Vec<Angle> {
     let of_sum = |sum: AngleSum| Angle { terms: sum.terms().collect(), turned: sum.turned, sine: None, cosine: None };
     let of_one = |i: u16| Angle { terms: vec![(i, false)], turned: false, sine: None, cosine: None };
     for &symbol in symbols {
-        let name = Some(Name::Angle(symbol));
+        let name = Some(Name::SineOrCosine(symbol));
         match symbol {
             Symbol::Sine(i) => single.entry(i).or_insert_with(|| of_one(i)).sine = name,
             Symbol::Cosine(i) => single.entry(i).or_insert_with(|| of_one(i)).cosine = name,
@@ -353,7 +353,7 @@ impl Listing {
             let given = own.iter().filter(|name| last_use.get(name).is_some_and(|&last| last > part)).copied().collect();
             let argument = |name: &Name| match name {
                 Name::Argument(argument) => Some(*argument),
-                Name::Angle(_) | Name::Step(_) => None,
+                Name::SineOrCosine(_) | Name::Step(_) => None,
             };
             Part {
                 arguments: needed.iter().filter_map(argument).collect(),

@@ -1,4 +1,4 @@
-//! Common factors and shared partial sums.
+//! Fewer operations for finished expressions.
 //!
 //! The shared graph of expressions is taken apart into sums and products of any number of operands ([`circuit`]), each with its
 //! fingerprint. What saves operations is then done as often as it is found, the greatest gain first:

@@ -99,7 +99,7 @@ impl Pool {
         (self.fingerprint(constant)[0] == expected).then_some(constant)
     }
 
-    /// A constant of a fingerprints_only.
+    /// A constant of a pool that knows constants by fingerprints only.
     pub(super) fn by_fingerprint(&mut self, value: Element) -> ExprId {
         let fingerprint = [value; 2];
         if value == self.field.zero() {

@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use super::{AngleSum, ExprId, Node, Pool};
 
 /// A division counts like so many additions.
-pub(crate) const DIVISION: usize = 4;
+pub(crate) const DIVISION_COST: usize = 4;
 
-/// And a pair of sine and cosine.
-pub(crate) const PAIR: usize = 16;
+/// A sine and cosine pair counts like this many additions.
+pub(crate) const SINE_COSINE_COST: usize = 16;
 
 impl Pool {
     /// Operations that the expressions need together, each node once: one for a sum or product, `reciprocal` for a reciprocal.

@@ -123,22 +123,29 @@ impl NormalForm {
     pub fn times(&self, other: &NormalForm, limit: usize) -> Option<NormalForm> {
         let half = Number::from(Rational::from_parts(1.into(), 2u8.into()));
         let mut product = NormalForm::default();
-        for ((wave_a, factors_a), ca) in &self.terms {
-            for ((wave_b, factors_b), cb) in &other.terms {
+        for ((harmonic_a, factors_a), ca) in &self.terms {
+            for ((harmonic_b, factors_b), cb) in &other.terms {
                 let factors = merge(factors_a, factors_b);
                 let c = ca.times(cb);
-                if wave_a.angles.is_empty() || wave_b.angles.is_empty() {
-                    let harmonic = if wave_a.angles.is_empty() { wave_b } else { wave_a };
+                if harmonic_a.angles.is_empty() || harmonic_b.angles.is_empty() {
+                    let harmonic = if harmonic_a.angles.is_empty() { harmonic_b } else { harmonic_a };
                     product.add_term(harmonic.clone(), factors, c);
                     continue;
                 }
                 let c = &c * &half;
                 // A product with one sine is a sum of sines, with none or two a sum of cosines.
-                let (a, b) = if !wave_a.sine && wave_b.sine { (wave_b, wave_a) } else { (wave_a, wave_b) };
+                let (a, b) =
+                    if !harmonic_a.sine && harmonic_b.sine { (harmonic_b, harmonic_a) } else { (harmonic_a, harmonic_b) };
                 let sine = a.sine != b.sine;
                 for (sign, plus) in [(1, true), (-1, false)] {
                     let negative = a.sine && b.sine && plus;
-                    add_wave(&mut product, combine(a, b, sign), sine, factors.clone(), if negative { -&c } else { c.clone() });
+                    add_harmonic(
+                        &mut product,
+                        combine(a, b, sign),
+                        sine,
+                        factors.clone(),
+                        if negative { -&c } else { c.clone() },
+                    );
                 }
             }
             if product.size() > limit {
@@ -150,7 +157,7 @@ impl NormalForm {
 }
 
 /// Adds c · sin or cos(angles), whatever the sign of the leading coefficient.
-fn add_wave(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, factors: Factors, c: Number) {
+fn add_harmonic(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, factors: Factors, c: Number) {
     let negative = angles.first().is_some_and(|(_, k)| *k < 0);
     if negative {
         angles.iter_mut().for_each(|(_, k)| *k = -*k);
@@ -189,7 +196,7 @@ impl Pool {
         self.normal_forms_while(exprs, limit, |_| true)
     }
 
-    /// The same, if there are all; the first that is not there ends the work.
+    /// All normal forms, or `None` as soon as one is missing.
     pub fn all_normal_forms(&self, exprs: &[ExprId], limit: usize) -> Option<Vec<NormalForm>> {
         self.normal_forms_while(exprs, limit, |form| form).into_iter().collect()
     }
@@ -302,16 +309,16 @@ fn sum_form(sum: AngleSum, sine: bool, turn: Option<&Turn>) -> NormalForm {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrangement {
     /// Each term as ((coefficient · harmonic) · factors): harmonics scaled by numbers are shared.
-    ScaledWaves,
+    ScaledHarmonics,
     /// Each harmonic once, times the sum of its coefficients and factors.
-    ByWave,
+    ByHarmonic,
     /// Each term as ((harmonic · factors) · coefficient).
     BareProducts,
 }
 
 impl Arrangement {
     /// All of them.
-    pub const ALL: [Arrangement; 3] = [Arrangement::ScaledWaves, Arrangement::ByWave, Arrangement::BareProducts];
+    pub const ALL: [Arrangement; 3] = [Arrangement::ScaledHarmonics, Arrangement::ByHarmonic, Arrangement::BareProducts];
 }
 
 impl Pool {
@@ -334,8 +341,8 @@ impl Pool {
             for (factors, coefficient) in group {
                 let coefficient = self.constant(coefficient);
                 let start = match arrangement {
-                    Arrangement::ScaledWaves => self.mul(coefficient, harmonic),
-                    Arrangement::ByWave => coefficient,
+                    Arrangement::ScaledHarmonics => self.mul(coefficient, harmonic),
+                    Arrangement::ByHarmonic => coefficient,
                     Arrangement::BareProducts => harmonic,
                 };
                 let mut term = start;
@@ -350,7 +357,7 @@ impl Pool {
                 }
                 inner = self.add(inner, term);
             }
-            if arrangement == Arrangement::ByWave {
+            if arrangement == Arrangement::ByHarmonic {
                 inner = self.mul(inner, harmonic);
             }
             sum = self.add(sum, inner);

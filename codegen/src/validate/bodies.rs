@@ -36,7 +36,7 @@ pub(super) fn body(description: &BodyDescription, called: &str, context: &mut Co
     Some(Body { mass: mass?, com: com?, inertia: inertia? })
 }
 
-/// Warns of a place at which there is no mass, unless that may be the fault of an error.
+/// Warns of a position given for a mass of 0, unless an error was reported, which may have caused the 0.
 pub(super) fn warn_of_massless(mass: &Polynomial, place: &[Polynomial; 3], span: Span, what: &str, context: &mut Context<'_>) {
     if mass.is_zero() && place.iter().any(|p| !p.is_zero()) && !context.diagnostics.has_errors() {
         let help = "give the mass too, or leave the place out";

@@ -52,7 +52,7 @@ pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mu
     found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));
 }
 
-/// So many names are reported.
+/// Most names that are reported as nonlinear.
 const REPORTED_NAMES: usize = 50;
 
 /// Pairs of listed names, equal ones included, by which the second derivative of tau is not zero: for each name the first from itself
@@ -89,7 +89,7 @@ fn nonlinear_pairs(manipulator: &Manipulator, field: &Field) -> Vec<(ParameterId
     pairs
 }
 
-/// The derivative along the names in `range`, each with a symbol of its own as the direction.
+/// The directional derivative along the names in `range`; `Symbol::Torque(k)`, which tau does not contain, is the direction of name k.
 fn along(pool: &mut Pool, exprs: &[ExprId], range: &Range<usize>) -> Vec<ExprId> {
     pool.differentiate(exprs, &mut |pool, symbol| match symbol {
         Symbol::Parameter(k) if range.contains(&usize::from(k)) => pool.symbol(Symbol::Torque(k)),

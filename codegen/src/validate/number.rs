@@ -21,7 +21,7 @@ const MAX_NESTING: usize = 2;
 /// Different roots in a divisor: rationalising it doubles the terms with each.
 const MAX_DIVISOR_ATOMS: usize = 3;
 
-/// A value, or why there is none, if that was not said already.
+/// A value, or its fault; `Err(None)` where the fault was reported already.
 pub(super) type Evaluated<T> = Result<T, Option<Box<Diagnostic>>>;
 
 /// The values of names.

@@ -23,7 +23,7 @@ use crate::suggest::did_you_mean;
 pub(super) struct Parameters<'d> {
     pub(super) entries: Vec<Entry<'d>>,
     by_name: BTreeMap<&'d str, usize>,
-    /// Names that stand in values above their definition, which is reported.
+    /// Names used above their definition; each such use is reported.
     forward: BTreeSet<&'d str>,
     /// How many unknown names were reported.
     unknown: usize,

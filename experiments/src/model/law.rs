@@ -101,7 +101,7 @@ impl LawKind {
         matches!(self, LawKind::Adaptive)
     }
 
-    /// What it has to tell at every sample, beside the torque.
+    /// The quantities that it logs at every sample, beside the torque.
     pub fn watched(self, robot: &Robot) -> Vec<Quantity> {
         match self {
             LawKind::Robust => vec![Quantity::ZNorm],

@@ -23,11 +23,11 @@ use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, Law
 
 /// Distance between the postures at which the loop is linearised.
 const POSTURE_STEP: Duration = Duration::from_millis(250);
-/// Parts of the period at which a loop is tried that does not hold.
+/// Divisors of the period at which an unstable loop is analysed again.
 const SHORTER: [u32; 6] = [2, 5, 10, 20, 50, 100];
 /// Samples of the longest rehearsal at a shorter period.
 const MAX_REHEARSED: u128 = 400_000;
-/// An error of a joint, rad or m, from which on the arm counts as lost, and one at which the run ends.
+/// Joint error, rad or m, above which `lost_at` is recorded ([`LOST`]), and above which the run is aborted ([`GIVEN_UP`]).
 const LOST: f64 = 0.1;
 const GIVEN_UP: f64 = 1.0;
 
@@ -191,7 +191,7 @@ where
         let mut report = rest(run.delay)?;
         if let Drive::Sampled(law) = &drive {
             let rehearsal = self.rehearsal(run, &plant, &joints, period);
-            // What has no linear loop in motion has one at rest still.
+            // An analysis in motion that fails is left out; the one at rest is still reported.
             report.motion = law.rehearse(&rehearsal, &self.nominal, &tip).ok();
         }
         let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, &plant, &postures)) };
@@ -260,7 +260,7 @@ where
         Ok((joints, tip, postures))
     }
 
-    /// The controller of a law: the one place that knows all of them.
+    /// The controller of a law. A new one also needs `LawKind` (model/law.rs), and `Linearise`, `Settle` and `Rehearse` in the runtime.
     fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, ParameterError>
     where
         R: 'a,

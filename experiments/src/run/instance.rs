@@ -30,7 +30,7 @@ impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, 
     /// The robot `nominal`, of which `robot` is the data and `task` the rows of its task by their indices.
     ///
     /// # Panics
-    /// Where the rows of the task are none: the description of an emitted robot has been checked.
+    /// If `task` is empty, repeats a row or holds an index above 5, which no emitted robot does.
     pub fn new(robot: Robot, task: [usize; M], nominal: R, with_parameters: fn([f64; P]) -> W) -> Self {
         let task = Task::from_indices(task).expect("the description has been checked: no row stands twice");
         let robot = Robot { task: task.rows().to_vec(), ..robot };

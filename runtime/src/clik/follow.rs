@@ -118,7 +118,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
     /// Steps towards a resting goal until it is reached, nothing moves any more, or `most_steps` are used up.
     ///
     /// An arm can rest in a singular posture with the goal in line with it, within reach, and see no way there. So where it comes to
-    /// rest without a joint limit in its way it is pushed aside once, by a hundredth of a unit in each joint; if it comes back to rest
+    /// rest without a joint limit in its way it is moved aside, each time, by 0.01 rad or m in each joint; if it then comes to rest
     /// no nearer, the goal is out of reach.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ pub trait Objective<R: Kinematics<N>, const N: usize> {
     fn gradient(&self, robot: &R, q: &SVector<R::Real, N>) -> Option<SVector<R::Real, N>>;
 }
 
-/// Nothing to be gained: the joint rates of least norm.
+/// No objective: the joint rates of least norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoObjective;
 

@@ -1,6 +1,6 @@
 //! The whole loop in continuous time: plant and controller memory, integrated together.
 //!
-//! What a proof by Lyapunov speaks of. A controller that is stable here may be unstable when sampled, and the comparison shows it.
+//! Lyapunov proofs assume this case. A controller that is stable here may be unstable when sampled, and the comparison shows it.
 
 use super::{
     integrator::rk4,

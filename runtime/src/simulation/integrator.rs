@@ -6,7 +6,7 @@
 use crate::linalg::lit;
 use nalgebra::{RealField, SVector};
 
-/// What a differential equation moves: a vector space with a size.
+/// The state of a differential equation: a vector with an error norm.
 pub trait Phase<T>: Copy {
     /// self + h rate.
     fn plus(&self, h: T, rate: &Self) -> Self;

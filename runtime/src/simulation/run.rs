@@ -69,7 +69,7 @@ impl fmt::Display for Passed {
     }
 }
 
-/// What of this state is beyond, rates first: they are where it begins.
+/// The joint rate or joint variable beyond the divergence bound, if any; rates first, since divergence shows there first.
 pub(super) fn beyond<T: RealField + Copy, const N: usize>(state: &State<T, N>) -> Option<Passed> {
     let first = |x: &SVector<T, N>| {
         // The largest, and what is no number before all others.

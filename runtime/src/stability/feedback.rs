@@ -53,7 +53,7 @@ pub trait Settle<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>
     fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>>;
 }
 
-/// y = B^^-1 (g - g^): what the law must add at rest, where g of the plant is not g^ of the model.
+/// y = B_m^-1 (g - g_m), `m` for the model: the acceleration that the law must add at rest for the plant's gravity g.
 fn offset<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
     plant: &P,
     model: &R,

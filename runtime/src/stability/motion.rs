@@ -43,7 +43,7 @@ pub trait Rehearse<P, R: Dynamics<N>, const N: usize>: Controller<R, N> + Clone 
     /// Weights of deviations about the posture `q`.
     fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N>;
 
-    /// The same without torque limits, its estimate where nothing drives it on under `plant`, its integral at zero.
+    /// The same without torque limits, its estimate at its equilibrium under `plant`, its integral at zero.
     #[must_use]
     fn settled(&self, plant: &P) -> Self;
 
@@ -184,7 +184,7 @@ impl<T: RealField + Copy> Motion<T> {
 const LEFT: f64 = 1.0;
 /// Growth from which on a loop counts as lost, whatever comes after.
 const LOST: f64 = 1e6;
-/// Growth that no loop reaches which only exchanges one kind of error for another.
+/// Transient growth below this factor is not called unbounded: a stable loop can reach it.
 const LARGE: f64 = 10.0;
 /// What the rate adds up to over the motion, at least, where growth counts as going on: a factor of e.
 const GOES_ON: f64 = 1.0;

@@ -36,7 +36,7 @@ fn checked(file: &Path) -> Result<String, u8> {
     let source = input::source(file)?;
     let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64, input::Warnings::Shown)?;
     let (description, _) = RobotDescription::parse(&source);
-    // Whether products of valid numbers still fit, only the module itself shows.
+    // Only generating the module shows whether products of valid numbers still fit the scalar.
     let (module, all) = with_spinner("deriving", || armgen_codegen::generate(&source, &Options::default()));
     if module.is_none() {
         terminal::diagnose(&all.render(&source, terminal::colour(&std::io::stderr())));

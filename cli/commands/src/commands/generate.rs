@@ -52,7 +52,7 @@ pub(crate) struct Beside {
     /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is
     #[arg(long)]
     runtime: bool,
-    /// Write the face for C beside it: robot.h, and robot_c.rs to be included where robot.rs is
+    /// Write the C interface beside it: robot.h, and robot_c.rs to be included where robot.rs is
     #[arg(long)]
     c_abi: bool,
 }
@@ -122,7 +122,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         if files[..i].iter().any(|(other, _)| other == path) || same_file(file, path) {
             let path = path.display();
             terminal::error(&format!(
-                "{path} would be written over by another file that goes there: choose another name for --out"
+                "two of the files to write would both be {path}, or it is the description: choose another name for --out"
             ));
             return UNREADABLE;
         }
@@ -164,7 +164,7 @@ fn write(path: &Path, text: &str) -> std::io::Result<()> {
     written
 }
 
-/// The name of a module of Rust that a file of this stem holds.
+/// The Rust module name for a file with this stem.
 fn module_name(stem: &str) -> String {
     let fits = |c: &char| validate::is_rust_name(&format!("a{c}"));
     let name: String = stem.chars().map(|c| if fits(&c) { c } else { '_' }).collect();
@@ -173,7 +173,7 @@ fn module_name(stem: &str) -> String {
     [name].into_iter().chain(others).find(|name| validate::is_rust_name(name)).unwrap_or_else(|| "robot".into())
 }
 
-/// All files to write, or why a module is not to be trusted with being written.
+/// All files to write, or why none is written.
 fn files(
     source: &Source,
     generated: Generated,

@@ -96,7 +96,7 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
     all
 }
 
-/// The text of a file that an experiment names. One byte more than is taken: the reader says what a file may hold, and one without an end
+/// The text of a file that an experiment names. At most one byte more than the reader accepts: the reader then reports the excess, and a file without an end
 /// is not waited for.
 fn text_of(path: &Path) -> std::io::Result<String> {
     let mut text = String::new();

@@ -32,7 +32,7 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
         })?),
         false => None,
     };
-    // What is wrong with the description is report_or_exit_code as everywhere.
+    // Faults of the description are reported first, as by every command.
     input::manipulator(&source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
     let report = with_spinner("verifying", || armgen_verify::verify(&source, text.text(), certificate.as_ref()));
     let mut printed = format!("{report}\n");
@@ -89,7 +89,7 @@ pub(crate) fn summary(report: &Report) -> String {
 /// Work shorter than this shows no spinner.
 const SPINNER_DELAY: Duration = Duration::from_secs(2);
 
-/// Does `work`; a terminal shows that and how long, if it takes long.
+/// Does `work`; a terminal shows a spinner with the elapsed time once it takes longer than [`SPINNER_DELAY`].
 pub(crate) fn with_spinner<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
     let (done, waiting) = channel::<()>();
     std::thread::scope(|scope| {

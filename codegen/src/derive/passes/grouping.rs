@@ -26,7 +26,7 @@ pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
                 regroup(pool, arm, plan, i, k, unit);
             }
         } else {
-            arm.hand_second_moments_on(pool, i);
+            arm.move_second_moments_to_parent(pool, i);
         }
     }
 }

@@ -34,7 +34,7 @@ fn last(arm: &Arm) -> Option<usize> {
 }
 
 /// The constant angle after the joint variable q at which the axes of the last link point to its centre of mass, seen along the joint axis.
-/// None where that is no angle of its own, or not that of a point with rational coordinates.
+/// None where a coordinate of the first moment is 0 or irrational.
 pub(crate) fn angle_of_last_link(field: &Field, manipulator: &Manipulator) -> Option<Turn> {
     let mut pool = Pool::new(field.clone());
     let arm = Arm::new(&mut pool, manipulator, View::Nominal);

@@ -47,7 +47,7 @@ impl Angle {
         Angle { sine: -self.sine, rate: -self.rate, sum: None, ..self }
     }
 
-    /// Of a joint; its joint variable alone if sums may be asked for.
+    /// The angle of a joint; as an input of its own if `sums`.
     fn of(pool: &mut Pool, joint: &Joint, i: usize, sums: bool) -> Angle {
         let sum = sums.then(|| AngleSum::of(i as u16)).and_then(|own| {
             let turned = AngleSum { turned: true, ..own };
@@ -76,14 +76,14 @@ pub(super) fn parallel_axes(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
         }
         let (length, last) = (run.len(), *run.last().expect("not empty"));
         if length > 1 {
-            // Own axes each; those of the link before; those of link k of the run, the last one included.
+            // Way 0: each link in its own axes; 1: all in those of the link before; 1 + k: in those of link k of the run.
             let way = plan.way(Pass::ParallelAxes, Place::Joint(first), length + 2);
             if way > 0 {
                 let sums = plan.has(Pass::AngleSums) && plan.way(Pass::AngleSums, Place::Joint(first), 2) == 0;
                 orient(pool, arm, &run, way - 1, sums);
             }
         }
-        // Runs of a tree need not be consecutive; those of joints after the first have been seen if they are.
+        // In a tree the joints of a run need not be consecutive; where they are, the search goes on behind the last.
         first = if run.iter().enumerate().all(|(k, &i)| i == first + k) { last + 1 } else { first + 1 };
     }
 }

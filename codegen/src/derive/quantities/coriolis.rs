@@ -9,7 +9,7 @@
 //!
 //! For a revolute joint j, ∂_j x = z × r with r from a point of its axis, and d/dt ∂_j x = dz/dt × r + z × dr/dt, over all that joint j
 //! carries. With Ω the angular velocity of the parent link, dr/dt = Ω × r + v: what is left is the velocity v *relative to the
-//! parent*, and its moments K = ∫ v r' dm, h' = ∫ v dm beside h = ∫ r dm and S = ∫ r r' dm hold everything. An ancestor i feels
+//! parent*, and its moments K = ∫ v rᵀ dm, h' = ∫ v dm beside h = ∫ r dm and S = ∫ r rᵀ dm hold everything. An ancestor i feels
 //! the wrench of ∂_j x in B_ij, that of d/dt ∂_j x in C_ij, and in C_ji = ∫ ∂_j x · (dz_i/dt × r + z_i × dr/dt) dm
 //!
 //! ```text
@@ -29,7 +29,7 @@
 
 use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body, Joint};
-use crate::derive::columns::{origin_rate, Column, OriginOffsets, Rate};
+use crate::derive::columns::{origin_rate, Column, ColumnPropagator, Rate};
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -62,7 +62,7 @@ pub static CORIOLIS_MATRIX: Quantity = Quantity {
 
 /// What moves in a composite body, in its joint frame and relative to it.
 #[derive(Clone, Copy)]
-pub(super) struct Flow {
+pub(super) struct VelocityMoments {
     /// h' = ∫ v dm.
     pub(super) first: Vector,
     /// K = ∫ v r' dm.
@@ -81,19 +81,19 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
     let n = arm.dof();
     let composite = composite_bodies(pool, arm);
     let omega = angular_velocities(pool, arm);
-    let flows = flows(pool, arm, &composite);
-    let mut ways = OriginOffsets::new(arm, Some(&omega));
+    let velocity_moments = velocity_moments(pool, arm, &composite);
+    let mut propagator = ColumnPropagator::new(arm, Some(&omega));
     let mut b = vec![vec![ExprId::ZERO; n]; n];
     let mut c = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         let joint = &arm.joints[j];
         let outer = joint.parent.map_or(ZERO, |p| omega[p]);
         let turning = pool.transform_back(&joint.fixed, &outer);
-        let (body, flow) = about_axis(pool, joint, &composite[j], &flows[j]);
+        let (body, flow) = about_axis(pool, joint, &composite[j], &velocity_moments[j]);
         let column = column(pool, joint, &turning, &body, &flow);
         (b[j][j], c[j][j]) = own_entries(pool, joint, &column);
-        let mut propagated = ways.start(pool, plan, column, j);
-        while let Some(parent) = ways.propagate_to_parent(pool, plan, &mut propagated) {
+        let mut propagated = propagator.start(pool, plan, column, j);
+        while let Some(parent) = propagator.propagate_to_parent(pool, plan, &mut propagated) {
             if let (Some(rotor), true) = (joint.rotor, joint.parent == Some(parent)) {
                 let coupling = pool.mul(rotor.inertia, rotor.ratio);
                 let momentum = pool.scale(coupling, &rotor.axis);
@@ -101,7 +101,7 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
                 w[2] = pool.add(w[2], arm.joints[parent].drift);
                 propagated.add_moment(pool, &momentum, &w, &omega[parent]);
             }
-            let entries = ways.entries(pool, &propagated);
+            let entries = propagator.entries(pool, &propagated);
             b[parent][j] = entries.inertia;
             b[j][parent] = entries.inertia;
             c[parent][j] = entries.coriolis;
@@ -136,13 +136,14 @@ pub(super) fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
 }
 
 /// Velocity moments of each composite body relative to the link that carries all of it, in its joint frame.
-pub(super) fn flows(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<Flow> {
-    let still = Flow { first: ZERO, second: [ZERO; 3], spin: ZERO };
-    let mut flows: Vec<Flow> = arm.joints.iter().map(|joint| swept(pool, joint.drift, &joint.body, &still)).collect();
+pub(super) fn velocity_moments(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<VelocityMoments> {
+    let still = VelocityMoments { first: ZERO, second: [ZERO; 3], spin: ZERO };
+    let mut velocity_moments: Vec<VelocityMoments> =
+        arm.joints.iter().map(|joint| swept(pool, joint.drift, &joint.body, &still)).collect();
     for i in (0..arm.dof()).rev() {
         let joint = &arm.joints[i];
         let Some(p) = joint.parent else { continue };
-        let (body, flow) = about_axis(pool, joint, &composite[i], &flows[i]);
+        let (body, flow) = about_axis(pool, joint, &composite[i], &velocity_moments[i]);
         let (h, rate) = (pool.transform(&joint.fixed, &body.first), pool.transform(&joint.fixed, &flow.first));
         let velocity = origin_rate(pool, arm, i);
         // x = o + r moves with o' + v: ∫ (o' + v)(o + r)' dm.
@@ -164,17 +165,17 @@ pub(super) fn flows(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<Flow>
             let own = pool.scale(momentum, &rotor.axis);
             spin = pool.add_vectors(&spin, &own);
         }
-        flows[p] = Flow {
-            first: pool.add_vectors(&flows[p].first, &first),
-            second: pool.add_matrices(&flows[p].second, &second),
-            spin: pool.add_vectors(&flows[p].spin, &spin),
+        velocity_moments[p] = VelocityMoments {
+            first: pool.add_vectors(&velocity_moments[p].first, &first),
+            second: pool.add_matrices(&velocity_moments[p].second, &second),
+            spin: pool.add_vectors(&velocity_moments[p].spin, &spin),
         };
     }
-    flows
+    velocity_moments
 }
 
-/// What turning about z at a rate adds to the velocity moments of a body: h' + z × h, K + [z] S.
-fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &Flow) -> Flow {
+/// Velocity moments of a body that also turns about z at `rate` w: h' + w z × h, K + w [z] S.
+fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &VelocityMoments) -> VelocityMoments {
     let s = symmetric(&body.second);
     let mut flow = *flow;
     for (to, from, rate) in [(0, 1, -rate), (1, 0, rate)] {
@@ -189,12 +190,12 @@ fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &Flow) -> Flow {
 }
 
 /// A composite body in the axes of its parent turned by `fixed`, and its motion relative to that parent.
-pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flow) -> (Body, Flow) {
-    // Traces of the upper left blocks are invariant under rotation about z: formed before it, they are the nodes that later sums are found to equal.
+pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &VelocityMoments) -> (Body, VelocityMoments) {
+    // Traces of the upper left blocks are invariant under rotation about z: interned before the rotation, they are the nodes that the sums formed after it resolve to.
     pool.intern_sum(body.second[0], body.second[2]);
     pool.intern_sum(flow.second[0][0], flow.second[1][1]);
     let turned = joint.body_about_axis(pool, body);
-    let flow = Flow {
+    let flow = VelocityMoments {
         first: joint.about_axis(pool, &flow.first),
         second: joint.tensor_about_axis(pool, &flow.second),
         spin: joint.about_axis(pool, &flow.spin),
@@ -203,7 +204,7 @@ pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &Flo
 }
 
 /// The wrenches of column j about the origin of its frame, in the axes of `about_axis`.
-pub(super) fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &Flow) -> Column {
+pub(super) fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &VelocityMoments) -> Column {
     let (h, rate, k) = (body.first, flow.first, flow.second);
     if !joint.is_revolute() {
         // ∂x = z, its rate Ω × z; E + n × Ω = h' × z + (Ω × z) × h.

@@ -8,7 +8,7 @@
 //! For a revolute joint j, ∂_j x = z × r with r from its origin o, over all that joint j carries, and
 //! d²/dt² (z × r) = z'' × r + 2 z' × r' + z × r''. With the force f and moment n that move what joint j carries (Newton-Euler), the
 //! acceleration a of o less g0, the angular velocity Ω and acceleration field U of the link, z' = Ω × z and z'' = U z, r' = Ω × r + v,
-//! and the moments S, h, K = ∫ v r' dm, h' = ∫ v dm of `coriolis.rs`, each joint at or before j feels the wrench
+//! and the moments S, h, K = ∫ v rᵀ dm, h' = ∫ v dm of `coriolis.rs`, each joint at or before j feels the wrench
 //!
 //! ```text
 //! F = z × f - m z × a + z'' × h + 2 (z' · h) Ω + 2 z' × h'
@@ -21,7 +21,7 @@
 //! ∂tau_i/∂q_j = z'' · n_i + 2 z' · E_i - (z × a) · f_i = (z'' - 2 Ω × z') · n_i + 2 z' · (E_i + n_i × Ω) - (z × a) · f_i
 //! ```
 //!
-//! where E + n × Ω is what `coriolis.rs` hands on, and z'' - 2 Ω × z' is the z row of U, negated: nothing new.
+//! where E + n × Ω is what `coriolis.rs` hands on, and z'' - 2 Ω × z' is the z row of U, negated: both are known already.
 //! A prismatic joint has ∂_j x = z: F = m z'', N = z × f + h × z'' before it, z'' · f_i beyond it.
 //! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and its spin s adds z' × s to N.
 //! The formulas are those of Singh, Russell and Wensing (2022, "Efficient analytical derivatives of rigid-body dynamics using spatial
@@ -31,7 +31,7 @@
 //! ∂ddq/∂q = -B^-1 ∂tau/∂q,   ∂ddq/∂dq = -B^-1 ∂tau/∂dq,   ∂ddq/∂tau = B^-1            at ddq = B^-1 (tau - C dq - F - g)
 //! ```
 
-use super::coriolis::{self, Flow};
+use super::coriolis::{self, VelocityMoments};
 use super::gravity::gravity;
 use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body};
@@ -168,12 +168,13 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
     let (_, loads) = wrenches(pool, arm, motion, &motions);
     let composite = composite_bodies(pool, arm);
     let omega = coriolis::angular_velocities(pool, arm);
-    let flows = coriolis::flows(pool, arm, &composite);
+    let velocity_moments = coriolis::velocity_moments(pool, arm, &composite);
     let before: Vec<Before> = (0..n).map(|j| Before::new(pool, &omega[j], &motions[j])).collect();
     let mut derivative = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         // What joint j changes at itself and before it.
-        let (mut force, mut moment) = changed_wrench(pool, arm, j, &before[j], &omega[j], &loads[j], &composite[j], &flows[j]);
+        let (mut force, mut moment) =
+            changed_wrench(pool, arm, j, &before[j], &omega[j], &loads[j], &composite[j], &velocity_moments[j]);
         derivative[j][j] = along(arm, j, &force, &moment);
         let mut link = j;
         while let Some(parent) = arm.joints[link].parent {
@@ -182,7 +183,7 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
             link = parent;
         }
         // What the joints before j change at it.
-        let mut travelling = Travelling::start(pool, arm, j, &omega, &composite[j], &flows[j]);
+        let mut travelling = PropagatedMoments::start(pool, arm, j, &omega, &composite[j], &velocity_moments[j]);
         while let Some(parent) = travelling.propagate_to_parent(pool, arm, &omega) {
             derivative[j][parent] = travelling.felt(pool, arm.joints[parent].is_revolute(), &before[parent]);
         }
@@ -190,7 +191,7 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
     derivative
 }
 
-/// What a joint hands to those beyond it, in its own axes.
+/// Motion of a joint axis, in its joint frame.
 struct Before {
     /// 2 z'.
     twice_rate: Vector,
@@ -224,7 +225,7 @@ fn changed_wrench(
     omega: &Vector,
     load: &(Vector, Vector),
     body: &Body,
-    flow: &Flow,
+    flow: &VelocityMoments,
 ) -> (Vector, Vector) {
     let (h, second) = (body.first, symmetric(&body.second));
     let Before { twice_rate, second_rate, swept, .. } = before;
@@ -267,36 +268,36 @@ fn less_trace(pool: &mut Pool, m: &crate::ring::matrix::Matrix, v: &Vector) -> V
 }
 
 /// The column (f, n) of B and E + n × Ω of C on their way to the base, about the origin and relative to the frame of the link that they are at.
-struct Travelling {
+struct PropagatedMoments {
     link: usize,
     /// Whether they are still in the axes of the parent turned by `fixed`, E relative to the parent.
-    fresh: bool,
+    before_joint_rotation: bool,
     force: Vector,
     moment: Vector,
     rate: Vector,
 }
 
-impl Travelling {
-    fn start(pool: &mut Pool, arm: &Arm, j: usize, omega: &[Vector], body: &Body, flow: &Flow) -> Travelling {
+impl PropagatedMoments {
+    fn start(pool: &mut Pool, arm: &Arm, j: usize, omega: &[Vector], body: &Body, flow: &VelocityMoments) -> PropagatedMoments {
         let joint = &arm.joints[j];
         let outer = joint.parent.map_or(ZERO, |p| omega[p]);
         let turning = pool.transform_back(&joint.fixed, &outer);
         let (body, flow) = coriolis::about_axis(pool, joint, body, flow);
         let column = coriolis::column(pool, joint, &turning, &body, &flow);
         let rate = column.rate.map_or(ZERO, |rate| rate.transposed);
-        Travelling { link: j, fresh: true, force: column.inertial.0, moment: column.inertial.1, rate }
+        PropagatedMoments { link: j, before_joint_rotation: true, force: column.inertial.0, moment: column.inertial.1, rate }
     }
 
     /// On to the parent, if there is one.
     fn propagate_to_parent(&mut self, pool: &mut Pool, arm: &Arm, omega: &[Vector]) -> Option<usize> {
         let joint = &arm.joints[self.link];
         let parent = joint.parent?;
-        if !self.fresh {
+        if !self.before_joint_rotation {
             let change = pool.cross(&self.moment, &[ExprId::ZERO, ExprId::ZERO, -joint.spin]);
             self.rate = pool.add_vectors(&self.rate, &change);
         }
-        let fresh = self.fresh;
-        let mut turn = |v: &Vector| match (*v == ZERO, fresh) {
+        let before_joint_rotation = self.before_joint_rotation;
+        let mut turn = |v: &Vector| match (*v == ZERO, before_joint_rotation) {
             (true, _) => ZERO,
             (_, true) => pool.transform(&joint.fixed, v),
             (_, false) => joint.outward(pool, v),
@@ -310,7 +311,7 @@ impl Travelling {
         }
         let lever = pool.cross(&joint.origin, &self.force);
         self.moment = pool.add_vectors(&self.moment, &lever);
-        if let (Some(rotor), true) = (joint.rotor, self.fresh) {
+        if let (Some(rotor), true) = (joint.rotor, self.before_joint_rotation) {
             let (coupling, half) = (pool.mul(rotor.inertia, rotor.ratio), pool.fraction(1, 2));
             let momentum = pool.scale(coupling, &rotor.axis);
             let mut turning = omega[parent];
@@ -322,7 +323,7 @@ impl Travelling {
             self.rate = pool.add_vectors(&self.rate, &gyroscopic);
             self.rate = pool.add_vectors(&self.rate, &seen);
         }
-        (self.link, self.fresh) = (parent, false);
+        (self.link, self.before_joint_rotation) = (parent, false);
         Some(parent)
     }
 

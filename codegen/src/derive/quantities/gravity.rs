@@ -53,7 +53,7 @@ fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
 
 /// g(q), with the direction of gravity handed from the base outwards.
 ///
-/// A joint meets it in its own axes (way 0) or, all that it carries turned already for its parent, in the parent's (way 1).
+/// Way 0 projects it on the joint axis in the joint frame; way 1 in the joint frame at theta = 0, where the composite first moment is needed for the parent anyway.
 pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
     let composite = composite_moments(pool, arm);
     let mut direction: Vec<Vector> = Vec::with_capacity(arm.dof());

@@ -10,7 +10,7 @@
 //! The rotor of joint i adds I_m k² on the diagonal and, as it rides on the parent link, the moment I_m k z_m there: this couples the joints.
 
 use crate::derive::arm::{Arm, Body};
-use crate::derive::columns::{Column, OriginOffsets};
+use crate::derive::columns::{Column, ColumnPropagator};
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -56,7 +56,7 @@ pub fn composite_bodies(pool: &mut Pool, arm: &Arm) -> Vec<Body> {
 pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<ExprId>> {
     let n = arm.dof();
     let composite = composite_bodies(pool, arm);
-    let mut ways = OriginOffsets::new(arm, None);
+    let mut propagator = ColumnPropagator::new(arm, None);
     let mut b = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         let joint = &arm.joints[j];
@@ -74,13 +74,13 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
             own = pool.add(own, seen);
         }
         b[j][j] = own;
-        let mut propagated = ways.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
-        while let Some(parent) = ways.propagate_to_parent(pool, plan, &mut propagated) {
+        let mut propagated = propagator.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
+        while let Some(parent) = propagator.propagate_to_parent(pool, plan, &mut propagated) {
             if let (Some((coupling, rotor)), true) = (coupling, joint.parent == Some(parent)) {
                 let spin = pool.scale(coupling, &rotor.axis);
                 propagated.add_moment(pool, &spin, &ZERO, &ZERO);
             }
-            b[parent][j] = ways.entries(pool, &propagated).inertia;
+            b[parent][j] = propagator.entries(pool, &propagated).inertia;
             b[j][parent] = b[parent][j];
         }
     }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! All that joint k carries has the linear momentum f and the angular momentum n about o_k. A joint feels its component along the axis in
-//! p. Turned by dq_k, all it carries sees the motion of the link before turned back: with ω and v those of link k,
+//! p. To what joint k carries, turning joint k is the same as turning the motion of the link before the other way: with ω and v those of link k,
 //!
 //! ```text
 //! p_k = z · n,   ∂T/∂q_k = n · (ω × z) + f · (v × z)        (revolute)

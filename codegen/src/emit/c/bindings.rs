@@ -1,4 +1,4 @@
-//! The wrappers: the one emitted text with `unsafe` in it, for a pointer that C passes can only be believed. Each reads all its arguments
+//! The wrappers: the one emitted text with `unsafe` in it, because Rust cannot check the pointers that C passes. Each reads all its arguments
 //! before it writes its result, so that a result may overwrite an argument.
 
 use std::fmt::Write;

@@ -19,7 +19,7 @@ fn macro_of(prefix: &str, length: Length) -> String {
     }
 }
 
-/// What the macros of a robot begin with: its name with large letters for small ones, and small ones for large ones, so that names which differ
+/// What the macros of a robot begin with: its name with upper and lower case exchanged, so that names that differ
 /// in case alone have macros that differ.
 fn macros_of(name: &str) -> String {
     let turned = |c: char| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() };

@@ -49,7 +49,7 @@ fn methods(interface: &str) -> impl Iterator<Item = &'static Quantity> + use<'_>
     catalogue::quantities().filter(move |quantity| quantity.interface == Some(interface))
 }
 
-/// The quantities with traits of their own, and these.
+/// The quantities that have a trait of their own, each with the trait's name.
 fn single() -> impl Iterator<Item = (&'static Quantity, &'static str)> {
     catalogue::quantities().filter_map(|quantity| Some((quantity, quantity.interface.filter(|name| !BASIC.contains(name))?)))
 }

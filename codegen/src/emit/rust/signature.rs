@@ -61,7 +61,7 @@ pub(super) fn length(length: Length) -> TokenStream {
 pub(super) fn input(symbol: Symbol) -> TokenStream {
     let (argument_kind, index) = match symbol {
         Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) => {
-            let name = name(Name::Angle(symbol));
+            let name = name(Name::SineOrCosine(symbol));
             return quote!(#name);
         }
         Symbol::RateSign(i) => {
@@ -80,7 +80,7 @@ pub(super) fn input(symbol: Symbol) -> TokenStream {
     quote!(#name[#index])
 }
 
-/// The line that says of arguments that they are not needed.
+/// The line `let _ = ...;` for unused arguments.
 pub(super) fn ignored(function: &Function) -> Option<TokenStream> {
     let unused: Vec<Ident> = function.unused_arguments().into_iter().map(|a| argument(a).0).collect();
     match unused.as_slice() {

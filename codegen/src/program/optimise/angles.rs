@@ -8,10 +8,10 @@
 use std::collections::BTreeSet;
 
 use super::circuit::{Circuit, Edge, Gate, GateId};
-use crate::ring::count::PAIR;
+use crate::ring::count::SINE_COSINE_COST;
 use crate::ring::{AngleSum, Node, Symbol};
 
-/// Sums of one run of parallel axes that are tried in all combinations; those beyond are tried one by one.
+/// A run of parallel axes with at most this many sums is tried in all combinations; in a longer one each sum is tried by itself.
 const TOGETHER: usize = 6;
 
 /// Gates that are a sine or a cosine of a sum, and the leaves that stand for them.
@@ -95,7 +95,7 @@ fn chosen(found: &[Found], set: usize) -> Vec<&Found> {
 fn weight(circuit: &mut Circuit, chosen: &[&Found]) -> usize {
     let before = take(circuit, chosen);
     let additions: usize = chosen.iter().map(|one| one.additions).sum();
-    let weight = circuit.operations() + additions + PAIR * pairs(circuit);
+    let weight = circuit.operations() + additions + SINE_COSINE_COST * pairs(circuit);
     before.into_iter().for_each(|(gate, was)| circuit.gates[gate as usize] = was);
     weight
 }
@@ -106,7 +106,7 @@ fn take_if_cheaper(circuit: &mut Circuit, chosen: &[&Found]) {
     }
 }
 
-/// Puts leaves where sums were; what stood there.
+/// Replaces gates by the leaves of sums; returns the gates that it replaced.
 fn take(circuit: &mut Circuit, chosen: &[&Found]) -> Vec<(GateId, Gate)> {
     let replaced = chosen.iter().flat_map(|one| &one.replaced);
     replaced.map(|&(gate, leaf)| (gate, std::mem::replace(&mut circuit.gates[gate as usize], Gate::Sum(vec![leaf])))).collect()

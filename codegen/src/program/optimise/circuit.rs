@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
 
 use crate::ring::field::{Element, Field};
-use crate::ring::{ExprId, Fingerprint, Identity, Node, Pool, Symbol};
+use crate::ring::{ExprId, Fingerprint, FingerprintHasher, Node, Pool, Symbol};
 
 /// Index of a gate.
 pub(super) type GateId = u32;
@@ -41,7 +41,7 @@ pub(super) struct Circuit {
     pub(super) values: Vec<Fingerprint>,
     pub(super) outputs: Vec<Edge>,
     /// The gate of a value or of its negative, by the lesser of the two, and whether that is the negative.
-    known: HashMap<Fingerprint, Edge, BuildHasherDefault<Identity>>,
+    known: HashMap<Fingerprint, Edge, BuildHasherDefault<FingerprintHasher>>,
     /// Bloom filter over `known` and the negatives of its values, by their last bits: it rejects most lookups.
     filter: Vec<u64>,
     /// The first gate of each constant and symbol.
@@ -129,7 +129,7 @@ impl Circuit {
         }
     }
 
-    /// The gates of a list are found by value from now on.
+    /// Indexes these gates by value, for `find`.
     pub(super) fn index(&mut self, gates: &[GateId]) {
         self.known.clear();
         self.filter.fill(0);

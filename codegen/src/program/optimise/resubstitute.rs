@@ -42,7 +42,7 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
                 }
             };
             let of_a = circuit.values[a as usize];
-            // Most values are not there, which their first halves tell.
+            // Most values belong to no gate; the filter rejects them by their first half.
             if circuit.may_hold(circuit.field.sub(value[0], of_a[0])) {
                 let minus_a = of_a.map(|x| circuit.field.neg(x));
                 offer(circuit.find(&circuit.plus(&value, &minus_a)), &|b| Gate::Sum(vec![Edge::new(a, false), b]));

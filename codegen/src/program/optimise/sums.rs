@@ -50,7 +50,7 @@ pub(super) fn sums_from_sums(circuit: &mut Circuit) -> usize {
     before - best
 }
 
-/// Writes sums out that are no longer so, shares pairs anew, and keeps what is cheaper; the number of operations saved.
+/// Writes out sums that become at most `LONGER` terms longer, shares pairs anew, and keeps what is cheaper; the number of operations saved.
 ///
 /// Parts of the sums that a sum consists of may cancel or meet: a + b, with a = x + 2 y and b = z - x, is z + 2 y, and 2 y may be there anyway.
 pub(super) fn write_out(circuit: &mut Circuit) -> usize {
