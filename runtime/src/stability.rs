@@ -21,12 +21,16 @@
 //!
 //! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`Rehearsal::of`] is the motion. A run says all of it first.
 
+mod delay;
 mod eigenvalues;
+mod error;
 mod exponential;
 mod feedback;
 mod motion;
 mod sampled_loop;
 
+pub use delay::Delay;
+pub use error::StabilityError;
 pub use feedback::{Feedback, Linearise, Settle};
 pub use motion::{Growth, Left, Motion, Rehearsal, Rehearse, Weights};
-pub use sampled_loop::{analyse, analyse_start, Delay, Report, SampledLoop, StabilityError, StablePeriod};
+pub use sampled_loop::{analyse, analyse_start, Report, SampledLoop, StablePeriod};

@@ -59,8 +59,8 @@ const RUNTIME: Layers = &[
     ("trajectory", &["linalg", "orientation", "reference"]),
     ("clik", &["linalg", "manipulability", "parameters", "reference", "robot", "task"]),
     ("control", &["linalg", "parameters", "reference", "robot", "task"]),
-    ("stability", &["control", "linalg", "robot"]),
     ("simulation", &["linalg", "reference", "robot"]),
+    ("stability", &["control", "linalg", "reference", "robot", "simulation"]),
 ];
 
 /// What reads, what judges and what draws know of each other only what an experiment is.

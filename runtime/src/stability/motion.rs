@@ -18,7 +18,7 @@
 //! grow on this motion. A deviation that is not carried along may grow more at first; one that grows exponentially takes part in all of
 //! them and comes to the fore. What is not proved: anything of another motion, of a longer one, or of another load.
 
-use super::{sampled_loop::Delay, StabilityError};
+use super::{delay::Delay, error::StabilityError};
 use crate::{
     control::{Adaptive, Controller, InverseDynamics, OperationalSpace, PdGravity, Robust},
     linalg::lit,

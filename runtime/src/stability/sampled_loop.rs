@@ -1,63 +1,15 @@
 //! The whole loop at one posture, and along a path.
 
 use super::{
+    delay::Delay,
     eigenvalues,
+    error::StabilityError,
     exponential::exponential,
     feedback::{derivative, viscous, Feedback, Linearise, Settle},
     motion::Motion,
 };
 use crate::{linalg::lit, robot::Dynamics};
 use nalgebra::{linalg::balancing::balance_parlett_reinsch, DMatrix, RealField, SMatrix, SVector};
-
-/// How many samples after its measurement a torque acts; each adds `N` states.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Delay(usize);
-
-impl Delay {
-    /// The torque acts at the sample from whose measurement it was computed.
-    pub const NONE: Delay = Delay(0);
-
-    /// The torque acts so many samples later.
-    #[must_use]
-    pub const fn samples(samples: usize) -> Self {
-        Delay(samples)
-    }
-
-    /// How many samples.
-    pub(super) const fn count(self) -> usize {
-        self.0
-    }
-}
-
-/// Why there is no answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum StabilityError {
-    /// The controller's law is singular at this posture (counted from 0).
-    Singular {
-        /// Index of the posture.
-        posture: usize,
-    },
-    /// The inertia matrix of the plant is not positive definite at this posture (counted from 0).
-    Inertia {
-        /// Index of the posture.
-        posture: usize,
-    },
-    /// The eigenvalues were not found: gains or model are beyond the range of the scalar.
-    Eigenvalues,
-    /// The sampling period is not positive and finite.
-    Period,
-    /// There is no posture.
-    NoPosture,
-}
-
-messages! { StabilityError,
-    StabilityError::Singular { posture } => "the controller's law is singular at posture {} (from 0)", posture;
-    StabilityError::Inertia { posture } => "the inertia matrix of the plant is not positive definite at posture {} (from 0)", posture;
-    StabilityError::Eigenvalues => "the eigenvalues were not found: gains or model are beyond the range of the scalar";
-    StabilityError::Period => "the sampling period is not positive and finite";
-    StabilityError::NoPosture => "there is no posture";
-}
 
 /// Up to which sampling period a loop is stable.
 #[derive(Clone, Copy, Debug, PartialEq)]

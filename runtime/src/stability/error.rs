@@ -1,0 +1,31 @@
+//! Why stability could not be judged.
+
+/// Why there is no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum StabilityError {
+    /// The controller's law is singular at this posture (counted from 0).
+    Singular {
+        /// Index of the posture.
+        posture: usize,
+    },
+    /// The inertia matrix of the plant is not positive definite at this posture (counted from 0).
+    Inertia {
+        /// Index of the posture.
+        posture: usize,
+    },
+    /// The eigenvalues were not found: gains or model are beyond the range of the scalar.
+    Eigenvalues,
+    /// The sampling period is not positive and finite.
+    Period,
+    /// There is no posture.
+    NoPosture,
+}
+
+messages! { StabilityError,
+    StabilityError::Singular { posture } => "the controller's law is singular at posture {} (from 0)", posture;
+    StabilityError::Inertia { posture } => "the inertia matrix of the plant is not positive definite at posture {} (from 0)", posture;
+    StabilityError::Eigenvalues => "the eigenvalues were not found: gains or model are beyond the range of the scalar";
+    StabilityError::Period => "the sampling period is not positive and finite";
+    StabilityError::NoPosture => "there is no posture";
+}
