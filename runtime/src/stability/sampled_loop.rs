@@ -128,7 +128,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
                 self.feedback.memory[(i, k - 2 * N)]
             }
         });
-        let (size, samples) = (2 * N + memories, delay.0);
+        let (size, samples) = (2 * N + memories, delay.count());
         let all = size + samples * N;
         let mut whole = DMatrix::zeros(all, all);
         whole.view_mut((0, 0), (2 * N, 2 * N)).copy_from(&a);
