@@ -4,6 +4,9 @@ pub mod c;
 pub mod rust;
 
 mod documentation;
+mod language;
 mod origin;
+mod plain;
 
+pub use language::Language;
 pub use origin::{Notes, Origin};

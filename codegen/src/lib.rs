@@ -57,7 +57,7 @@ pub use catalogue::Absent;
 pub use derive::Model;
 use diagnostic::Diagnostics;
 use emit::c::CFace;
-use emit::{Notes, Origin};
+use emit::{Language, Notes, Origin};
 use exact::Number;
 pub use kinds::Scalar;
 pub use pass::{Pass, Passes};
@@ -82,12 +82,22 @@ pub struct Generated {
     /// What the texts print.
     program: Module,
     origin: Origin,
+    notes: Notes,
 }
 
 impl Generated {
     /// Prints the module again, with notes in its documentation.
     pub fn annotate(&mut self, notes: &Notes) {
         self.module = emit::rust::print(&self.program, &self.origin, notes);
+        self.notes = notes.clone();
+    }
+
+    /// The module in another language, with the same notes.
+    pub fn in_language(&self, language: Language) -> String {
+        match language {
+            Language::Rust => self.module.clone(),
+            Language::C => emit::c::standalone(&self.program, &self.origin, &self.notes),
+        }
     }
 }
 
@@ -109,6 +119,7 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         absent: module.absent.clone(),
         program: module,
         origin,
+        notes: Notes::default(),
     };
     (Some(generated), diagnostics)
 }

@@ -102,6 +102,25 @@ impl Returned {
         }
     }
 
+    /// Each array and the name that it has in languages whose results have names.
+    pub fn named(self) -> Vec<(String, Array)> {
+        match self {
+            Returned::One(lengths) => vec![("result".into(), lengths)],
+            Returned::List(all) => {
+                ["by_q", "by_dq", "by_tau"].iter().zip(all).map(|(name, array)| ((*name).into(), *array)).collect()
+            }
+            Returned::Fields(_, all) => all.iter().map(|(name, array)| ((*name).into(), *array)).collect(),
+        }
+    }
+
+    /// The name of the array that an entry belongs to, and its indices there.
+    pub fn part_of(self, place: &str) -> (String, &str) {
+        let (access, indices) = place.split_at(place.find('[').unwrap_or(place.len()));
+        let part = self.arrays().iter().position(|(own, _)| own == access).unwrap_or(0);
+        let name = self.named().swap_remove(part).0;
+        (name, indices)
+    }
+
     /// Places of the entries, in order.
     pub fn places(self, sizes: &Sizes) -> Vec<String> {
         fn within(place: &str, lengths: &[Length], sizes: &Sizes) -> Vec<String> {

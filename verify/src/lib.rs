@@ -72,6 +72,7 @@ pub mod stated;
 pub mod test_kit;
 
 use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
@@ -85,7 +86,7 @@ use claims::Claims;
 use enclosure::Float;
 use equations::parameters::Vector;
 use formula::Formula;
-use reader::{Constant, Module};
+use reader::{Constant, Module, ModuleText};
 use report::{Report, Verdict};
 use stability::Trial;
 
@@ -103,7 +104,12 @@ pub struct Prepared {
 }
 
 /// Reads a module and prepares the equations of its arm.
-pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Effort) -> Result<Prepared, String> {
+pub fn prepare<'a>(
+    manipulator: Manipulator,
+    text: impl Into<ModuleText<'a>>,
+    claims: Claims,
+    effort: Effort,
+) -> Result<Prepared, String> {
     let module = Module::read(text)?;
     if let Some(Constant::Text(name)) = module.constants.get("NAME") {
         if *name != manipulator.name {
@@ -121,8 +127,9 @@ pub fn prepare(manipulator: Manipulator, text: &str, claims: Claims, effort: Eff
 ///
 /// The exact values of literals come from `certificate` or, without one, from a run of the generator; neither is trusted. A certificate must say
 /// what the one says that is written on what is found: each difference is a fault. Faults of the description are rendered into [`Report::faults`].
-pub fn verify(source: &Source, text: &str, certificate: Option<&Certificate>) -> Report {
-    let report = Report::of(hash(source.text()), hash(text));
+pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate: Option<&Certificate>) -> Report {
+    let text = text.into();
+    let report = Report::of(hash(source.text()), hash(text.text));
     let module = match Module::read(text) {
         Ok(module) => module,
         Err(fault) => return Report { faults: vec![fault.into()], ..report },
@@ -148,7 +155,14 @@ pub fn verify(source: &Source, text: &str, certificate: Option<&Certificate>) ->
 
 /// Verifies what the generator has just made from a description.
 pub fn certify(source: &Source, generated: &Generated) -> Report {
-    verify_with(source, &generated.module, Claims::from_numbers(&generated.constants), Effort::default())
+    certify_in(source, generated, Language::Rust)
+}
+
+/// The same for the module in a language.
+pub fn certify_in(source: &Source, generated: &Generated, language: Language) -> Report {
+    let text = generated.in_language(language);
+    let text = ModuleText { language, text: &text };
+    verify_with(source, text, Claims::from_numbers(&generated.constants), Effort::default())
 }
 
 /// That a value of a function can leave the scalar within the limits of the joints, with the place in the description.
@@ -175,8 +189,9 @@ fn generated_claims(source: &Source, real: Float) -> Claims {
 }
 
 /// Verifies with chosen claims and effort.
-pub fn verify_with(source: &Source, text: &str, claims: Claims, effort: Effort) -> Report {
-    let mut report = Report::of(hash(source.text()), hash(text));
+pub fn verify_with<'a>(source: &Source, text: impl Into<ModuleText<'a>>, claims: Claims, effort: Effort) -> Report {
+    let text = text.into();
+    let mut report = Report::of(hash(source.text()), hash(text.text));
     let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let Some((manipulator, _)) = read else {
         report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));

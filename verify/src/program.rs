@@ -25,6 +25,19 @@ pub enum Argument {
 }
 
 impl Argument {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Argument::Pi => "pi",
+            Argument::Q => "q",
+            Argument::Dq => "dq",
+            Argument::Ddq => "ddq",
+            Argument::Dqr => "dqr",
+            Argument::Ddqr => "ddqr",
+            Argument::Tau => "tau",
+        }
+    }
+
     /// The argument of this name.
     pub fn named(name: &str) -> Option<Argument> {
         Some(match name {

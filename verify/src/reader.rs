@@ -6,14 +6,18 @@
 //! `documentation`, and all text the characters of `lexer`. `docs/certificate.md` has the whole.
 
 mod body;
+mod c;
 mod constant;
 mod documentation;
 mod items;
 mod lexer;
 mod parser;
+mod plain;
 mod sines;
 
 use std::collections::{BTreeMap, BTreeSet};
+
+use armgen_codegen::emit::Language;
 
 use crate::enclosure::Float;
 use crate::program::Program;
@@ -24,6 +28,27 @@ pub use lexer::Fault;
 
 /// The longest text that is read, in bytes; that of a chain of 32 joints has a third of it.
 pub const LONGEST: usize = 32 << 20;
+
+/// The text of a module and the language that it is in; a mere text is in Rust.
+#[derive(Clone, Copy, Debug)]
+pub struct ModuleText<'a> {
+    /// The language.
+    pub language: Language,
+    /// The text.
+    pub text: &'a str,
+}
+
+impl<'a> From<&'a str> for ModuleText<'a> {
+    fn from(text: &'a str) -> ModuleText<'a> {
+        ModuleText { language: Language::Rust, text }
+    }
+}
+
+impl<'a> From<&'a String> for ModuleText<'a> {
+    fn from(text: &'a String) -> ModuleText<'a> {
+        text.as_str().into()
+    }
+}
 
 /// What was read.
 #[derive(Clone, Debug)]
@@ -50,8 +75,16 @@ pub struct Function {
 }
 
 impl Module {
-    /// Reads the text of a module. What is wrong with the body of one function is said in its place.
-    pub fn read(text: &str) -> Result<Module, Fault> {
+    /// Reads the text of a module. In Rust, what is wrong with the body of one function is said in its place.
+    pub fn read<'a>(text: impl Into<ModuleText<'a>>) -> Result<Module, Fault> {
+        let ModuleText { language, text } = text.into();
+        match language {
+            Language::Rust => Module::read_rust(text),
+            Language::C => c::read(text),
+        }
+    }
+
+    fn read_rust(text: &str) -> Result<Module, Fault> {
         if text.len() > LONGEST {
             return Err(Fault { line: 1, reason: format!("the text is longer than {} MiB", LONGEST >> 20) });
         }

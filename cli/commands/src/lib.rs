@@ -19,6 +19,7 @@ mod terminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use armgen_codegen::emit::Language;
 use armgen_codegen::pass::Pass;
 use armgen_experiments::run::Arm;
 use clap::builder::styling::{AnsiColor, Styles};
@@ -95,7 +96,7 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
         #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
         format: ShowFormat,
     },
-    /// Generate the Rust module of an arm
+    /// Generate the module of an arm, in Rust or another language
     #[command(after_help = "Examples:
   armgen generate robot.yaml --out src/robot.rs           then: mod robot;
   armgen generate robot.yaml --scalar f32 > robot_f32.rs
@@ -104,9 +105,10 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --out robot.rs --bounds      with robot_bounds.rs, running error bounds
   armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
   armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
+  armgen generate robot.yaml --language c --out robot.h   the same functions in C, without Rust
   armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
 
-The module is one file of free functions over arrays: no allocation, no std, no dependency but libm.
+The module is one file of free functions over arrays: in Rust no allocation, no std, no dependency but libm.
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Generate {
         /// Description of the robot arm
@@ -139,6 +141,9 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
         /// The module that was generated from it
         #[arg(value_name = "ROBOT.rs", value_hint = ValueHint::FilePath)]
         module: PathBuf,
+        /// The language of the module; that of its extension if not given
+        #[arg(long, value_parser = language_parser())]
+        language: Option<Language>,
     },
     /// Count the operations of every emitted function
     #[command(after_help = "Examples:
@@ -228,6 +233,11 @@ enum TrigName {
     Fast,
 }
 
+fn language_parser() -> impl TypedValueParser<Value = Language> {
+    PossibleValuesParser::new(Language::ALL.map(Language::name))
+        .map(|name| Language::ALL.into_iter().find(|language| language.name() == name).expect("one of the names of languages"))
+}
+
 fn pass_parser() -> impl TypedValueParser<Value = Pass> {
     PossibleValuesParser::new(Pass::ALL.map(Pass::name)).map(|name| Pass::named(&name).expect("one of the names of passes"))
 }
@@ -239,7 +249,7 @@ pub fn run(built: &dyn Arm) -> ExitCode {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
-        Command::Verify { description, module } => commands::verify::run(&description, &module),
+        Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
         Command::Run { files, out } => commands::run::run(&files, &out, built),
         Command::Completions { shell } => commands::completions::run(shell),

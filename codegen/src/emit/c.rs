@@ -1,12 +1,13 @@
 //! The C face of a module: a header, and `extern "C"` wrappers in Rust that stand beside the module's functions.
 //!
 //! A C caller sees `ROBOT_function`, arrays by rows as in the module, constant where they are arguments, and the result as the last
-//! argument; a single number is returned.
+//! argument; a single number is returned. The same declarations stand in the header that holds the functions themselves (`standalone`).
 
 mod bindings;
 mod header;
+mod standalone;
 
-use super::origin::Origin;
+use super::origin::{Notes, Origin};
 use crate::catalogue::{Length, Quantity};
 use crate::program::{Function, Module};
 
@@ -22,6 +23,11 @@ pub struct CFace {
 /// The C face of a module.
 pub fn print(module: &Module, origin: &Origin) -> CFace {
     CFace { header: header::header(module, origin), wrappers: bindings::wrappers(module, origin) }
+}
+
+/// The module in C alone: a header of functions that needs nothing beside it but perhaps `math.h`.
+pub fn standalone(module: &Module, origin: &Origin, notes: &Notes) -> String {
+    standalone::print(module, origin, notes)
 }
 
 /// The functions that C can have: it has no arrays of length zero, as a robot without parameters would need.

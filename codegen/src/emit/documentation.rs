@@ -71,8 +71,8 @@ fn argument(argument: &Argument) -> String {
     format!("{{{}}}: {}", argument.name(), argument.meaning())
 }
 
-/// The documentation of a function.
-pub(super) fn function(function: &Function, module: &Module) -> Vec<Block> {
+/// The documentation of a function; `allocates`: whether its results take memory of their own in the language.
+pub(super) fn function(function: &Function, module: &Module, allocates: bool) -> Vec<Block> {
     let Documentation { title, formula, result, result_with, failure, names_gravity } = function.quantity.documentation;
     let (result, failure) = match function.with_parameters {
         false => (result, failure[0]),
@@ -95,7 +95,10 @@ pub(super) fn function(function: &Function, module: &Module) -> Vec<Block> {
         )));
     }
     let cost = cost(&Cost::of(function));
-    blocks.push(Block::text(format!("Cost: {cost}. Derived by {}. Allocates nothing, {failure}.", function.method)));
+    let nothing = if allocates { "" } else { "Allocates nothing, " };
+    let failure = format!("{nothing}{failure}");
+    let (first, rest) = failure.split_at(1);
+    blocks.push(Block::text(format!("Cost: {cost}. Derived by {}. {}{rest}.", function.method, first.to_uppercase())));
     blocks
 }
 
@@ -134,6 +137,24 @@ pub(super) fn own_base_note(module: &Module) -> Block {
 /// Parameters and what they mean.
 pub(super) fn meanings(parameters: &[Parameter]) -> Block {
     Block::Table(parameters.iter().map(|parameter| (parameter.name.clone(), parameter.meaning.clone())).collect())
+}
+
+/// The lines of a comment without marks of its own.
+pub(super) fn plain(blocks: &[Block], link: &dyn Fn(Link<'_>) -> String) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (i, block) in blocks.iter().enumerate() {
+        if i > 0 {
+            lines.push(String::new());
+        }
+        match block {
+            Block::Text(text) => lines.extend(text.iter().map(|line| linked(line, link))),
+            Block::Formula(formula) => lines.push(linked(formula, link)),
+            Block::Verbatim(text) => lines.extend(text.iter().cloned()),
+            Block::List(items) => lines.extend(items.iter().map(|item| format!("- {}", linked(item, link)))),
+            Block::Table(table) => lines.extend(rows(table)),
+        }
+    }
+    lines.iter().map(|line| line.trim_end().to_string()).collect()
 }
 
 /// The rows of a table, names padded to one width.

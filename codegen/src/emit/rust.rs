@@ -187,7 +187,7 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
 }
 
 fn function(module: &Module, function: &Function, note: Option<&String>) -> TokenStream {
-    let mut blocks = common::function(function, module);
+    let mut blocks = common::function(function, module, false);
     blocks.extend(note.map(Block::text));
     let documentation = documentation::lines(&blocks);
     let name = format_ident!("{}", function.name());
@@ -236,7 +236,7 @@ fn nested(lengths: &[Length], entries: &[TokenStream], sizes: &Sizes) -> TokenSt
 }
 
 /// Whether any function needs a sine or a cosine.
-pub(super) fn asks_for_sines(module: &Module) -> bool {
+pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
     module.functions.iter().flat_map(Function::symbols).any(|symbol| symbol.angle().is_some())
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Colour;
+use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::pass::Pass;
 use armgen_codegen::program::Trig;
@@ -18,12 +19,15 @@ use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 /// What the module is to be.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Choices {
+    /// The language of the module (docs/languages.md)
+    #[arg(long, default_value = Language::Rust.name(), value_parser = crate::language_parser())]
+    language: Language,
     /// The floating-point type of the module
     #[arg(long, value_enum, default_value_t = ScalarName::F64)]
     scalar: ScalarName,
-    /// Where the sines and cosines come from
-    #[arg(long, value_enum, default_value_t = TrigName::Libm)]
-    trig: TrigName,
+    /// Where the sines and cosines come from: libm unless chosen, in other languages than Rust fast
+    #[arg(long, value_enum)]
+    trig: Option<TrigName>,
     /// Passes to leave out, of those that make the functions cheaper (docs/passes.md), separated by commas
     #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = crate::pass_parser())]
     without: Vec<Pass>,
@@ -77,13 +81,22 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         ScalarName::F64 => Scalar::F64,
         ScalarName::F32 => Scalar::F32,
     };
+    let language = choices.language;
     let trig = match choices.trig {
-        TrigName::Libm => Trig::Libm,
-        TrigName::Std => Trig::Std,
-        TrigName::Fast => Trig::Fast,
+        None => language.trig(),
+        Some(TrigName::Libm) => Trig::Libm,
+        Some(TrigName::Std) => Trig::Std,
+        Some(TrigName::Fast) => Trig::Fast,
     };
+    if let Some(reason) = unfit(language, scalar, trig, out, choices, beside) {
+        terminal::error(&reason);
+        return UNREADABLE;
+    }
     if let (None, [first, ..]) = (out, beside.flags().as_slice()) {
-        terminal::error(&format!("{first} writes beside the module: say where that goes, with `--out robot.rs`"));
+        terminal::error(&format!(
+            "{first} writes beside the module: say where that goes, with `--out {}`",
+            file_of(language, "robot")
+        ));
         return UNREADABLE;
     }
     let source = match input::source(file) {
@@ -106,12 +119,12 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             terminal::warning(&format!("the documentation states no error bounds: {reason}"));
         }
     }
-    let Some(out) = out else { return terminal::print(&generated.module) };
+    let Some(out) = out else { return terminal::print(&generated.in_language(language)) };
     if same_file(file, out) {
         terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
         return UNREADABLE;
     }
-    let files = match files(&source, generated, scalar, out, beside) {
+    let files = match files(&source, generated, (language, scalar), out, beside) {
         Ok(files) => files,
         Err(error) => {
             terminal::error(&error);
@@ -141,6 +154,50 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         ));
     }
     DONE
+}
+
+/// The name of a file of a language.
+fn file_of(language: Language, stem: &str) -> String {
+    format!("{stem}.{}", language.extensions()[0])
+}
+
+/// Why a module cannot be generated in a language as asked, and what to do instead.
+fn unfit(
+    language: Language,
+    scalar: Scalar,
+    trig: Trig,
+    out: Option<&Path>,
+    choices: &Choices,
+    beside: &Beside,
+) -> Option<String> {
+    let title = language.title();
+    let extension = out.and_then(Path::extension).and_then(|extension| extension.to_str());
+    if let Some(other) = extension.and_then(Language::of_extension).filter(|other| *other != language) {
+        let (out, name) = (out.unwrap_or(Path::new("")).display(), other.name());
+        let file = file_of(language, "robot");
+        return Some(format!(
+            "{out} is a file of {}, and the module is in {title}: write `--language {name}` or `--out {file}`",
+            other.title()
+        ));
+    }
+    if language == Language::Rust {
+        return None;
+    }
+    let only_rust = [
+        (beside.bounds, "--bounds", "its companion is Rust"),
+        (beside.runtime, "--runtime", "the runtime is Rust"),
+        (beside.c_abi, "--c-abi", "it is the face for C of a module in Rust"),
+        (beside.tests, "--tests", "test files are written for Rust"),
+        (choices.batch.is_some(), "--batch", "functions for many states are written for Rust"),
+        (trig == Trig::Libm, "--trig libm", "the crate libm is Rust's: take `--trig fast` or `--trig std`"),
+    ];
+    if let Some((_, flag, why)) = only_rust.iter().find(|(asked, ..)| *asked) {
+        return Some(format!("{flag} does not go with `--language {}`: {why}", language.name()));
+    }
+    match language.scalars().contains(&scalar) {
+        true => None,
+        false => Some(format!("{title} has no single precision: leave `--scalar f32` out")),
+    }
 }
 
 /// Whether two paths lead to one file, whatever they are called.
@@ -177,14 +234,15 @@ fn module_name(stem: &str) -> String {
 fn files(
     source: &Source,
     generated: Generated,
-    scalar: Scalar,
+    (language, scalar): (Language, Scalar),
     out: &Path,
     beside: &Beside,
 ) -> Result<Vec<(PathBuf, String)>, String> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let mut files = Vec::new();
+    let module = generated.in_language(language);
     if beside.verify {
-        let report = with_spinner("verifying", || armgen_verify::certify(source, &generated));
+        let report = with_spinner("verifying", || armgen_verify::certify_in(source, &generated, language));
         if let Some(function) = report.beyond_the_scalar() {
             let diagnostics = armgen_verify::beyond_the_scalar(source, function, scalar);
             return Err(format!(
@@ -219,6 +277,6 @@ fn files(
         files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers));
     }
     // The module first.
-    files.insert(0, (out.to_path_buf(), generated.module));
+    files.insert(0, (out.to_path_buf(), module));
     Ok(files)
 }

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
 
+use armgen_codegen::emit::Language;
 use armgen_verify::certificate::Certificate;
+use armgen_verify::reader::ModuleText;
 use armgen_verify::report::Report;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -15,13 +17,15 @@ pub(crate) fn certificate_beside(module: &Path) -> PathBuf {
     module.with_extension("cert.json")
 }
 
-pub(crate) fn run(description: &Path, module: &Path) -> u8 {
-    match verified(description, module) {
+pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>) -> u8 {
+    match verified(description, module, language) {
         Ok(code) | Err(code) => code,
     }
 }
 
-fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
+fn verified(description: &Path, module: &Path, language: Option<Language>) -> Result<u8, u8> {
+    let by_extension = || Language::of_extension(module.extension()?.to_str()?);
+    let language = language.or_else(by_extension).unwrap_or_default();
     let source = input::source(description)?;
     let text = input::source(module)?;
     let beside = certificate_beside(module);
@@ -34,7 +38,10 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
     };
     // Faults of the description are reported first, as by every command.
     input::manipulator(&source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
-    let report = with_spinner("verifying", || armgen_verify::verify(&source, text.text(), certificate.as_ref()));
+    let report = with_spinner("verifying", || {
+        let module = ModuleText { language, text: text.text() };
+        armgen_verify::verify(&source, module, certificate.as_ref())
+    });
     let mut printed = format!("{report}\n");
     if certificate.is_some() {
         printed += &format!("certificate: {}\n", beside.display());
@@ -43,34 +50,44 @@ fn verified(description: &Path, module: &Path) -> Result<u8, u8> {
     if report.passed() {
         return Ok(code);
     }
-    let (line, fault) = placed(text.text(), &report.first_fault().unwrap_or_else(|| "the module has no functions".into()));
+    let (line, fault) =
+        placed(text.text(), language, &report.first_fault().unwrap_or_else(|| "the module has no functions".into()));
     let line = line.map_or_else(String::new, |line| format!(":{line}"));
     terminal::error(&format!("{}{line}: {fault}", text.name()));
     let (description, module) = (description.display(), module.display());
-    terminal::note(&format!("`armgen generate {description} --out {module} --verify` writes module and certificate again"));
+    let language = if language == Language::Rust { String::new() } else { format!(" --language {}", language.name()) };
+    terminal::note(&format!(
+        "`armgen generate {description}{language} --out {module} --verify` writes module and certificate again"
+    ));
     Err(FAULTY)
 }
 
 /// The line that a fault is of, and the fault without it: the line that the reader gives, or where the function or constant begins.
-fn placed(module: &str, fault: &str) -> (Option<usize>, String) {
+fn placed(module: &str, language: Language, fault: &str) -> (Option<usize>, String) {
     if let Some((name, (line, reason))) = fault
         .split_once("line ")
-        .filter(|(name, _)| name.is_empty() || name.strip_suffix(": ").is_some_and(|name| line_of(module, name).is_some()))
+        .filter(|(name, _)| {
+            name.is_empty() || name.strip_suffix(": ").is_some_and(|name| line_of(module, name, language).is_some())
+        })
         .and_then(|(name, rest)| Some((name, rest.split_once(": ")?)))
     {
         if let Ok(line) = line.parse() {
             return (Some(line), format!("{name}{reason}"));
         }
     }
-    (line_of(module, fault), fault.to_string())
+    (line_of(module, fault, language), fault.to_string())
 }
 
 /// The line where the function or constant begins that a fault is of, counted from 1.
-fn line_of(module: &str, fault: &str) -> Option<usize> {
+fn line_of(module: &str, fault: &str, language: Language) -> Option<usize> {
     let name = fault.split(|c: char| c != '_' && !c.is_alphanumeric()).next()?;
+    let (words, before): (&[&str], &str) = match language {
+        Language::Rust => (&["pub fn ", "pub const "], " "),
+        Language::C => (&["static inline ", "#define "], "_"),
+    };
     let begins = |line: &str| {
-        let rest = ["pub fn ", "pub const "].iter().find_map(|word| line.strip_prefix(word)?.strip_prefix(name));
-        rest.is_some_and(|rest| rest.starts_with(['(', ':']))
+        let found = words.iter().any(|word| line.starts_with(word)).then(|| line.find(&format!("{before}{name}")));
+        found.flatten().is_some_and(|at| line[at + before.len() + name.len()..].starts_with(['(', ':', ' ']))
     };
     module.lines().position(begins).map(|line| line + 1)
 }

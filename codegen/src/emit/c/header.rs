@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use super::{functions, prefix, returns_a_number};
-use crate::catalogue::Length;
-use crate::emit::documentation::{self, linked, rows, Block, Link};
+use crate::catalogue::{Absent, Length};
+use crate::emit::documentation::{self, Block, Link};
 use crate::emit::origin::Origin;
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::decimal;
-use crate::program::{Joint, Module};
+use crate::program::{Function, Joint, Module};
 
 /// A dimension: the macro of the header that holds it, or the number.
 fn macro_of(prefix: &str, length: Length) -> String {
@@ -21,12 +21,51 @@ fn macro_of(prefix: &str, length: Length) -> String {
 
 /// What the macros of a robot begin with: its name with upper and lower case exchanged, so that names that differ
 /// in case alone have macros that differ.
-fn macros_of(name: &str) -> String {
+pub(super) fn macros_of(name: &str) -> String {
     let turned = |c: char| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() };
     name.chars().map(turned).collect()
 }
 
+/// How the documentation of a robot's functions names them, their arguments and its macros.
+pub(super) fn link<'a>(name: &'a str, upper: &'a str) -> impl Fn(Link<'_>) -> String + 'a {
+    move |link| match link {
+        Link::Function(function) => format!("`{name}_{function}`"),
+        Link::Argument(argument) => format!("`{argument}`"),
+        Link::Constant(constant) => format!("`{upper}_{constant}`"),
+    }
+}
+
+/// The beginning of both headers: where it came from, what it lacks, and the guard.
+pub(super) fn opening(origin: &Origin, notes: &[String], absent: &[Absent], upper: &str) -> String {
+    let absent = absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
+    let head = origin.head(notes).into_iter().chain(absent).collect();
+    let head = comment(&[Block::Verbatim(head)], &|_| String::new());
+    let guard = format!("ARMGEN_{upper}_H");
+    format!("{head}#ifndef {guard}\n#define {guard}\n\n")
+}
+
 pub(super) fn header(module: &Module, origin: &Origin) -> String {
+    let name = prefix(module);
+    let upper = macros_of(&name);
+    let mut text = opening(origin, &[], &[], &upper);
+    text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
+    text += &macros(module);
+    text += POINTERS;
+    for function in functions(module) {
+        text += "\n";
+        text += &comment(&documentation::function(function, module, false), &link(&name, &upper));
+        text += &format!("{};\n", signature(module, function));
+    }
+    text += "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
+    text
+}
+
+/// What is said of all functions.
+pub(super) const POINTERS: &str =
+    "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
+
+/// The scalar and the macros.
+pub(super) fn macros(module: &Module) -> String {
     let name = prefix(module);
     let upper = macros_of(&name);
     let real = match module.scalar {
@@ -34,12 +73,7 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
         Scalar::F32 => "float",
     };
     let mut text = String::new();
-    let link = |link: Link<'_>| match link {
-        Link::Function(function) => format!("`{name}_{function}`"),
-        Link::Argument(argument) => format!("`{argument}`"),
-        Link::Constant(constant) => format!("`{upper}_{constant}`"),
-    };
-    text += &comment(&[Block::Verbatim(origin.head(&[]))], &link);
+    let link = link(&name, &upper);
     let braces = |entries: Vec<String>| format!("{{{}}}", entries.join(", "));
     let number = |value: &Option<Number>, infinite: &str| match value {
         Some(value) => constant(value, module.scalar),
@@ -53,12 +87,9 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
         braces(vec![number(low, "-INFINITY"), number(high, "INFINITY")])
     };
     let positions = module.joints.iter().map(position);
-    let guard = format!("ARMGEN_{upper}_H");
     let _ = write!(
         text,
-        "#ifndef {guard}\n#define {guard}\n\n\
-         #ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
-         /* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
+        "/* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
          /* Number of joints, of parameters, and of rows of the operational space. */\n\
          #define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n#define {upper}_TASK_ROWS {}\n\n",
         module.joints.len(),
@@ -99,57 +130,41 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
         let blocks = [title, documentation::own_base_note(module), documentation::meanings(&module.base_set)];
         text += &comment(&blocks, &link);
     }
-    text += "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
-    for function in functions(module) {
-        text += "\n";
-        text += &comment(&documentation::function(function, module), &link);
-        let mut arguments: Vec<String> = function
-            .arguments
-            .iter()
-            .map(|&a| format!("const {name}_real {}[{}]", a.name(), macro_of(&upper, a.length())))
-            .collect();
-        let returned = returns_a_number(function.quantity);
-        if !returned {
-            arguments.extend(function.quantity.result.iter().map(|part| {
-                let shape: String = part.lengths.iter().map(|&length| format!("[{}]", macro_of(&upper, length))).collect();
-                format!("{name}_real {}{shape}", part.name)
-            }));
-        }
-        let returns = if returned { format!("{name}_real") } else { "void".into() };
-        let _ = writeln!(text, "{returns} {name}_{}(\n    {});", function.name(), arguments.join(",\n    "));
-    }
-    text += "\n#ifdef __cplusplus\n}\n#endif\n\n";
-    let _ = writeln!(text, "#endif");
     text
 }
 
+/// The declaration of a function, up to its end.
+pub(super) fn signature(module: &Module, function: &Function) -> String {
+    let name = prefix(module);
+    let upper = macros_of(&name);
+    let mut arguments: Vec<String> =
+        function.arguments.iter().map(|&a| format!("const {name}_real {}[{}]", a.name(), macro_of(&upper, a.length()))).collect();
+    let returned = returns_a_number(function.quantity);
+    if !returned {
+        arguments.extend(function.quantity.result.iter().map(|part| {
+            let shape: String = part.lengths.iter().map(|&length| format!("[{}]", macro_of(&upper, length))).collect();
+            format!("{name}_real {}{shape}", part.name)
+        }));
+    }
+    let returns = if returned { format!("{name}_real") } else { "void".into() };
+    format!("{returns} {name}_{}(\n    {})", function.name(), arguments.join(",\n    "))
+}
+
 /// A block comment.
-fn comment(blocks: &[Block], link: &dyn Fn(Link<'_>) -> String) -> String {
+pub(super) fn comment(blocks: &[Block], link: &dyn Fn(Link<'_>) -> String) -> String {
     let mut text = String::new();
-    let mut put = |line: &str| {
-        let line = line.trim_end().replace("*/", "* /");
+    for line in documentation::plain(blocks, link) {
+        let line = line.replace("*/", "* /");
         text += if text.is_empty() { "/*" } else { " *" };
         text += if line.is_empty() { "" } else { " " };
         text += &line;
         text += "\n";
-    };
-    for (i, block) in blocks.iter().enumerate() {
-        if i > 0 {
-            put("");
-        }
-        match block {
-            Block::Text(lines) => lines.iter().for_each(|line| put(&linked(line, link))),
-            Block::Formula(formula) => put(&linked(formula, link)),
-            Block::Verbatim(lines) => lines.iter().for_each(|line| put(line)),
-            Block::List(items) => items.iter().for_each(|item| put(&format!("- {}", linked(item, link)))),
-            Block::Table(table) => rows(table).for_each(|row| put(&row)),
-        }
     }
     text + " */\n"
 }
 
 /// A number as C reads it back to the same float.
-fn constant(value: &Number, scalar: Scalar) -> String {
+pub(super) fn constant(value: &Number, scalar: Scalar) -> String {
     let digits = decimal(value, scalar);
     match scalar {
         Scalar::F64 => digits,

@@ -86,7 +86,7 @@ fn of_block(module: &Module, function: &Function) -> TokenStream {
 }
 
 fn documentation(module: &Module, function: &Function) -> Vec<String> {
-    let title = common::function(function, module).into_iter().take(1);
+    let title = common::function(function, module, false).into_iter().take(1);
     let blocks: Vec<Block> = title.chain([Block::text(format!("As {{{}}} of one state.", function.name()))]).collect();
     documentation::lines(&blocks)
 }

@@ -1,0 +1,40 @@
+#if defined(__FAST_MATH__) || defined(_M_FP_FAST)
+#error "this file computes nonsense under -ffast-math and /fp:fast, which reorder its sums: compile without"
+#endif
+
+/*
+ * No multiplication is fused with an addition, whatever the flags: results have the same bits everywhere. (GCC fuses in the vectoriser of
+ * straight lines even where it is told not to, so that this is off too.) Where floats are kept with more digits than they have, as on the
+ * x87, there are other bits, and ROBOT_SAME_BITS is 0.
+ */
+#if defined(__clang__)
+#define ROBOT_UNFUSED _Pragma("STDC FP_CONTRACT OFF")
+#elif defined(__GNUC__)
+#define ROBOT_UNFUSED
+#pragma GCC push_options
+#pragma GCC optimize("fp-contract=off", "no-tree-slp-vectorize")
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L
+#define ROBOT_UNFUSED _Pragma("STDC FP_CONTRACT OFF")
+#else
+#define ROBOT_UNFUSED
+#endif
+
+#if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
+#define ROBOT_SAME_BITS 0
+#else
+#define ROBOT_SAME_BITS 1
+#endif
+
+#if defined(__GNUC__)
+#define ROBOT_INLINE static inline __attribute__((always_inline))
+#else
+#define ROBOT_INLINE static inline
+#endif
+
+/* Where there are vectors, angles are filled up to whole vectors. */
+#if defined(__SSE2__) || defined(__ARM_NEON) || defined(__wasm_simd128__) || defined(_M_X64)
+#define ROBOT_ANGLES(used, filled) (filled)
+#else
+#define ROBOT_ANGLES(used, filled) (used)
+#endif
+

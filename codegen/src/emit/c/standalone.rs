@@ -1,0 +1,215 @@
+//! The header that holds the functions: C99 and C++11, static functions, no allocation, no state.
+//!
+//! Compilers take several liberties with floats, of which each changes bits; `prologue.h` forbids them or refuses to be compiled. Every result
+//! is written when nothing is left to be read, so that results may lie where arguments do.
+
+use std::fmt::Write;
+
+use super::header::{comment, constant, link, macros, macros_of, opening, signature, POINTERS};
+use super::{functions, prefix, returns_a_number};
+use crate::emit::documentation::{self, Block};
+use crate::emit::origin::{Notes, Origin};
+use crate::emit::plain::{asks_for_signs, expression, of_robot, places, reads_an_argument, waves, Syntax};
+use crate::emit::rust::asks_for_sines;
+use crate::exact::Number;
+use crate::kinds::Scalar;
+use crate::program::listing::{Line, Listing, Name, Part};
+use crate::program::{Function, Module, Trig};
+
+const PROLOGUE: &str = include_str!("prologue.h");
+const EPILOGUE: &str = include_str!("epilogue.h");
+const SIGN: &str = include_str!("sines/sign.h");
+const STD: &str = include_str!("sines/std.h");
+const FAST_F64: &str = include_str!("sines/fast_f64.h");
+const FAST_F32: &str = include_str!("sines/fast_f32.h");
+
+struct C<'a> {
+    module: &'a Module,
+    name: String,
+    upper: String,
+}
+
+impl Syntax for C<'_> {
+    fn number(&self, value: &Number) -> String {
+        constant(value, self.module.scalar)
+    }
+
+    fn sign(&self, entry: &str) -> String {
+        format!("{}_sign({entry})", self.name)
+    }
+}
+
+pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
+    let name = prefix(module);
+    let upper = macros_of(&name);
+    let c = C { module, name, upper };
+    let mut text = opening(origin, &notes.head, &module.absent, &c.upper);
+    text += &of_robot(&sine_of_library(module), &c.name, &c.upper);
+    text += &of_robot(PROLOGUE, &c.name, &c.upper);
+    let _ = writeln!(text, "/* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */");
+    let _ = writeln!(text, "#define {}_NAME \"{}\"", c.upper, module.name);
+    let revolute: Vec<&str> = module.joints.iter().map(|joint| if joint.is_revolute { "1" } else { "0" }).collect();
+    let _ = writeln!(text, "#define {}_JOINT_IS_REVOLUTE {{{}}}\n", c.upper, revolute.join(", "));
+    text += &macros(module);
+    text += "\n";
+    if asks_for_sines(module) {
+        let sines = match (module.trig, module.scalar) {
+            (Trig::Fast, Scalar::F64) => FAST_F64,
+            (Trig::Fast, Scalar::F32) => FAST_F32,
+            (Trig::Libm | Trig::Std, _) => STD,
+        };
+        text += &of_robot(sines, &c.name, &c.upper);
+        text += "\n";
+    }
+    if asks_for_signs(module) {
+        text += &of_robot(SIGN, &c.name, &c.upper);
+        text += "\n";
+    }
+    text += POINTERS.trim_start();
+    for function in functions(module) {
+        c.function(&mut text, function, notes);
+    }
+    text += "\n";
+    text + EPILOGUE
+}
+
+/// Where the sines of the C library come from, if any are needed.
+fn sine_of_library(module: &Module) -> String {
+    if !asks_for_sines(module) {
+        return String::new();
+    }
+    let suffix = match module.scalar {
+        Scalar::F64 => "",
+        Scalar::F32 => "f",
+    };
+    let library = format!("#include <math.h>\n#define ROBOT_SIN(x) sin{suffix}(x)\n#define ROBOT_COS(x) cos{suffix}(x)\n");
+    if module.trig != Trig::Fast {
+        return library + "\n";
+    }
+    let none = "(((x) - (x)) / ((x) - (x)))";
+    format!(
+        "/* With ROBOT_NO_MATH_H defined no header is needed: sines of angles beyond the range of the ones below are then not numbers. */\n\
+         #ifdef ROBOT_NO_MATH_H\n#define ROBOT_SIN(x) {none}\n#define ROBOT_COS(x) {none}\n#else\n{library}#endif\n\n"
+    )
+}
+
+impl C<'_> {
+    fn function(&self, text: &mut String, function: &Function, notes: &Notes) {
+        let C { module, name, upper } = self;
+        let listing = Listing::of(function);
+        let parts = listing.parts();
+        for (part, number) in parts.iter().zip(1..) {
+            self.part(text, function, part, number);
+        }
+        let mut blocks = documentation::function(function, module, false);
+        blocks.extend(notes.functions.get(&function.name()).map(Block::text));
+        *text += "\n";
+        *text += &comment(&blocks, &link(name, upper));
+        let _ = writeln!(text, "static inline {}\n{{\n    {upper}_UNFUSED", signature(module, function));
+        for argument in function.unused_arguments() {
+            let _ = writeln!(text, "    (void){};", argument.name());
+        }
+        self.sines(text, function);
+        if parts.is_empty() {
+            self.lines(text, &listing.lines);
+        }
+        for (part, number) in parts.iter().zip(1..) {
+            self.call(text, function, part, number);
+        }
+        self.result(text, function, &listing);
+        *text += "}\n";
+    }
+
+    /// `s1`, `c1` and so on, all angles in one loop.
+    fn sines(&self, text: &mut String, function: &Function) {
+        let C { module, name, upper } = self;
+        let waves = waves(module, function, self);
+        let used = waves.len();
+        if used == 0 {
+            return;
+        }
+        let filled = if used > 2 { used.next_multiple_of(4) } else { used };
+        let angles: Vec<&str> = waves.iter().map(|wave| wave.angle.as_str()).collect();
+        let _ = writeln!(text, "    const {name}_real angle[{filled}] = {{{}}};", angles.join(", "));
+        let _ = writeln!(text, "    {name}_real sine[{filled}], cosine[{filled}];");
+        let _ = writeln!(text, "    {name}_sin_cos({upper}_ANGLES({used}, {filled}), angle, sine, cosine);");
+        for (i, wave) in waves.iter().enumerate() {
+            for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {
+                if let Some(value) = value {
+                    self.define(text, value, &format!("{from}[{i}]"));
+                }
+            }
+        }
+    }
+
+    fn define(&self, text: &mut String, name: &str, value: &str) {
+        let _ = writeln!(text, "    const {}_real {name} = {value};", self.name);
+    }
+
+    fn lines(&self, text: &mut String, lines: &[Line]) {
+        for line in lines {
+            self.define(text, &Name::Step(line.name).text(), &expression(&line.value, self));
+        }
+    }
+
+    /// The results, written when all arguments are read.
+    fn result(&self, text: &mut String, function: &Function, listing: &Listing) {
+        let values: Vec<String> = listing.entries.iter().map(|entry| expression(entry, self)).collect();
+        if returns_a_number(function.quantity) {
+            let _ = writeln!(text, "    return {};", values[0]);
+            return;
+        }
+        let first = listing.entries.iter().any(reads_an_argument);
+        if first {
+            for (value, i) in values.iter().zip(1..) {
+                self.define(text, &format!("r{i}"), value);
+            }
+        }
+        let places = places(function.quantity, &self.module.sizes());
+        for (((part, place), value), i) in places.iter().zip(&values).zip(1..) {
+            let place: String = place.iter().map(|index| format!("[{index}]")).collect();
+            let value = if first { format!("r{i}") } else { value.clone() };
+            let _ = writeln!(text, "    {}{place} = {value};", part.name);
+        }
+    }
+
+    /// A part of a long function.
+    fn part(&self, text: &mut String, function: &Function, part: &Part, number: usize) {
+        let C { name, upper, .. } = self;
+        let mut arguments: Vec<String> = part.arguments.iter().map(|a| format!("const {name}_real *{}", a.name())).collect();
+        // A part that takes nothing but arguments has no values to take.
+        if !part.taken.is_empty() {
+            arguments.push(format!("const {name}_real taken[{}]", part.taken.len()));
+        }
+        arguments.push(format!("{name}_real given[{}]", part.given.len()));
+        let function = function.name();
+        let _ = writeln!(text, "\n/* Part {number} of `{name}_{function}`. */");
+        let _ = writeln!(text, "static inline void {name}_{function}_part_{number}(\n    {})\n{{", arguments.join(",\n    "));
+        let _ = writeln!(text, "    {upper}_UNFUSED");
+        for (i, value) in part.taken.iter().enumerate() {
+            self.define(text, &value.text(), &format!("taken[{i}]"));
+        }
+        self.lines(text, &part.lines);
+        for (i, value) in part.given.iter().enumerate() {
+            let _ = writeln!(text, "    given[{i}] = {};", value.text());
+        }
+        *text += "}\n";
+    }
+
+    /// The lines that call a part.
+    fn call(&self, text: &mut String, function: &Function, part: &Part, number: usize) {
+        let name = &self.name;
+        let mut arguments: Vec<String> = part.arguments.iter().map(|a| a.name().to_string()).collect();
+        if !part.taken.is_empty() {
+            let taken: Vec<String> = part.taken.iter().map(|value| value.text()).collect();
+            let _ = writeln!(text, "    const {name}_real taken_{number}[{}] = {{{}}};", taken.len(), taken.join(", "));
+            arguments.push(format!("taken_{number}"));
+        }
+        let _ = writeln!(text, "    {name}_real given_{number}[{}];", part.given.len());
+        arguments.push(format!("given_{number}"));
+        let _ = writeln!(text, "    {name}_{}_part_{number}({});", function.name(), arguments.join(", "));
+        for (i, value) in part.given.iter().enumerate() {
+            self.define(text, &value.text(), &format!("given_{number}[{i}]"));
+        }
+    }
+}

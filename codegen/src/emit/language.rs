@@ -1,0 +1,63 @@
+//! The languages that modules are printed in.
+
+use crate::kinds::Scalar;
+use crate::program::Trig;
+
+/// A language.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Language {
+    /// Rust, the module with everything that can stand beside it.
+    #[default]
+    Rust,
+    /// C99 and C++11: one header.
+    C,
+}
+
+impl Language {
+    /// All of them.
+    pub const ALL: [Language; 2] = [Language::Rust, Language::C];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Language::Rust => "rust",
+            Language::C => "c",
+        }
+    }
+
+    /// Its name in a sentence.
+    pub fn title(self) -> &'static str {
+        match self {
+            Language::Rust => "Rust",
+            Language::C => "C",
+        }
+    }
+
+    /// The extensions of its files, the usual one first.
+    pub fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Language::Rust => &["rs"],
+            Language::C => &["h"],
+        }
+    }
+
+    /// The language of the files with an extension.
+    pub fn of_extension(extension: &str) -> Option<Language> {
+        Language::ALL.into_iter().find(|language| language.extensions().contains(&extension))
+    }
+
+    /// The scalars that it has.
+    pub fn scalars(self) -> &'static [Scalar] {
+        match self {
+            Language::Rust | Language::C => &[Scalar::F64, Scalar::F32],
+        }
+    }
+
+    /// Where its sines and cosines come from unless chosen otherwise.
+    pub fn trig(self) -> Trig {
+        match self {
+            Language::Rust => Trig::Libm,
+            Language::C => Trig::Fast,
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Modules in other languages: read back and verified, spoilt and refused, and run beside the module in Rust, bit for bit.
+//!
+//! Compilers and interpreters that this machine lacks are named in a line, with the package of Debian that brings them, and what needs
+//! them is skipped. All robots, at 10000 states and with all compilers, by
+//! `cargo test --release -p armgen-verify --test languages -- --ignored --nocapture`.
+
+mod common;
+#[path = "languages/mutation.rs"]
+mod mutation;
+#[path = "languages/run.rs"]
+mod run;
+
+use armgen_codegen::emit::Language;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::Options;
+use armgen_codegen::source::Source;
+use armgen_codegen::Generated;
+use armgen_verify::reader::{Module, ModuleText};
+
+fn generated(source: &Source, scalar: Scalar, trig: Trig) -> Generated {
+    #[allow(clippy::needless_update)]
+    common::generate_with(source, &Options { scalar, trig, ..Options::default() })
+}
+
+fn others() -> impl Iterator<Item = Language> {
+    Language::ALL.into_iter().filter(|language| *language != Language::Rust)
+}
+
+/// What is read from a module in another language is what is read from the one in Rust, rounding included.
+#[track_caller]
+fn check_read(name: &str, scalar: Scalar) {
+    let source = common::source(name);
+    for trig in [Trig::Fast, Trig::Std] {
+        let generated = generated(&source, scalar, trig);
+        let rust = Module::read(&generated.module).expect("the module in Rust");
+        for language in others().filter(|language| language.scalars().contains(&scalar)) {
+            let text = generated.in_language(language);
+            let read = Module::read(ModuleText { language, text: &text });
+            let read = read.unwrap_or_else(|fault| panic!("{name} in {}: {fault}", language.title()));
+            assert_eq!((read.real, read.trig, &read.constants), (rust.real, rust.trig, &rust.constants), "{name} {language:?}");
+            assert_eq!(read.functions.len(), rust.functions.len(), "{name} {language:?}");
+            for ((own, function), (other, of_rust)) in read.functions.iter().zip(&rust.functions) {
+                let (function, of_rust) = (function.as_ref().expect("read"), of_rust.as_ref().expect("read"));
+                assert_eq!(own, other);
+                assert!(
+                    mutation::same_operations(&function.program, &of_rust.program),
+                    "{name} {language:?}: {own} does other operations than in Rust"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn other_languages_do_the_operations_of_rust_in_its_order() {
+    for name in ["scara", "scara4", "modified_prismatic", "single_joint"] {
+        check_read(name, Scalar::F64);
+    }
+    check_read("base_set", Scalar::F32);
+}
+
+#[test]
+fn a_module_in_another_language_is_certified() {
+    let source = common::source("scara4");
+    for generated in [generated(&source, Scalar::F64, Trig::Fast), common::generate(&source, Scalar::F64)] {
+        for language in others() {
+            let report = armgen_verify::certify_in(&source, &generated, language);
+            assert_eq!(report.first_fault(), None, "{language:?}");
+        }
+    }
+}
+
+#[test]
+fn changes_are_found_in_every_language() {
+    for language in others() {
+        mutation::check("scara", language, 200);
+    }
+}
+
+#[test]
+fn all_languages_have_the_bits_of_rust() {
+    for name in ["scara", "modified_prismatic"] {
+        run::check(name, Scalar::F64, 500, run::Effort::Short);
+    }
+    run::check("scara4", Scalar::F32, 500, run::Effort::Short);
+}
+
+#[test]
+fn callers_of_the_page_print_what_it_says() {
+    run::check_page();
+}
+
+#[test]
+fn fast_math_is_refused() {
+    run::check_fast_math();
+}
+
+#[test]
+#[ignore = "many minutes: all robots, 10000 states each, with all compilers and their flags"]
+fn all_robots_have_the_bits_of_rust() {
+    for path in common::paths() {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        for scalar in [Scalar::F64, Scalar::F32] {
+            run::check(&name, scalar, 10_000, run::Effort::Full);
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Small changes of a module's text in any language, and what the checker says of them.
+
+use armgen_codegen::emit::Language;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::program::Trig;
+use armgen_codegen::validate;
+use armgen_verify::arithmetic::Stream;
+use armgen_verify::checker::Effort;
+use armgen_verify::claims::Claims;
+use armgen_verify::program::{Program, Step};
+use armgen_verify::reader::{Module, ModuleText};
+use armgen_verify::{prepare, verify_with};
+
+use crate::common;
+
+/// The entries of a program as trees of operations: the same operations on the same operands in the same order, however lines are named.
+pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
+    fn numbered(program: &Program) -> Vec<usize> {
+        // Equal steps have equal numbers; leaves are told apart by what they are.
+        let mut known: Vec<String> = Vec::new();
+        let mut index = std::collections::HashMap::new();
+        let mut numbers: Vec<usize> = Vec::new();
+        for step in &program.steps {
+            let key = match step {
+                Step::Literal(k) => format!("literal {}", program.literals[*k].text),
+                Step::Sine(angle) | Step::Cosine(angle) => {
+                    let turn = angle.turn.map(|(k, minus)| (program.literals[program.turns[k]].text.clone(), minus));
+                    format!("{} {:?} {turn:?}", if matches!(step, Step::Sine(_)) { "sine" } else { "cosine" }, angle.terms)
+                }
+                Step::Input(..) | Step::Sign(_) => format!("{step:?}"),
+                Step::Negate(a) => format!("-{}", numbers[*a]),
+                Step::Add(a, b) => format!("{} + {}", numbers[*a], numbers[*b]),
+                Step::Subtract(a, b) => format!("{} - {}", numbers[*a], numbers[*b]),
+                Step::Multiply(a, b) => format!("{} * {}", numbers[*a], numbers[*b]),
+                Step::Divide(a, b) => format!("{} / {}", numbers[*a], numbers[*b]),
+            };
+            let next = known.len();
+            let number = *index.entry(key.clone()).or_insert(next);
+            if number == next {
+                known.push(key);
+            }
+            numbers.push(number);
+        }
+        numbers
+    }
+    // Numbers are those of one list for both.
+    let mut both = a.clone();
+    let offset = both.steps.len();
+    let (literals, turns) = (both.literals.len(), both.turns.len());
+    both.literals.extend(b.literals.iter().cloned());
+    both.turns.extend(b.turns.iter().map(|k| k + literals));
+    both.steps.extend(b.steps.iter().map(|step| match step.clone() {
+        Step::Literal(k) => Step::Literal(k + literals),
+        Step::Sine(mut angle) => {
+            angle.turn = angle.turn.map(|(k, minus)| (k + turns, minus));
+            Step::Sine(angle)
+        }
+        Step::Cosine(mut angle) => {
+            angle.turn = angle.turn.map(|(k, minus)| (k + turns, minus));
+            Step::Cosine(angle)
+        }
+        Step::Negate(a) => Step::Negate(a + offset),
+        Step::Add(a, b) => Step::Add(a + offset, b + offset),
+        Step::Subtract(a, b) => Step::Subtract(a + offset, b + offset),
+        Step::Multiply(a, b) => Step::Multiply(a + offset, b + offset),
+        Step::Divide(a, b) => Step::Divide(a + offset, b + offset),
+        leaf => leaf,
+    }));
+    let numbers = numbered(&both);
+    let texts = |program: &Program| program.literals.iter().map(|literal| literal.text.clone()).collect::<Vec<_>>();
+    a.arguments == b.arguments
+        && texts(a) == texts(b)
+        && a.outputs.len() == b.outputs.len()
+        && a.outputs.iter().zip(&b.outputs).all(|(x, y)| x.place == y.place && numbers[x.step] == numbers[y.step + offset])
+}
+
+/// Changes one character of code: a digit, a sign, a letter of a name, a bracket. None where the line is a comment or nothing changes.
+fn changed(text: &str, code: &[(usize, usize)], stream: &mut Stream) -> Option<(String, String)> {
+    let (start, end) = code[stream.below(code.len() as u64) as usize];
+    let line = &text[start..end];
+    let places: Vec<usize> = line.char_indices().filter(|(_, c)| c.is_ascii_graphic()).map(|(at, _)| at).collect();
+    let at = places[stream.below(places.len() as u64) as usize];
+    let old = line.as_bytes()[at] as char;
+    let choices: &[char] = match old {
+        '0'..='9' => &['0', '1', '2', '3', '4', '5', '6', '7', '8', '9'],
+        '+' | '-' | '*' | '/' => &['+', '-', '*', '/'],
+        's' | 'c' | 't' | 'q' | 'd' => &['s', 'c', 't', 'q', 'd'],
+        _ => &['(', ')', ',', '1', 'x', ' '],
+    };
+    let new = choices[stream.below(choices.len() as u64) as usize];
+    if new == old {
+        return None;
+    }
+    let line = format!("{}{new}{}", &line[..at], &line[at + 1..]);
+    let changed = format!("{}{line}{}", &text[..start], &text[end..]);
+    Some((changed, format!("`{}` for `{}`", line.trim(), text[start..end].trim())))
+}
+
+/// Makes so many changes of code, each of which must be found: the text is refused, or another function than that of the equations is read.
+pub(crate) fn check(name: &str, language: Language, wanted: usize) {
+    let source = common::source(name);
+    let generated = crate::generated(&source, Scalar::F64, Trig::Fast);
+    let text = generated.in_language(language);
+    let claims = Claims::from_numbers(&generated.constants);
+    let effort = Effort { points: 2, exact_points: 0, seed: 7 };
+    let (manipulator, _) = validate::read_for(&source, Scalar::F64).0.expect("a valid description");
+    let whole = ModuleText { language, text: &text };
+    let prepared = prepare(manipulator, whole, claims.clone(), effort).expect("a module that can be read");
+    let original = Module::read(whole).expect("it was just read");
+    // Where each line of code begins and ends.
+    let code = code_lines(&text, language);
+    let mut stream = Stream::new(4711);
+    let (mut refused, mut different, mut idle) = (0, 0, 0);
+    while refused + different < wanted {
+        let Some((text, change)) = changed(&text, &code, &mut stream) else { continue };
+        let changed = ModuleText { language, text: &text };
+        let Ok(module) = Module::read(changed) else {
+            refused += 1;
+            continue;
+        };
+        if module.constants != original.constants {
+            let report = verify_with(&source, changed, claims.clone(), effort);
+            assert!(report.first_fault().is_some(), "{name} {language:?}: {change} is not found");
+            different += 1;
+            continue;
+        }
+        let functions = module.functions.iter().zip(&original.functions);
+        let spoilt: Vec<&str> = functions
+            .filter(|((_, a), (_, b))| match (a, b) {
+                (Ok(a), Ok(b)) => !same_operations(&a.program, &b.program),
+                _ => true,
+            })
+            .map(|((function, _), _)| function.as_str())
+            .collect();
+        if spoilt.is_empty() {
+            idle += 1;
+            assert!(idle < 20, "{name} {language:?}: {change} changes nothing");
+            continue;
+        }
+        let equal = armgen_verify::report::Verdict::Equal;
+        let found = spoilt.iter().any(|function| {
+            let read = module.functions.iter().find(|(other, _)| other == function).expect("it stands there");
+            prepared.checker.function(function, &read.1, module.real).verdict != equal
+        });
+        assert!(found, "{name} {language:?}: {change} is not found");
+        different += 1;
+    }
+    println!("{name} {language:?}: {refused} changes are refused, {different} differ from the equations, {idle} are none");
+}
+
+/// The places of the lines that are code, those of sines included.
+fn code_lines(text: &str, language: Language) -> Vec<(usize, usize)> {
+    let mut code = Vec::new();
+    let mut at = 0;
+    let mut inside = false;
+    for line in text.split('\n') {
+        let comment = match language {
+            Language::Rust => line.trim_start().starts_with("//"),
+            Language::C => {
+                let was = inside;
+                inside = (inside || line.starts_with("/*")) && !line.ends_with("*/");
+                was || line.starts_with("/*")
+            }
+        };
+        if !comment && line.chars().any(|c| c.is_ascii_graphic()) {
+            code.push((at, at + line.len()));
+        }
+        at += line.len() + 1;
+    }
+    code
+}

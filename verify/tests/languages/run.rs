@@ -1,0 +1,355 @@
+//! Modules run beside the one in Rust, over the same states from a file; results are compared in bits.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use armgen_codegen::emit::Language;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::program::Trig;
+use armgen_codegen::Generated;
+use armgen_verify::arithmetic::Stream;
+use armgen_verify::contract::{Array, Length, Promise, Sizes};
+use armgen_verify::program::Argument;
+use armgen_verify::reader::{Constant, Module};
+
+use crate::common;
+
+/// How many compilers and flags are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    Short,
+    Full,
+}
+
+const DRIVER: &str = include_str!("driver.rs");
+/// Of the crate the module calls one function, for angles that the states do not have.
+const LIBM: &str = "pub fn sincos(x: f64) -> (f64, f64) { x.sin_cos() }\npub fn sincosf(x: f32) -> (f32, f32) { x.sin_cos() }\n";
+
+/// A function, its arguments with the place where each begins in a state, and its results with their number of entries.
+struct Called {
+    name: String,
+    arguments: Vec<(Argument, usize)>,
+    results: Vec<(String, Array, usize)>,
+}
+
+/// What a driver needs to know of a module.
+struct Robot {
+    name: String,
+    scalar: Scalar,
+    dof: usize,
+    parameters: usize,
+    sizes: Sizes,
+    functions: Vec<Called>,
+}
+
+impl Robot {
+    fn of(module: &Module, scalar: Scalar) -> Robot {
+        let integer = |name: &str| match module.constants.get(name) {
+            Some(Constant::Integer(value)) => *value as usize,
+            _ => 0,
+        };
+        let Constant::Text(name) = &module.constants["NAME"] else { panic!("a robot has a name") };
+        let (dof, parameters) = (integer("DOF"), integer("PARAMETERS"));
+        let sizes = Sizes { n: dof, p: parameters, b: integer("BASE_PARAMETERS"), m: integer("TASK_ROWS") };
+        let called = |(name, program): (&str, &armgen_verify::program::Program)| {
+            let promise = Promise::of(name).expect("a known function").0;
+            let start = |argument: Argument| match argument {
+                Argument::Pi => 0,
+                Argument::Q => parameters,
+                Argument::Dq => parameters + dof,
+                Argument::Ddq => parameters + 2 * dof,
+                Argument::Dqr => parameters + 3 * dof,
+                Argument::Ddqr => parameters + 4 * dof,
+                Argument::Tau => parameters + 5 * dof,
+            };
+            let places = promise.returned.places(&sizes);
+            let entries = |part: &str| places.iter().filter(|place| promise.returned.part_of(place).0 == part).count();
+            Called {
+                name: name.into(),
+                arguments: program.arguments.iter().map(|&a| (a, start(a))).collect(),
+                results: promise
+                    .returned
+                    .named()
+                    .into_iter()
+                    .map(|(part, array)| (part.clone(), array, entries(&part)))
+                    .collect(),
+            }
+        };
+        Robot { name: name.clone(), scalar, dof, parameters, sizes, functions: module.programs().map(called).collect() }
+    }
+
+    /// States: positions of all sizes, exact multiples of pi/2, zeros of both signs among them.
+    fn states(&self, count: usize) -> Vec<u8> {
+        let mut stream = Stream::new(20_240);
+        let range = if self.scalar == Scalar::F64 { 6500.0 } else { 30.0 };
+        let mut bytes = Vec::new();
+        for state in 0..count {
+            for i in 0..self.parameters + 6 * self.dof {
+                let unit = (stream.bits() >> 11) as f64 / (1u64 << 53) as f64;
+                let signed = 2.0 * unit - 1.0;
+                let position = (self.parameters..self.parameters + self.dof).contains(&i);
+                let value = match (state % 8, position) {
+                    (0, true) => [0.0, -0.0][usize::from(unit < 0.5)],
+                    (1, true) => (signed * 8.0).round() * std::f64::consts::FRAC_PI_2,
+                    (2, true) => signed * range,
+                    (3, false) if i >= self.parameters && unit < 0.5 => 0.0 * signed,
+                    (_, true) => 4.0 * signed,
+                    _ if i < self.parameters => 0.1 + 3.0 * unit,
+                    _ => 3.0 * signed,
+                };
+                match self.scalar {
+                    Scalar::F64 => bytes.extend(value.to_le_bytes()),
+                    Scalar::F32 => bytes.extend((value as f32).to_le_bytes()),
+                }
+            }
+        }
+        bytes
+    }
+
+    fn dimension(&self, length: Length) -> usize {
+        match length {
+            Length::Dof => self.sizes.n,
+            Length::Parameters => self.sizes.p,
+            Length::BaseParameters => self.sizes.b,
+            Length::Task => self.sizes.m,
+            Length::Of(value) => value,
+        }
+    }
+
+    fn width(&self) -> usize {
+        if self.scalar == Scalar::F64 {
+            8
+        } else {
+            4
+        }
+    }
+}
+
+/// Runs a command; what went wrong if it failed or warned.
+#[track_caller]
+fn succeed(command: &mut Command) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && !err.contains("warning"), "{command:?}: {}\n{out}{err}", output.status);
+}
+
+/// Whether a program is there; a line says which package brings it if not.
+pub(crate) fn there(program: &str, package: &str) -> bool {
+    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        println!("skipped: no `{program}` here (Debian: {package})");
+    }
+    found
+}
+
+fn write(path: PathBuf, text: impl AsRef<[u8]>) {
+    std::fs::write(&path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+}
+
+/// Runs the module in all languages over so many states, and compares.
+#[track_caller]
+pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
+    let source = common::source(name);
+    let generated = crate::generated(&source, scalar, Trig::Fast);
+    let module = Module::read(&generated.module).expect("the module in Rust");
+    let robot = Robot::of(&module, scalar);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("languages_{name}_{scalar:?}"));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    write(folder.join("states"), robot.states(states));
+    rust(&folder, &robot, &generated);
+    for language in crate::others().filter(|language| language.scalars().contains(&scalar)) {
+        let runs = match language {
+            Language::Rust => continue,
+            Language::C => c(&folder, &robot, &generated, effort),
+        };
+        for run in runs {
+            let results: usize = robot.functions.iter().map(|function| compare(&folder, &robot, function, &run)).sum();
+            println!("{name} {scalar:?}: {run}: {results} numbers of {} functions have the bits of Rust", robot.functions.len());
+        }
+    }
+}
+
+/// Compares the results of a function; how many there are.
+#[track_caller]
+fn compare(folder: &Path, robot: &Robot, function: &Called, run: &str) -> usize {
+    let read = |run: &str| std::fs::read(folder.join(run).join(&function.name)).expect("the results");
+    let (rust, other) = (read("rust"), read(run));
+    let width = robot.width();
+    assert_eq!(rust.len(), other.len(), "{}: {} by {run}", robot.name, function.name);
+    let number = |bytes: &[u8]| match bytes.try_into() {
+        Ok(eight) => f64::from_le_bytes(eight),
+        Err(_) => f64::from(f32::from_le_bytes(bytes.try_into().expect("four bytes"))),
+    };
+    let entries: usize = function.results.iter().map(|(.., entries)| entries).sum();
+    for (k, (a, b)) in rust.chunks(width).zip(other.chunks(width)).enumerate() {
+        let same = a == b || number(a).is_nan() && number(b).is_nan();
+        let (name, own) = (&robot.name, &function.name);
+        assert!(
+            same,
+            "{name}: {own} by {run}: entry {} of state {} is {:e}, in Rust {:e}",
+            k % entries,
+            k / entries,
+            number(b),
+            number(a)
+        );
+    }
+    rust.len() / width
+}
+
+/// The module in Rust, compiled by itself.
+fn rust(folder: &Path, robot: &Robot, generated: &Generated) {
+    let mut main = format!("#![allow(unused)]\ninclude!(\"robot.rs\");\n{DRIVER}\n");
+    if generated.module.contains("struct EquationsOfMotion") {
+        main += "impl Flat for EquationsOfMotion {\n    fn flat(&self, into: &mut Vec<u8>) {\n        self.inertia.flat(into);\n        \
+                 self.coriolis.flat(into);\n        self.gravity.flat(into);\n    }\n}\n\n";
+    }
+    main += "fn main() {\n    let states = States::read();\n";
+    for function in &robot.functions {
+        let argument = |(argument, start): &(Argument, usize)| {
+            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
+            format!("state[{start}..{}].try_into().expect(\"an argument\")", start + length)
+        };
+        let arguments: Vec<String> = function.arguments.iter().map(argument).collect();
+        let name = &function.name;
+        let _ = writeln!(main, "    let mut results = Vec::new();");
+        let _ = writeln!(main, "    states.all().for_each(|state| {name}({}).flat(&mut results));", arguments.join(", "));
+        let _ = writeln!(main, "    write({name:?}, &results);");
+    }
+    main += "}\n";
+    write(folder.join("main.rs"), main);
+    write(folder.join("robot.rs"), &generated.module);
+    write(folder.join("libm.rs"), LIBM);
+    std::fs::create_dir_all(folder.join("rust")).expect("a folder");
+    let rustc = || {
+        let mut command = Command::new("rustc");
+        command.current_dir(folder).args(["--edition=2021", "-Copt-level=1", "-Awarnings"]);
+        command
+    };
+    succeed(rustc().args(["--crate-type=rlib", "libm.rs"]));
+    succeed(rustc().args(["--extern", "libm=liblibm.rlib", "-o", "rust_main", "main.rs"]));
+    succeed(Command::new(folder.join("rust_main")).current_dir(folder).args(["states", "rust"]));
+}
+
+/// The header, by all compilers.
+fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec<String> {
+    let name: String = robot.name.clone();
+    let mut main = String::from("#include <stdio.h>\n#include <stdlib.h>\n#include \"robot.h\"\n\n");
+    let _ = writeln!(main, "typedef {name}_real real;\n\nstatic FILE *in_folder(const char *folder, const char *name)\n{{");
+    main +=
+        "    char path[4096];\n    snprintf(path, sizeof path, \"%s/%s\", folder, name);\n    return fopen(path, \"wb\");\n}\n\n";
+    main += "int main(int count, char **arguments)\n{\n    FILE *states = fopen(arguments[1], \"rb\"), *results;\n    long size;\n    real *all, *x, *end;\n";
+    main += "    static real r[1 << 20];\n    if (count != 3 || !states) return 1;\n";
+    main += "    fseek(states, 0, SEEK_END);\n    size = ftell(states);\n    rewind(states);\n    all = (real *)malloc((size_t)size);\n";
+    main +=
+        "    if (fread(all, 1, (size_t)size, states) != (size_t)size) return 1;\n    end = all + (size_t)size / sizeof(real);\n";
+    let length = robot.parameters + 6 * robot.dof;
+    for function in &robot.functions {
+        let mut arguments: Vec<String> = function.arguments.iter().map(|(_, start)| format!("x + {start}")).collect();
+        let mut at = 0;
+        let number = function.results.len() == 1 && function.results[0].1.is_empty();
+        for (_, array, entries) in function.results.iter().filter(|_| !number) {
+            let inner: String = array.iter().skip(1).map(|length| format!("[{}]", robot.dimension(*length))).collect();
+            let pointer = if inner.is_empty() { "real *".into() } else { format!("real (*){inner}") };
+            arguments.push(format!("({pointer})(r + {at})"));
+            at += entries;
+        }
+        let call = format!("{name}_{}({})", function.name, arguments.join(", "));
+        let call = if number { format!("r[0] = {call}") } else { call };
+        let _ = writeln!(main, "    results = in_folder(arguments[2], \"{}\");", function.name);
+        let _ = writeln!(main, "    for (x = all; x < end; x += {length}) {{\n        {call};");
+        let _ = writeln!(main, "        fwrite(r, sizeof(real), {}, results);\n    }}\n    fclose(results);", at.max(1));
+    }
+    main += "    return 0;\n}\n";
+    write(folder.join("robot.h"), generated.in_language(Language::C));
+    write(folder.join("main.c"), main);
+    let strict = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror", "main.c", "-lm"];
+    let mut runs = Vec::new();
+    let short: &[(&str, &[&str])] = &[
+        ("gcc", &["-std=c99", "-O3", "-march=native"]),
+        ("clang", &["-std=gnu99", "-O2", "-march=native"]),
+        ("g++", &["-x", "c++", "-std=c++11", "-O2"]),
+    ];
+    let full: &[(&str, &[&str])] = &[
+        ("gcc", &["-std=c99", "-O2"]),
+        ("gcc", &["-std=gnu11", "-O2", "-march=native"]),
+        ("gcc", &["-std=c99", "-O3"]),
+        ("gcc", &["-std=gnu11", "-O3", "-march=native"]),
+        ("clang", &["-std=c99", "-O2"]),
+        ("clang", &["-std=c99", "-O3", "-march=native"]),
+        ("g++", &["-x", "c++", "-std=c++11", "-O3", "-march=native"]),
+        ("clang++", &["-x", "c++", "-std=c++11", "-O3", "-march=native"]),
+    ];
+    for (compiler, flags) in if effort == Effort::Full { full } else { short } {
+        let package = match *compiler {
+            "clang++" => "clang",
+            other => other,
+        };
+        if !there(compiler, package) {
+            continue;
+        }
+        let run = format!("{compiler} {}", flags.join(" "));
+        succeed(Command::new(compiler).current_dir(folder).args(*flags).args(strict).args(["-o", "c_main"]));
+        std::fs::create_dir_all(folder.join(&run)).expect("a folder");
+        succeed(Command::new(folder.join("c_main")).current_dir(folder).args(["states", &run]));
+        runs.push(run);
+    }
+    runs
+}
+
+/// The block of a kind of the page of languages, the first behind a heading.
+fn block(heading: &str, kind: &str) -> String {
+    let page = include_str!("../../../docs/languages.md");
+    let section = page.split(&format!("\n## {heading}\n")).nth(1).expect("a section");
+    let block = section.split(&format!("```{kind}\n")).nth(1).expect("a block");
+    block.split("```").next().expect("its end").into()
+}
+
+/// A folder with the module of the SCARA in a language.
+fn folder_of(name: &str) -> (PathBuf, Generated) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    (folder, crate::generated(&common::source("scara"), Scalar::F64, Trig::Fast))
+}
+
+#[track_caller]
+fn prints(command: &mut Command, expected: &str) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && out == expected, "{command:?}: {}\n{out}{err}", output.status);
+}
+
+/// The callers of the page print what stands below them.
+pub(crate) fn check_page() {
+    let (folder, generated) = folder_of("languages_page");
+    if there("gcc", "gcc") {
+        write(folder.join("scara.h"), generated.in_language(Language::C));
+        write(folder.join("caller.c"), block("C", "c"));
+        succeed(Command::new("gcc").current_dir(&folder).args(["-O2", "caller.c", "-lm", "-o", "caller"]));
+        prints(&mut Command::new(folder.join("caller")), &block("C", "text"));
+    }
+}
+
+/// What reorders sums is refused by the header itself, and without `math.h` it needs no header.
+pub(crate) fn check_fast_math() {
+    let (folder, generated) = folder_of("languages_fast_math");
+    write(folder.join("scara.h"), generated.in_language(Language::C));
+    write(folder.join("twice.c"), "#include \"scara.h\"\n#include \"scara.h\"\n");
+    for compiler in ["gcc", "clang"] {
+        if !there(compiler, compiler) {
+            continue;
+        }
+        let compile = |flags: &[&str]| {
+            let mut command = Command::new(compiler);
+            command.current_dir(&folder).args(["-O2", "-Wall", "-Werror", "-c", "-o", "twice.o", "twice.c"]).args(flags);
+            command
+        };
+        let output = compile(&["-ffast-math"]).output().expect("it is there");
+        let told = String::from_utf8_lossy(&output.stderr).contains("compile without");
+        assert!(!output.status.success() && told, "{compiler} -ffast-math");
+        succeed(&mut compile(&[]));
+        succeed(&mut compile(&["-DSCARA_NO_MATH_H", "-nostdinc", "-ffreestanding"]));
+    }
+}
