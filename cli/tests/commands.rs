@@ -332,7 +332,7 @@ fn verify_tells_what_it_cannot_read() {
 
 #[test]
 fn what_stands_beside_a_module_needs_one() {
-    for flag in ["--verify", "--tests", "--bounds", "--runtime", "--c-abi"] {
+    for flag in ["--verify", "--tests", "--bounds", "--runtime", "--c-abi", "--ik"] {
         let output = check(&["generate", &file("robots/scara.yaml"), flag], 2);
         assert!(err(&output).contains(&format!("{flag} writes beside the module")), "{}", err(&output));
         assert_eq!(out(&output), "");

@@ -78,6 +78,7 @@ pub struct Robot {
     functions: Vec<String>,
     stem: Option<String>,
     c_abi: bool,
+    inverse_kinematics: bool,
 }
 
 impl Robot {
@@ -89,6 +90,7 @@ impl Robot {
             functions: Vec::new(),
             stem: None,
             c_abi: false,
+            inverse_kinematics: false,
         }
     }
 
@@ -142,6 +144,14 @@ impl Robot {
         self
     }
 
+    /// Writes `robot_ik.rs` too: all joint variables that reach a pose. It goes into a module of its own; for an arm without a construction it
+    /// says why in a comment and holds nothing else.
+    #[must_use]
+    pub fn inverse_kinematics(mut self) -> Robot {
+        self.inverse_kinematics = true;
+        self
+    }
+
     /// Writes the module and the trait implementation into `OUT_DIR`, named after the description's file, or ends the build with the reason.
     pub fn generate(&self) {
         if let Err(error) = self.try_generate() {
@@ -178,10 +188,12 @@ impl Robot {
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or(BuildError::NoOutDir)?;
         let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
         let stem = self.stem.clone().unwrap_or_else(own);
+        let all_solutions = self.inverse_kinematics.then(|| (format!("{stem}_ik.rs"), generated.inverse_kinematics()));
         let mut files = vec![(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)];
         if self.c_abi {
             files.extend([(format!("{stem}.h"), generated.c.header), (format!("{stem}_c.rs"), generated.c.wrappers)]);
         }
+        files.extend(all_solutions);
         let mut written = Vec::new();
         for (name, text) in files {
             let file = out.join(name);

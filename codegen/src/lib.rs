@@ -32,6 +32,8 @@ pub mod emit;
 #[doc(hidden)]
 pub mod exact;
 #[doc(hidden)]
+pub mod inverse_kinematics;
+#[doc(hidden)]
 pub mod kinds;
 #[doc(hidden)]
 pub mod manipulator;
@@ -60,6 +62,7 @@ use emit::c::CFace;
 use emit::{Language, Notes, Origin};
 use exact::Number;
 pub use kinds::Scalar;
+use manipulator::Manipulator;
 pub use pass::{Pass, Passes};
 use program::Module;
 pub use program::Trig;
@@ -83,6 +86,8 @@ pub struct Generated {
     program: Module,
     origin: Origin,
     notes: Notes,
+    /// The arm that they are of.
+    manipulator: Manipulator,
 }
 
 impl Generated {
@@ -99,13 +104,20 @@ impl Generated {
             Language::C => emit::c::standalone(&self.program, &self.origin, &self.notes),
         }
     }
+
+    /// The module of inverse kinematics, `robot_ik.rs`: all joint variables that reach a pose. It stands alone, in a module of its own. For an
+    /// arm that has no construction it holds a comment that says why.
+    pub fn inverse_kinematics(&self) -> String {
+        emit::rust::print_inverse_kinematics(&self.program, &inverse_kinematics::of(&self.manipulator), &self.origin)
+    }
 }
 
 /// From text to text: the module if the description is valid, and all there is to say about the description.
 pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, options.scalar);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };
-    let module = schedule::module(&Model::new(manipulator), options);
+    let model = Model::new(manipulator);
+    let module = schedule::module(&model, options);
     if let Some(value) = module.out_of_range() {
         diagnostics.push(validate::product_out_of_range(&places, options.scalar, value));
         return (None, diagnostics);
@@ -120,6 +132,7 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         program: module,
         origin,
         notes: Notes::default(),
+        manipulator: model.manipulator,
     };
     (Some(generated), diagnostics)
 }

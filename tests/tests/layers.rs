@@ -35,6 +35,7 @@ const CODEGEN: Layers = &[
     ("description", &["diagnostic", "document", "kinds", "source"]),
     ("manipulator", &["exact", "kinds"]),
     ("derive", &["exact", "kinds", "manipulator", "pass", "ring", "scramble"]),
+    ("inverse_kinematics", &["derive", "exact", "kinds", "manipulator", "ring", "scramble"]),
     ("catalogue", &["derive"]),
     (
         "validate",
@@ -42,7 +43,7 @@ const CODEGEN: Layers = &[
     ),
     ("program", &["catalogue", "exact", "kinds", "pass", "ring", "scramble"]),
     ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "pass", "program", "ring", "suggest"]),
-    ("emit", &["catalogue", "exact", "kinds", "program", "ring", "source"]),
+    ("emit", &["catalogue", "exact", "inverse_kinematics", "kinds", "program", "ring", "source"]),
     ("show", &["catalogue", "derive", "exact", "ring"]),
     ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source"]),
 ];

@@ -4,6 +4,7 @@
 mod batch;
 mod body;
 mod documentation;
+mod inverse_kinematics;
 mod literal;
 mod runtime;
 mod signature;
@@ -20,6 +21,7 @@ use crate::kinds::Scalar;
 use crate::program::{Function, Module};
 use crate::ring::Symbol;
 use body::Body;
+pub use inverse_kinematics::print_inverse_kinematics;
 use literal::literal;
 pub use runtime::single_traits;
 pub(super) use signature::accesses;

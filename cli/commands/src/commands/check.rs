@@ -12,7 +12,7 @@ use armgen_codegen::kinds::{JointKind, Scalar};
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_codegen::{derive, Model};
+use armgen_codegen::{derive, inverse_kinematics, Model};
 
 use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY};
@@ -86,6 +86,13 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
         std::cmp::Ordering::Greater => format!("{m} rows for {}: not all can be followed", input::counted(n, "joint")),
     };
     row("task", format!("{} ({against})", rows.join(", ")));
+    row(
+        "inverse kinematics",
+        match inverse_kinematics::of(manipulator) {
+            Ok(found) => format!("{}: at most {}", found.class, input::counted(found.most, "solution")),
+            Err(reason) => format!("none: {reason}"),
+        },
+    );
     let names = manipulator.parameters.len();
     row("named parameters", names.to_string());
     let regressor = match &manipulator.regressor {

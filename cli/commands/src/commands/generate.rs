@@ -59,6 +59,9 @@ pub(crate) struct Beside {
     /// Write the C interface beside it: robot.h, and robot_c.rs to be included where robot.rs is
     #[arg(long)]
     c_abi: bool,
+    /// Write inverse kinematics beside it, robot_ik.rs: all joint variables that reach a pose, in a module of its own
+    #[arg(long)]
+    ik: bool,
 }
 
 impl Beside {
@@ -70,6 +73,7 @@ impl Beside {
             (self.bounds, "--bounds"),
             (self.runtime, "--runtime"),
             (self.c_abi, "--c-abi"),
+            (self.ik, "--ik"),
         ];
         all.iter().filter(|(wanted, _)| *wanted).map(|(_, flag)| *flag).collect()
     }
@@ -187,6 +191,7 @@ fn unfit(
         (beside.bounds, "--bounds", "its companion is Rust"),
         (beside.runtime, "--runtime", "the runtime is Rust"),
         (beside.c_abi, "--c-abi", "it is the face for C of a module in Rust"),
+        (beside.ik, "--ik", "inverse kinematics is written in Rust"),
         (beside.tests, "--tests", "test files are written for Rust"),
         (choices.batch.is_some(), "--batch", "functions for many states are written for Rust"),
         (trig == Trig::Libm, "--trig libm", "the crate libm is Rust's: take `--trig fast` or `--trig std`"),
@@ -265,6 +270,7 @@ fn files(
         let tests = with_spinner("computing reference values", || armgen_verify::test_kit(source, &generated.module, &import))?;
         files.push((out.with_file_name(format!("{stem}_test.rs")), tests));
     }
+    let all_solutions = if beside.ik { generated.inverse_kinematics() } else { String::new() };
     if beside.bounds {
         let companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", module_name(&stem)))?;
         files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));
@@ -275,6 +281,9 @@ fn files(
     if beside.c_abi {
         files.push((out.with_extension("h"), generated.c.header));
         files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers));
+    }
+    if beside.ik {
+        files.push((out.with_file_name(format!("{stem}_ik.rs")), all_solutions));
     }
     // The module first.
     files.insert(0, (out.to_path_buf(), module));

@@ -1,0 +1,266 @@
+//! The module of inverse kinematics: constants of the arm, one function, and the texts of the building blocks that it calls.
+
+use armgen_inverse_kinematics::texts::{Text, TEXTS};
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::literal::literal;
+use super::signature::usize_literal;
+use super::{format, head};
+use crate::emit::origin::Origin;
+use crate::exact::Number;
+use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Target};
+use crate::kinds::Scalar;
+use crate::program::Module;
+
+/// The module's text; where the arm has no construction, a comment that says why.
+pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematics, String>, origin: &Origin) -> String {
+    let lines = |text: &str| text.lines().map(|line| format!("// {line}\n")).collect::<String>();
+    match found {
+        Err(reason) => head(origin, &[]) + &lines(&format!("There is no `inverse_kinematics`: {reason}.")),
+        Ok(found) => {
+            let class = format!("Inverse kinematics: {}; at most {} solutions.\n", found.class, found.most);
+            head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(module, found)
+        }
+    }
+}
+
+/// What stands before the module of the blocks.
+fn exported(_found: &InverseKinematics) -> TokenStream {
+    quote! {
+        #[allow(unused_imports)]
+        pub use self::all_solutions::{inverse_kinematics, Real, Solution, Solutions, Verdict, BRANCHES, DOF, MAX_SOLUTIONS};
+    }
+}
+
+/// The module of the blocks.
+fn solver(module: &Module, found: &InverseKinematics) -> String {
+    let mut text = String::from(
+        "\n/// The construction and its building blocks.\n#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n#[rustfmt::skip]\nmod all_solutions {\n\n",
+    );
+    text += &format(constants(module, found));
+    text.push('\n');
+    text += &format(function(module.scalar, found));
+    for block in needed(module.scalar, &found.construction) {
+        text.push('\n');
+        text += block.source;
+    }
+    text + "}\n"
+}
+
+/// The texts that a construction needs, each after those that it needs itself.
+fn needed(scalar: Scalar, construction: &Construction) -> Vec<&'static Text> {
+    let scalar = match scalar {
+        Scalar::F64 => "scalar_f64",
+        Scalar::F32 => "scalar_f32",
+    };
+    let mut names = vec![scalar, "arrangement", "solutions"];
+    match construction {
+        Construction::SphericalTriple(_, case) => {
+            names.extend(["spherical_triple", case.text]);
+            names.extend((!case.closed).then_some("closure"));
+        }
+        Construction::ThreeParallel(_, polished) => {
+            names.push("parallel_axes");
+            names.extend(polished.then_some("closure"));
+        }
+        Construction::ParallelTurns(_, case) => names.extend(["parallel_turns", case.text]),
+        Construction::ThreePrismatic(..) => names.push("three_prismatic"),
+        Construction::General(_) => names.push("general"),
+    }
+    let mut texts = Vec::new();
+    for text in TEXTS.iter().rev() {
+        if names.contains(&text.name) {
+            names.extend(text.needs);
+            texts.push(text);
+        }
+    }
+    texts.reverse();
+    texts
+}
+
+fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
+    let scalar = module.scalar;
+    let (dof, most) = (usize_literal(module.joints.len()), usize_literal(found.most));
+    let prismatic = module.joints.iter().map(|joint| !joint.is_revolute);
+    let number = |value: &Option<Number>, infinite: TokenStream| value.as_ref().map_or(infinite, |value| literal(value, scalar));
+    let limits = module.joints.iter().map(|joint| {
+        let [low, high] = &joint.position;
+        let (low, high) = (number(low, quote!(Real::NEG_INFINITY)), number(high, quote!(Real::INFINITY)));
+        quote!([#low, #high])
+    });
+    let branches = branches(found);
+    let count = usize_literal(branches.len());
+    let loops = match &found.construction {
+        Construction::SphericalTriple(way, _)
+        | Construction::ThreeParallel(way, _)
+        | Construction::ParallelTurns(way, _)
+        | Construction::ThreePrismatic(way, _) => {
+            let (joints, way) = (usize_literal(way.order.len()), arrangement(way, scalar));
+            quote! {
+                /// The arm's loop in the order in which the construction reads it.
+                const LOOP: Arrangement<#joints> = #way;
+            }
+        }
+        Construction::General(ways) => {
+            let ways = ways.each_ref().map(|way| arrangement(way, scalar));
+            quote! {
+                /// The arm's loop in the orders in which the determinant is taken.
+                const LOOPS: [Arrangement<6>; 2] = [#(#ways),*];
+            }
+        }
+    };
+    let length = literal(&found.length, scalar);
+    quote! {
+        /// Number of joints.
+        pub const DOF: usize = #dof;
+        /// At most so many postures reach a pose, where they are finitely many.
+        pub const MAX_SOLUTIONS: usize = #most;
+        /// What a solution's `branch` says, by its number; empty where no solution has it. First and second are the ways in the order of the
+        /// building blocks; none for an arm whose solutions are ordered by their angles.
+        pub const BRANCHES: [&str; #count] = [#(#branches),*];
+        /// Whether a joint slides.
+        const PRISMATIC: [bool; DOF] = [#(#prismatic),*];
+        /// Lowest and highest joint variable, rad or m; infinite where the description gives none.
+        const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#limits),*];
+        /// The arm's largest length, m.
+        const LENGTH: Real = #length;
+        #loops
+    }
+}
+
+/// The names of the branches by number.
+fn branches(found: &InverseKinematics) -> Vec<String> {
+    let Some(last) = found.choices.last() else { return Vec::new() };
+    let bits = |ways: usize| ways.next_power_of_two().trailing_zeros();
+    let all = 1usize << (last.bit + bits(last.ways.len()));
+    let name = |number: usize| {
+        let mut left = number;
+        let mut words = Vec::new();
+        for choice in &found.choices {
+            let mask = (choice.ways.len().next_power_of_two() - 1) << choice.bit;
+            left &= !mask;
+            words.push(choice.ways[(number & mask) >> choice.bit].as_str());
+        }
+        if left == 0 {
+            words.join(", ")
+        } else {
+            String::new()
+        }
+    };
+    (0..all).map(name).collect()
+}
+
+fn frame(f: &Frame, scalar: Scalar) -> TokenStream {
+    let rows = f.iter().map(|row| {
+        let entries = row.iter().map(|entry| literal(entry, scalar));
+        quote!([#(#entries),*])
+    });
+    quote!([#(#rows),*])
+}
+
+fn arrangement(way: &Arrangement, scalar: Scalar) -> TokenStream {
+    let order = way.order.iter().map(|joint| usize_literal(*joint));
+    let prismatic = &way.prismatic;
+    let links = way.links.iter().map(|link| frame(link, scalar));
+    let (open, backward) = (usize_literal(way.open), way.backward);
+    let (before, after) = (frame(&way.before, scalar), frame(&way.after, scalar));
+    let offsets = way.offsets.iter().map(|[c, s]| {
+        let (c, s) = (literal(c, scalar), literal(s, scalar));
+        quote!([#c, #s])
+    });
+    quote! {
+        Arrangement {
+            order: [#(#order),*],
+            prismatic: [#(#prismatic),*],
+            links: [#(#links),*],
+            open: #open,
+            before: #before,
+            after: #after,
+            backward: #backward,
+            offsets: [#(#offsets),*],
+        }
+    }
+}
+
+fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
+    let _ = scalar;
+    let kinds = |way: &Arrangement, count: usize| {
+        let kinds = way.prismatic.iter().take(count);
+        quote!([#(#kinds),*])
+    };
+    let polish = quote!(polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, length: LENGTH }););
+    let in_order = quote! {
+        let count = found.count;
+        for branch in found.all.iter_mut().take(count) {
+            *branch = LOOP.of_arm(branch);
+        }
+        conclude(&found, false)
+    };
+    let body = match &found.construction {
+        Construction::SphericalTriple(way, case) => {
+            let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
+            let polish = (!case.closed).then_some(polish);
+            quote! {
+                let links = LOOP.links_at(&t);
+                let mut found = spherical_triple(&links, #kinds, #block);
+                #polish
+                #in_order
+            }
+        }
+        Construction::ThreeParallel(_, polished) => {
+            let polish = polished.then_some(polish);
+            quote! {
+                let links = LOOP.links_at(&t);
+                let mut found = three_parallel(&links);
+                #polish
+                #in_order
+            }
+        }
+        Construction::ParallelTurns(way, case) => {
+            let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
+            quote! {
+                let mut found = parallel_turns(&LOOP.links_at(&t), #kinds, #block);
+                #in_order
+            }
+        }
+        Construction::ThreePrismatic(_, turning) => {
+            let turning = turning.map(Literal::usize_unsuffixed);
+            quote! {
+                let mut found = three_prismatic(&LOOP.links_at(&t), [#(#turning),*]);
+                #in_order
+            }
+        }
+        Construction::General(_) => quote! {
+            conclude(&general_arm(&LOOPS, &t, LENGTH), true)
+        },
+    };
+    let target = match found.target {
+        Target::Pose => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.",
+        Target::Planar => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the task leaves out.",
+    };
+    let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
+    quote! {
+        /// All joint variables q with direct_kinematics(q) = t.
+        ///
+        #[doc = #target]
+        ///
+        /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
+        /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
+        /// effector stays (bit i of `free`: joint i + 1); `Invalid`, an entry of t is not finite or its rotation none to 1e-6.
+        ///
+        /// Angles are in (-pi, pi]; limits are not looked at (`within_limits` does). T(q) differs from t by roundings, of the order of 100
+        /// units times the arm's length; q itself by that over the smallest singular value of the Jacobian, near a double solution by
+        /// its root.
+        ///
+        #[doc = #class]
+        pub fn inverse_kinematics(t: &[[Real; 4]; 4]) -> Solutions {
+            if !is_pose(t) {
+                return Solutions::none(Verdict::Invalid);
+            }
+            let [x, y, z, _] = *t;
+            let t: Frame = [x, y, z];
+            #body
+        }
+    }
+}

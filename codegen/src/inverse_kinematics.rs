@@ -1,0 +1,127 @@
+//! Inverse kinematics: the class of an arm, decided on its exact constants, and the constants of the construction that gives all its solutions.
+//!
+//! An arm and a pose close a loop, J1 L1 J2 L2 ... Jn Ln = 1, which may be read from any joint on and backwards (`chain`). Parallel and
+//! intersecting axes make classes of arms whose solutions have closed forms (`classes`); any other arm of six joints is solved by the roots
+//! of a determinant (`general`). The constructions themselves are the building blocks of `armgen-inverse-kinematics`, whose documentation has
+//! the table of classes; here the arrangement of the loop that fits one is found.
+//!
+//! A class is decided exactly: 1e-9 is not 0. What the form of a number leaves open is 0 where its enclosures and its value in a prime field
+//! both say so (`frame`).
+
+mod chain;
+mod classes;
+mod frame;
+mod general;
+
+use crate::exact::Number;
+use crate::kinds::{JointKind, TaskRow};
+use crate::manipulator::Manipulator;
+
+pub use chain::Arrangement;
+pub use classes::Regional;
+pub use frame::Frame;
+
+use chain::Chain;
+
+/// What a target fixes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The pose of the end effector.
+    Pose,
+    /// Its position and the turn about the arm's axes, which are all parallel.
+    Planar,
+}
+
+/// How all solutions of an arm are found.
+#[derive(Clone, Debug)]
+pub struct InverseKinematics {
+    /// What the target fixes.
+    pub target: Target,
+    /// The construction with its constants.
+    pub construction: Construction,
+    /// The class and the exact tests that it passes, for people.
+    pub class: String,
+    /// At most so many solutions where they are finitely many.
+    pub most: usize,
+    /// What each bit of a solution's branch says: its place, what is chosen, the names of 0 and of 1.
+    pub choices: Vec<Choice>,
+    /// A length of the arm's size, m.
+    pub length: Number,
+}
+
+/// One choice between the ways of a construction.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The lowest of its bits in the branch.
+    pub bit: u32,
+    /// The names of its ways; more than two where they are the roots of an equation.
+    pub ways: Vec<String>,
+}
+
+/// A construction and the arrangement of the loop that it is called with.
+#[derive(Clone, Debug)]
+pub enum Construction {
+    /// Three neighbouring axes meet in one point.
+    SphericalTriple(Arrangement, Regional),
+    /// Three neighbouring axes are parallel; `bool`: the solutions are polished.
+    ThreeParallel(Arrangement, bool),
+    /// All revolute axes are parallel.
+    ParallelTurns(Arrangement, Regional),
+    /// Three prismatic joints; the places of the revolute ones.
+    ThreePrismatic(Arrangement, [usize; 3]),
+    /// Six joints of no class: two arrangements of the determinant.
+    General(Box<[Arrangement; 2]>),
+}
+
+/// How all solutions of an arm are found, or why there is no function for that.
+pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
+    let chain = Chain::of(manipulator)?;
+    let target = target(manipulator, &chain)?;
+    let length = size(&chain);
+    classes::classify(&completed(chain, target), target, length)
+}
+
+/// The target that the rows of the task make.
+fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
+    let rows = |rows: [TaskRow; 3]| rows.map(|row| manipulator.task.contains(&row));
+    let linear = rows([TaskRow::X, TaskRow::Y, TaskRow::Z]);
+    let angular = rows([TaskRow::Rx, TaskRow::Ry, TaskRow::Rz]);
+    let count = |rows: [bool; 3]| rows.into_iter().filter(|row| *row).count();
+    let axis = angular.iter().position(|row| *row);
+    match (count(linear), count(angular), axis) {
+        (3, 3, _) => Ok(Target::Pose),
+        (_, 0, _) => Err("there is no construction for a target without angular rows".into()),
+        (3, 1, Some(axis)) if chain.turns_about(axis) && chain.joints.len() == 4 => Ok(Target::Planar),
+        (2, 1, Some(axis)) if chain.turns_about(axis) && chain.joints.len() == 3 && !linear[axis] => Ok(Target::Planar),
+        _ => Err("the rows of the task are neither a pose nor a planar target with as many rows as joints".into()),
+    }
+}
+
+/// With the virtual joint that a planar target leaves open: a slide along the last axis.
+fn completed(mut chain: Chain, target: Target) -> Chain {
+    if target == Target::Planar && chain.joints.len() == 3 && chain.joints.last().is_some_and(|joint| !joint.prismatic) {
+        chain.slide_at_the_end();
+    }
+    chain
+}
+
+/// The largest length of an arm; 1 m where all are 0.
+fn size(chain: &Chain) -> Number {
+    let mut largest = Number::zero();
+    for length in chain.lengths() {
+        let length = if length.is_negative() { -&length } else { length };
+        if (&largest - &length).is_negative() {
+            largest = length;
+        }
+    }
+    if largest.is_zero() {
+        Number::one()
+    } else {
+        largest
+    }
+}
+
+/// Whether a joint of the description slides.
+fn is_prismatic(kind: JointKind) -> bool {
+    kind == JointKind::Prismatic
+}

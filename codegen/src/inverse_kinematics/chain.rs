@@ -1,0 +1,197 @@
+//! An arm as a chain of joints and common normals, and the ways round the loop that it closes with a pose.
+//!
+//! T = C0 J1 N1 J2 N2 ... Jn Cn with J = Rz(theta + q) Tz(d) or Rz(theta) Tz(d + q) and common normals N = Tx(a) Rx(alpha), in both conventions.
+//! Backwards, between half turns F about x, it is the same joints, F N⁻¹ F = Tx(-a)... = Rx(-alpha) Tx(-a) again a common normal, and links with
+//! the pose exchanged for its inverse. Constant turns of revolute and slides of prismatic joints are offsets of their variables; what is
+//! left of a joint's constants goes into the link behind it.
+
+use super::frame::{compose, half_turn_about_x, identity, inverse, is_zero, slide_along_z, turn_about_z, Frame};
+use super::is_prismatic;
+use crate::derive::parameters::nominal;
+use crate::exact::Number;
+use crate::manipulator::{LinkId, Manipulator, Placement};
+
+/// A joint with its constants.
+#[derive(Clone, Debug)]
+pub(super) struct Joint {
+    pub(super) prismatic: bool,
+    /// (cos theta, sin theta).
+    pub(super) theta: [Number; 2],
+    pub(super) d: Number,
+}
+
+/// A common normal Tx(a) Rx(alpha), with (cos alpha, sin alpha).
+#[derive(Clone, Debug)]
+pub(super) struct Normal {
+    pub(super) a: Number,
+    pub(super) alpha: [Number; 2],
+}
+
+/// A serial arm.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    /// From the base frame to axis 1.
+    pub(super) base: Frame,
+    pub(super) joints: Vec<Joint>,
+    /// Between neighbouring axes.
+    pub(super) normals: Vec<Normal>,
+    /// From axis n to the end effector.
+    pub(super) tool: Frame,
+}
+
+/// One way round the loop: its constants, the pose left open. Documented with the block `arrangement`.
+#[derive(Clone, Debug)]
+pub struct Arrangement {
+    /// The number of each joint in the arm, from 0, in the order in which the loop meets them.
+    pub order: Vec<usize>,
+    /// Their kinds, in the loop's order.
+    pub prismatic: Vec<bool>,
+    /// The links behind them; that of place `open` is the identity.
+    pub links: Vec<Frame>,
+    /// The place of the link that depends on the pose.
+    pub open: usize,
+    /// It is `before` X `after`, X = T⁻¹, or T if the loop is read `backward`.
+    pub before: Frame,
+    /// See `before`.
+    pub after: Frame,
+    /// Read against the arm's direction.
+    pub backward: bool,
+    /// What the loop's joint values have more than the arm's: (cos theta, sin theta), or (d, 0).
+    pub offsets: Vec<[Number; 2]>,
+}
+
+fn frame(manipulator: &Manipulator, placement: &Placement) -> Frame {
+    let entry = |i: usize, j: usize| match j {
+        3 => nominal(manipulator, &placement.translation[i]),
+        _ => placement.rotation[i][j].clone(),
+    };
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}
+
+fn no_turn() -> [Number; 2] {
+    [Number::one(), Number::zero()]
+}
+
+impl Chain {
+    /// The joints from the base to the end effector.
+    pub(super) fn of(manipulator: &Manipulator) -> Result<Chain, String> {
+        let joint = |id: LinkId| &manipulator.joints[id.0 as usize];
+        let mut path = vec![manipulator.tip];
+        while let Some(parent) = joint(path[path.len() - 1]).parent {
+            path.push(parent);
+        }
+        path.reverse();
+        if path.len() < manipulator.dof() {
+            return Err("some joints do not move the end effector".into());
+        }
+        let (mut base, mut joints, mut normals) = (identity(), Vec::new(), Vec::new());
+        for (i, id) in path.iter().enumerate() {
+            let (joint, placed) = (joint(*id), frame(manipulator, &joint(*id).placement));
+            let prismatic = is_prismatic(joint.kind);
+            if i == 0 {
+                base = placed;
+                joints.push(Joint { prismatic, theta: no_turn(), d: Number::zero() });
+            } else {
+                let (normal, theta, d) = normal_and_joint(&placed).ok_or("a link is no row of Denavit and Hartenberg")?;
+                normals.push(normal);
+                joints.push(Joint { prismatic, theta, d });
+            }
+        }
+        let tool = compose(&frame(manipulator, &joint(manipulator.tip).link_frame), &frame(manipulator, &manipulator.tool));
+        Ok(Chain { base, joints, normals, tool })
+    }
+
+    /// A prismatic joint beyond the last, along its axis.
+    pub(super) fn slide_at_the_end(&mut self) {
+        self.normals.push(Normal { a: Number::zero(), alpha: no_turn() });
+        self.joints.push(Joint { prismatic: true, theta: no_turn(), d: Number::zero() });
+    }
+
+    /// Every length in it, with signs.
+    pub(super) fn lengths(&self) -> Vec<Number> {
+        let mut lengths: Vec<Number> = self.normals.iter().map(|n| n.a.clone()).collect();
+        lengths.extend(self.joints.iter().map(|j| j.d.clone()));
+        lengths.extend([&self.base, &self.tool].into_iter().flat_map(|f| f.iter().map(|row| row[3].clone())));
+        lengths
+    }
+
+    /// Whether all revolute axes are parallel to an axis of the base frame.
+    pub(super) fn turns_about(&self, axis: usize) -> bool {
+        let mut at = self.base.clone();
+        for (i, joint) in self.joints.iter().enumerate() {
+            let along = (0..3).all(|k| k == axis || is_zero(&at[k][2]));
+            if !joint.prismatic && !along {
+                return false;
+            }
+            // At q = 0 a revolute joint that turns about the axis leaves the directions of those behind it relative to the axis.
+            at = compose(&at, &turn_about_z(&joint.theta));
+            if let Some(normal) = self.normals.get(i) {
+                at = compose(&at, &normal.frame(false));
+            }
+        }
+        true
+    }
+
+    /// The loop from joint `start` on.
+    pub(super) fn arranged(&self, start: usize, backward: bool) -> Arrangement {
+        let n = self.joints.len();
+        let order: Vec<usize> = (0..n).map(|i| if backward { (start + n - i) % n } else { (start + i) % n }).collect();
+        let last = if backward { 0 } else { n - 1 };
+        let open = order.iter().position(|joint| *joint == last).unwrap_or(n - 1);
+        let left = |joint: &Joint| if joint.prismatic { turn_about_z(&joint.theta) } else { slide_along_z(&joint.d) };
+        let link = |(place, &joint): (usize, &usize)| {
+            if place == open {
+                return identity();
+            }
+            let normal = if backward { &self.normals[joint - 1] } else { &self.normals[joint] };
+            compose(&left(&self.joints[joint]), &normal.frame(backward))
+        };
+        let links = order.iter().enumerate().map(link).collect();
+        let (before, after) = if backward {
+            let flip = half_turn_about_x();
+            (compose(&flip, &inverse(&self.base)), compose(&inverse(&self.tool), &flip))
+        } else {
+            (self.tool.clone(), self.base.clone())
+        };
+        let offset = |joint: &Joint| match joint.prismatic {
+            true => [joint.d.clone(), Number::zero()],
+            false => joint.theta.clone(),
+        };
+        Arrangement {
+            prismatic: order.iter().map(|joint| self.joints[*joint].prismatic).collect(),
+            links,
+            open,
+            before: compose(&left(&self.joints[last]), &before),
+            after,
+            backward,
+            offsets: order.iter().map(|joint| offset(&self.joints[*joint])).collect(),
+            order,
+        }
+    }
+
+    /// Every way round the loop: by start, forwards before backwards.
+    pub(super) fn arrangements(&self) -> impl Iterator<Item = Arrangement> + '_ {
+        (0..self.joints.len()).flat_map(|start| [false, true].map(|backward| self.arranged(start, backward)))
+    }
+}
+
+impl Normal {
+    /// Tx(a) Rx(alpha), or as the loop run backwards meets it.
+    fn frame(&self, backward: bool) -> Frame {
+        let ([c, s], mut frame) = (&self.alpha, identity());
+        let (a, s) = if backward { (-&self.a, -s) } else { (self.a.clone(), s.clone()) };
+        frame[0][3] = a;
+        (frame[1][1], frame[1][2], frame[2][1], frame[2][2]) = (c.clone(), -&s, s, c.clone());
+        frame
+    }
+}
+
+/// Tx(a) Rx(alpha) Rz(theta) Tz(d), taken apart.
+fn normal_and_joint(f: &Frame) -> Option<(Normal, [Number; 2], Number)> {
+    let (sine, cosine) = (-&f[1][2], f[2][2].clone());
+    let d = &(&cosine * &f[2][3]) + &(&sine * &-&f[1][3]);
+    let left = [f[0][2].clone(), &f[1][3] + &(&sine * &d), &f[2][3] - &(&cosine * &d)];
+    let fits = left.iter().all(is_zero);
+    let normal = Normal { a: f[0][3].clone(), alpha: [cosine, sine] };
+    fits.then(|| (normal, [f[0][0].clone(), -&f[0][1]], d))
+}

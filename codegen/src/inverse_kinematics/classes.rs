@@ -1,0 +1,302 @@
+//! Which class an arm is of: the cheapest whose exact tests it passes; of equals the lowest start of the loop, forwards before backwards.
+
+use super::chain::{Arrangement, Chain};
+use super::frame::{compose, is_parallel, is_right, is_zero, turn_about_z, Frame};
+use super::general;
+use super::{Choice, Construction, InverseKinematics, Target};
+use crate::exact::Number;
+
+/// A case of block 6: three joints that bring a point to a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Regional {
+    /// The function.
+    pub function: &'static str,
+    /// The text that has it.
+    pub text: &'static str,
+    /// Closed forms throughout; others are polished.
+    pub closed: bool,
+    /// At most so many solutions.
+    pub most: usize,
+    /// What its signs choose between, from bit 0 on: a name, or none for the four roots of an equation.
+    choices: &'static [&'static str],
+    /// What makes it hold, with `{1}`, `{2}`, `{3}` for the joints.
+    because: &'static str,
+}
+
+const TURNING: &str = "regional";
+const ONE_SLIDE: &str = "regional_one_prismatic";
+const SLIDES: &str = "regional_prismatic";
+
+/// The case of block 6 for three joints of given kinds with links A, B; not `constant`: the pose is in one of the links.
+fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: bool) -> Option<Regional> {
+    let case = |function, text, closed, most, choices, because| Some(Regional { function, text, closed, most, choices, because });
+    if !constant {
+        return match kinds {
+            [false, false, false] => {
+                case("regional_general", TURNING, false, 4, &[] as &[&str], "no two axes of {1} {2} {3} related for every pose")
+            }
+            _ => None,
+        };
+    }
+    let meet = |f: &Frame| is_zero(&f[0][3]);
+    match kinds {
+        [false, false, false] if is_parallel(b) && !meet(b) && !is_parallel(a) => {
+            case("regional_elbow", TURNING, true, 4, &["shoulder", "elbow"], "axes {2} and {3} are parallel")
+        }
+        [false, false, false] if meet(a) && !is_parallel(a) && !(is_parallel(b) && meet(b)) => {
+            case("regional_crossing", TURNING, true, 4, &["elbow", "shoulder"], "axes {1} and {2} intersect")
+        }
+        [false, false, false] if !is_parallel(a) && !is_parallel(b) && !meet(b) => {
+            case("regional_general", TURNING, false, 4, &[], "axes {1}, {2} and {3} neither are parallel nor intersect")
+        }
+        [true, false, false] if is_parallel(b) && !meet(b) && !is_right(a) => {
+            case("regional_slide_elbow", ONE_SLIDE, true, 2, &["elbow"], "joint {1} slides, axes {2} and {3} are parallel")
+        }
+        [true, false, false] if is_right(a) && !(is_parallel(b) && meet(b)) => case(
+            "regional_slide_across",
+            ONE_SLIDE,
+            true,
+            4,
+            &["elbow", "shoulder"],
+            "joint {1} slides at right angles to axis {2}",
+        ),
+        [true, false, false] if !is_parallel(b) && !is_right(a) => {
+            case("regional_slide", ONE_SLIDE, false, 4, &[], "joint {1} slides")
+        }
+        [false, true, false] if is_parallel(&compose(a, b)) && !is_right(a) => {
+            case("regional_mid_slide_elbow", ONE_SLIDE, true, 2, &["elbow"], "joint {2} slides, axes {1} and {3} are parallel")
+        }
+        [false, true, false] if is_right(a) => case(
+            "regional_mid_slide_across",
+            ONE_SLIDE,
+            true,
+            4,
+            &["elbow", "slide"],
+            "joint {2} slides at right angles to axis {1}",
+        ),
+        [false, true, false] => case("regional_mid_slide", ONE_SLIDE, false, 4, &[], "joint {2} slides"),
+        [true, true, false] if !is_parallel(a) => {
+            case("regional_plane_then_turn", SLIDES, true, 2, &["turn"], "joints {1} and {2} slide")
+        }
+        [true, false, true] if !(is_parallel(a) && is_parallel(b)) => {
+            case("regional_slide_turn_slide", SLIDES, true, 2, &["turn"], "joints {1} and {3} slide")
+        }
+        [true, true, true] if spans_space(a, b) => case("regional_slides", SLIDES, true, 1, &[], "joints {1}, {2} and {3} slide"),
+        _ => None,
+    }
+}
+
+/// Whether the directions of three slides, e3, A e3 and A B e3, span space.
+fn spans_space(a: &Frame, b: &Frame) -> bool {
+    let chain = compose(a, b);
+    let determinant = &(&a[0][2] * &chain[1][2]) - &(&a[1][2] * &chain[0][2]);
+    !is_zero(&determinant)
+}
+
+impl Regional {
+    /// Its choices as bits of the branch.
+    fn choices(&self, joints: &[usize]) -> Vec<Choice> {
+        if self.most == 4 && self.choices.is_empty() {
+            let ways = (1..=4).map(|root| format!("root {root} of q{}", joints[2])).collect();
+            return vec![Choice { bit: 0, ways }];
+        }
+        let two = |(bit, name): (usize, &&str)| Choice {
+            bit: bit as u32,
+            ways: vec![format!("{name} first"), format!("{name} second")],
+        };
+        self.choices.iter().enumerate().map(two).collect()
+    }
+
+    fn because(&self, joints: &[usize]) -> String {
+        let mut text = self.because.to_owned();
+        for (i, joint) in joints.iter().take(3).enumerate() {
+            text = text.replace(&format!("{{{}}}", i + 1), &joint.to_string());
+        }
+        text
+    }
+}
+
+impl Arrangement {
+    /// The numbers of its joints in the arm, from 1.
+    fn joints(&self) -> Vec<usize> {
+        self.order.iter().map(|joint| joint + 1).collect()
+    }
+
+    fn kinds(&self) -> [bool; 3] {
+        [self.prismatic[0], self.prismatic[1], self.prismatic[2]]
+    }
+}
+
+/// The class of an arm with its virtual joints, or why it is of none.
+pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<InverseKinematics, String> {
+    let slides = chain.joints.iter().filter(|joint| joint.prismatic).count();
+    let found = match (chain.joints.len(), slides) {
+        (4, _) => parallel_turns(chain),
+        (6, 3) => three_prismatic(chain),
+        (6, 0 | 1) => spherical_triple(chain, true)
+            .or_else(|| three_parallel(chain))
+            .or_else(|| spherical_triple(chain, false))
+            .or_else(|| general(chain, &length)),
+        (6, _) => spherical_triple(chain, true).or_else(|| spherical_triple(chain, false)),
+        _ => None,
+    };
+    let none = || {
+        let word = if target == Target::Pose { "a pose" } else { "a planar target" };
+        let slides = if slides > 0 { format!(", {slides} of them prismatic,") } else { String::new() };
+        format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
+    };
+    let Class { construction, class, most, choices } = found.ok_or_else(none)?;
+    Ok(InverseKinematics { target, construction, class, most, choices, length })
+}
+
+/// A class that fits.
+struct Class {
+    construction: Construction,
+    class: String,
+    most: usize,
+    choices: Vec<Choice>,
+}
+
+/// Joints as a list in ascending order.
+fn listed(joints: &[usize]) -> String {
+    let mut joints = joints.to_vec();
+    joints.sort_unstable();
+    joints.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+}
+
+/// Places 4, 5 and 6 of the loop turn about axes through one point.
+fn spherical_triple(chain: &Chain, closed: bool) -> Option<Class> {
+    chain.arrangements().find_map(|way| {
+        let l = &way.links;
+        let crosses = |f: &Frame| is_zero(&f[0][3]) && !is_parallel(f);
+        let turning = way.prismatic[3..].iter().all(|slides| !slides);
+        if !turning || way.open == 3 || way.open == 4 || !crosses(&l[3]) || !crosses(&l[4]) || !is_zero(&l[4][2][3]) {
+            return None;
+        }
+        let case = regional(way.kinds(), &l[0], &l[1], way.open > 1).filter(|case| case.closed == closed)?;
+        let joints = way.joints();
+        let because = case.because(&joints);
+        let class = format!("spherical triple (axes {} through one point), {because}", listed(&joints[3..]));
+        let mut choices = case.choices(&joints);
+        choices.push(Choice { bit: 2, ways: vec!["wrist not flipped".into(), "wrist flipped".into()] });
+        Some(Class { construction: Construction::SphericalTriple(way, case), class, most: 2 * case.most, choices })
+    })
+}
+
+/// Places 2, 3 and 4 of the loop turn about parallel axes.
+fn three_parallel(chain: &Chain) -> Option<Class> {
+    chain.arrangements().find_map(|way| {
+        let l = &way.links;
+        let flat = |place: usize| way.open != place && is_parallel(&l[place]) && !is_zero(&l[place][0][3]);
+        if way.prismatic.contains(&true) || !flat(1) || !flat(2) {
+            return None;
+        }
+        // Axes b and c, or c and a, that intersect or are parallel leave two equations of block 1.
+        let related = |place: usize| way.open != place && (is_zero(&l[place][0][3]) || is_parallel(&l[place]));
+        let joints = way.joints();
+        let (bc, ca) = (related(4), related(5));
+        let mut class = format!("three parallel axes (joints {})", listed(&joints[1..4]));
+        let pair = if bc { Some([joints[4], joints[5]]) } else { ca.then(|| [joints[5], joints[0]]) };
+        if let Some([x, y]) = pair {
+            class += &format!(", axes {} and {} intersect or are parallel", x.min(y), x.max(y));
+        }
+        let two = |bit, names: [String; 2]| Choice { bit, ways: names.to_vec() };
+        let mut choices = if pair.is_some() {
+            vec![
+                two(0, ["shoulder first".into(), "shoulder second".into()]),
+                two(1, ["wrist first".into(), "wrist second".into()]),
+            ]
+        } else {
+            vec![Choice { bit: 0, ways: (1..=4).map(|root| format!("root {root} of q{}", joints[0])).collect() }]
+        };
+        choices.push(two(2, ["elbow first".into(), "elbow second".into()]));
+        Some(Class { construction: Construction::ThreeParallel(way, pair.is_none()), class, most: 8, choices })
+    })
+}
+
+/// Four joints, place 4 of the loop revolute with the pose behind it, all revolute axes parallel.
+fn parallel_turns(chain: &Chain) -> Option<Class> {
+    chain.arrangements().find_map(|way| {
+        if way.open != 3 || way.prismatic[3] {
+            return None;
+        }
+        // Directions of axes seen from place 1: those of revolute joints are all ±e3 of the first of them.
+        let mut since: Option<Frame> = None;
+        for place in 0..4 {
+            if !way.prismatic[place] {
+                if since.as_ref().is_some_and(|between| !is_parallel(between)) {
+                    return None;
+                }
+                since = Some(super::frame::identity());
+            }
+            since = since.map(|between| compose(&between, &way.links[place]));
+        }
+        let case = regional(way.kinds(), &way.links[0], &way.links[1], true).filter(|case| case.closed)?;
+        let joints = way.joints();
+        let turning: Vec<usize> = (0..4).filter(|place| !way.prismatic[*place]).map(|place| joints[place]).collect();
+        let class = format!("all revolute axes parallel (joints {})", listed(&turning));
+        let choices = case.choices(&joints);
+        Some(Class { construction: Construction::ParallelTurns(way, case), class, most: case.most, choices })
+    })
+}
+
+/// Three revolute joints, with neighbours at an angle, and three prismatic ones.
+fn three_prismatic(chain: &Chain) -> Option<Class> {
+    chain.arrangements().find_map(|mut way| {
+        let turning: Vec<usize> = (0..6).filter(|place| !way.prismatic[*place]).collect();
+        let [r1, r2, r3] = turning[..] else { return None };
+        if (r1..r3).contains(&way.open) || !turn_about_x(&mut way, r1, r2) || !turn_about_x(&mut way, r2, r3) {
+            return None;
+        }
+        let joints = way.joints();
+        let class = format!(
+            "three prismatic joints (joints {})",
+            listed(&(0..6).filter(|p| way.prismatic[*p]).map(|p| joints[p]).collect::<Vec<_>>())
+        );
+        let choices = vec![Choice { bit: 0, ways: vec!["wrist not flipped".into(), "wrist flipped".into()] }];
+        Some(Class { construction: Construction::ThreePrismatic(way, [r1, r2, r3]), class, most: 2, choices })
+    })
+}
+
+/// Brings the rotation between the revolute joints at two places to one about x: R = Rz(t) Rx(alpha) Rz(t'), the turns about z going to the
+/// joints. Whether their axes are at an angle.
+fn turn_about_x(way: &mut Arrangement, from: usize, to: usize) -> bool {
+    let between = way.links[from..to].iter().fold(super::frame::identity(), |product, link| compose(&product, link));
+    if is_parallel(&between) {
+        return false;
+    }
+    let r = |i: usize, j: usize| between[i][j].clone();
+    let none = || [Number::one(), Number::zero()];
+    let (first, second) = if is_zero(&r(2, 0)) {
+        ([r(0, 0), r(1, 0)], none())
+    } else if is_zero(&r(0, 2)) {
+        (none(), [r(0, 0), -&r(0, 1)])
+    } else {
+        let sine = (&(&r(0, 2) * &r(0, 2)) + &(&r(1, 2) * &r(1, 2))).sqrt();
+        let over = |x: &Number| sine.as_ref().and_then(|sine| x.checked_div(sine));
+        match (over(&-&r(1, 2)), over(&r(0, 2)), over(&r(2, 1)), over(&r(2, 0))) {
+            (Some(c1), Some(s1), Some(c2), Some(s2)) => ([c1, s1], [c2, s2]),
+            _ => return false,
+        }
+    };
+    let back = |[c, s]: &[Number; 2]| turn_about_z(&[c.clone(), -s]);
+    way.links[from] = compose(&back(&first), &way.links[from]);
+    way.links[to - 1] = compose(&way.links[to - 1], &back(&second));
+    let sum = |[c, s]: &[Number; 2], [x, y]: &[Number; 2]| [&(c * x) - &(s * y), &(s * x) + &(c * y)];
+    way.offsets[from] = sum(&way.offsets[from], &first);
+    way.offsets[to] = sum(&way.offsets[to], &second);
+    true
+}
+
+/// Six joints of no class.
+fn general(chain: &Chain, length: &Number) -> Option<Class> {
+    let ways = general::choose(chain, length)?;
+    let places = |way: &Arrangement| way.joints().iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
+    let class = format!(
+        "general (determinant on the circle of q{}, order {}; second order {})",
+        ways[0].joints()[2],
+        places(&ways[0]),
+        places(&ways[1])
+    );
+    Some(Class { construction: Construction::General(Box::new(ways)), class, most: 16, choices: Vec::new() })
+}

@@ -1,0 +1,238 @@
+//! Emitted inverse kinematics, compiled in a project of its own and judged there: every robot that has a class, and reference poses.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use armgen_codegen::inverse_kinematics::InverseKinematics;
+use armgen_codegen::schedule::{Options, Selection};
+use armgen_codegen::source::Source;
+use armgen_codegen::{validate, Generated, Scalar};
+
+fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("codegen lies in the workspace")
+}
+
+fn generated(name: &str, text: &str, scalar: Scalar) -> Generated {
+    let functions = Selection::named(["direct_kinematics"]).expect("a function");
+    let options = Options { scalar, functions, ..Options::default() };
+    let (generated, diagnostics) = armgen_codegen::generate(&Source::new(name, text), &options);
+    generated.unwrap_or_else(|| panic!("{name}: {diagnostics:?}"))
+}
+
+fn classified(name: &str, text: &str) -> Result<InverseKinematics, String> {
+    let (valid, diagnostics) = validate::read(&Source::new(name, text));
+    let (manipulator, _) = valid.unwrap_or_else(|| panic!("{name}: {diagnostics:?}"));
+    armgen_codegen::inverse_kinematics::of(&manipulator)
+}
+
+/// A description from rows (kind, a, alpha, d, theta).
+fn description(name: &str, task: &str, rows: &[(&str, &str, &str, &str, &str)]) -> String {
+    let joint = |(i, (kind, a, alpha, d, theta)): (usize, &(&str, &str, &str, &str, &str))| {
+        format!(
+            "  - {{name: j{}, type: {kind}, a: {a}, alpha: {alpha}, d: {d}, theta: {theta}, \
+             link: {{mass: 1, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n",
+            i + 1
+        )
+    };
+    let joints: String = rows.iter().enumerate().map(joint).collect();
+    format!("name: {name}\nconvention: standard\ngravity: [0, 0, -9.81]\n{task}\njoints:\n{joints}")
+}
+
+const R: &str = "revolute";
+const P: &str = "prismatic";
+
+/// Made-up arms: name, task, class, at most, rows.
+fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
+    let arm = |name: &'static str, task: &str, class, most, rows: &[(&str, &str, &str, &str, &str)]| {
+        (name, class, most, description(name, task, rows))
+    };
+    let (elbow, quarter) = ("0.4", "pi/2");
+    vec![
+        arm(
+            "planar3r",
+            "task: [x, y, rz]",
+            "all revolute axes parallel (joints 1 2 3)",
+            2,
+            &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0"), (R, "0.2", "0", "0", "0")],
+        ),
+        // A spherical wrist behind three axes that are not related, with angles that are no fractions of a turn.
+        arm(
+            "pieper",
+            "",
+            "spherical triple (axes 4 5 6 through one point), axes 1, 2 and 3 neither are parallel nor intersect",
+            8,
+            &[
+                (R, "0.2", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (R, "0.1", quarter, "0.05", "0.3"),
+                (R, "0", "0.8", "0.35", "0"),
+                (R, "0", "-1.2", "0", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        // Three parallel axes without a relation between the others.
+        arm(
+            "parallel",
+            "",
+            "three parallel axes (joints 2 3 4)",
+            8,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (R, elbow, "pi", "0.1", "0"),
+                (R, "0.35", "0", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (R, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        // A slide, an elbow, a wrist; modified in nothing else.
+        arm(
+            "track",
+            "",
+            "spherical triple (axes 4 5 6 through one point), joint 1 slides at right angles to axis 2",
+            8,
+            &[
+                (P, "0.1", quarter, "0.2", "0"),
+                (R, elbow, "0.7", "0.1", "0"),
+                (R, "0.1", quarter, "0.05", "0.3"),
+                (R, "0", quarter, "0.35", "0"),
+                (R, "0", "-pi/2", "0", "0.2"),
+                (R, "0", "0", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "gantry",
+            "",
+            "three prismatic joints (joints 1 2 3)",
+            2,
+            &[
+                (P, "0.1", quarter, "0.2", "pi/2"),
+                (P, "0", "pi/2", "0.1", "pi/2"),
+                (P, "0.1", "0.4", "0.05", "0.3"),
+                (R, "0.05", quarter, "0.35", "0"),
+                (R, "0.03", "-pi/2", "0.02", "0.2"),
+                (R, "0", "0", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "general",
+            "",
+            "general",
+            16,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (R, "0.35", "0.8", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (R, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+    ]
+}
+
+/// The robots of the repository, sorted by name.
+fn robots() -> Vec<(String, String)> {
+    let mut robots = Vec::new();
+    for folder in ["robots", "tests/robots"] {
+        let entries = std::fs::read_dir(workspace().join(folder)).expect("a folder of robots");
+        let files: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+        for file in files.iter().filter(|file| file.extension().is_some_and(|e| e == "yaml")) {
+            let name = file.file_stem().expect("a file's name").to_string_lossy().into_owned();
+            robots.push((name, std::fs::read_to_string(file).expect("a description")));
+        }
+    }
+    robots.sort();
+    robots
+}
+
+#[test]
+fn classes_of_robots() {
+    let class = |name: &str| {
+        let (_, text) = robots().into_iter().find(|(robot, _)| robot == name).expect("a robot");
+        classified(name, &text).map(|found| (found.class, found.most))
+    };
+    let of = |class: &str, most: usize| Ok((class.to_owned(), most));
+    assert_eq!(class("puma560"), of("spherical triple (axes 4 5 6 through one point), axes 2 and 3 are parallel", 8));
+    assert_eq!(class("ur5"), of("three parallel axes (joints 2 3 4), axes 5 and 6 intersect or are parallel", 8));
+    assert_eq!(class("scara4"), of("all revolute axes parallel (joints 1 2 4)", 2));
+    assert_eq!(class("scara"), of("all revolute axes parallel (joints 1 2 4)", 2));
+    assert!(class("panda7").is_err() && class("base_set").is_err() && class("single_joint").is_err());
+    for (name, class, most, text) in made_up() {
+        let found = classified(name, &text).unwrap_or_else(|reason| panic!("{name}: {reason}"));
+        assert!(found.class.starts_with(class) && found.most == most, "{name}: {} {}", found.class, found.most);
+    }
+}
+
+/// 1e-9 is not 0: an arm with a wrist whose axes miss by that much is a general one.
+#[test]
+fn nearly_zero_is_not_zero() {
+    let puma = |a4: &str| {
+        let rows = [
+            (R, "0", "pi/2", "0.67183", "0"),
+            (R, "0.4318", "0", "0", "0"),
+            (R, "0.0203", "-pi/2", "0.15005", "0"),
+            (R, a4, "pi/2", "0.4318", "0"),
+            (R, "0", "-pi/2", "0", "0"),
+            (R, "0", "0", "0", "0"),
+        ];
+        classified("puma", &description("puma", "", &rows)).expect("a class").class
+    };
+    assert!(puma("0").starts_with("spherical triple"));
+    assert!(puma("1e-9").starts_with("general"), "{}", puma("1e-9"));
+    // Other ways to write 0: one that reduction sees, and one that it does not.
+    assert!(puma("sqrt(2)*sqrt(3) - sqrt(6)").starts_with("spherical triple"));
+    let nested = puma("sqrt(3 - 2*sqrt(2)) + 1 - sqrt(2)");
+    assert!(nested.starts_with("spherical triple"), "{nested}");
+}
+
+/// Compiles what is emitted and runs the judge: it asks every module for the postures of thousands of poses.
+#[test]
+fn emitted_modules_find_every_posture() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inverse_kinematics");
+    let write = |path: &str, text: &str| {
+        let path = folder.join(path);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder can be made");
+        std::fs::write(&path, text).expect("a file can be written");
+    };
+    write("Cargo.lock", &std::fs::read_to_string(workspace().join("Cargo.lock")).expect("the lock file"));
+    write(
+        "Cargo.toml",
+        "[package]\nname = \"judge\"\nversion = \"1.0.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n\n\
+         [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\n",
+    );
+    let mut main = include_str!("inverse_kinematics/judge.rs").to_owned();
+    let mut checks = String::new();
+    let mut all = robots();
+    all.extend(made_up().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
+    for (name, text) in all {
+        let narrow = ["puma560", "scara4", "parallel", "general"].contains(&name.as_str());
+        for (scalar, suffix) in [(Scalar::F64, ""), (Scalar::F32, "_f32")].into_iter().take(1 + usize::from(narrow)) {
+            let generated = generated(&name, &text, scalar);
+            let ik = generated.inverse_kinematics();
+            if !ik.contains("pub fn inverse_kinematics") {
+                assert!(ik.contains("// There is no `inverse_kinematics`: "), "{name}");
+                continue;
+            }
+            let module = format!("{name}{suffix}");
+            write(&format!("src/{module}.rs"), &generated.module);
+            write(&format!("src/{module}_ik.rs"), &ik);
+            main += &format!("#[allow(dead_code)]\nmod {module};\nmod {module}_ik;\n");
+            checks += &format!("    check!({module}, {module}_ik);\n");
+            let file = workspace().join(format!("inverse-kinematics/tests/data/{name}.txt"));
+            if suffix.is_empty() && file.exists() {
+                checks += &format!("    reference!({module}, {module}_ik, {:?});\n", file.display().to_string());
+            }
+        }
+    }
+    main += &format!("\nfn main() {{\n{checks}}}\n");
+    write("src/main.rs", &main);
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["run", "--quiet", "--offline"]).current_dir(&folder).env("CARGO_TARGET_DIR", folder.join("target"));
+    let output = command.env("RUSTFLAGS", "-D warnings").output().expect("cargo starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    println!("{}", text(&output.stdout));
+    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
+    assert_eq!(text(&output.stdout).matches("reference poses").count(), 4, "{}", text(&output.stdout));
+}

@@ -1,0 +1,132 @@
+// What judges emitted inverse kinematics, compiled with the modules that come after it.
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        low + (high - low) * (((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64)
+    }
+}
+
+/// Thousands of random postures: each among those found at its pose, each found one right, counts even, branches named.
+macro_rules! check {
+    ($module:ident, $ik:ident) => {{
+        use $ik::{Real, Verdict, DOF};
+        let single = Real::EPSILON > 1e-10;
+        let general = $ik::BRANCHES.is_empty();
+        let (mut complete, mut lost, mut odd, mut most, mut worst) = (0, 0, 0, 0, 0.0f64);
+        let random = &mut Random(7);
+        let poses = if general { 300 } else { 3000 };
+        for _ in 0..poses {
+            let q: [Real; DOF] = std::array::from_fn(|i| {
+                let turns = $module::JOINT_IS_REVOLUTE[i];
+                (if turns { random.between(-3.14, 3.14) } else { random.between(-0.5, 0.5) }) as Real
+            });
+            let t = $module::direct_kinematics(&q);
+            let found = $ik::inverse_kinematics(&t);
+            assert!(found.verdict != Verdict::Invalid && found.verdict != Verdict::Unreachable, "{:?}", found);
+            assert!(found.count <= $ik::MAX_SOLUTIONS);
+            for solution in found.as_slice() {
+                assert!(general || !$ik::BRANCHES[usize::from(solution.branch)].is_empty(), "{:?}", solution);
+                if solution.double || solution.free != 0 {
+                    continue;
+                }
+                let reached = $module::direct_kinematics(&solution.q);
+                for (x, y) in reached.iter().flatten().zip(t.iter().flatten()) {
+                    worst = worst.max((f64::from(*x) - f64::from(*y)).abs());
+                }
+            }
+            if found.verdict != Verdict::Complete {
+                continue;
+            }
+            complete += 1;
+            most = most.max(found.count);
+            odd += found.count % 2;
+            let nearest = found.nearest_to(&q).expect("a complete set has a posture");
+            let turn = std::f64::consts::TAU;
+            let apart = |(i, (x, y)): (usize, (&Real, &Real))| {
+                let d = (f64::from(*x) - f64::from(*y)).abs();
+                if $module::JOINT_IS_REVOLUTE[i] { (d % turn).min(turn - d % turn) } else { d }
+            };
+            let distance = nearest.q.iter().zip(&q).enumerate().map(apart).fold(0.0, f64::max);
+            lost += usize::from(distance > if single { 0.1 } else { 1e-5 });
+        }
+        println!("{}: {complete} of {poses} complete, lost {lost}, odd {odd}, most {most}, T right to {worst:.1e}", stringify!($module));
+        // In single precision a posture that is hardly regular may be off by a tenth.
+        assert!(lost * 500 <= if single { complete } else { 0 }, "{}: lost", stringify!($module));
+        assert!(odd * 500 <= if single { complete } else { 0 }, "{}: odd", stringify!($module));
+        assert!(worst < if single { 2e-3 } else { 1e-11 }, "{}: {worst:e}", stringify!($module));
+        assert!(complete * 100 >= poses * if single { 60 } else { 97 }, "{}: {complete}", stringify!($module));
+        let mut t = $module::direct_kinematics(&[0.3; DOF]);
+        t[0][3] = Real::NAN;
+        assert_eq!($ik::inverse_kinematics(&t).verdict, Verdict::Invalid);
+        let mut t = $module::direct_kinematics(&[0.3; DOF]);
+        (t[0][3], t[1][3]) = (1e3, 1e3);
+        let far = $ik::inverse_kinematics(&t);
+        // A general arm may say that it is not certain; slides have no end.
+        if $module::JOINT_IS_REVOLUTE.iter().all(|turns| *turns) && !general {
+            assert!(far.verdict == Verdict::Unreachable && far.count == 0, "{:?}", far);
+        }
+    }};
+}
+
+/// The reference poses of a file: every listed posture found, none beside those, the verdict as listed.
+macro_rules! reference {
+    ($module:ident, $ik:ident, $file:expr) => {{
+        use $ik::{Real, Verdict, DOF};
+        let text = std::fs::read_to_string($file).expect("a file of reference poses");
+        let numbers = |text: &str| -> Vec<f64> { text.split(' ').map(|word| word.parse().expect("a number")).collect() };
+        // (verdicts, kind, pose, postures with sigma, whether two have met)
+        let mut poses: Vec<(String, Vec<f64>, Vec<(Vec<f64>, f64)>, bool)> = vec![];
+        for line in text.lines() {
+            let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
+            match key {
+                "pose" => poses.push((rest.to_owned(), vec![], vec![], false)),
+                "t" => poses.last_mut().expect("a pose").1 = numbers(rest),
+                "met" => poses.last_mut().expect("a pose").3 = true,
+                "q" => {
+                    let (q, sigma) = rest.split_once(" sigma ").expect("a posture with its sigma");
+                    poses.last_mut().expect("a pose").2.push((numbers(q), sigma.parse().expect("a number")));
+                }
+                _ => {}
+            }
+        }
+        assert!(poses.len() > 20);
+        for (head, t, postures, met) in &poses {
+            let mut pose = [[0.0 as Real; 4]; 4];
+            for (i, entry) in t.iter().enumerate() {
+                pose[i / 4][i % 4] = *entry;
+            }
+            let found = $ik::inverse_kinematics(&pose);
+            let mut words = head.split(' ');
+            let kind = words.next().expect("a kind");
+            let said = format!("{:?}", found.verdict);
+            assert!(words.any(|verdict| verdict == said), "{} {head}: {found:?}", stringify!($module));
+            let distance = |x: &[Real; DOF], y: &[f64]| -> f64 {
+                let turn = std::f64::consts::TAU;
+                let apart = |(i, (x, y)): (usize, (&f64, &f64))| {
+                    let d = (x - y).abs();
+                    if $module::JOINT_IS_REVOLUTE[i] { (d % turn).min(turn - d % turn) } else { d }
+                };
+                x.iter().zip(y).enumerate().map(apart).fold(0.0, f64::max)
+            };
+            for (q, sigma) in postures {
+                let least = found.as_slice().iter().map(|s| distance(&s.q, q)).fold(f64::INFINITY, f64::min);
+                assert!(least < 1e-9f64.max(1e-11 / sigma), "{} {head}: {q:?} is missing by {least:e}", stringify!($module));
+            }
+            for solution in found.as_slice() {
+                let listed = postures.iter().any(|(q, _)| distance(&solution.q, q) < 1e-6);
+                let unlisted = solution.double && *met || solution.free != 0 || kind == "continuum";
+                assert!(listed || unlisted, "{} {head}: {solution:?} is one too many", stringify!($module));
+            }
+            assert_eq!(found.verdict == Verdict::Unreachable, found.miss > 0.0);
+        }
+        println!("{}: {} reference poses", stringify!($module), poses.len());
+    }};
+}
+
