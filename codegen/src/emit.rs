@@ -1,6 +1,8 @@
 //! From programs to text, a folder for each language. Absent from here on: mathematics.
 
 pub mod c;
+pub mod javascript;
+pub mod python;
 pub mod rust;
 
 mod documentation;

@@ -97,11 +97,18 @@ impl Generated {
         self.notes = notes.clone();
     }
 
+    /// The declarations of the module in JavaScript, for TypeScript.
+    pub fn declarations(&self) -> String {
+        emit::javascript::declarations(&self.program, &self.origin, &self.notes)
+    }
+
     /// The module in another language, with the same notes.
     pub fn in_language(&self, language: Language) -> String {
         match language {
             Language::Rust => self.module.clone(),
             Language::C => emit::c::standalone(&self.program, &self.origin, &self.notes),
+            Language::JavaScript => emit::javascript::print(&self.program, &self.origin, &self.notes),
+            Language::Python => emit::python::print(&self.program, &self.origin, &self.notes),
         }
     }
 

@@ -31,7 +31,7 @@ pub struct Sizes {
 }
 
 impl Length {
-    fn of(self, sizes: &Sizes) -> usize {
+    pub(crate) fn of(self, sizes: &Sizes) -> usize {
         match self {
             Length::Dof => sizes.n,
             Length::Parameters => sizes.p,
@@ -41,7 +41,7 @@ impl Length {
         }
     }
 
-    fn rust(self) -> String {
+    pub(crate) fn rust(self) -> String {
         match self {
             Length::Dof => "DOF".into(),
             Length::Parameters => "PARAMETERS".into(),
@@ -111,6 +111,11 @@ impl Returned {
             }
             Returned::Fields(_, all) => all.iter().map(|(name, array)| ((*name).into(), *array)).collect(),
         }
+    }
+
+    /// What the places of each array's entries begin with.
+    pub fn accesses(self) -> Vec<String> {
+        self.arrays().into_iter().map(|(access, _)| access).collect()
     }
 
     /// The name of the array that an entry belongs to, and its indices there.

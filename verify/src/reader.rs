@@ -10,9 +10,11 @@ mod c;
 mod constant;
 mod documentation;
 mod items;
+mod javascript;
 mod lexer;
 mod parser;
 mod plain;
+mod python;
 mod sines;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -81,6 +83,8 @@ impl Module {
         match language {
             Language::Rust => Module::read_rust(text),
             Language::C => c::read(text),
+            Language::JavaScript => javascript::read(text),
+            Language::Python => python::read(text),
         }
     }
 

@@ -13,7 +13,7 @@ mod run;
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::source::Source;
 use armgen_codegen::Generated;
 use armgen_verify::reader::{Module, ModuleText};
@@ -32,22 +32,26 @@ fn others() -> impl Iterator<Item = Language> {
 fn check_read(name: &str, scalar: Scalar) {
     let source = common::source(name);
     for trig in [Trig::Fast, Trig::Std] {
-        let generated = generated(&source, scalar, trig);
-        let rust = Module::read(&generated.module).expect("the module in Rust");
-        for language in others().filter(|language| language.scalars().contains(&scalar)) {
-            let text = generated.in_language(language);
-            let read = Module::read(ModuleText { language, text: &text });
-            let read = read.unwrap_or_else(|fault| panic!("{name} in {}: {fault}", language.title()));
-            assert_eq!((read.real, read.trig, &read.constants), (rust.real, rust.trig, &rust.constants), "{name} {language:?}");
-            assert_eq!(read.functions.len(), rust.functions.len(), "{name} {language:?}");
-            for ((own, function), (other, of_rust)) in read.functions.iter().zip(&rust.functions) {
-                let (function, of_rust) = (function.as_ref().expect("read"), of_rust.as_ref().expect("read"));
-                assert_eq!(own, other);
-                assert!(
-                    mutation::same_operations(&function.program, &of_rust.program),
-                    "{name} {language:?}: {own} does other operations than in Rust"
-                );
-            }
+        check_same(name, &generated(&source, scalar, trig), scalar);
+    }
+}
+
+#[track_caller]
+fn check_same(name: &str, generated: &Generated, scalar: Scalar) {
+    let rust = Module::read(&generated.module).expect("the module in Rust");
+    for language in others().filter(|language| language.scalars().contains(&scalar)) {
+        let text = generated.in_language(language);
+        let read = Module::read(ModuleText { language, text: &text });
+        let read = read.unwrap_or_else(|fault| panic!("{name} in {}: {fault}", language.title()));
+        assert_eq!((read.real, read.trig, &read.constants), (rust.real, rust.trig, &rust.constants), "{name} {language:?}");
+        assert_eq!(read.functions.len(), rust.functions.len(), "{name} {language:?}");
+        for ((own, function), (other, of_rust)) in read.functions.iter().zip(&rust.functions) {
+            let (function, of_rust) = (function.as_ref().expect("read"), of_rust.as_ref().expect("read"));
+            assert_eq!(own, other);
+            assert!(
+                mutation::same_operations(&function.program, &of_rust.program),
+                "{name} {language:?}: {own} does other operations than in Rust"
+            );
         }
     }
 }
@@ -58,6 +62,27 @@ fn other_languages_do_the_operations_of_rust_in_its_order() {
         check_read(name, Scalar::F64);
     }
     check_read("base_set", Scalar::F32);
+}
+
+/// A function of thousands of lines is printed in parts, in every language.
+#[test]
+fn parts_of_long_functions_are_put_together() {
+    let joint = |i: usize| {
+        let alpha = ["pi/2", "-pi/2"][i % 2];
+        format!(
+            "  - {{name: j{i}, type: revolute, a: 0.{}, alpha: {alpha}, d: 0.{}, theta: 0, link: {{mass: {}, com: [0.1, 0.02, 0.03], \
+             inertia: {{xx: 0.3, yy: 0.35, zz: 0.32, xy: 0.01, xz: 0.02, yz: 0.03}}}}}}\n",
+            i + 11,
+            i + 21,
+            i + 2
+        )
+    };
+    let joints: String = (1..=24).map(joint).collect();
+    let text = format!("name: chain\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{joints}regressor: standard\n");
+    let source = Source::new("chain.yaml", text);
+    let functions = Selection::named(&["inverse_dynamics_derivatives".to_string()]).expect("a function");
+    let options = Options { trig: Trig::Fast, functions, ..Options::default() };
+    check_same("chain", &common::generate_with(&source, &options), Scalar::F64);
 }
 
 #[test]

@@ -11,17 +11,23 @@ pub enum Language {
     Rust,
     /// C99 and C++11: one header.
     C,
+    /// JavaScript: an ES module.
+    JavaScript,
+    /// Python: functions over arrays of NumPy, torch, jax and others.
+    Python,
 }
 
 impl Language {
     /// All of them.
-    pub const ALL: [Language; 2] = [Language::Rust, Language::C];
+    pub const ALL: [Language; 4] = [Language::Rust, Language::C, Language::JavaScript, Language::Python];
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Language::Rust => "rust",
             Language::C => "c",
+            Language::JavaScript => "javascript",
+            Language::Python => "python",
         }
     }
 
@@ -30,6 +36,8 @@ impl Language {
         match self {
             Language::Rust => "Rust",
             Language::C => "C",
+            Language::JavaScript => "JavaScript",
+            Language::Python => "Python",
         }
     }
 
@@ -38,6 +46,8 @@ impl Language {
         match self {
             Language::Rust => &["rs"],
             Language::C => &["h"],
+            Language::JavaScript => &["mjs", "js"],
+            Language::Python => &["py"],
         }
     }
 
@@ -49,7 +59,8 @@ impl Language {
     /// The scalars that it has.
     pub fn scalars(self) -> &'static [Scalar] {
         match self {
-            Language::Rust | Language::C => &[Scalar::F64, Scalar::F32],
+            Language::Rust | Language::C | Language::Python => &[Scalar::F64, Scalar::F32],
+            Language::JavaScript => &[Scalar::F64],
         }
     }
 
@@ -57,7 +68,7 @@ impl Language {
     pub fn trig(self) -> Trig {
         match self {
             Language::Rust => Trig::Libm,
-            Language::C => Trig::Fast,
+            Language::C | Language::JavaScript | Language::Python => Trig::Fast,
         }
     }
 }

@@ -1,10 +1,12 @@
 //! What languages have in common whose text is put together line by line: lines, angles and the places of results are those of the
 //! program, and a language says only how it writes an entry, a number and an operator.
 
-use crate::catalogue::{Argument, Part, Quantity, Sizes};
+use super::documentation::{self, Block};
+use super::origin::{Notes, Origin};
+use crate::catalogue::{Argument, Length, Parameter, Part, Quantity, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
-use crate::program::{Function, Module, Operation};
+use crate::program::{Function, Joint, Module, Operation};
 use crate::ring::Symbol;
 
 /// How a language writes what a line is made of.
@@ -124,4 +126,125 @@ pub(super) fn asks_for_signs(module: &Module) -> bool {
 pub(super) fn of_robot(text: &str, name: &str, macros: &str) -> String {
     let pieces: Vec<String> = text.split("robot_").map(|piece| piece.replace("ROBOT_", &format!("{macros}_"))).collect();
     pieces.join(&format!("{name}_"))
+}
+
+/// `inertia_matrix` as `inertiaMatrix`.
+pub(super) fn camel(name: &str) -> String {
+    let mut words = name.split('_');
+    let first = words.next().unwrap_or_default().to_string();
+    words.fold(first, |text, word| {
+        let (initial, rest) = word.split_at(word.len().min(1));
+        text + &initial.to_uppercase() + rest
+    })
+}
+
+/// The value of a constant.
+pub(super) enum Value {
+    Text(String),
+    Count(usize),
+    Truth(bool),
+    Number(Number),
+    /// Infinity, and whether it is negative.
+    Infinite(bool),
+    Array(Vec<Value>),
+}
+
+/// A constant of a module.
+pub(super) struct Constant {
+    pub(super) name: &'static str,
+    pub(super) documentation: Vec<Block>,
+    pub(super) value: Value,
+}
+
+/// The constants of a module, in order.
+pub(super) fn constants(module: &Module) -> Vec<Constant> {
+    let text = |text: &String| Value::Text(text.clone());
+    let number = |value: &Option<Number>, negative: bool| match value {
+        Some(value) => Value::Number(value.clone()),
+        None => Value::Infinite(negative),
+    };
+    let joints = |of: &dyn Fn(&Joint) -> Value| Value::Array(module.joints.iter().map(of).collect());
+    let names = |parameters: &[Parameter]| Value::Array(parameters.iter().map(|parameter| text(&parameter.name)).collect());
+    let nominal = |parameters: &[Parameter]| {
+        Value::Array(parameters.iter().map(|parameter| Value::Number(parameter.nominal.clone())).collect())
+    };
+    let position = |joint: &Joint| Value::Array(vec![number(&joint.position[0], true), number(&joint.position[1], false)]);
+    let said = |name: &'static str, words: &str, value: Value| Constant { name, documentation: vec![Block::text(words)], value };
+    let title = Block::text("Names of the parameters, in the order of the columns of {regressor}:");
+    let note = module.base_parameters.then(documentation::base_note);
+    let mut all = vec![
+        said("NAME", "Name of the robot.", text(&module.name)),
+        said("DOF", "Number of joints.", Value::Count(module.joints.len())),
+        said("JOINT_NAMES", "Names of the joints, base to tip.", joints(&|joint| text(&joint.name))),
+        said(
+            "JOINT_IS_REVOLUTE",
+            "Whether a joint turns (q in rad) or slides (q in m).",
+            joints(&|joint| Value::Truth(joint.is_revolute)),
+        ),
+        said(
+            "POSITION_LIMITS",
+            "Lowest and highest joint variable, rad or m; infinite where the description gives none.",
+            joints(&position),
+        ),
+        said(
+            "VELOCITY_LIMITS",
+            "Highest joint rate, rad/s or m/s; infinite where the description gives none.",
+            joints(&|joint| number(&joint.velocity, false)),
+        ),
+        said(
+            "EFFORT_LIMITS",
+            "Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.",
+            joints(&|joint| number(&joint.effort, false)),
+        ),
+        said("TASK_ROWS", "Number of rows of the operational space.", Value::Count(module.task.len())),
+        said(
+            "TASK",
+            "Rows of the geometric Jacobian that make up the operational space: 0 1 2 along x y z, 3 4 5 about x y z, in the base frame.",
+            Value::Array(module.task.iter().map(|&row| Value::Count(row)).collect()),
+        ),
+        said("PARAMETERS", "Number of parameters.", Value::Count(module.parameters.len())),
+        Constant {
+            name: "PARAMETER_NAMES",
+            documentation: [title].into_iter().chain(note).chain([documentation::meanings(&module.parameters)]).collect(),
+            value: names(&module.parameters),
+        },
+        said("NOMINAL_PARAMETERS", "Values of the parameters in the description.", nominal(&module.parameters)),
+    ];
+    if module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters)) {
+        let count = "Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.";
+        let title =
+            "Names of the base parameters, in the order of the columns of {base_regressor}, each a combination of standard parameters:";
+        all.extend([
+            said("BASE_PARAMETERS", count, Value::Count(module.base_set.len())),
+            Constant {
+                name: "BASE_PARAMETER_NAMES",
+                documentation: vec![
+                    Block::text(title),
+                    documentation::own_base_note(module),
+                    documentation::meanings(&module.base_set),
+                ],
+                value: names(&module.base_set),
+            },
+            said(
+                "NOMINAL_BASE_PARAMETERS",
+                "Values of the base parameters in the description, the masses of rotors included.",
+                nominal(&module.base_set),
+            ),
+        ]);
+    }
+    all
+}
+
+/// The lines at the head of a file, each behind the sign of a comment: where it came from, and what the module lacks.
+pub(super) fn head(module: &Module, origin: &Origin, notes: &Notes, sign: &str) -> String {
+    let absent = module.absent.iter().map(|absent| format!("There is no `{}`: {}.", absent.function, absent.reason));
+    let lines = origin.head(&notes.head).into_iter().chain(absent);
+    lines.map(|line| format!("{sign} {line}").trim_end().to_string() + "\n").collect()
+}
+
+/// What is said of a function whose results take memory of their own.
+pub(super) fn blocks(module: &Module, function: &Function, notes: &Notes) -> Vec<Block> {
+    let mut blocks = documentation::function(function, module, true);
+    blocks.extend(notes.functions.get(&function.name()).map(Block::text));
+    blocks
 }

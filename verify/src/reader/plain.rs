@@ -309,6 +309,9 @@ impl Constants {
 
     fn value(&self, place: &mut Place<'_>, entry: Entry, depth: usize) -> Result<Constant, Fault> {
         if depth > 0 {
+            if self.array == ("(", ",)") && place.eat("()") {
+                return Ok(Constant::Array(Vec::new()));
+            }
             place.expect(self.array.0)?;
             let mut entries = Vec::new();
             while !place.eat(self.array.1) {
@@ -617,4 +620,25 @@ impl<'a, 's> Body<'a, 's> {
             false => Ok(value),
         }
     }
+}
+
+/// The names of all functions that a module may have.
+pub(super) fn names_of() -> impl Iterator<Item = String> {
+    let forms = |promise: &Promise| [promise.name.to_string(), format!("{}_with", promise.name)];
+    crate::reference::PROMISES.iter().flat_map(forms).filter(|name| Promise::of(name).is_some())
+}
+
+/// `inertia_matrix` as `inertiaMatrix`.
+pub(super) fn camel(name: &str) -> String {
+    let mut result = String::new();
+    let mut capital = false;
+    for c in name.chars() {
+        if c == '_' {
+            capital = true;
+        } else {
+            result.push(if capital { c.to_ascii_uppercase() } else { c });
+            capital = false;
+        }
+    }
+    result
 }

@@ -156,10 +156,16 @@ fn code_lines(text: &str, language: Language) -> Vec<(usize, usize)> {
     for line in text.split('\n') {
         let comment = match language {
             Language::Rust => line.trim_start().starts_with("//"),
-            Language::C => {
+            Language::C | Language::JavaScript => {
                 let was = inside;
                 inside = (inside || line.starts_with("/*")) && !line.ends_with("*/");
-                was || line.starts_with("/*")
+                was || line.starts_with("/*") || line.starts_with("//")
+            }
+            Language::Python => {
+                let quotes = line.matches("\"\"\"").count();
+                let was = inside;
+                inside ^= quotes == 1;
+                was || quotes > 0 || line.starts_with('#')
             }
         };
         if !comment && line.chars().any(|c| c.is_ascii_graphic()) {

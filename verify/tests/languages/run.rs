@@ -163,6 +163,8 @@ pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
         let runs = match language {
             Language::Rust => continue,
             Language::C => c(&folder, &robot, &generated, effort),
+            Language::JavaScript => javascript(&folder, &robot, &generated),
+            Language::Python => python(&folder, &robot, &generated),
         };
         for run in runs {
             let results: usize = robot.functions.iter().map(|function| compare(&folder, &robot, function, &run)).sum();
@@ -298,6 +300,78 @@ fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec
     runs
 }
 
+/// The module in JavaScript, by Node.
+fn javascript(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
+    if !there("node", "nodejs") {
+        return Vec::new();
+    }
+    let mut main = String::from(
+        "import fs from \"node:fs\";\nimport * as robot from \"./robot.mjs\";\n\nconst bytes = new Uint8Array(fs.readFileSync(process.argv[2]));\n\
+         const all = new Float64Array(bytes.buffer);\nconst flat = (r) => typeof r === \"number\" ? [r] : \
+         Array.isArray(r) ? r.flat(Infinity) : Object.values(r).flat(Infinity);\n\
+         const write = (name, results) => fs.writeFileSync(`${process.argv[3]}/${name}`, new Uint8Array(Float64Array.from(results).buffer));\nlet results;\n",
+    );
+    let length = robot.parameters + 6 * robot.dof;
+    for function in &robot.functions {
+        let of_argument = |(argument, start): &(Argument, usize)| {
+            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
+            format!("all.subarray(x + {start}, x + {})", start + length)
+        };
+        let arguments: Vec<String> = function.arguments.iter().map(of_argument).collect();
+        let camel = camel(&function.name);
+        let _ = writeln!(main, "results = [];\nfor (let x = 0; x < all.length; x += {length}) {{");
+        let _ = writeln!(main, "    for (const entry of flat(robot.{camel}({}))) results.push(entry);\n}}", arguments.join(", "));
+        let _ = writeln!(main, "write(\"{}\", results);", function.name);
+    }
+    write(folder.join("robot.mjs"), generated.in_language(Language::JavaScript));
+    write(folder.join("main.mjs"), main);
+    std::fs::create_dir_all(folder.join("node")).expect("a folder");
+    succeed(Command::new("node").current_dir(folder).args(["main.mjs", "states", "node"]));
+    vec!["node".into()]
+}
+
+fn camel(name: &str) -> String {
+    let words = name.split('_').enumerate();
+    words.map(|(i, word)| if i == 0 { word.to_string() } else { word[..1].to_uppercase() + &word[1..] }).collect()
+}
+
+/// A Python that has NumPy.
+fn numpy() -> Option<&'static str> {
+    let has =
+        |python: &&str| Command::new(python).args(["-c", "import numpy"]).output().is_ok_and(|output| output.status.success());
+    let found = ["python3", "/usr/bin/python3"].into_iter().find(has);
+    if found.is_none() {
+        println!("skipped: no Python with NumPy here (Debian: python3-numpy)");
+    }
+    found
+}
+
+/// The module in Python, by NumPy, all states at once.
+fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
+    let Some(python) = numpy() else { return Vec::new() };
+    let length = robot.parameters + 6 * robot.dof;
+    let mut main = format!(
+        "import sys\nimport warnings\nimport numpy as np\nimport robot\n\nwarnings.simplefilter(\"ignore\")\n\
+         all = np.fromfile(sys.argv[1], dtype=robot.DTYPE).reshape(-1, {length})\n\n\n\
+         def write(name, result):\n    parts = result if isinstance(result, tuple) else (result,)\n    \
+         assert all.dtype == parts[0].dtype\n    \
+         np.concatenate([np.reshape(part, (len(all), -1)) for part in parts], axis=1).tofile(sys.argv[2] + \"/\" + name)\n\n\n"
+    );
+    for function in &robot.functions {
+        let of_argument = |(argument, start): &(Argument, usize)| {
+            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
+            format!("all[:, {start}:{}]", start + length)
+        };
+        let arguments: Vec<String> = function.arguments.iter().map(of_argument).collect();
+        let _ = writeln!(main, "write(\"{0}\", robot.{0}({1}))", function.name, arguments.join(", "));
+    }
+    write(folder.join("robot.py"), generated.in_language(Language::Python));
+    write(folder.join("main.py"), main);
+    std::fs::create_dir_all(folder.join("numpy")).expect("a folder");
+    succeed(Command::new(python).current_dir(folder).args(["main.py", "states", "numpy"]));
+    vec!["numpy".into()]
+}
+
 /// The block of a kind of the page of languages, the first behind a heading.
 fn block(heading: &str, kind: &str) -> String {
     let page = include_str!("../../../docs/languages.md");
@@ -329,6 +403,16 @@ pub(crate) fn check_page() {
         write(folder.join("caller.c"), block("C", "c"));
         succeed(Command::new("gcc").current_dir(&folder).args(["-O2", "caller.c", "-lm", "-o", "caller"]));
         prints(&mut Command::new(folder.join("caller")), &block("C", "text"));
+    }
+    if there("node", "nodejs") {
+        write(folder.join("scara.mjs"), generated.in_language(Language::JavaScript));
+        write(folder.join("caller.mjs"), block("JavaScript", "js"));
+        prints(Command::new("node").current_dir(&folder).arg("caller.mjs"), &block("JavaScript", "text"));
+    }
+    if let Some(python) = numpy() {
+        write(folder.join("scara.py"), generated.in_language(Language::Python));
+        write(folder.join("caller.py"), block("Python", "python"));
+        prints(Command::new(python).current_dir(&folder).arg("caller.py"), &block("Python", "text"));
     }
 }
 

@@ -246,6 +246,10 @@ fn files(
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let mut files = Vec::new();
     let module = generated.in_language(language);
+    if language == Language::JavaScript {
+        let extension = if out.extension().is_some_and(|extension| extension == "js") { "d.ts" } else { "d.mts" };
+        files.push((out.with_extension(extension), generated.declarations()));
+    }
     if beside.verify {
         let report = with_spinner("verifying", || armgen_verify::certify_in(source, &generated, language));
         if let Some(function) = report.beyond_the_scalar() {

@@ -81,9 +81,13 @@ fn placed(module: &str, language: Language, fault: &str) -> (Option<usize>, Stri
 /// The line where the function or constant begins that a fault is of, counted from 1.
 fn line_of(module: &str, fault: &str, language: Language) -> Option<usize> {
     let name = fault.split(|c: char| c != '_' && !c.is_alphanumeric()).next()?;
+    let camel = camel(name);
+    let name = if language == Language::JavaScript { camel.as_str() } else { name };
     let (words, before): (&[&str], &str) = match language {
         Language::Rust => (&["pub fn ", "pub const "], " "),
         Language::C => (&["static inline ", "#define "], "_"),
+        Language::JavaScript => (&["export function ", "export const "], " "),
+        Language::Python => (&["def ", ""], ""),
     };
     let begins = |line: &str| {
         let found = words.iter().any(|word| line.starts_with(word)).then(|| line.find(&format!("{before}{name}")));
@@ -127,5 +131,16 @@ pub(crate) fn with_spinner<T>(what: &'static str, work: impl FnOnce() -> T) -> T
         let value = work();
         drop(done);
         value
+    })
+}
+
+/// `inertia_matrix` as `inertiaMatrix`.
+fn camel(name: &str) -> String {
+    let mut words = name.split('_');
+    let first = words.next().unwrap_or_default().to_string();
+    words.fold(first, |text, word| {
+        let mut letters = word.chars();
+        let initial = letters.next().map(|c| c.to_ascii_uppercase());
+        text + &initial.into_iter().chain(letters).collect::<String>()
     })
 }

@@ -1,0 +1,234 @@
+//! The module in Python: functions over arrays of any library that has the array API (2023.12), many states at a time.
+//!
+//! Entries of an argument are taken along its first axis, so that a line is that of other languages; results are put together at the end.
+
+use std::fmt::Write;
+
+use super::documentation::{self, Block, Link};
+use super::origin::{Notes, Origin};
+use super::plain::{asks_for_signs, blocks, constants, expression, head, waves, Syntax, Value};
+use super::rust::asks_for_sines;
+use crate::catalogue::{Argument, Length, Quantity};
+use crate::exact::Number;
+use crate::kinds::Scalar;
+use crate::program::listing::{decimal, Line, Listing, Name, Part};
+use crate::program::{Function, Module, Trig};
+
+const ARRAYS: &str = include_str!("python/arrays.py");
+const SIGN: &str = include_str!("python/sign.py");
+const STD: &str = include_str!("python/std.py");
+const FAST_F64: &str = include_str!("python/sines_f64.py");
+const FAST_F32: &str = include_str!("python/sines_f32.py");
+
+struct Python {
+    scalar: Scalar,
+}
+
+impl Syntax for Python {
+    fn number(&self, value: &Number) -> String {
+        decimal(value, self.scalar)
+    }
+
+    fn sign(&self, entry: &str) -> String {
+        format!("_sign(xp, {entry})")
+    }
+}
+
+/// The module.
+pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
+    let python = Python { scalar: module.scalar };
+    let mut text = head(module, origin, notes, "#");
+    text += "\nfrom __future__ import annotations\n\nfrom typing import Any, Final, NamedTuple\n\n";
+    let public: Vec<String> = constants(module)
+        .iter()
+        .map(|constant| constant.name.to_string())
+        .chain(["DTYPE".into()])
+        .chain(module.functions.iter().filter_map(|function| structure(function.quantity)))
+        .chain(module.functions.iter().map(Function::name))
+        .collect();
+    let mut names: Vec<String> = Vec::new();
+    for name in public {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let names: String = names.iter().map(|name| format!("    \"{name}\",\n")).collect();
+    let _ = writeln!(text, "__all__ = [\n{names}]");
+    for constant in constants(module) {
+        text += "\n";
+        for line in documentation::plain(&constant.documentation, &link) {
+            text += format!("# {line}").trim_end();
+            text += "\n";
+        }
+        let _ = writeln!(text, "{}: Final = {}", constant.name, python.value(&constant.value));
+    }
+    let (dtype, fast) = match module.scalar {
+        Scalar::F64 => ("float64", FAST_F64),
+        Scalar::F32 => ("float32", FAST_F32),
+    };
+    let _ = writeln!(text, "\n# The type of the entries of all arrays.\nDTYPE: Final = \"{dtype}\"\n\n\n{ARRAYS}");
+    if asks_for_sines(module) {
+        let _ = writeln!(text, "\n{}", if module.trig == Trig::Fast { fast } else { STD });
+    }
+    if asks_for_signs(module) {
+        let _ = writeln!(text, "\n{SIGN}");
+    }
+    let mut structures: Vec<String> = Vec::new();
+    for function in &module.functions {
+        if let Some(name) = structure(function.quantity).filter(|name| !structures.contains(name)) {
+            let _ = writeln!(text, "\nclass {name}(NamedTuple):\n    \"\"\"Results of `{}`.\"\"\"\n", function.quantity.name);
+            for part in function.quantity.result {
+                let _ = writeln!(text, "    {}: Any", part.name);
+            }
+            text += "\n";
+            structures.push(name);
+        }
+        python.function(&mut text, module, function, notes);
+    }
+    text.trim_end().to_string() + "\n"
+}
+
+/// The name of the type that holds several results: `inverse_dynamics_derivatives` returns `InverseDynamicsDerivatives`.
+fn structure(quantity: &Quantity) -> Option<String> {
+    let capital = |word: &str| {
+        let (initial, rest) = word.split_at(word.len().min(1));
+        initial.to_uppercase() + rest
+    };
+    (quantity.result.len() > 1).then(|| quantity.name.split('_').map(capital).collect())
+}
+
+fn link(link: Link<'_>) -> String {
+    let (Link::Function(name) | Link::Argument(name) | Link::Constant(name)) = link;
+    format!("`{name}`")
+}
+
+fn define(text: &mut String, name: &str, value: &str) {
+    let _ = writeln!(text, "    {name} = {value}");
+}
+
+/// A tuple, with the comma that makes one of a single entry.
+fn tuple(entries: &[String]) -> String {
+    match entries {
+        [] => "()".into(),
+        entries => format!("({},)", entries.join(", ")),
+    }
+}
+
+impl Python {
+    fn value(&self, value: &Value) -> String {
+        match value {
+            Value::Text(text) => format!("\"{text}\""),
+            Value::Count(count) => count.to_string(),
+            Value::Truth(truth) => if *truth { "True" } else { "False" }.into(),
+            Value::Number(number) => self.number(number),
+            Value::Infinite(negative) => if *negative { "-float(\"inf\")" } else { "float(\"inf\")" }.into(),
+            Value::Array(entries) => tuple(&entries.iter().map(|entry| self.value(entry)).collect::<Vec<_>>()),
+        }
+    }
+
+    fn function(&self, text: &mut String, module: &Module, function: &Function, notes: &Notes) {
+        let listing = Listing::of(function);
+        let parts = listing.parts();
+        for (part, number) in parts.iter().zip(1..) {
+            self.part(text, function, part, number);
+        }
+        let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
+        let signature: Vec<String> = names.iter().map(|name| format!("{name}: Any")).collect();
+        let returns = structure(function.quantity).unwrap_or("Any".into());
+        let _ = writeln!(text, "\ndef {}({}) -> {returns}:", function.name(), signature.join(", "));
+        let mut all = blocks(module, function, notes);
+        all.push(Block::text("Leading axes are those of many states; `m[..., i, j]` is row i, column j."));
+        let lines = documentation::plain(&all, &link);
+        for (i, line) in lines.iter().enumerate() {
+            let line = line.replace('\\', "/").replace("\"\"\"", "'''");
+            *text += format!("    {}{line}", if i == 0 { "\"\"\"" } else { "" }).trim_end();
+            *text += "\n";
+        }
+        *text += "    \"\"\"\n";
+        let entered = function.arguments.iter().map(|a| {
+            let length = match a {
+                Argument::Pi => "PARAMETERS",
+                _ => "DOF",
+            };
+            format!("(\"{0}\", {0}, {length})", a.name())
+        });
+        let entered: Vec<String> = entered.collect();
+        let names: Vec<String> = names.iter().map(ToString::to_string).collect();
+        let _ = writeln!(text, "    xp, shape, {} = _enter({})", tuple(&names), entered.join(", "));
+        let waves = waves(module, function, self);
+        if !waves.is_empty() {
+            let angles: Vec<String> = waves.iter().map(|wave| wave.angle.clone()).collect();
+            let _ = writeln!(text, "    sine, cosine = _sin_cos(xp, {})", tuple(&angles));
+        }
+        for (i, wave) in waves.iter().enumerate() {
+            for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {
+                if let Some(value) = value {
+                    define(text, value, &format!("{from}[{i}]"));
+                }
+            }
+        }
+        if parts.is_empty() {
+            self.lines(text, &listing.lines);
+        }
+        for (part, number) in parts.iter().zip(1..) {
+            let taken: Vec<String> = part.taken.iter().map(|value| value.text()).collect();
+            let arguments = ["xp".to_string()].into_iter().chain(part.arguments.iter().map(|a| a.name().to_string()));
+            let arguments: Vec<String> = arguments.chain([tuple(&taken)]).collect();
+            define(text, &format!("given_{number}"), &format!("_{}_part_{number}({})", function.name(), arguments.join(", ")));
+            for (i, value) in part.given.iter().enumerate() {
+                define(text, &value.text(), &format!("given_{number}[{i}]"));
+            }
+        }
+        self.result(text, module, function, &listing, &names[0]);
+        *text += "\n";
+    }
+
+    fn lines(&self, text: &mut String, lines: &[Line]) {
+        for line in lines {
+            define(text, &Name::Step(line.name).text(), &expression(&line.value, self));
+        }
+    }
+
+    fn result(&self, text: &mut String, module: &Module, function: &Function, listing: &Listing, like: &str) {
+        let sizes = module.sizes();
+        let mut rest = listing.entries.as_slice();
+        let mut array = |text: &mut String, begin: &str, indent: &str, end: &str, lengths: &[Length], count: usize| {
+            let (own, others) = rest.split_at(count);
+            rest = others;
+            let lengths: Vec<String> = lengths.iter().map(|length| length.constant()).collect();
+            let _ = writeln!(text, "{begin}_leave(xp, {like}, shape, {}, (", tuple(&lengths));
+            for entry in own {
+                let _ = writeln!(text, "{indent}    {},", expression(entry, self));
+            }
+            let _ = writeln!(text, "{indent})){end}");
+        };
+        match structure(function.quantity) {
+            None => {
+                let part = &function.quantity.result[0];
+                array(text, "    return ", "    ", "", part.lengths, part.len(&sizes));
+            }
+            Some(name) => {
+                let _ = writeln!(text, "    return {name}(");
+                for part in function.quantity.result {
+                    array(text, "        ", "        ", ",", part.lengths, part.len(&sizes));
+                }
+                *text += "    )\n";
+            }
+        }
+    }
+
+    fn part(&self, text: &mut String, function: &Function, part: &Part, number: usize) {
+        let arguments = part.arguments.iter().map(|a| format!("{}: Any, ", a.name())).collect::<String>();
+        let _ = writeln!(
+            text,
+            "\ndef _{}_part_{number}(xp: Any, {arguments}taken: tuple[Any, ...]) -> tuple[Any, ...]:",
+            function.name()
+        );
+        for (i, value) in part.taken.iter().enumerate() {
+            define(text, &value.text(), &format!("taken[{i}]"));
+        }
+        self.lines(text, &part.lines);
+        let given: Vec<String> = part.given.iter().map(|value| value.text()).collect();
+        let _ = writeln!(text, "    return {}\n", tuple(&given));
+    }
+}

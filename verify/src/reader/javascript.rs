@@ -1,0 +1,273 @@
+//! Reads a module in JavaScript.
+//!
+//! ```text
+//! module   = constants check [ sines ] [ sign ] { { part } function }
+//! function = export function NAME(ARGUMENTS) { { check("ARGUMENT", ARGUMENT, LENGTH); } { wave } { line } { call { line } } result }
+//! wave     = sinCos(ANGLE);  { const NAME = wave[0]; | const NAME = wave[1]; }
+//! line     = const NAME = SUM;
+//! call     = const givenK = NAMEPartK(ARGUMENTS, [NAMES]);  { const NAME = givenK[I]; }
+//! result   = return SUM; | return ARRAY; | return { { FIELD: ARRAY, } };          ARRAY = [SUMS] or rows, each in lines of its own
+//! ```
+
+use std::collections::BTreeMap;
+
+use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Lines, Syntax, CONSTANTS};
+use super::{Constant, Fault, Function, Module};
+use crate::contract::{Length, Returned, Sizes};
+use crate::enclosure::Float;
+use crate::program::Argument;
+
+const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")) };
+
+const CHECK: &str = include_str!("javascript/check.mjs");
+const SIGN: &str = include_str!("javascript/sign.mjs");
+const STD: &str = include_str!("javascript/std.mjs");
+const FAST: &str = include_str!("javascript/sines.mjs");
+
+/// A part of a long function: its arguments, and where its lines begin.
+struct Part<'a> {
+    arguments: Vec<&'a str>,
+    body: usize,
+    used: bool,
+}
+
+fn comment(lines: &[&str]) -> Vec<String> {
+    lines.iter().map(|line| line.strip_prefix(" *").unwrap_or(line).to_string()).filter(|line| !line.is_empty()).collect()
+}
+
+/// Reads a module.
+pub(super) fn read(text: &str) -> Result<Module, Fault> {
+    let mut lines = Lines::new(text, COMMENTS)?;
+    let head = text.split('\n').map_while(|line| line.strip_prefix("//")).map(String::from).collect();
+    let form = Constants {
+        real: Float::F64,
+        suffix: "",
+        array: ("Object.freeze([", "])"),
+        truth: ["false", "true"],
+        infinity: "Infinity",
+    };
+    let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
+    for (name, ..) in CONSTANTS {
+        let begin = format!("export const {name} = ");
+        if name.contains("BASE_") && !lines.peek().starts_with(&begin) {
+            continue;
+        }
+        let number = lines.number();
+        let value = lines.between(&begin, ";")?;
+        constants.insert(name.into(), form.read(name, value, number)?);
+    }
+    let sizes = sizes(&constants)?;
+    lines.expect_all(CHECK, COMMENTS)?;
+    let begins = |lines: &Lines<'_>, block: &str, skip: usize| {
+        let block = Lines::new(block, COMMENTS)?;
+        let wanted = block.all.get(skip).map_or("", |line| line.text);
+        Ok::<bool, Fault>(lines.all.get(lines.at + skip).is_some_and(|line| line.text == wanted))
+    };
+    let mut trig = None;
+    if begins(&lines, FAST, 0)? {
+        // The two blocks begin alike.
+        let fast = begins(&lines, FAST, 2)?;
+        trig = Some(if fast { "fast" } else { "std" });
+        lines.expect_all(if fast { FAST } else { STD }, COMMENTS)?;
+    }
+    let sign = begins(&lines, SIGN, 0)?;
+    if sign {
+        lines.expect_all(SIGN, COMMENTS)?;
+    }
+    let syntax = Syntax {
+        index: ("[", "]"),
+        first: 0,
+        operators: [" * ", " / "],
+        suffix: "",
+        sign: "sign(".into(),
+        define: ["    const ".into(), " = ".into(), ";".into()],
+    };
+    let mut reader = Reader { syntax: &syntax, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 2] };
+    let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
+    while !lines.ended() {
+        if let Some((name, function)) = reader.function(&mut lines)? {
+            if functions.iter().any(|(other, _)| *other == name) {
+                return Err(lines.fault(format!("function `{name}` stands twice")));
+            }
+            functions.push((name, Ok(function)));
+        }
+    }
+    if let Some(name) = reader.parts.iter().find_map(|(name, part)| (!part.used).then_some(name)) {
+        return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
+    }
+    if [trig.is_some(), sign] != reader.asks {
+        return Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs"));
+    }
+    Ok(Module { real: Float::F64, trig, head, constants, functions })
+}
+
+struct Reader<'a, 'r> {
+    syntax: &'r Syntax,
+    sizes: Sizes,
+    parts: BTreeMap<&'a str, Part<'a>>,
+    steps: usize,
+    asks: [bool; 2],
+}
+
+impl<'a> Reader<'a, '_> {
+    /// Takes a function, or a part of one.
+    fn function(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
+        if lines.peek().starts_with("function ") {
+            self.part(lines)?;
+            return Ok(None);
+        }
+        let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| comment(&line.comment));
+        let line = lines.number();
+        let (name, names) = lines.between("export function ", ") {")?.split_once('(').unwrap_or_default();
+        let known = names_of().find(|known| camel(known) == name);
+        let (own, (promise, arguments)) = known
+            .and_then(|own| Some((own.clone(), promised(&own)?)))
+            .ok_or_else(|| Fault { line, reason: format!("`{name}` is not a function that an emitted module has") })?;
+        let wanted: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        if names != wanted.join(", ") {
+            return Err(Fault { line, reason: format!("`{name}` takes ({}), not ({names})", wanted.join(", ")) });
+        }
+        for argument in &arguments {
+            let length = if *argument == Argument::Pi { "PARAMETERS" } else { "DOF" };
+            lines.expect(&format!("    check(\"{0}\", {0}, {length});", argument.name()))?;
+        }
+        let mut body = Body::new(&own, arguments, self.syntax, Float::F64, self.steps);
+        while lines.peek().starts_with("    sinCos(") {
+            let line = lines.number();
+            let waves = body.angles(lines.between("    sinCos(", ");")?, line)?;
+            let &[(sine, cosine)] = waves.as_slice() else {
+                return Err(Fault { line, reason: "one angle is asked for at a time".into() });
+            };
+            let first = body.element(lines, "wave[0]", sine)?;
+            let second = body.element(lines, "wave[1]", cosine)?;
+            if !first && !second {
+                return Err(lines.fault("neither the sine nor the cosine of an angle has a name"));
+            }
+        }
+        body.definitions(lines)?;
+        let mut calls = 0;
+        while self.call(lines, &mut body, name, calls + 1)? {
+            calls += 1;
+            body.definitions(lines)?;
+        }
+        match promise.returned {
+            Returned::One(lengths) => self.array(lines, &mut body, "    return ", "    ", ";", lengths, String::new())?,
+            returned => {
+                lines.expect("    return {")?;
+                let places = returned.accesses();
+                for ((field, lengths), access) in returned.named().into_iter().zip(places) {
+                    let begin = format!("        {}: ", camel(&field));
+                    self.array(lines, &mut body, &begin, "        ", ",", lengths, access)?;
+                }
+                lines.expect("    };")?;
+            }
+        }
+        lines.expect("}")?;
+        self.steps = body.steps();
+        (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
+        Ok(Some((own, Function { documentation, program: body.program })))
+    }
+
+    /// A number, or an array with its rows in lines.
+    #[expect(clippy::too_many_arguments, reason = "how a line begins, goes on and ends, and what stands there")]
+    fn array(
+        &self,
+        lines: &mut Lines<'a>,
+        body: &mut Body<'a, '_>,
+        begin: &str,
+        indent: &str,
+        end: &str,
+        lengths: &[Length],
+        place: String,
+    ) -> Result<(), Fault> {
+        let line = lines.number();
+        match lengths {
+            [] => {
+                let value = lines.between(begin, end)?;
+                body.output(place, value, line)
+            }
+            [length] => {
+                let inner = lines.between(&format!("{begin}["), &format!("]{end}"))?;
+                let values: Vec<&str> = if inner.is_empty() { Vec::new() } else { inner.split(", ").collect() };
+                let wanted = length.of(&self.sizes);
+                if values.len() != wanted {
+                    return Err(Fault { line, reason: format!("{} entries where {wanted} are wanted", values.len()) });
+                }
+                values.into_iter().enumerate().try_for_each(|(i, value)| body.output(format!("{place}[{i}]"), value, line))
+            }
+            [outer, inner @ ..] => {
+                lines.expect(&format!("{begin}["))?;
+                let deeper = format!("{indent}    ");
+                for i in 0..outer.of(&self.sizes) {
+                    self.array(lines, body, &deeper, &deeper, ",", inner, format!("{place}[{i}]"))?;
+                }
+                lines.expect(&format!("{indent}]{end}"))
+            }
+        }
+    }
+
+    /// The head of a part; its lines are read where it is called.
+    fn part(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
+        let line = lines.number();
+        let (name, arguments) = lines.between("function ", ") {")?.split_once('(').unwrap_or_default();
+        let mut arguments: Vec<&str> = arguments.split(", ").collect();
+        if arguments.pop() != Some("taken") {
+            return Err(Fault { line, reason: "a part takes values, as its last argument".into() });
+        }
+        let body = lines.at;
+        while !lines.is("}") {
+            if lines.ended() {
+                return Err(lines.fault("the text is cut off"));
+            }
+            lines.at += 1;
+        }
+        lines.expect("}")?;
+        match self.parts.insert(name, Part { arguments, body, used: false }) {
+            Some(_) => Err(Fault { line, reason: format!("`{name}` stands twice") }),
+            None => Ok(()),
+        }
+    }
+
+    /// The call of a part, taken in as if its lines stood here.
+    fn call(&mut self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>, function: &str, number: usize) -> Result<bool, Fault> {
+        let begin = format!("    const given{number} = {function}Part{number}(");
+        if !lines.peek().starts_with(&begin) {
+            return Ok(false);
+        }
+        let line = lines.number();
+        let name = format!("{function}Part{number}");
+        let part = self.parts.get_mut(name.as_str()).ok_or_else(|| lines.fault(format!("there is no part `{name}`")))?;
+        part.used = true;
+        let passed: String = part.arguments.iter().map(|argument| format!("{argument}, ")).collect();
+        let names = lines.between(&format!("{begin}{passed}["), "]);")?;
+        let all = body.program.arguments.clone();
+        if let Some(wrong) = part.arguments.iter().find(|a| !all.iter().any(|own| own.name() == **a)) {
+            return Err(Fault { line, reason: format!("`{wrong}` is not an argument of the function") });
+        }
+        let names: Vec<&str> = if names.is_empty() { Vec::new() } else { names.split(", ").collect() };
+        let taken = names.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
+        let back = std::mem::replace(&mut lines.at, part.body);
+        let scope = body.enter();
+        // Of the function's arguments it knows those that it takes.
+        body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
+        for (i, value) in taken.into_iter().enumerate() {
+            if !body.element(lines, &format!("taken[{i}]"), value)? {
+                return Err(lines.fault(format!("value {i} that the part takes has no name")));
+            }
+        }
+        body.definitions(lines)?;
+        let line = lines.number();
+        let given = lines.between("    return [", "];")?.split(", ");
+        let given = given.map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
+        lines.expect("}")?;
+        body.leave(scope);
+        body.program.arguments = all;
+        lines.at = back;
+        for (i, value) in given.into_iter().enumerate() {
+            if !body.element(lines, &format!("given{number}[{i}]"), value)? {
+                return Err(lines.fault(format!("value {i} that the part gives has no name")));
+            }
+        }
+        Ok(true)
+    }
+}

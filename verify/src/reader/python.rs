@@ -1,0 +1,309 @@
+//! Reads a module in Python.
+//!
+//! ```text
+//! module   = imports names constants arrays [ sines ] [ sign ] { [ class ] { part } function }
+//! function = def NAME(ARGUMENTS) -> TYPE:  xp, shape, (ARGUMENTS,) = _enter(("ARGUMENT", ARGUMENT, LENGTH), ...)  [ waves ] { line } { call { line } } result
+//! waves    = sine, cosine = _sin_cos(xp, (ANGLES,))  { NAME = sine[I] | NAME = cosine[I] }
+//! line     = NAME = SUM
+//! call     = given_K = _NAME_part_K(xp, ARGUMENTS, (NAMES,))  { NAME = given_K[I] }
+//! result   = return ARRAY | return TYPE( { ARRAY, } )            ARRAY = _leave(xp, ARGUMENT, shape, (LENGTHS,), ( { SUM, } ))
+//! ```
+
+use std::collections::BTreeMap;
+
+use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Lines, Syntax, CONSTANTS};
+use super::{Constant, Fault, Function, Module};
+use crate::contract::{Length, Promise, Returned, Sizes};
+use crate::enclosure::Float;
+use crate::program::Argument;
+
+const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")) };
+
+const ARRAYS: &str = include_str!("python/arrays.py");
+const SIGN: &str = include_str!("python/sign.py");
+const STD: &str = include_str!("python/std.py");
+const FAST_F64: &str = include_str!("python/sines_f64.py");
+const FAST_F32: &str = include_str!("python/sines_f32.py");
+
+/// A part of a long function: its arguments, and where its lines begin.
+struct Part<'a> {
+    arguments: Vec<&'a str>,
+    body: usize,
+    used: bool,
+}
+
+fn tuple(entries: &[String]) -> String {
+    match entries {
+        [] => "()".into(),
+        entries => format!("({},)", entries.join(", ")),
+    }
+}
+
+/// The entries of a tuple as it is written.
+fn entries<'a>(text: &'a str, line: usize) -> Result<Vec<&'a str>, Fault> {
+    let inner = match text {
+        "()" => return Ok(Vec::new()),
+        text => text.strip_prefix('(').and_then(|text| text.strip_suffix(",)")),
+    };
+    let inner = inner.ok_or_else(|| Fault { line, reason: format!("`{text}` where a tuple can stand") })?;
+    Ok(inner.split(", ").collect())
+}
+
+/// The type that holds the results of a function that has several.
+fn structure(promise: &Promise) -> Option<String> {
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    (!matches!(promise.returned, Returned::One(_))).then(|| promise.name.split('_').map(capital).collect())
+}
+
+/// Reads a module.
+pub(super) fn read(text: &str) -> Result<Module, Fault> {
+    let mut lines = Lines::new(text, COMMENTS)?;
+    let head = text.split('\n').map_while(|line| line.strip_prefix('#')).map(String::from).collect();
+    lines.expect("from __future__ import annotations")?;
+    lines.expect("from typing import Any, Final, NamedTuple")?;
+    lines.expect("__all__ = [")?;
+    let mut public = Vec::new();
+    while !lines.is("]") {
+        public.push(lines.between("    \"", "\",")?);
+    }
+    lines.expect("]")?;
+    let real = match lines.all.iter().find_map(|line| line.text.strip_prefix("DTYPE: Final = ")) {
+        Some("\"float64\"") => Float::F64,
+        Some("\"float32\"") => Float::F32,
+        _ => return Err(lines.fault("the module has no type of its numbers")),
+    };
+    let form = Constants { real, suffix: "", array: ("(", ",)"), truth: ["False", "True"], infinity: "float(\"inf\")" };
+    let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
+    for (name, ..) in CONSTANTS {
+        let begin = format!("{name}: Final = ");
+        if name.contains("BASE_") && !lines.peek().starts_with(&begin) {
+            continue;
+        }
+        let number = lines.number();
+        let value = lines.between(&begin, "")?;
+        constants.insert(name.into(), form.read(name, value, number)?);
+    }
+    let sizes = sizes(&constants)?;
+    lines.at += 1;
+    lines.expect_all(ARRAYS, COMMENTS)?;
+    let mut trig = None;
+    for (block, name) in [(if real == Float::F64 { FAST_F64 } else { FAST_F32 }, "fast"), (STD, "std")] {
+        let own = Lines::new(block, COMMENTS)?;
+        // Their first lines are alike.
+        let second = |lines: &Lines<'_>, at: usize| lines.all.get(at + 1).map(|line| line.text.to_string());
+        if trig.is_none() && lines.is(own.peek()) && second(&lines, lines.at) == second(&own, 0) {
+            lines.expect_all(block, COMMENTS)?;
+            trig = Some(name);
+        }
+    }
+    let sign = lines.is(Lines::new(SIGN, COMMENTS)?.peek());
+    if sign {
+        lines.expect_all(SIGN, COMMENTS)?;
+    }
+    let syntax = Syntax {
+        index: ("[", "]"),
+        first: 0,
+        operators: [" * ", " / "],
+        suffix: "",
+        sign: "_sign(xp, ".into(),
+        define: ["    ".into(), " = ".into(), String::new()],
+    };
+    let mut reader =
+        Reader { syntax: &syntax, real, sizes, parts: BTreeMap::new(), structures: Vec::new(), steps: 0, asks: [false; 2] };
+    let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
+    while !lines.ended() {
+        if let Some((name, function)) = reader.item(&mut lines)? {
+            if functions.iter().any(|(other, _)| *other == name) {
+                return Err(lines.fault(format!("function `{name}` stands twice")));
+            }
+            functions.push((name, Ok(function)));
+        }
+    }
+    if let Some(name) = reader.parts.iter().find_map(|(name, part)| (!part.used).then_some(name)) {
+        return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
+    }
+    if [trig.is_some(), sign] != reader.asks {
+        return Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs"));
+    }
+    let named = constants.len() + 1;
+    let own = CONSTANTS.iter().map(|(name, ..)| (*name).to_string()).filter(|name| constants.contains_key(name));
+    let mut wanted: Vec<String> = own.chain(["DTYPE".into()]).collect();
+    wanted.extend(reader.structures.iter().cloned());
+    wanted.extend(functions.iter().map(|(name, _)| name.clone()));
+    if public != wanted {
+        let reason =
+            format!("`__all__` does not list the {named} constants, the types of results and the functions of the module");
+        return Err(Fault { line: 1, reason });
+    }
+    Ok(Module { real, trig, head, constants, functions })
+}
+
+struct Reader<'a, 'r> {
+    syntax: &'r Syntax,
+    real: Float,
+    sizes: Sizes,
+    parts: BTreeMap<&'a str, Part<'a>>,
+    structures: Vec<String>,
+    steps: usize,
+    asks: [bool; 2],
+}
+
+impl<'a> Reader<'a, '_> {
+    /// Takes a function, a part of one, or a type of results.
+    fn item(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
+        if lines.peek().starts_with("class ") {
+            self.class(lines)?;
+            return Ok(None);
+        }
+        if lines.peek().starts_with("def _") {
+            self.part(lines)?;
+            return Ok(None);
+        }
+        let line = lines.number();
+        let name = lines.peek().strip_prefix("def ").and_then(|rest| rest.split('(').next()).unwrap_or_default();
+        let known = promised(name);
+        let (promise, arguments) =
+            known.ok_or_else(|| Fault { line, reason: format!("`{name}` is not a function that an emitted module has") })?;
+        let names: Vec<String> = arguments.iter().map(|a| a.name().to_string()).collect();
+        let signature: Vec<String> = names.iter().map(|name| format!("{name}: Any")).collect();
+        let structure = structure(promise);
+        let returns = structure.as_deref().unwrap_or("Any");
+        lines.expect(&format!("def {name}({}) -> {returns}:", signature.join(", ")))?;
+        let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| line.comment.clone());
+        let documentation = documentation.into_iter().map(String::from).collect();
+        let entered = arguments.iter().map(|argument| {
+            let length = if *argument == Argument::Pi { "PARAMETERS" } else { "DOF" };
+            format!("(\"{0}\", {0}, {length})", argument.name())
+        });
+        let entered: Vec<String> = entered.collect();
+        lines.expect(&format!("    xp, shape, {} = _enter({})", tuple(&names), entered.join(", ")))?;
+        let mut body = Body::new(name, arguments, self.syntax, self.real, self.steps);
+        if lines.peek().starts_with("    sine, cosine = ") {
+            let line = lines.number();
+            let angles = lines.between("    sine, cosine = _sin_cos(xp, (", ",))")?;
+            for (i, (sine, cosine)) in body.angles(angles, line)?.into_iter().enumerate() {
+                let first = body.element(lines, &format!("sine[{i}]"), sine)?;
+                let second = body.element(lines, &format!("cosine[{i}]"), cosine)?;
+                if !first && !second {
+                    return Err(lines.fault(format!("neither the sine nor the cosine of angle {i} has a name")));
+                }
+            }
+        }
+        body.definitions(lines)?;
+        let mut calls = 0;
+        while self.call(lines, &mut body, name, calls + 1)? {
+            calls += 1;
+            body.definitions(lines)?;
+        }
+        match promise.returned {
+            Returned::One(lengths) => self.array(lines, &mut body, ["    return ", "    ", ""], &names[0], lengths, "")?,
+            returned => {
+                lines.expect(&format!("    return {returns}("))?;
+                for ((_, lengths), access) in returned.named().into_iter().zip(returned.accesses()) {
+                    self.array(lines, &mut body, ["        ", "        ", ","], &names[0], lengths, &access)?;
+                }
+                lines.expect("    )")?;
+            }
+        }
+        self.steps = body.steps();
+        (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
+        Ok(Some((name.into(), Function { documentation, program: body.program })))
+    }
+
+    /// An array with its entries in lines: how it begins, the indent, how it ends.
+    fn array(
+        &self,
+        lines: &mut Lines<'a>,
+        body: &mut Body<'a, '_>,
+        [begin, indent, end]: [&str; 3],
+        like: &str,
+        lengths: &'static [Length],
+        access: &str,
+    ) -> Result<(), Fault> {
+        let dimensions: Vec<String> = lengths.iter().map(|length| length.rust()).collect();
+        lines.expect(&format!("{begin}_leave(xp, {like}, shape, {}, (", tuple(&dimensions)))?;
+        for place in Returned::One(lengths).places(&self.sizes) {
+            let line = lines.number();
+            let value = lines.between(&format!("{indent}    "), ",")?;
+            body.output(format!("{access}{place}"), value, line)?;
+        }
+        lines.expect(&format!("{indent})){end}"))
+    }
+
+    /// A type that holds several results.
+    fn class(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
+        let name = lines.between("class ", "(NamedTuple):")?;
+        let promise =
+            names_of().filter_map(|own| promised(&own)).find(|(promise, _)| structure(promise).as_deref() == Some(name));
+        let (promise, _) = promise.ok_or_else(|| lines.fault(format!("`{name}` is no type of results")))?;
+        for (field, _) in promise.returned.named() {
+            lines.expect(&format!("    {field}: Any"))?;
+        }
+        if self.structures.iter().any(|other| other == name) {
+            return Err(lines.fault(format!("`{name}` stands twice")));
+        }
+        self.structures.push(name.into());
+        Ok(())
+    }
+
+    /// The head of a part; its lines are read where it is called.
+    fn part(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
+        let line = lines.number();
+        let text = lines.between("def _", "taken: tuple[Any, ...]) -> tuple[Any, ...]:")?;
+        let (name, arguments) = text.split_once("(xp: Any, ").unwrap_or_default();
+        let arguments: Vec<&str> = arguments.split(": Any, ").filter(|name| !name.is_empty()).collect();
+        let body = lines.at;
+        while !lines.peek().starts_with("    return ") {
+            if lines.ended() || !lines.peek().starts_with("    ") {
+                return Err(lines.fault("a part does not end"));
+            }
+            lines.at += 1;
+        }
+        lines.at += 1;
+        match self.parts.insert(name, Part { arguments, body, used: false }) {
+            Some(_) => Err(Fault { line, reason: format!("`{name}` stands twice") }),
+            None => Ok(()),
+        }
+    }
+
+    /// The call of a part, taken in as if its lines stood here.
+    fn call(&mut self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>, function: &str, number: usize) -> Result<bool, Fault> {
+        let name = format!("{function}_part_{number}");
+        let begin = format!("    given_{number} = _{name}(xp, ");
+        if !lines.peek().starts_with(&begin) {
+            return Ok(false);
+        }
+        let line = lines.number();
+        let part = self.parts.get_mut(name.as_str()).ok_or_else(|| lines.fault(format!("there is no part `{name}`")))?;
+        part.used = true;
+        let passed: String = part.arguments.iter().map(|argument| format!("{argument}, ")).collect();
+        let names = entries(lines.between(&format!("{begin}{passed}"), ")")?, line)?;
+        let all = body.program.arguments.clone();
+        if let Some(wrong) = part.arguments.iter().find(|a| !all.iter().any(|own| own.name() == **a)) {
+            return Err(Fault { line, reason: format!("`{wrong}` is not an argument of the function") });
+        }
+        let taken = names.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
+        let back = std::mem::replace(&mut lines.at, part.body);
+        let scope = body.enter();
+        // Of the function's arguments it knows those that it takes.
+        body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
+        for (i, value) in taken.into_iter().enumerate() {
+            if !body.element(lines, &format!("taken[{i}]"), value)? {
+                return Err(lines.fault(format!("value {i} that the part takes has no name")));
+            }
+        }
+        body.definitions(lines)?;
+        let line = lines.number();
+        let given = entries(lines.between("    return ", "")?, line)?;
+        let given = given.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
+        body.leave(scope);
+        body.program.arguments = all;
+        lines.at = back;
+        for (i, value) in given.into_iter().enumerate() {
+            if !body.element(lines, &format!("given_{number}[{i}]"), value)? {
+                return Err(lines.fault(format!("value {i} that the part gives has no name")));
+            }
+        }
+        Ok(true)
+    }
+}

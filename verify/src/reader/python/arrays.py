@@ -1,0 +1,50 @@
+def _namespace(value: Any) -> Any:
+    # The library of an array; lists and numbers become arrays of NumPy, and so do arrays of a NumPy that does not name itself.
+    if hasattr(value, "__array_namespace__"):
+        return value.__array_namespace__()
+    return __import__("torch" if type(value).__module__.partition(".")[0] == "torch" else "numpy")
+
+
+def _broadcast(shapes: list[tuple[int, ...]]) -> tuple[int, ...]:
+    rank = max(len(shape) for shape in shapes)
+    columns = zip(*((1,) * (rank - len(shape)) + shape for shape in shapes))
+    lengths = []
+    for column in columns:
+        wanted = set(column) - {1}
+        if len(wanted) > 1:
+            raise ValueError(f"leading axes {shapes} do not go together")
+        lengths.append(wanted.pop() if wanted else 1)
+    return tuple(lengths)
+
+
+def _enter(*arguments: tuple[str, Any, int]) -> tuple[Any, tuple[int, ...], list[Any]]:
+    # The library, the leading axes of the result, and each argument with its entries along the first axis.
+    xp = _namespace(arguments[0][1])
+    shapes, arrays = [], []
+    for name, value, length in arguments:
+        own = _namespace(value)
+        if own is not xp:
+            raise TypeError(f"{name} is of {own.__name__}, the arguments before it are of {xp.__name__}: take one library for all")
+        wanted = getattr(xp, DTYPE)
+        array = value if hasattr(value, "dtype") and hasattr(value, "shape") else xp.asarray(value, dtype=wanted)
+        if array.dtype != wanted:
+            advice = " (jax.config.update(\"jax_enable_x64\", True) switches them on)" if xp.__name__.startswith("jax") else ""
+            raise TypeError(f"{name} has entries of {array.dtype}, and {DTYPE} is wanted{advice}")
+        shape = tuple(array.shape)
+        if not shape or shape[-1] != length:
+            raise ValueError(f"{name} has the shape {shape}, and the last axis should have {length} entries")
+        shapes.append(shape[:-1])
+        # With one axis at least behind the entries: some libraries give numbers without axes another type.
+        arrays.append(xp.moveaxis(array, -1, 0) if shape[:-1] else xp.reshape(array, (length, 1)))
+    return xp, _broadcast(shapes), arrays
+
+
+def _leave(xp: Any, like: Any, shape: tuple[int, ...], lengths: tuple[int, ...], entries: tuple[Any, ...]) -> Any:
+    # Entries, numbers among them, as one array with the leading axes in front.
+    own = shape if shape else (1,)
+    if not entries:
+        return xp.reshape(like[:0], shape + lengths)
+    arrays = [entry if hasattr(entry, "shape") else xp.full_like(like[0], entry) for entry in entries]
+    stacked = xp.stack([xp.broadcast_to(array, own) for array in arrays])
+    result = xp.reshape(stacked, lengths + shape)
+    return xp.moveaxis(result, tuple(range(len(lengths))), tuple(range(-len(lengths), 0))) if lengths and shape else result
