@@ -11,8 +11,9 @@ use crate::arithmetic::roots::{dependent, Dependent};
 use crate::arithmetic::tower::Tower;
 use crate::arithmetic::{Arithmetic, Element, Stream};
 use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
+use crate::check::Check;
 use crate::claims::{Claims, Resolved};
-use crate::contract::{self, Promise};
+use crate::contract::{Promise, Sizes};
 use crate::divisors::{divisors, is_needed, needed};
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
@@ -128,42 +129,27 @@ impl<K: Arithmetic> Point<K> {
 }
 
 /// Numbers of joints, parameters, base parameters and rows of the task.
-#[derive(Clone, Copy, Debug)]
-struct Sizes {
-    joints: usize,
-    parameters: usize,
-    base: Option<usize>,
-    task: usize,
+fn sizes(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters>) -> Sizes {
+    let parameters = match vector {
+        Vector::Names(ids) => ids.len(),
+        Vector::Standard(all) => all.len(),
+        Vector::Base(base, _) => base.len(),
+    };
+    let base = base.map_or(0, |base| base.named.len());
+    Sizes { n: manipulator.joints.len(), p: parameters, b: base, m: manipulator.task.len() }
 }
 
-impl Sizes {
-    fn of(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters>) -> Sizes {
-        let parameters = match vector {
-            Vector::Names(ids) => ids.len(),
-            Vector::Standard(all) => all.len(),
-            Vector::Base(base, _) => base.len(),
-        };
-        let base = base.map(|base| base.named.len());
-        Sizes { joints: manipulator.joints.len(), parameters, base, task: manipulator.task.len() }
+/// The program of a function that takes and gives what its name promises; else what is wrong.
+fn fitting<'a>(sizes: &Sizes, name: &str, function: &'a Function) -> Result<&'a Program, String> {
+    let (promise, _) = Promise::of(name).ok_or("not a function that the checker knows the equations of")?;
+    let program = &function.program;
+    let places = promise.returned.places(sizes);
+    if program.outputs.iter().map(|o| &o.place).ne(&places) && Check::Places.is_made() {
+        return Err(format!("its result does not have the {} entries that it should", places.len()));
     }
-
-    /// The program of a function that takes and gives what its name promises; else what is wrong.
-    fn fitting<'a>(&self, name: &str, function: &'a Function) -> Result<&'a Program, String> {
-        let promise = Promise::of(name).ok_or("not a function that the checker knows the equations of")?;
-        let (promise, _) = promise;
-        if name == BASE_REGRESSOR && self.base.is_none() {
-            return Err("the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
-        }
-        let program = &function.program;
-        let sizes = contract::Sizes { n: self.joints, p: self.parameters, b: self.base.unwrap_or(0), m: self.task };
-        let places = promise.returned.places(&sizes);
-        if program.outputs.iter().map(|o| &o.place).ne(&places) {
-            return Err(format!("its result does not have the {} entries that it should", places.len()));
-        }
-        match beyond_the_end(program, self.joints, self.parameters) {
-            Some(why) => Err(why),
-            None => Ok(program),
-        }
+    match beyond_the_end(program, sizes.n, sizes.p) {
+        Some(why) if Check::Indices.is_made() => Err(why),
+        _ => Ok(program),
     }
 }
 
@@ -274,7 +260,7 @@ impl Checker {
             let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
             exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
-        let sizes = Sizes::of(&manipulator, &vector, base.as_ref());
+        let sizes = sizes(&manipulator, &vector, base.as_ref());
         Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, base, sizes, rest: stream })
     }
 
@@ -315,7 +301,7 @@ impl Checker {
 
     /// Number of entries of the parameter vector.
     pub fn parameters(&self) -> usize {
-        self.sizes.parameters
+        self.sizes.p
     }
 
     fn is_base(&self) -> bool {
@@ -334,7 +320,8 @@ impl Checker {
             module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
         // An optional one is missing where the arm has it.
         let of_arm = |name: &str| !self.points.is_empty() && self.points.iter().all(|point| point.knows(name));
-        for name in Promise::required().into_iter().chain(Promise::optional().filter(|name| of_arm(name))) {
+        let required = Promise::required().into_iter().filter(|_| Check::Required.is_made());
+        for name in required.chain(Promise::optional().filter(|name| of_arm(name) && Check::Optional.is_made())) {
             if !module.functions.iter().any(|(other, _)| *other == name) {
                 reports.push(refused(&name, "the module does not have it".into()));
             }
@@ -344,7 +331,10 @@ impl Checker {
 
     /// One function.
     pub fn function(&self, name: &str, function: &Result<Function, String>, real: Float) -> FunctionReport {
-        let program = match function.as_ref().map_err(String::clone).and_then(|function| self.sizes.fitting(name, function)) {
+        if name == BASE_REGRESSOR && self.base.is_none() {
+            return refused(name, "the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
+        }
+        let program = match function.as_ref().map_err(String::clone).and_then(|function| fitting(&self.sizes, name, function)) {
             Ok(program) => program,
             Err(why) => return refused(name, why),
         };
@@ -358,10 +348,7 @@ impl Checker {
         let resolved = self.claims.resolve(&program.name, &program.literals, real);
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
-            None => {
-                let wrong = self.misprint(program, &chosen, real).or_else(|| self.foreign_divisor(program, &chosen));
-                wrong.unwrap_or(Verdict::Equal)
-            }
+            None => self.foreign_divisor(program, &chosen).unwrap_or(Verdict::Equal),
             Some((entry, why)) => {
                 let suspect = self.claims.suspect(program, &entry, real);
                 Verdict::Different { entry, why: why + &suspect.map_or_else(String::new, |suspect| format!("; {suspect}")) }
@@ -403,6 +390,8 @@ impl Checker {
         let exact = self.exact.iter().enumerate().filter_map(|(i, point)| {
             point.difference(program, literals, base).map(|entry| (entry, format!("at rational point {}", i + 1)))
         });
+        let modular = modular.filter(|_| Check::Modular.is_made());
+        let exact = exact.filter(|_| Check::Rational.is_made());
         let (entry, place) = modular.chain(exact).min_by_key(|(entry, _)| *entry)?;
         Some((program.outputs[entry].place.clone(), format!("differs from the equations {place}")))
     }
@@ -425,6 +414,9 @@ impl Checker {
             let literals = point.literals_of(program, literals)?;
             dependent_column(point.arithmetic.clone(), program, &literals, self.manipulator.joints.len(), base.named.len())
         };
+        let modular = modular.filter(|_| Check::Modular.is_made());
+        let exact = || exact().filter(|_| Check::Rational.is_made());
+        let dependent = || dependent().filter(|_| Check::Columns.is_made());
         modular.or_else(exact).or_else(dependent)
     }
 
@@ -432,7 +424,10 @@ impl Checker {
     fn foreign_divisor(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
         let divisors = divisors(program);
         let by = program.part(&divisors);
-        if divisors.is_empty() || self.points.iter().all(|point| point.may_divide(&program.name, &by, chosen)) {
+        if !Check::Divisors.is_made()
+            || divisors.is_empty()
+            || self.points.iter().all(|point| point.may_divide(&program.name, &by, chosen))
+        {
             return None;
         }
         Some(Verdict::Refused(if needed(&program.name).is_empty() {
@@ -440,15 +435,6 @@ impl Checker {
         } else {
             "it divides by what is no pivot of a matrix that its equations invert".into()
         }))
-    }
-
-    /// A literal that is not the float nearest to the exact value with which the function is right.
-    fn misprint(&self, program: &Program, chosen: &[Formula], real: Float) -> Option<Verdict> {
-        let (index, literal) =
-            program.literals.iter().enumerate().find(|(i, literal)| !real.is_nearest(literal.value, &chosen[*i]))?;
-        let entry = program.entries_with(index).next().map_or(String::new(), |e| program.outputs[e].place.clone());
-        let why = format!("literal {} is not the float nearest to {}", literal.text, chosen[index]);
-        Some(Verdict::Different { entry, why })
     }
 }
 
@@ -472,9 +458,9 @@ impl Odds {
         module: &'a Module,
         base: Option<&OwnParameters>,
     ) -> BTreeMap<String, f64> {
-        let sizes = Sizes::of(manipulator, vector, base);
+        let sizes = sizes(manipulator, vector, base);
         let fitting =
-            |(name, function): &'a (String, Result<Function, String>)| sizes.fitting(name, function.as_ref().ok()?).ok();
+            |(name, function): &'a (String, Result<Function, String>)| fitting(&sizes, name, function.as_ref().ok()?).ok();
         let literals: Vec<(&Program, Vec<Formula>)> = (module.functions.iter().filter_map(fitting))
             .map(|program| {
                 let values = claims.resolve(&program.name, &program.literals, module.real).values;

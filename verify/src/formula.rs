@@ -21,6 +21,7 @@ use dashu_base::{Abs, BitTest, Gcd, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use crate::arithmetic::{Arithmetic, Element};
+use crate::check::Check;
 use definitions::{Defined, Definition, Definitions};
 
 /// An exact fraction.
@@ -586,7 +587,9 @@ impl Parser<'_> {
         let power = Formula::Power(Box::new(base), if negative { -size } else { size });
         self.definitions.charge(size as u64 * WORK_OF_FACTOR)?;
         match definitions::size(&power) {
-            bits if bits > LARGEST_BITS => Err(format!("a power of about {bits} bits is no constant of a robot")),
+            bits if bits > LARGEST_BITS && Check::Powers.is_made() => {
+                Err(format!("a power of about {bits} bits is no constant of a robot"))
+            }
             _ => Ok(power),
         }
     }

@@ -30,6 +30,7 @@ pub mod arithmetic;
 pub mod base;
 pub mod bounds;
 pub mod certificate;
+mod check;
 #[doc(hidden)]
 pub mod checker;
 #[doc(hidden)]
@@ -81,6 +82,7 @@ use armgen_codegen::Generated;
 use sha2::{Digest, Sha256};
 
 use certificate::Certificate;
+use check::Check;
 use checker::{Checker, Effort};
 use claims::Claims;
 use enclosure::Float;
@@ -112,7 +114,7 @@ pub fn prepare<'a>(
 ) -> Result<Prepared, String> {
     let module = Module::read(text)?;
     if let Some(Constant::Text(name)) = module.constants.get("NAME") {
-        if *name != manipulator.name {
+        if *name != manipulator.name && Check::Robot.is_made() {
             return Err(format!("NAME: the module is of the robot `{name}`, the description of `{}`", manipulator.name));
         }
     }

@@ -21,6 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::emit::Language;
 
+use crate::check::Check;
 use crate::enclosure::Float;
 use crate::program::Program;
 use body::Shared;
@@ -89,7 +90,7 @@ impl Module {
     }
 
     fn read_rust(text: &str) -> Result<Module, Fault> {
-        if text.len() > LONGEST {
+        if text.len() > LONGEST && Check::Length.is_made() {
             return Err(Fault { line: 1, reason: format!("the text is longer than {} MiB", LONGEST >> 20) });
         }
         let items = Items::read(text)?;
@@ -128,7 +129,8 @@ impl Module {
         // What the others call is not known.
         if functions.iter().all(|(_, function)| function.is_ok()) {
             sines::check_calls(&items.private, &shared.calls)?;
-            if let Some((name, part)) = items.parts.iter().find(|(name, _)| !shared.parts_called.contains(*name)) {
+            let unneeded = items.parts.iter().find(|(name, _)| !shared.parts_called.contains(*name));
+            if let Some((name, part)) = unneeded.filter(|_| Check::PartsNeeded.is_made()) {
                 return Err(part.place.peek().fault(format!("`{name}` is needed by no function of the module")));
             }
         }

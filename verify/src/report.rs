@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::bounds::{Bound, Domain};
+use crate::check::Check;
 use crate::formula::Formula;
 use crate::stability::Unfit;
 
@@ -141,6 +142,7 @@ impl Report {
             Verdict::Refused(why) => Some(format!("{name}: {why}")),
         };
         let identity = |i: &IdentityReport| match &i.holds {
+            _ if !Check::Identities.is_made() => None,
             Ok(true) => None,
             Ok(false) => Some(format!("{} does not hold", i.name)),
             Err(why) => Some(format!("{}: not checked, {why}", i.name)),
@@ -160,7 +162,7 @@ impl Report {
 impl FunctionReport {
     /// Whether it could be found equal by chance.
     pub fn is_uncertain(&self) -> bool {
-        self.verdict == Verdict::Equal && self.log2_odds > MOST_LOG2_ODDS
+        self.verdict == Verdict::Equal && self.log2_odds > MOST_LOG2_ODDS && Check::Odds.is_made()
     }
 }
 

@@ -23,6 +23,7 @@ use std::fmt;
 
 use crate::arithmetic::Stream;
 use crate::bounds::{corner, draw, literal_errors, two_digits, undivided_operands, Bound, Domain};
+use crate::check::Check;
 use crate::companion::{LaneArguments, Table, LANES};
 use crate::divisors::{needed, Matrix};
 use crate::enclosure::Float;
@@ -150,7 +151,7 @@ impl<'a> Trial<'a> {
 
     fn undivided_fault(&self, program: &Program, values: &[Formula], bound: f64) -> Option<Unfit> {
         let real = self.module.real;
-        if !bound.is_finite() {
+        if !bound.is_finite() && Check::Leaves.is_made() {
             return Some(Unfit::Leaves(format!("a value can leave {} inside the box", real.name())));
         }
         let runs = self.runs(program, values)?;
@@ -158,12 +159,13 @@ impl<'a> Trial<'a> {
         let most = |exponent: f64, real: Float| exponent.exp2() * (real.unit() * size + real.smallest_normal());
         let n = self.joints as f64;
         let allowed = most(12.0 + 2.5 * n, real);
-        if exceeds(bound, allowed) {
+        if exceeds(bound, allowed) && Check::Box.is_made() {
             return Some(too_much("anywhere in the box", bound, allowed, size));
         }
         let worst = runs.iter().flatten().fold(0.0f64, |worst, (_, error)| if exceeds(*error, worst) { *error } else { worst });
         let allowed = most(12.0 + 0.5 * n, Float::F64);
-        exceeds(worst, allowed).then(|| too_much("in f64, at a state of the box", worst, allowed, size))
+        (exceeds(worst, allowed) && Check::States.is_made())
+            .then(|| too_much("in f64, at a state of the box", worst, allowed, size))
     }
 
     fn divided_fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
@@ -176,11 +178,14 @@ impl<'a> Trial<'a> {
             let size = run.iter().fold(0.0f64, |size, (value, _)| size.max(value.abs()));
             let worst = run.iter().fold(0.0f64, |worst, (_, error)| if exceeds(*error, worst) { *error } else { worst });
             let allowed = factor * (unit * size + f64::MIN_POSITIVE);
-            if factor * unit < 1.0 && exceeds(worst, allowed) {
+            if factor * unit < 1.0 && exceeds(worst, allowed) && Check::DividedStates.is_made() {
                 return Some(too_much("in f64, at a state of the box", worst, allowed, size));
             }
             // Of a single number the quotients alone are finite in f64.
-            if factor * real.unit() < 1.0 && program.run_float(state, real).iter().any(|value| !value.is_finite()) {
+            if Check::DividedLeaves.is_made()
+                && factor * real.unit() < 1.0
+                && program.run_float(state, real).iter().any(|value| !value.is_finite())
+            {
                 return Some(Unfit::Leaves(format!("a value leaves {} at a state of the box", real.name())));
             }
         }

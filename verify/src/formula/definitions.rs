@@ -16,6 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use dashu_base::BitTest;
 
 use super::{Formula, Root};
+use crate::check::Check;
 use crate::enclosure::Interval;
 
 /// What a name begins with; its number follows.
@@ -144,8 +145,11 @@ impl Definitions {
 
     /// Counts work before it is done.
     pub(super) fn charge(&self, work: u64) -> Result<(), String> {
-        let left = self.left.get().checked_sub(work).ok_or("the formulas cost more than the constants of any robot")?;
-        self.left.set(left);
+        let left = self.left.get().checked_sub(work);
+        if left.is_none() && Check::Work.is_made() {
+            return Err("the formulas cost more than the constants of any robot".into());
+        }
+        self.left.set(left.unwrap_or(0));
         Ok(())
     }
 

@@ -22,6 +22,7 @@ use super::constant::{decimal, integer};
 use super::items::{Part, Public};
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
+use crate::check::Check;
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 
@@ -89,7 +90,8 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &mut Shared<'a, '_>) ->
 fn value_name<'a>(token: &Token<'a>) -> Result<&'a str, Fault> {
     let rest = token.text.strip_prefix(['s', 'c', 't']).unwrap_or("");
     let fits = |b: u8| b.is_ascii_digit() || b.is_ascii_lowercase() || b == b'_';
-    if token.kind == Kind::Word && rest.starts_with(|c: char| c.is_ascii_digit()) && rest.bytes().all(fits) {
+    let is_name = rest.starts_with(|c: char| c.is_ascii_digit()) && rest.bytes().all(fits);
+    if token.kind == Kind::Word && (is_name || !Check::Names.is_made()) {
         return Ok(token.text);
     }
     Err(token.fault(format!("{} where the name of a value can stand, such as t1, s2 or c2", token.shown())))
@@ -116,8 +118,8 @@ impl<'a> Compiler<'a, '_, '_> {
             return Ok(());
         }
         match self.scope.insert(value_name(name)?, value) {
-            Some(_) => Err(name.fault(format!("{} is given twice", name.shown()))),
-            None => Ok(()),
+            Some(_) if Check::NamesOnce.is_made() => Err(name.fault(format!("{} is given twice", name.shown()))),
+            _ => Ok(()),
         }
     }
 
@@ -222,7 +224,9 @@ impl<'a> Compiler<'a, '_, '_> {
         for (lane, angle) in angles.into_iter().enumerate() {
             // A processor without vectors leaves the other lanes out, so that nothing may use them.
             if lane >= count {
-                if let Some(name) = [&sines[lane], &cosines[lane]].into_iter().find(|name| !name.is("_")) {
+                if let Some(name) =
+                    [&sines[lane], &cosines[lane]].into_iter().find(|name| !name.is("_") && Check::Lanes.is_made())
+                {
                     return Err(name.fault(format!("{} is of none of the first {count} angles", name.shown())));
                 }
                 continue;
@@ -256,7 +260,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 // As rounding depends on the order, it is the same everywhere: added ones first.
                 let follows = angle.terms.last().is_none_or(|&(last, before)| (-before, last) < (-factor, joint));
                 let new = angle.terms.iter().all(|(other, _)| *other != joint);
-                if argument != Argument::Q || !follows || !new {
+                if argument != Argument::Q || !(follows && new || !Check::Angles.is_made()) {
                     return Err(place.fault("an angle is a sum of joint variables in their order, those taken away last"));
                 }
                 angle.terms.push((joint, factor));
@@ -325,7 +329,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.parser.expect("sign(")?;
                 let place = self.parser.peek();
                 let (argument, joint, _) = self.entry()?;
-                if argument != Argument::Dq {
+                if argument != Argument::Dq && Check::Signs.is_made() {
                     return Err(place.fault("the sign of something that is not a joint rate"));
                 }
                 self.parser.expect(")")?;
@@ -338,7 +342,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.value_of(&token)?
             }
             _ if token.is("(") => {
-                if brackets == MOST_BRACKETS {
+                if brackets == MOST_BRACKETS && Check::Brackets.is_made() {
                     return Err(token.fault(format!("brackets in more than {MOST_BRACKETS} others")));
                 }
                 self.parser.take()?;

@@ -2,6 +2,7 @@
 
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
+use crate::check::Check;
 use crate::enclosure::Float;
 use crate::program::Literal;
 
@@ -95,7 +96,7 @@ pub(super) fn decimal(token: &Token<'_>, real: Float) -> Result<Literal, Fault> 
         Float::F64 => format!("{value:?}"),
         Float::F32 => format!("{:?}", value as f32),
     };
-    let value = real.read(token.text).filter(|value| shortest(*value) == token.text);
+    let value = real.read(token.text).filter(|value| shortest(*value) == token.text || !Check::Shortest.is_made());
     let value = value.ok_or_else(|| token.fault(format!("{} is not the shortest decimal of a float", token.shown())))?;
     Ok(Literal { text: token.text.into(), value })
 }

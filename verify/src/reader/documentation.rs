@@ -4,6 +4,7 @@
 
 use super::lexer::{Fault, Kind};
 use super::parser::Parser;
+use crate::check::Check;
 
 /// Lines of the documentation of one item; that of 1024 parameters has a line for each.
 const MOST_LINES: usize = 2048;
@@ -26,12 +27,12 @@ impl<'a> Parser<'a> {
                 return Err(line.fault("documentation begins with a blank"));
             }
             if text.contains("```") || text.contains("~~~") {
-                if text != if fenced { CLOSES } else { OPENS } {
+                if text != (if fenced { CLOSES } else { OPENS }) && Check::Fences.is_made() {
                     let fence = line.shown();
                     return Err(line.fault(format!("{fence} can begin or end a block of code, which `cargo test` would run")));
                 }
                 fenced = !fenced;
-            } else if !fenced && (text.contains("  ") || text.contains('<')) {
+            } else if !fenced && (text.contains("  ") || text.contains('<')) && Check::Indentation.is_made() {
                 return Err(
                     line.fault("documentation with two blanks in a row or a `<` can hold code, which `cargo test` would run")
                 );

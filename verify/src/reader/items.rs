@@ -7,6 +7,7 @@ use super::constant::integer;
 use super::lexer::{Fault, Kind, Lexer};
 use super::parser::Parser;
 use super::sines::{self, Private};
+use crate::check::Check;
 use crate::contract::Promise;
 use crate::enclosure::Float;
 use crate::program::Argument;
@@ -91,7 +92,7 @@ fn signature(parser: &mut Parser<'_>, signature: &str) -> Result<(), Fault> {
             parser.eat(",")?;
         }
         let found = parser.peek();
-        if found.text != want.text || found.kind != want.kind {
+        if (found.text != want.text || found.kind != want.kind) && Check::Signatures.is_made() {
             let shown = found.shown();
             return Err(found.fault(format!("{shown} where the signature `{signature}` has `{}`", want.text)));
         }
@@ -119,6 +120,9 @@ impl<'a> Items<'a> {
 
     /// The struct and the constants of base parameters come with the functions that need them, and with no others.
     pub(super) fn check_companions(&self) -> Result<(), Fault> {
+        if !Check::Companions.is_made() {
+            return Ok(());
+        }
         let has = |name: &str| self.public.iter().any(|function| function.name == name);
         if self.structure.is_some() != (has("equations_of_motion") || has("equations_of_motion_with")) {
             let place = self.structure.map_or(1, |place| place.peek().line);
@@ -166,7 +170,7 @@ impl<'a> Items<'a> {
                 let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
                 let word = parser.take()?;
                 let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
-                if self.real.replace(real).is_some() {
+                if self.real.replace(real).is_some() && Check::Once.is_made() {
                     return Err(word.fault("`Real` stands twice"));
                 }
                 parser.expect(";")
@@ -177,7 +181,7 @@ impl<'a> Items<'a> {
                     known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
                 let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
                 parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
-                if self.constants.insert(name.text, (ty, *parser)).is_some() {
+                if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("constant `{known}` stands twice")));
                 }
                 // Read where `Real` is known.
@@ -194,15 +198,15 @@ impl<'a> Items<'a> {
                 }
                 parser.expect("}")?;
                 match self.structure.replace(documented) {
-                    Some(_) => Err(name.fault("the struct stands twice")),
-                    None => Ok(()),
+                    Some(_) if Check::Once.is_made() => Err(name.fault("the struct stands twice")),
+                    _ => Ok(()),
                 }
             }
             (true, "fn") => {
                 let (promise, with) = Promise::of(name.text)
                     .ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
                 parser.expect(&format!("{ALL_LINTS} pub fn {}", name.text))?;
-                if self.public.iter().any(|other| other.name == name.text) {
+                if self.public.iter().any(|other| other.name == name.text) && Check::Once.is_made() {
                     return Err(name.fault(format!("function `{}` stands twice", name.text)));
                 }
                 signature(parser, &promise.signature(with))?;
@@ -217,16 +221,16 @@ impl<'a> Items<'a> {
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
                 let part = part(parser, named)?;
-                if self.parts.insert(name.text, part).is_some() {
+                if self.parts.insert(name.text, part).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("function `{}` stands twice", name.text)));
                 }
                 Ok(())
             }
             (false, "fn" | "const") if is_private && name.kind == Kind::Word => {
-                if !sines::NAMES.contains(&name.text) {
+                if !sines::NAMES.contains(&name.text) && Check::PrivateNames.is_made() {
                     return Err(name.fault(format!("{} is not a private item of an emitted module", name.shown())));
                 }
-                if self.private.insert(name.text, documented).is_some() {
+                if self.private.insert(name.text, documented).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("`{}` stands twice", name.text)));
                 }
                 // Its tokens are compared as a whole where `Real` is known.

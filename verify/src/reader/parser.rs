@@ -1,6 +1,7 @@
 //! Tokens one after the other, compared with what must stand there.
 
 use super::lexer::{Fault, Kind, Lexer, Token};
+use crate::check::Check;
 
 /// A place in a text with the token that stands there; a copy is a place to come back to.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +50,11 @@ impl<'a> Parser<'a> {
             if want.kind == Kind::End {
                 return Ok(());
             }
-            let found = self.token;
+            let mut found = self.token;
+            while !Check::Tokens.is_made() && found.kind != Kind::End && found.text != want.text {
+                self.take()?;
+                found = self.token;
+            }
             if (found.kind, found.text) != (want.kind, want.text) {
                 let whole = text.split('\n').find(|line| !line.starts_with("///") && line.contains(want.text)).unwrap_or(text);
                 let part = if whole == want.text { String::new() } else { format!(" in `{whole}`") };

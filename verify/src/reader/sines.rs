@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::lexer::Fault;
 use super::parser::Parser;
+use crate::check::Check;
 use crate::enclosure::Float;
 
 const OF_LIBM_F64: &str =
@@ -70,6 +71,7 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
             }
             name => match block.get(name) {
                 Some(text) => is(text)?,
+                None if !Check::PrivateNames.is_made() => {}
                 None => {
                     return Err(place
                         .peek()
@@ -92,10 +94,10 @@ pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>)
             needed.extend([each, "SIN_COS_VECTORS"]);
         }
     }
-    if let Some(name) = needed.iter().find(|name| !private.contains_key(*name)) {
+    if let Some(name) = needed.iter().find(|name| !private.contains_key(*name) && Check::PrivateThere.is_made()) {
         return Err(Fault { line: 1, reason: format!("`{name}` is called, and the module does not have it") });
     }
-    match private.iter().find(|(name, _)| !needed.contains(*name)) {
+    match private.iter().find(|(name, _)| !needed.contains(*name) && Check::PrivateNeeded.is_made()) {
         Some((name, place)) => Err(place.peek().fault(format!("`{name}` is needed by no function of the module"))),
         None => Ok(()),
     }
