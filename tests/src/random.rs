@@ -94,6 +94,33 @@ pub fn arm(seed: u64) -> String {
 
 /// A random arm with a given name and number of joints.
 pub fn arm_with(name: &str, dof: usize, random: &mut Random) -> String {
+    drawn(name, dof, angle, random)
+}
+
+/// The same with angles that are decimals: no sine or cosine has roots.
+pub fn arm_with_general_angles(name: &str, dof: usize, random: &mut Random) -> String {
+    drawn(name, dof, general_angle, random)
+}
+
+/// A chain of joints, `r` revolute and `p` prismatic, whose angles are decimals that differ from joint to joint.
+pub fn chain_with_general_angles(joints: &str) -> String {
+    let mut text = format!("name: chain_{joints}\nconvention: standard\ngravity: [1, 2, -9.81]\njoints:\n");
+    for (i, kind) in (0i64..).zip(joints.chars()) {
+        let kind = if kind == 'r' { "revolute" } else { "prismatic" };
+        let (alpha, theta) = (decimal(17 + 10 * (i % 8) + i / 8, 2), decimal(300 + 7 * i, 3));
+        let (a, d, mass, y) = (decimal(10 + i, 2), decimal(20 + i, 2), decimal(10 + i, 1), decimal(20 + i, 2));
+        writeln!(
+            text,
+            "  - {{name: j{i}, type: {kind}, a: {a}, alpha: {alpha}, d: {d}, theta: {theta}, link: {{mass: {mass}, com: [0.1, {y}, 0.3], \
+             inertia: {{xx: 1, yy: 1.1, zz: 1, xy: 0.01, xz: 0.02, yz: 0.03}}}}}}"
+        )
+        .expect("text");
+    }
+    text
+}
+
+/// An arm with angles as `angle` draws them.
+fn drawn(name: &str, dof: usize, angle: fn(&mut Random) -> String, random: &mut Random) -> String {
     let convention = random.one_of(&["standard", "modified"]);
     let gravity = random.one_of(&["[0, 0, -9.81]", "[0, -9.81, 0]", "[1.5, -2.25, 9.5]", "[0, 0, 0]"]);
     // Named quantities, filled in as they come.
@@ -101,7 +128,7 @@ pub fn arm_with(name: &str, dof: usize, random: &mut Random) -> String {
     let named = random.chance(40);
     let mut joints = String::new();
     for i in 1..=dof {
-        joint(&mut joints, i, i == dof, named, &mut parameters, random);
+        joint(&mut joints, i, i == dof, named, &mut parameters, angle, random);
     }
     let mut tail = String::new();
     if random.chance(50) {
@@ -134,7 +161,15 @@ pub fn arm_with(name: &str, dof: usize, random: &mut Random) -> String {
     text
 }
 
-fn joint(text: &mut String, i: usize, last: bool, named: bool, parameters: &mut Vec<(String, String)>, random: &mut Random) {
+fn joint(
+    text: &mut String,
+    i: usize,
+    last: bool,
+    named: bool,
+    parameters: &mut Vec<(String, String)>,
+    angle: fn(&mut Random) -> String,
+    random: &mut Random,
+) {
     let mut name = |what: String, value: String| {
         if !named {
             return value;
@@ -204,6 +239,12 @@ fn angle(random: &mut Random) -> String {
         _ => random.one_of(&GENERAL),
     }
     .to_owned()
+}
+
+/// A decimal other than 0, between -3.2 and 3.2.
+fn general_angle(random: &mut Random) -> String {
+    let size = random.whole(1, 320);
+    decimal(if random.chance(50) { -size } else { size }, 2)
 }
 
 /// tr(Σ) 1 - Σ, Σ = L L', in units of 1e-4 kg m².
