@@ -30,6 +30,8 @@ pub enum Target {
     Pose,
     /// Its position and the turn about the arm's axes, which are all parallel.
     Planar,
+    /// Its position.
+    Position,
 }
 
 /// How all solutions of an arm are found.
@@ -69,6 +71,8 @@ pub enum Construction {
     ParallelTurns(Arrangement, Regional),
     /// Three prismatic joints; the places of the revolute ones.
     ThreePrismatic(Arrangement, [usize; 3]),
+    /// The position that three joints reach.
+    Position(Arrangement, Regional),
     /// Six joints of no class: two arrangements of the determinant.
     General(Box<[Arrangement; 2]>),
 }
@@ -90,16 +94,27 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
     let axis = angular.iter().position(|row| *row);
     match (count(linear), count(angular), axis) {
         (3, 3, _) => Ok(Target::Pose),
-        (_, 0, _) => Err("there is no construction for a target without angular rows".into()),
+        (3, 0, _) if chain.joints.len() == 3 => Ok(Target::Position),
+        (2, 0, _)
+            if chain.joints.len() == 2 && linear.iter().position(|row| !row).is_some_and(|axis| chain.turns_about(axis)) =>
+        {
+            Ok(Target::Position)
+        }
+        (_, 0, _) => Err("a position alone as the target asks for as many rows as joints".into()),
         (3, 1, Some(axis)) if chain.turns_about(axis) && chain.joints.len() == 4 => Ok(Target::Planar),
         (2, 1, Some(axis)) if chain.turns_about(axis) && chain.joints.len() == 3 && !linear[axis] => Ok(Target::Planar),
         _ => Err("the rows of the task are neither a pose nor a planar target with as many rows as joints".into()),
     }
 }
 
-/// With the virtual joint that a planar target leaves open: a slide along the last axis.
+/// With the virtual joint that a target in a plane leaves open: a slide along the last axis.
 fn completed(mut chain: Chain, target: Target) -> Chain {
-    if target == Target::Planar && chain.joints.len() == 3 && chain.joints.last().is_some_and(|joint| !joint.prismatic) {
+    let wanted = match target {
+        Target::Pose => return chain,
+        Target::Planar => 4,
+        Target::Position => 3,
+    };
+    if chain.joints.len() < wanted && chain.joints.last().is_some_and(|joint| !joint.prismatic) {
         chain.slide_at_the_end();
     }
     chain

@@ -131,6 +131,7 @@ impl Arrangement {
 pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<InverseKinematics, String> {
     let slides = chain.joints.iter().filter(|joint| joint.prismatic).count();
     let found = match (chain.joints.len(), slides) {
+        (3, _) if target == Target::Position => position(chain),
         (4, _) => parallel_turns(chain),
         (6, 3) => three_prismatic(chain),
         (6, 0 | 1) => spherical_triple(chain, true)
@@ -141,7 +142,11 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
         _ => None,
     };
     let none = || {
-        let word = if target == Target::Pose { "a pose" } else { "a planar target" };
+        let word = match target {
+            Target::Pose => "a pose",
+            Target::Planar => "a planar target",
+            Target::Position => "a position",
+        };
         let slides = if slides > 0 { format!(", {slides} of them prismatic,") } else { String::new() };
         format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
     };
@@ -237,6 +242,17 @@ fn parallel_turns(chain: &Chain) -> Option<Class> {
         let class = format!("all revolute axes parallel (joints {})", listed(&turning));
         let choices = case.choices(&joints);
         Some(Class { construction: Construction::ParallelTurns(way, case), class, most: case.most, choices })
+    })
+}
+
+/// Three joints that bring the end effector to a position.
+fn position(chain: &Chain) -> Option<Class> {
+    chain.arrangements().filter(|way| way.open == 2).find_map(|way| {
+        let case = regional(way.kinds(), &way.links[0], &way.links[1], true).filter(|case| case.closed)?;
+        let joints = way.joints();
+        let class = format!("position of three joints, {}", case.because(&joints));
+        let choices = case.choices(&joints);
+        Some(Class { construction: Construction::Position(way, case), class, most: case.most, choices })
     })
 }
 

@@ -65,6 +65,7 @@ fn needed(scalar: Scalar, construction: &Construction) -> Vec<&'static Text> {
             names.extend(polished.then_some("closure"));
         }
         Construction::ParallelTurns(_, case) => names.extend(["parallel_turns", case.text]),
+        Construction::Position(_, case) => names.push(case.text),
         Construction::ThreePrismatic(..) => names.push("three_prismatic"),
         Construction::General(_) => names.push("general"),
     }
@@ -95,6 +96,7 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
         Construction::SphericalTriple(way, _)
         | Construction::ThreeParallel(way, _)
         | Construction::ParallelTurns(way, _)
+        | Construction::Position(way, _)
         | Construction::ThreePrismatic(way, _) => {
             let (joints, way) = (usize_literal(way.order.len()), arrangement(way, scalar));
             quote! {
@@ -224,6 +226,20 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
                 #in_order
             }
         }
+        Construction::Position(way, case) => {
+            let block = format_ident!("{}", case.function);
+            // The origin of the end effector from before the last joint of the loop, and where it is to go from before the first.
+            let (from, to) = if way.backward {
+                (quote!(transform(&LOOP.before, position)), quote!(column(&inverse(&LOOP.after), 3)))
+            } else {
+                (quote!(column(&LOOP.before, 3)), quote!(transform(&inverse(&LOOP.after), position)))
+            };
+            quote! {
+                let [a, b, _] = LOOP.links;
+                let mut found = #block(&a, &b, #from, #to);
+                #in_order
+            }
+        }
         Construction::ThreePrismatic(_, turning) => {
             let turning = turning.map(Literal::usize_unsuffixed);
             quote! {
@@ -237,7 +253,28 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
     };
     let target = match found.target {
         Target::Pose => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.",
+        Target::Position => " `t`: a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it.",
         Target::Planar => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the task leaves out.",
+    };
+    let (given, invalid) = match found.target {
+        Target::Position => {
+            let given = quote! {
+                let position = [x[3], y[3], z[3]];
+                if !position.iter().all(|p| p.is_finite()) {
+                    return Solutions::none(Verdict::Invalid);
+                }
+            };
+            (given, " `Invalid`: the position is not finite.")
+        }
+        Target::Pose | Target::Planar => {
+            let given = quote! {
+                if !is_pose(t) {
+                    return Solutions::none(Verdict::Invalid);
+                }
+                let t: Frame = [x, y, z];
+            };
+            (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6.")
+        }
     };
     let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
     quote! {
@@ -247,7 +284,8 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         ///
         /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
         /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
-        /// effector stays (bit i of `free`: joint i + 1); `Invalid`, an entry of t is not finite or its rotation none to 1e-6.
+        /// effector stays (bit i of `free`: joint i + 1).
+        #[doc = #invalid]
         ///
         /// Angles are in (-pi, pi]; limits are not looked at (`within_limits` does). T(q) differs from t by roundings, of the order of 100
         /// units times the arm's length; q itself by that over the smallest singular value of the Jacobian, near a double solution by
@@ -255,11 +293,8 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         ///
         #[doc = #class]
         pub fn inverse_kinematics(t: &[[Real; 4]; 4]) -> Solutions {
-            if !is_pose(t) {
-                return Solutions::none(Verdict::Invalid);
-            }
             let [x, y, z, _] = *t;
-            let t: Frame = [x, y, z];
+            #given
             #body
         }
     }
