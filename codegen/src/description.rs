@@ -22,7 +22,7 @@ pub type Value = Option<Expression>;
 pub struct RobotDescription {
     /// Name of the robot.
     pub name: Option<Spanned<String>>,
-    /// Which Denavit-Hartenberg convention the rows follow.
+    /// What the rows of joints are.
     pub convention: Option<Spanned<Convention>>,
     /// Acceleration of gravity in the base frame.
     pub gravity: Option<Spanned<[Value; 3]>>,
@@ -30,8 +30,10 @@ pub struct RobotDescription {
     pub parameters: Vec<ParameterDescription>,
     /// Joints from base to tip; `None` if the key is missing or holds no list.
     pub joints: Option<Spanned<Vec<JointDescription>>>,
+    /// The frame that the first row starts from, in the base frame.
+    pub base: Option<PoseDescription>,
     /// End-effector frame in the last link's frame.
-    pub tool: Option<ToolDescription>,
+    pub tool: Option<PoseDescription>,
     /// Load in the end-effector frame.
     pub payload: Option<BodyDescription>,
     /// Rows of the operational space; those that exist. The span is the key's.
@@ -40,13 +42,15 @@ pub struct RobotDescription {
     pub regressor: Option<Spanned<RegressorDescription>>,
 }
 
-/// A Denavit-Hartenberg convention.
+/// What a row of a joint is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Convention {
     /// A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha).
     Standard,
     /// A_i = Rx(alpha) Tx(a) Rz(theta) Tz(d).
     Modified,
+    /// A_i = origin · motion about or along `axis`, as in a URDF.
+    Urdf,
 }
 
 /// A named quantity.
@@ -73,6 +77,10 @@ pub struct JointDescription {
     pub d: Value,
     /// Angle theta, rad.
     pub theta: Value,
+    /// The link frame at q = 0 in the previous link's frame, in rows of the convention urdf.
+    pub origin: Option<PoseDescription>,
+    /// Direction of the joint axis in the link frame, in rows of the convention urdf.
+    pub axis: Option<Spanned<[Value; 3]>>,
     /// Limits.
     pub limits: LimitsDescription,
     /// Mass distribution of the link.
@@ -81,6 +89,8 @@ pub struct JointDescription {
     pub motor: Option<MotorDescription>,
     /// Friction at the joint.
     pub friction: FrictionDescription,
+    /// What is added to the joint's own entry of the inertia matrix.
+    pub armature: Value,
     /// Where the joint begins: its first key.
     pub span: Span,
 }
@@ -116,6 +126,19 @@ pub struct BodyDescription {
     pub com: Option<Spanned<[Value; 3]>>,
     /// Inertia about the centre of mass.
     pub inertia: Option<InertiaDescription>,
+    /// Bodies that are fixed to it.
+    pub attached: Vec<AttachedDescription>,
+}
+
+/// A body that is fixed to a link.
+#[derive(Clone, Debug)]
+pub struct AttachedDescription {
+    /// Its name.
+    pub name: Option<Spanned<String>>,
+    /// Its frame in the link's frame.
+    pub origin: Option<PoseDescription>,
+    /// Its mass distribution, in its frame.
+    pub body: BodyDescription,
 }
 
 /// The six elements of an inertia tensor.
@@ -125,6 +148,8 @@ pub struct InertiaDescription {
     pub key: Span,
     /// xx, xy, yy, xz, yz, zz, those that are given.
     pub elements: [Value; 6],
+    /// The axes of the tensor in the frame of the body.
+    pub rotation: Option<RotationDescription>,
     /// Whether all that is given could be read.
     pub complete: bool,
 }
@@ -151,13 +176,37 @@ pub struct MotorDescription {
     pub viscous: Value,
 }
 
-/// The end-effector frame.
+/// A frame in another: each element in the one before it.
 #[derive(Clone, Debug)]
-pub struct ToolDescription {
+pub struct PoseDescription {
+    /// Place of the key that holds it.
+    pub key: Span,
+    /// From the outer frame to the inner one.
+    pub elements: Vec<PoseElement>,
+    /// Whether all that is given could be read.
+    pub complete: bool,
+}
+
+/// A translation and a rotation: [R | xyz].
+#[derive(Clone, Debug)]
+pub struct PoseElement {
     /// Translation.
     pub xyz: Option<Spanned<[Value; 3]>>,
-    /// Angles about x, y, z.
-    pub rpy: Option<Spanned<[Value; 3]>>,
+    /// Rotation.
+    pub rotation: Option<RotationDescription>,
+}
+
+/// A rotation in one of its writings.
+#[derive(Clone, Debug)]
+pub enum RotationDescription {
+    /// Rz(yaw) Ry(pitch) Rx(roll) of the angles roll, pitch, yaw.
+    Rpy(Spanned<[Value; 3]>),
+    /// A quaternion w, x, y, z of any length but 0.
+    Quat(Spanned<[Value; 4]>),
+    /// About an axis of any length but 0 by an angle.
+    AxisAngle(Spanned<[Value; 3]>, Expression),
+    /// The directions of the x and y axes, the second made perpendicular to the first.
+    XyAxes(Spanned<[Value; 6]>),
 }
 
 /// The choice of the regressor's columns.

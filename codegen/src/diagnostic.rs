@@ -133,7 +133,9 @@ codes! {
         WrongKind Error "wrong-kind",
         /// A list with too few or too many elements.
         WrongLength Error "wrong-length",
-        /// Neither `standard` nor `modified`.
+        /// Two rotations in one pose, or at one tensor.
+        SeveralRotations Error "several-rotations",
+        /// None of `standard`, `modified`, `urdf`.
         UnknownConvention Error "unknown-convention",
         /// Neither `revolute` nor `prismatic`.
         UnknownJointType Error "unknown-joint-type",
@@ -177,7 +179,9 @@ codes! {
         NegativeFriction Error "negative-friction",
         /// A gear ratio of 0.
         ZeroRatio Error "zero-ratio",
-        /// A spin axis without a direction.
+        /// An armature below 0.
+        NegativeArmature Error "negative-armature",
+        /// An axis or a rotation without a direction.
         ZeroAxis Error "zero-axis",
         /// A position range that holds no interval.
         EmptyLimits Error "empty-limits",

@@ -10,8 +10,10 @@
 //! link frame i  = joint frame i * link_frame_i                               (the frame that the user sees)
 //! ```
 //!
-//! A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's link_frame) Rz(theta) Tz(d)`
+//! A file gives rows A_i, the link frame in the previous one: `A_i = before_i * motion(axis_i, q_i) * after_i` ([`Row`]); `axis` is the z axis
+//! in Denavit-Hartenberg rows. A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's link_frame) Rz(theta) Tz(d)`
 //! and `link_frame = Tx(a) Rx(alpha)`; a modified one gives `placement = Rx(alpha) Tx(a) Rz(theta) Tz(d)` and `link_frame = 1`.
+//! In rows of the convention urdf joint frames are laid where Denavit and Hartenberg lay theirs (`validate/frames.rs`).
 
 use crate::exact::{Number, Polynomial};
 use crate::kinds::{JointKind, ParameterId, TaskRow};
@@ -34,9 +36,9 @@ pub struct Manipulator {
     /// The link that carries the end effector.
     pub tip: LinkId,
     /// End-effector frame in the tip's link frame.
-    pub tool: Placement,
+    pub tool: Pose,
     /// Rigid load, in the end-effector frame.
-    pub payload: Option<Body>,
+    pub payload: Option<Part>,
     /// Rows of the operational space, in the order of the file.
     pub task: Vec<TaskRow>,
     /// What the regressor's columns are.
@@ -61,20 +63,58 @@ pub struct Joint {
     pub kind: JointKind,
     /// The link that carries this joint; `None` for the base.
     pub parent: Option<LinkId>,
+    /// What the file says of where the link is.
+    pub row: Row,
     /// The joint frame at q = 0 in the parent's *joint frame* (the base frame if there is no parent).
     pub placement: Placement,
     /// The link's frame, as the user sees it, in the joint frame.
     pub link_frame: Placement,
     /// Limits as written, if any.
     pub limits: Limits,
-    /// Mass, centre of mass and inertia of the link, in the *link frame*.
-    pub link: Body,
+    /// The bodies that make up the link, in the *link frame*: its own, then those that are fixed to it.
+    pub link: Vec<Part>,
     /// The rotor that drives this joint, on the parent link.
     pub motor: Option<Motor>,
     /// Friction at the joint; `None` where the file does not give it.
     pub viscous: Option<Polynomial>,
     /// Coulomb friction at the joint, N m or N; the torque is coulomb · sign(dq).
     pub coulomb: Option<Polynomial>,
+    /// Inertia that the joint alone feels, kg m² or kg: the torque is armature · ddq. `None` where the file does not give it.
+    pub armature: Option<Polynomial>,
+}
+
+/// A row of the file: link frame i in link frame i - 1 (the base frame) is `before * motion * after`, where motion is the rotation by q about
+/// `axis`, or the translation by q along it.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// What stands before the motion.
+    pub before: Pose,
+    /// Unit vector of the joint axis, in the frame after `before`, through its origin.
+    pub axis: [Number; 3],
+    /// What stands after the motion.
+    pub after: Pose,
+}
+
+/// A frame in another, as a product of simple ones.
+#[derive(Clone, Debug)]
+pub struct Pose {
+    /// Translations, and rotations about one axis each, every one in the frame of the one before it.
+    pub elements: Vec<Placement>,
+    /// Their product.
+    pub frame: Placement,
+}
+
+/// A body as the file gives it, and the same in the frame of what carries it.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Its own frame F, in the frame of what carries it.
+    pub frame: Pose,
+    /// The axes of the inertia tensor, in F.
+    pub axes: Pose,
+    /// Mass, centre of mass in F, and inertia about the centre of mass in `axes`.
+    pub given: Body,
+    /// Mass, centre of mass and inertia in the frame of what carries it.
+    pub body: Body,
 }
 
 /// Limits of a joint; rad or m, rad/s or m/s, N m or N.
@@ -145,5 +185,86 @@ impl Manipulator {
     /// Rows of the geometric Jacobian that make up the task.
     pub fn task_rows(&self) -> Vec<usize> {
         self.task.iter().map(|row| row.index()).collect()
+    }
+}
+
+impl Placement {
+    /// No rotation, no translation.
+    pub fn identity() -> Placement {
+        let rotation = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Number::one() } else { Number::zero() }));
+        Placement { rotation, translation: std::array::from_fn(|_| Polynomial::zero()) }
+    }
+
+    /// The frame `inner`, given in this one, in the frame that this one is given in.
+    #[must_use]
+    pub fn then(&self, inner: &Placement) -> Placement {
+        let rotation = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                (0..3).fold(Number::zero(), |sum, k| sum.plus(&self.rotation[i][k].times(&inner.rotation[k][j])))
+            })
+        });
+        Placement { rotation, translation: self.point(&inner.translation) }
+    }
+
+    /// The frame that this one is given in, in this one.
+    #[must_use]
+    pub fn inverse(&self) -> Placement {
+        let rotation: [[Number; 3]; 3] = std::array::from_fn(|i| std::array::from_fn(|j| self.rotation[j][i].clone()));
+        let back = Placement { rotation: rotation.clone(), ..Placement::identity() };
+        Placement { rotation, translation: back.point(&self.translation).map(|x| -&x) }
+    }
+
+    /// Whether all its numbers are multiplied out.
+    pub fn is_multiplied_out(&self) -> bool {
+        let lengths = self.translation.iter().flat_map(|x| x.terms().map(|(_, c)| c));
+        !self.rotation.iter().flatten().chain(lengths).any(Number::is_shared)
+    }
+
+    /// A point of this frame in the outer one.
+    pub fn point(&self, point: &[Polynomial; 3]) -> [Polynomial; 3] {
+        std::array::from_fn(|i| {
+            (0..3)
+                .fold(self.translation[i].clone(), |sum, k| &sum + &(&Polynomial::from(self.rotation[i][k].clone()) * &point[k]))
+        })
+    }
+
+    /// A direction of this frame in the outer one.
+    pub fn direction(&self, direction: &[Number; 3]) -> [Number; 3] {
+        std::array::from_fn(|i| (0..3).fold(Number::zero(), |sum, k| sum.plus(&self.rotation[i][k].times(&direction[k]))))
+    }
+}
+
+impl Pose {
+    /// The product of these frames.
+    pub fn new(elements: Vec<Placement>) -> Pose {
+        let frame = elements.iter().skip(1).fold(elements.first().cloned(), |product, element| product.map(|p| p.then(element)));
+        Pose { frame: frame.unwrap_or_else(Placement::identity), elements }
+    }
+
+    /// No rotation, no translation.
+    pub fn identity() -> Pose {
+        Pose::new(Vec::new())
+    }
+}
+
+impl Part {
+    /// The body `given` in its own frame, with the axes of its tensor in that frame.
+    pub fn new(frame: Pose, axes: Pose, given: Body) -> Part {
+        let body = if frame.elements.is_empty() && axes.elements.is_empty() {
+            given.clone()
+        } else {
+            let turn = frame.frame.then(&axes.frame).rotation.map(|row| row.map(Polynomial::from));
+            let tensor = |i: usize, j: usize| &given.inertia[[[0, 1, 3], [1, 2, 4], [3, 4, 5]][i][j]];
+            let half: [[Polynomial; 3]; 3] = std::array::from_fn(|i| {
+                std::array::from_fn(|j| (0..3).fold(Polynomial::zero(), |sum, k| &sum + &(&turn[i][k] * tensor(k, j))))
+            });
+            let full = |i: usize, j: usize| (0..3).fold(Polynomial::zero(), |sum, k| &sum + &(&half[i][k] * &turn[j][k]));
+            Body {
+                mass: given.mass.clone(),
+                com: frame.frame.point(&given.com),
+                inertia: [full(0, 0), full(0, 1), full(1, 1), full(0, 2), full(1, 2), full(2, 2)],
+            }
+        };
+        Part { frame, axes, given, body }
     }
 }

@@ -5,7 +5,8 @@
 //! parameters.rs  which names stay symbols, which are numbers, which abbreviate an expression
 //! number.rs      expression -> exact number
 //! evaluate.rs    expression -> polynomial in the symbols
-//! geometry.rs    angles, Denavit-Hartenberg rows of both conventions -> placements
+//! geometry.rs    angles, rows of joints, poses, rotations -> placements
+//! frames.rs      where joint frames lie
 //! bodies.rs      mass, centre of mass, inertia: no impossible body
 //! joints.rs      limits, motor, friction
 //! choices.rs     task, regressor
@@ -19,6 +20,7 @@ mod bodies;
 mod choices;
 mod equations;
 mod evaluate;
+mod frames;
 mod geometry;
 mod joints;
 mod names;
@@ -28,15 +30,16 @@ mod places;
 
 use std::collections::BTreeMap;
 
-use crate::description::{JointDescription, RobotDescription};
+use crate::description::{Convention, JointDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Polynomial;
 use crate::kinds::{Scalar, MAX_JOINTS};
-use crate::manipulator::{Joint, LinkId, Manipulator};
+use crate::manipulator::{Joint, LinkId, Manipulator, Pose};
 use crate::source::{Source, Span};
+pub use bodies::impossible_inertia;
 pub use equations::{product_out_of_range, values_leave_the_scalar};
 use evaluate::Evaluator;
-pub use names::is_rust_name;
+pub use names::{is_free_name, is_rust_name};
 use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};
 
@@ -91,10 +94,11 @@ fn validate(
     }
     let parameters = Parameters::resolve(description, scalar, diagnostics);
     let mut context = Context { source, evaluator: Evaluator::new(parameters, scalar), diagnostics, planar: Vec::new() };
+    let convention = description.convention.as_ref().map(|c| c.value);
     let gravity = description.gravity.as_ref().and_then(|g| context.polynomials(&g.value));
     let joints = joints(description, &mut context);
-    let tool = geometry::tool(description.tool.as_ref(), &mut context);
-    let payload = description.payload.as_ref().map(|p| bodies::body(p, "the payload", &mut context));
+    let tool = geometry::pose(description.tool.as_ref(), "the tool", &mut context);
+    let payload = description.payload.as_ref().map(|p| bodies::part(p, Some(Pose::identity()), "the payload", &mut context));
     let task = choices::task(description, context.diagnostics);
     let regressor = choices::regressor(description, &mut context);
     bodies::warn_of_planar(&mut context);
@@ -105,16 +109,18 @@ fn validate(
     if context.diagnostics.has_errors() {
         return None;
     }
-    let joints = joints?;
+    let (mut joints, tool) = (joints?, tool?);
+    let symbols = context.evaluator.parameters.symbols();
+    frames::lay(&mut joints, &tool, convention == Some(Convention::Urdf), &symbols);
     let tip = LinkId(u32::try_from(joints.len() - 1).expect("the number of joints is bounded"));
     let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
     let manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
-        parameters: context.evaluator.parameters.symbols(),
+        parameters: symbols,
         gravity: gravity?,
         joints,
         tip,
-        tool: tool?,
+        tool,
         payload: match payload {
             Some(body) => Some(body?),
             None => None,
@@ -141,18 +147,18 @@ fn joints(description: &RobotDescription, context: &mut Context<'_>) -> Option<V
         return None;
     }
     let convention = description.convention.as_ref().map(|c| c.value);
+    let base = geometry::pose(description.base.as_ref(), "the base", context);
     let mut valid = Some(Vec::new());
-    let mut previous_frame = None;
     for (i, joint) in list.value.iter().enumerate() {
         let parent = i.checked_sub(1).map(|p| LinkId(u32::try_from(p).expect("the number of joints is bounded")));
-        let (joint, link_frame) = joints::joint(i, joint, previous_frame.as_ref(), parent, convention, context);
-        previous_frame = link_frame;
+        let base = base.as_ref().filter(|_| i == 0);
+        let joint = joints::joint(i, joint, base, parent, convention, context);
         valid = valid.zip(joint).map(|(mut all, joint)| {
             all.push(joint);
             all
         });
     }
-    valid
+    valid.filter(|_| base.is_some())
 }
 
 /// How messages call a joint: by its name, else by its number.

@@ -39,17 +39,22 @@ pub fn times(m: &[Vec<f64>], v: &[f64]) -> Vec<f64> {
 /// The equations are linear in these ten.
 pub type Ten = [f64; 10];
 
+/// A frame in another: rotation by rows, origin.
+pub type Placed = ([[f64; 3]; 3], [f64; 3]);
+
 /// A serial arm in plain numbers, SI units.
 #[derive(Clone, Debug)]
 pub struct Model {
     /// Modified (Craig, Khalil) instead of standard Denavit-Hartenberg rows.
     pub modified: bool,
+    /// The frame that the first row starts from, in the base frame.
+    pub base: Placed,
     /// Acceleration of gravity in the base frame.
     pub gravity: [f64; 3],
     /// Joints from base to tip, each with the link that it moves.
     pub joints: Vec<Joint>,
     /// End-effector frame in the last link's frame: rotation by rows, translation.
-    pub tool: ([[f64; 3]; 3], [f64; 3]),
+    pub tool: Placed,
     /// Rigid load, in the end-effector frame.
     pub payload: Option<Ten>,
 }
@@ -61,7 +66,9 @@ pub struct Joint {
     pub prismatic: bool,
     /// a, alpha, d, theta of the row; the joint variable is added to d or theta.
     pub row: [f64; 4],
-    /// The link, in its own Denavit-Hartenberg frame.
+    /// Of rows that are not Denavit and Hartenberg's: the link frame at q = 0 in the previous one, and the axis in it, of length 1.
+    pub origin: Option<(Placed, [f64; 3])>,
+    /// The link with what is attached to it, in its own frame.
     pub link: Ten,
     /// The rotor on the previous link.
     pub motor: Option<Motor>,
@@ -69,6 +76,8 @@ pub struct Joint {
     pub viscous: Option<f64>,
     /// Coulomb friction at the joint, if given.
     pub coulomb: Option<f64>,
+    /// Inertia that the joint alone feels, if given.
+    pub armature: Option<f64>,
 }
 
 /// The rotor of a joint, in the frame of the previous link (the base frame for the first joint).

@@ -92,6 +92,112 @@ pub fn arm(seed: u64) -> String {
     arm_with(&format!("arm_{seed}"), dof as usize, &mut random)
 }
 
+/// A random arm of what rows of Denavit and Hartenberg do not need: rows with origin and axis, poses in all writings, a base, tensors in turned
+/// axes, attached bodies, armatures.
+pub fn posed_arm(seed: u64) -> String {
+    let mut random = Random::new(seed ^ 0x7053_0000);
+    let random = &mut random;
+    let dof = random.whole(1, 4);
+    let urdf = random.chance(70);
+    let convention = if urdf { "urdf" } else { random.one_of(&["standard", "modified"]) };
+    let regressor = random.one_of(&["standard", "base"]);
+    let mut text = format!("name: posed_{seed}\nconvention: {convention}\ngravity: [0, 1.5, -9.81]\nregressor: {regressor}\n");
+    if random.chance(50) {
+        writeln!(text, "base: {}", pose(random, 2)).expect("text");
+    }
+    text += "joints:\n";
+    for i in 1..=dof {
+        let kind = if random.chance(25) { "prismatic" } else { "revolute" };
+        writeln!(text, "  - name: joint{i}\n    type: {kind}").expect("text");
+        if urdf {
+            if random.chance(90) {
+                writeln!(text, "    origin: {}", pose(random, 3)).expect("text");
+            }
+            let axis = random.one_of(&[
+                "0, 0, 1",
+                "0, 1, 0",
+                "-2, 0, 0",
+                "0, 0, -1",
+                "0, 3, -4",
+                "1, -2, 2",
+                "1, 1, 0",
+                "0.3, 0.2, -0.9",
+            ]);
+            writeln!(text, "    axis: [{axis}]").expect("text");
+        } else {
+            let (a, alpha, d, theta) = (length(random), angle(random), length(random), angle(random));
+            writeln!(text, "    a: {a}\n    alpha: {alpha}\n    d: {d}\n    theta: {theta}").expect("text");
+        }
+        let (mass, com, own) = (decimal(random.whole(10, 2000), 2), position(random), turned_inertia(random));
+        writeln!(text, "    link:\n      mass: {mass}\n      com: {com}\n      inertia: {own}").expect("text");
+        if random.chance(50) {
+            text += "      attached:\n";
+            for k in 0..random.whole(1, 2) {
+                let (mass, com, own) = (decimal(random.whole(0, 200), 2), position(random), turned_inertia(random));
+                let origin = pose(random, 3);
+                let com = if mass == "0" { "[0, 0, 0]".to_owned() } else { com };
+                writeln!(text, "        - {{name: body {k}, origin: {origin}, mass: {mass}, com: {com}, inertia: {own}}}")
+                    .expect("text");
+            }
+        }
+        if random.chance(40) {
+            writeln!(text, "    armature: {}", decimal(random.whole(1, 90), 3)).expect("text");
+        }
+        if random.chance(30) {
+            let (ratio, inertia) = (random.one_of(&["50", "-62.5"]), decimal(random.whole(1, 50), 5));
+            writeln!(text, "    motor: {{ratio: {ratio}, inertia: {inertia}, mass: 0.4, position: [0, 0.1, -0.2]}}")
+                .expect("text");
+        }
+        if random.chance(30) {
+            writeln!(text, "    friction: {{viscous: 0.2, coulomb: 3}}").expect("text");
+        }
+    }
+    if random.chance(70) {
+        writeln!(text, "tool: {}", pose(random, 2)).expect("text");
+    }
+    if random.chance(40) {
+        writeln!(text, "payload: {{mass: 1.5, com: {}, inertia: {}}}", position(random), turned_inertia(random)).expect("text");
+    }
+    text
+}
+
+/// A pose, or a list of up to `most`.
+fn pose(random: &mut Random, most: i64) -> String {
+    let count = random.whole(1, most);
+    let mut one = || {
+        let xyz = random.chance(80).then(|| format!("xyz: [{}, {}, {}]", length(random), length(random), length(random)));
+        let turn = random.chance(80).then(|| rotation(random));
+        format!("{{{}}}", xyz.into_iter().chain(turn).collect::<Vec<_>>().join(", "))
+    };
+    let all: Vec<String> = (0..count).map(|_| one()).collect();
+    if all.len() == 1 {
+        all.concat()
+    } else {
+        format!("[{}]", all.join(", "))
+    }
+}
+
+fn rotation(random: &mut Random) -> String {
+    match random.whole(0, 6) {
+        0 => format!(
+            "quat: {}",
+            random.one_of(&["[0, 1, 0, 0]", "[0.5, -0.5, 0.5, 0.5]", "[1, 2, -2, 0]", "[0.7, 0.1, 0.2, -0.4]"])
+        ),
+        1 => format!("axis: {}, angle: {}", random.one_of(&["[0, 0, 2]", "[1, 2, -2]", "[0, 1, 1]"]), angle(random)),
+        2 => format!("xyaxes: {}", random.one_of(&["[0, 1, 0, -1, 0, 0]", "[3, 4, 0, 0, 0, 1]", "[1, 2, 2, 0.5, 2, 0]"])),
+        _ => format!("rpy: [{}, {}, {}]", angle(random), angle(random), angle(random)),
+    }
+}
+
+/// A tensor, half of the time in axes of its own.
+fn turned_inertia(random: &mut Random) -> String {
+    let inertia = inertia(random);
+    if random.chance(50) {
+        return inertia;
+    }
+    format!("{}, {}}}", inertia.trim_end_matches('}'), rotation(random))
+}
+
 /// A random arm with a given name and number of joints.
 pub fn arm_with(name: &str, dof: usize, random: &mut Random) -> String {
     drawn(name, dof, angle, random)

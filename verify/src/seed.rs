@@ -9,7 +9,7 @@
 //! ([`crate::report::MOST_LOG2_ODDS`]).
 
 use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::manipulator::{Body, Manipulator, Placement, RegressorChoice};
+use armgen_codegen::manipulator::{Body, Joint, Manipulator, Part, Placement, Pose, RegressorChoice};
 use sha2::{Digest, Sha256};
 
 use crate::arithmetic::Stream;
@@ -145,12 +145,16 @@ fn of_description(manipulator: &Manipulator) -> Hash {
     arm.polynomials(gravity);
     for joint in joints {
         arm.word(&format!("{:?} {:?}", joint.kind, joint.parent));
-        arm.placement(&joint.placement);
-        arm.placement(&joint.link_frame);
+        arm.row(joint);
         let limits = &joint.limits;
         let limits = limits.position.iter().flatten().chain(&limits.velocity).chain(&limits.effort);
         limits.for_each(|limit| arm.number(limit));
-        arm.body(&joint.link);
+        for (k, part) in joint.link.iter().enumerate() {
+            if k > 0 {
+                arm.word("attached");
+            }
+            arm.part(part);
+        }
         if let Some(motor) = &joint.motor {
             arm.word("motor");
             arm.polynomials([&motor.ratio, &motor.mass]);
@@ -161,12 +165,19 @@ fn of_description(manipulator: &Manipulator) -> Hash {
         }
         arm.optional(&joint.viscous);
         arm.optional(&joint.coulomb);
+        if joint.armature.is_some() {
+            arm.word("armature");
+            arm.optional(&joint.armature);
+        }
     }
     arm.word(&format!("{tip:?} {task:?}"));
-    arm.placement(tool);
+    match tool.frame.is_multiplied_out() {
+        true => arm.placement(&tool.frame),
+        false => arm.pose(tool),
+    }
     if let Some(payload) = payload {
         arm.word("payload");
-        arm.body(payload);
+        arm.part(payload);
     }
     match regressor {
         RegressorChoice::Standard => arm.word("standard"),
@@ -205,6 +216,32 @@ impl Description {
     fn placement(&mut self, placement: &Placement) {
         placement.rotation.iter().flatten().for_each(|entry| self.number(entry));
         self.polynomials(&placement.translation);
+    }
+
+    fn pose(&mut self, pose: &Pose) {
+        self.word("pose");
+        pose.elements.iter().for_each(|element| self.placement(element));
+    }
+
+    /// A row with joint frames of its own is told by these, any other by what it is made of.
+    fn row(&mut self, joint: &Joint) {
+        if joint.link_frame == joint.row.after.frame && joint.placement.is_multiplied_out() {
+            self.placement(&joint.placement);
+        } else {
+            self.pose(&joint.row.before);
+            joint.row.axis.iter().for_each(|entry| self.number(entry));
+        }
+        self.placement(&joint.link_frame);
+    }
+
+    /// A body, with what sets it apart from one in the frame that carries it.
+    fn part(&mut self, part: &Part) {
+        for pose in [&part.frame, &part.axes] {
+            if !pose.elements.is_empty() {
+                self.pose(pose);
+            }
+        }
+        self.body(&part.given);
     }
 
     fn body(&mut self, body: &Body) {

@@ -71,6 +71,8 @@ pub struct Joint {
     pub body: Body,
     /// The rotor that drives this joint.
     pub rotor: Option<Rotor>,
+    /// Inertia that the joint alone feels.
+    pub armature: ExprId,
     /// Viscous friction seen at the joint: ratio² · rotor's + joint's.
     pub viscous: ExprId,
     /// Coulomb friction.
@@ -233,7 +235,7 @@ impl Arm {
         let tip = super::parameters::tip(manipulator);
         let mut arm =
             Arm { joints, gravity, tip, tool_rotation: crate::ring::matrix::IDENTITY, tool_origin: ZERO, base_moment: ZERO };
-        let (rotation, origin) = placement(pool, manipulator, view, &manipulator.tool);
+        let (rotation, origin) = placement(pool, manipulator, view, &manipulator.tool.frame);
         let last = arm.joints[tip];
         arm.tool_rotation = pool.product(&last.link_rotation, &rotation);
         let turned = pool.transform(&last.link_rotation, &origin);
@@ -393,12 +395,13 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         let turned = link.turned(pool, &link_rotation);
         turned.moved(pool, &link_origin)
     };
-    let friction = |pool: &mut Pool, parameter| view.standard(pool, manipulator, parameter);
-    let mut viscous = friction(pool, StandardParameter::Viscous(index));
-    let coulomb = friction(pool, StandardParameter::Coulomb(index));
+    let given = |pool: &mut Pool, parameter| view.standard(pool, manipulator, parameter);
+    let mut viscous = given(pool, StandardParameter::Viscous(index));
+    let coulomb = given(pool, StandardParameter::Coulomb(index));
+    let armature = given(pool, StandardParameter::Armature(index));
     if let Some(motor) = &joint.motor {
         let ratio = view.polynomial(pool, manipulator, &motor.ratio);
-        let at_rotor = friction(pool, StandardParameter::RotorViscous(index));
+        let at_rotor = given(pool, StandardParameter::RotorViscous(index));
         let square = pool.mul(ratio, ratio);
         let seen = pool.mul(square, at_rotor);
         viscous = pool.add(viscous, seen);
@@ -418,6 +421,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         link_origin,
         body,
         rotor: None,
+        armature,
         viscous,
         coulomb,
     }

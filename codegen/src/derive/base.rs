@@ -544,6 +544,7 @@ fn preference(parameter: StandardParameter) -> (u8, u16, u8) {
         StandardParameter::Coulomb(i) => (0, i, 2),
         StandardParameter::Link(i, k) => (1, i, of_body(k)),
         StandardParameter::RotorInertia(i) => (2, i, 0),
+        StandardParameter::Armature(i) => (2, i, 1),
         StandardParameter::Payload(k) => (3, 0, k as u8),
     }
 }

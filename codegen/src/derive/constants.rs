@@ -22,12 +22,12 @@ pub fn find_field(manipulator: &Manipulator) -> Option<Field> {
 fn constants(manipulator: &Manipulator) -> Vec<Number> {
     let mut numbers = Vec::new();
     for joint in &manipulator.joints {
-        for placement in [&joint.placement, &joint.link_frame, &manipulator.tool] {
+        for placement in [&joint.placement, &joint.link_frame, &manipulator.tool.frame] {
             numbers.extend(placement.rotation.iter().flatten().cloned());
             numbers.extend(placement.translation.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }
-        let bodies = [Some(&joint.link), manipulator.payload.as_ref()];
-        for body in bodies.into_iter().flatten() {
+        for part in joint.link.iter().chain(&manipulator.payload) {
+            let body = &part.body;
             let all = std::iter::once(&body.mass).chain(&body.com).chain(&body.inertia);
             numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }
@@ -36,7 +36,9 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
             let all = motor.position.iter().chain([&motor.ratio, &motor.mass]).chain(&motor.inertia).chain(&motor.viscous);
             numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }
-        numbers.extend(joint.viscous.iter().chain(&joint.coulomb).flat_map(|p| p.terms().map(|(_, c)| c.clone())));
+        numbers.extend(
+            joint.viscous.iter().chain(&joint.coulomb).chain(&joint.armature).flat_map(|p| p.terms().map(|(_, c)| c.clone())),
+        );
     }
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
     numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));

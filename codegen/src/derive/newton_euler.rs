@@ -196,6 +196,8 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
                 spin = pool.scale(coupling, &change);
             }
         }
+        let felt = pool.mul(arm.joints[i].armature, motion.accelerations[i]);
+        tau[i] = pool.add(tau[i], felt);
         if let Some(p) = parent {
             let (force, moment) = wrench_outward(pool, arm, i, &force, &moment);
             let moment = pool.add_vectors(&moment, &spin);

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::exact::{Number, Polynomial, Rational};
 use crate::kinds::ParameterId;
-use crate::manipulator::{Body, LinkId, Manipulator};
+use crate::manipulator::{Body, LinkId, Manipulator, Part};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// One of the parameters in which the dynamics of every arm are linear.
@@ -14,6 +14,8 @@ pub enum StandardParameter {
     Link(u16, Inertial),
     /// Inertia of the rotor of a joint about its axis.
     RotorInertia(u16),
+    /// Inertia that a joint alone feels.
+    Armature(u16),
     /// Viscous friction at the rotor of a joint.
     RotorViscous(u16),
     /// Viscous friction at a joint.
@@ -124,6 +126,9 @@ impl StandardParameter {
             if joint.motor.as_ref().is_some_and(|m| m.inertia.is_some()) {
                 all.push(StandardParameter::RotorInertia(i));
             }
+            if joint.armature.is_some() {
+                all.push(StandardParameter::Armature(i));
+            }
             if joint.motor.as_ref().is_some_and(|m| m.viscous.is_some()) {
                 all.push(StandardParameter::RotorViscous(i));
             }
@@ -140,11 +145,12 @@ impl StandardParameter {
         all
     }
 
-    /// Its name: `m1`, `Ixx1`, `Im1`, `Fm1`, `Fv1`, `Fc1`, `mp`.
+    /// Its name: `m1`, `Ixx1`, `Im1`, `Ia1`, `Fm1`, `Fv1`, `Fc1`, `mp`.
     pub fn name(self) -> String {
         match self {
             StandardParameter::Link(i, k) => format!("{}{}", k.name(), i + 1),
             StandardParameter::RotorInertia(i) => format!("Im{}", i + 1),
+            StandardParameter::Armature(i) => format!("Ia{}", i + 1),
             StandardParameter::RotorViscous(i) => format!("Fm{}", i + 1),
             StandardParameter::Viscous(i) => format!("Fv{}", i + 1),
             StandardParameter::Coulomb(i) => format!("Fc{}", i + 1),
@@ -152,38 +158,40 @@ impl StandardParameter {
         }
     }
 
-    /// The value or the body that gives it.
-    fn part(self, manipulator: &Manipulator) -> Part<'_> {
+    /// The value or the bodies that give it.
+    fn entry(self, manipulator: &Manipulator) -> Entry<'_> {
         let joint = |i: u16| &manipulator.joints[usize::from(i)];
         let motor = |i: u16| joint(i).motor.as_ref();
         match self {
-            StandardParameter::Link(i, k) => Part::OfBody(Some(&joint(i).link), k),
-            StandardParameter::RotorInertia(i) => Part::Whole(motor(i).and_then(|m| m.inertia.as_ref())),
-            StandardParameter::RotorViscous(i) => Part::Whole(motor(i).and_then(|m| m.viscous.as_ref())),
-            StandardParameter::Viscous(i) => Part::Whole(joint(i).viscous.as_ref()),
-            StandardParameter::Coulomb(i) => Part::Whole(joint(i).coulomb.as_ref()),
-            StandardParameter::Payload(k) => Part::OfBody(manipulator.payload.as_ref(), k),
+            StandardParameter::Link(i, k) => Entry::OfBodies(&joint(i).link, k),
+            StandardParameter::RotorInertia(i) => Entry::Whole(motor(i).and_then(|m| m.inertia.as_ref())),
+            StandardParameter::Armature(i) => Entry::Whole(joint(i).armature.as_ref()),
+            StandardParameter::RotorViscous(i) => Entry::Whole(motor(i).and_then(|m| m.viscous.as_ref())),
+            StandardParameter::Viscous(i) => Entry::Whole(joint(i).viscous.as_ref()),
+            StandardParameter::Coulomb(i) => Entry::Whole(joint(i).coulomb.as_ref()),
+            StandardParameter::Payload(k) => Entry::OfBodies(manipulator.payload.as_slice(), k),
         }
     }
 
     /// Its value at the nominal values of all names.
     pub fn nominal(self, manipulator: &Manipulator) -> Number {
-        match self.part(manipulator) {
-            Part::Whole(value) => value.map_or_else(Number::zero, |value| nominal(manipulator, value)),
-            Part::OfBody(body, k) => body.map_or_else(Number::zero, |body| {
+        match self.entry(manipulator) {
+            Entry::Whole(value) => value.map_or_else(Number::zero, |value| nominal(manipulator, value)),
+            Entry::OfBodies(bodies, k) => bodies.iter().fold(Number::zero(), |sum, part| {
                 let mut number = |polynomial: &Polynomial| nominal(manipulator, polynomial);
-                inertial(body, k, &mut number, &mut |a, b| a * b, &mut |a, b| a + b, &mut |a| -a)
+                let of = inertial(&part.body, k, &mut number, &mut Number::times, &mut Number::plus, &mut |a| -a);
+                sum.plus(&of)
             }),
         }
     }
 }
 
 /// Where a standard parameter is found.
-enum Part<'a> {
+enum Entry<'a> {
     /// It is given as such.
     Whole(Option<&'a Polynomial>),
-    /// One of a body.
-    OfBody(Option<&'a Body>, Inertial),
+    /// The sum over bodies in one frame: first and second moments about one origin add.
+    OfBodies(&'a [Part], Inertial),
 }
 
 /// An inertial parameter of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c'), where `of` gives the entries of the
@@ -326,20 +334,25 @@ impl View<'_> {
 
     /// A standard parameter as an expression in the names of the description.
     fn in_names(self, pool: &mut Pool, manipulator: &Manipulator, parameter: StandardParameter) -> ExprId {
-        match parameter.part(manipulator) {
-            Part::Whole(value) => value.map_or(ExprId::ZERO, |value| self.polynomial(pool, manipulator, value)),
-            Part::OfBody(None, _) => ExprId::ZERO,
-            Part::OfBody(Some(body), k) if stays_short(body) => {
-                let value = inertial(body, k, &mut Polynomial::clone, &mut |a, b| a * b, &mut |a, b| a + b, &mut |a| -a);
-                self.polynomial(pool, manipulator, &value)
-            }
-            Part::OfBody(Some(body), k) => {
-                let pool = RefCell::new(pool);
-                let mut entry = |value: &Polynomial| self.polynomial(&mut pool.borrow_mut(), manipulator, value);
-                let mut mul = |a: &ExprId, b: &ExprId| pool.borrow_mut().mul(*a, *b);
-                inertial(body, k, &mut entry, &mut mul, &mut |a, b| pool.borrow_mut().add(*a, *b), &mut |a| -*a)
-            }
+        match parameter.entry(manipulator) {
+            Entry::Whole(value) => value.map_or(ExprId::ZERO, |value| self.polynomial(pool, manipulator, value)),
+            Entry::OfBodies(bodies, k) => bodies.iter().fold(ExprId::ZERO, |sum, part| {
+                let of = self.of_body(pool, manipulator, &part.body, k);
+                pool.add(sum, of)
+            }),
         }
+    }
+
+    /// An inertial parameter of one body as an expression in the names of the description.
+    fn of_body(self, pool: &mut Pool, manipulator: &Manipulator, body: &Body, k: Inertial) -> ExprId {
+        if stays_short(body) {
+            let value = inertial(body, k, &mut Polynomial::clone, &mut |a, b| a * b, &mut |a, b| a + b, &mut |a| -a);
+            return self.polynomial(pool, manipulator, &value);
+        }
+        let pool = RefCell::new(pool);
+        let mut entry = |value: &Polynomial| self.polynomial(&mut pool.borrow_mut(), manipulator, value);
+        let mut mul = |a: &ExprId, b: &ExprId| pool.borrow_mut().mul(*a, *b);
+        inertial(body, k, &mut entry, &mut mul, &mut |a, b| pool.borrow_mut().add(*a, *b), &mut |a| -*a)
     }
 }
 
@@ -397,6 +410,9 @@ impl StandardParameter {
             StandardParameter::Link(i, k) => format!("link {} ({}): {}", i + 1, name(i), k.meaning()),
             StandardParameter::RotorInertia(i) => {
                 format!("rotor of joint {} ({}): inertia about its axis, kg m²", i + 1, name(i))
+            }
+            StandardParameter::Armature(i) => {
+                format!("joint {} ({}): armature, added to its own entry of the inertia matrix, kg m² or kg", i + 1, name(i))
             }
             StandardParameter::RotorViscous(i) => {
                 format!("rotor of joint {} ({}): viscous friction at the rotor, N m s", i + 1, name(i))

@@ -113,6 +113,7 @@ fn columns_in(
                 let square = pool.mul(ratio, ratio);
                 y[i][column] = pool.mul(square, motion.reference[i]);
             }
+            StandardParameter::Armature(i) => y[usize::from(i)][column] = motion.accelerations[usize::from(i)],
             StandardParameter::Viscous(i) => y[usize::from(i)][column] = motion.reference[usize::from(i)],
             StandardParameter::Coulomb(i) => y[usize::from(i)][column] = pool.symbol(Symbol::RateSign(i)),
         }

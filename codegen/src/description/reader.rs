@@ -1,8 +1,9 @@
 //! Tree of nodes -> [`RobotDescription`]: which keys there are, and what kind of value stands under each.
 
 use super::{
-    BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription, LimitsDescription, MotorDescription,
-    ParameterDescription, RegressorDescription, RobotDescription, ToolDescription, Value, INERTIA_ELEMENTS,
+    AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
+    LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, RegressorDescription,
+    RobotDescription, RotationDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, required, Fields, Key, Reader};
@@ -16,6 +17,7 @@ const ROBOT: &[Key] = &[
     required("convention", "convention: standard"),
     required("gravity", "gravity: [0, 0, -9.81]"),
     optional("parameters"),
+    optional("base"),
     required("joints", "joints:` and below it one `- name: ..."),
     optional("tool"),
     optional("payload"),
@@ -33,15 +35,46 @@ const JOINT: &[Key] = &[
     required("link", "link: {mass: 5}"),
     optional("motor"),
     optional("friction"),
+    optional("armature"),
+];
+/// The keys of a joint whose row is not one of Denavit and Hartenberg.
+const URDF_JOINT: &[Key] = &[
+    required("name", "name: shoulder"),
+    required("type", "type: revolute"),
+    optional("origin"),
+    required("axis", "axis: [0, 0, 1]"),
+    optional("limits"),
+    required("link", "link: {mass: 5}"),
+    optional("motor"),
+    optional("friction"),
+    optional("armature"),
 ];
 const LIMITS: &[Key] = &[optional("position"), optional("velocity"), optional("effort")];
-const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia")];
+const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia"), optional("attached")];
+const ATTACHED: &[Key] =
+    &[optional("name"), optional("origin"), required("mass", "mass: 0.5"), optional("com"), optional("inertia")];
 const PAYLOAD: &[Key] = &[optional("mass"), optional("com"), optional("inertia")];
-const INERTIA: &[Key] = &[optional("xx"), optional("yy"), optional("zz"), optional("xy"), optional("xz"), optional("yz")];
+const INERTIA: &[Key] = &[
+    optional("xx"),
+    optional("yy"),
+    optional("zz"),
+    optional("xy"),
+    optional("xz"),
+    optional("yz"),
+    optional("rpy"),
+    optional("quat"),
+    optional("axis"),
+    optional("angle"),
+    optional("xyaxes"),
+];
 const MOTOR: &[Key] =
     &[optional("ratio"), optional("inertia"), optional("mass"), optional("position"), optional("axis"), optional("viscous")];
 const FRICTION: &[Key] = &[optional("viscous"), optional("coulomb")];
-const TOOL: &[Key] = &[optional("xyz"), optional("rpy")];
+const POSE: &[Key] =
+    &[optional("xyz"), optional("rpy"), optional("quat"), optional("axis"), optional("angle"), optional("xyaxes")];
+
+/// Poses in one list.
+const MOST_POSES: usize = 64;
 
 /// Keys that other formats use for what has another name here.
 const OTHER_NAMES: &[(&str, &str)] = &[
@@ -75,23 +108,23 @@ impl Reader<'_> {
     fn robot(&mut self, root: &Node) -> RobotDescription {
         let first = first_key(root);
         let Some(fields) = self.mapping(root, "the description", first, ROBOT) else { return RobotDescription::default() };
+        let convention = fields.get("convention").and_then(|(key, node)| {
+            let words = [("standard", Convention::Standard), ("modified", Convention::Modified), ("urdf", Convention::Urdf)];
+            let help = "`standard`: Rz(theta) Tz(d) Tx(a) Rx(alpha) (Siciliano); `modified`: Rx(alpha) Tx(a) Rz(theta) Tz(d) (Craig, Khalil); `urdf`: `origin` and `axis`";
+            self.choice(node, key, "convention", &words, Code::UnknownConvention, help)
+        });
+        let rows = match convention.as_ref().map(|c| c.value) {
+            Some(Convention::Urdf) => URDF_JOINT,
+            _ => JOINT,
+        };
         RobotDescription {
             name: fields.get("name").and_then(|(key, node)| self.word(node, key, "name")),
-            convention: fields.get("convention").and_then(|(key, node)| {
-                let words = [("standard", Convention::Standard), ("modified", Convention::Modified)];
-                let help = "`standard`: Rz(theta) Tz(d) Tx(a) Rx(alpha) (Siciliano); `modified`: Rx(alpha) Tx(a) Rz(theta) Tz(d) (Craig, Khalil)";
-                self.choice(node, key, "convention", &words, Code::UnknownConvention, help)
-            }),
+            convention,
             gravity: fields.get("gravity").and_then(|(key, node)| self.vector(node, key, "gravity", ["x", "y", "z"])),
             parameters: fields.get("parameters").map_or_else(Vec::new, |(key, node)| self.parameters(node, key)),
-            joints: fields.get("joints").and_then(|(key, node)| self.joints(node, key)),
-            tool: fields.get("tool").and_then(|(key, node)| {
-                let fields = self.mapping(node, "`tool`", key, TOOL)?;
-                Some(ToolDescription {
-                    xyz: fields.get("xyz").and_then(|(key, node)| self.vector(node, key, "xyz", ["x", "y", "z"])),
-                    rpy: fields.get("rpy").and_then(|(key, node)| self.vector(node, key, "rpy", ["about x", "about y", "about z"])),
-                })
-            }),
+            joints: fields.get("joints").and_then(|(key, node)| self.joints(node, key, rows)),
+            base: fields.get("base").and_then(|(key, node)| self.pose(node, key, "base")),
+            tool: fields.get("tool").and_then(|(key, node)| self.pose(node, key, "tool")),
             payload: fields.get("payload").and_then(|(key, node)| self.body(node, key, "`payload`", PAYLOAD)),
             task: fields.get("task").and_then(|(key, node)| self.task(node, key)),
             regressor: fields.get("regressor").and_then(|(key, node)| self.regressor(node, key)),
@@ -116,16 +149,16 @@ impl Reader<'_> {
         entries.iter().map(read).collect()
     }
 
-    fn joints(&mut self, node: &Node, key: Span) -> Option<Spanned<Vec<JointDescription>>> {
+    fn joints(&mut self, node: &Node, key: Span, rows: &'static [Key]) -> Option<Spanned<Vec<JointDescription>>> {
         let items = self.list(node, key, "joints", "a list", "write one `- name: ...` per joint, from base to tip")?;
-        let joints = items.iter().filter_map(|item| self.joint(item)).collect::<Vec<_>>();
+        let joints = items.iter().filter_map(|item| self.joint(item, rows)).collect::<Vec<_>>();
         // A joint that is no mapping is reported; the others keep their numbers only in messages.
         Some(Spanned::new(joints, key))
     }
 
-    fn joint(&mut self, node: &Node) -> Option<JointDescription> {
+    fn joint(&mut self, node: &Node, keys: &'static [Key]) -> Option<JointDescription> {
         let span = first_key(node);
-        let fields = self.mapping(node, "a joint", span, JOINT)?;
+        let fields = self.mapping(node, "a joint", span, keys)?;
         let name = fields.get("name").and_then(|(key, node)| self.word(node, key, "name"));
         let limits = fields.get("limits").and_then(|(key, node)| self.mapping(node, "`limits`", key, LIMITS));
         let friction = fields.get("friction").and_then(|(key, node)| self.mapping(node, "`friction`", key, FRICTION));
@@ -140,6 +173,8 @@ impl Reader<'_> {
             alpha: self.field(&fields, "alpha"),
             d: self.field(&fields, "d"),
             theta: self.field(&fields, "theta"),
+            origin: fields.get("origin").and_then(|(key, node)| self.pose(node, key, "origin")),
+            axis: fields.get("axis").and_then(|(key, node)| self.vector(node, key, "axis", ["x", "y", "z"])),
             limits: limits.map_or_else(LimitsDescription::default, |fields| LimitsDescription {
                 position: fields.get("position").and_then(|(key, node)| self.vector(node, key, "position", ["lowest", "highest"])),
                 velocity: self.field(&fields, "velocity"),
@@ -151,23 +186,108 @@ impl Reader<'_> {
                 viscous: self.field(&fields, "viscous"),
                 coulomb: self.field(&fields, "coulomb"),
             }),
+            armature: self.field(&fields, "armature"),
             span,
         })
     }
 
     fn body(&mut self, node: &Node, key: Span, what: &str, keys: &'static [Key]) -> Option<BodyDescription> {
         let fields = self.mapping(node, what, key, keys)?;
+        let attached = fields.get("attached").and_then(|(key, node)| {
+            let help = "write one `- name: ...` per body, with `origin`, `mass`, `com` and `inertia`";
+            self.list(node, key, "attached", "a list of bodies", help)
+        });
         Some(BodyDescription {
+            attached: attached.into_iter().flatten().filter_map(|item| self.attached(item)).collect(),
+            ..self.mass_distribution(&fields, key)
+        })
+    }
+
+    fn attached(&mut self, node: &Node) -> Option<AttachedDescription> {
+        let key = first_key(node);
+        let fields = self.mapping(node, "an attached body", key, ATTACHED)?;
+        Some(AttachedDescription {
+            name: fields.get("name").and_then(|(key, node)| self.text(node, key, "name", "a name", "write what the body is")),
+            origin: fields.get("origin").and_then(|(key, node)| self.pose(node, key, "origin")),
+            body: self.mass_distribution(&fields, key),
+        })
+    }
+
+    fn mass_distribution(&mut self, fields: &Fields<'_>, key: Span) -> BodyDescription {
+        BodyDescription {
             key,
-            mass: self.field(&fields, "mass"),
+            mass: self.field(fields, "mass"),
             com: fields.get("com").and_then(|(key, node)| self.vector(node, key, "com", ["x", "y", "z"])),
             inertia: fields.get("inertia").and_then(|(key, node)| {
                 let fields = self.mapping(node, "`inertia`", key, INERTIA)?;
                 let elements = INERTIA_ELEMENTS.map(|name| self.field(&fields, name));
                 let complete = INERTIA_ELEMENTS.iter().zip(&elements).all(|(name, e)| e.is_some() == fields.get(name).is_some());
-                Some(InertiaDescription { key, elements, complete })
+                let (rotation, readable) = self.rotation(&fields);
+                Some(InertiaDescription { key, elements, rotation, complete: complete && readable })
             }),
-        })
+            attached: Vec::new(),
+        }
+    }
+
+    /// One pose, or a list of poses, each in the frame of the one before it.
+    fn pose(&mut self, node: &Node, key: Span, name: &str) -> Option<PoseDescription> {
+        let mut pose = PoseDescription { key, elements: Vec::new(), complete: true };
+        let items = match &node.kind {
+            Kind::List(items) => items.as_slice(),
+            _ => std::slice::from_ref(node),
+        };
+        if let Some(item) = items.get(MOST_POSES) {
+            let message = format!("`{name}` has {} poses, more than the {MOST_POSES} that can be multiplied", items.len());
+            self.report(Code::TooLarge, item.span, message, format!("pose {}", MOST_POSES + 1), "write several poses as one");
+            return None;
+        }
+        for item in items {
+            let Some(fields) = self.mapping(item, &format!("`{name}`"), key, POSE) else {
+                pose.complete = false;
+                continue;
+            };
+            let xyz = fields.get("xyz").map(|(key, node)| self.vector(node, key, "xyz", ["x", "y", "z"]));
+            let (rotation, readable) = self.rotation(&fields);
+            pose.complete &= readable && xyz.as_ref().is_none_or(Option::is_some);
+            pose.elements.push(PoseElement { xyz: xyz.flatten(), rotation });
+        }
+        Some(pose)
+    }
+
+    /// The rotation among the keys of a mapping, if there is one, and whether all of it could be read.
+    fn rotation(&mut self, fields: &Fields<'_>) -> (Option<RotationDescription>, bool) {
+        let given: Vec<&str> = ["rpy", "quat", "axis", "xyaxes"].into_iter().filter(|key| fields.has(key)).collect();
+        if let [first, second, ..] = given[..] {
+            let message = format!("two rotations stand here: `{first}` and `{second}`");
+            let help = "one pose turns once; write a list of poses for turns one after another";
+            self.report(Code::SeveralRotations, fields.place(second), message, "the second one", help);
+            return (None, false);
+        }
+        if fields.has("axis") != fields.has("angle") {
+            let (there, lacking, example) =
+                if fields.has("axis") { ("axis", "angle", "angle: pi/2") } else { ("angle", "axis", "axis: [0, 0, 1]") };
+            let message = format!("`{there}` stands without `{lacking}`");
+            let help = format!("a rotation about an axis needs both; write for instance `{example}`");
+            self.report(Code::MissingKey, fields.place(there), message, format!("`{lacking}` is required beside it"), help);
+            return (None, false);
+        }
+        let Some(&key) = given.first() else { return (None, true) };
+        let (place, node) = fields.get(key).expect("a key that stands there");
+        let rotation = match key {
+            "rpy" => self.vector(node, place, key, ["about x", "about y", "about z"]).map(RotationDescription::Rpy),
+            "quat" => self.vector(node, place, key, ["w", "x", "y", "z"]).map(RotationDescription::Quat),
+            "xyaxes" => {
+                let parts = ["x of the x axis", "its y", "its z", "x of the y axis", "its y", "its z"];
+                self.vector(node, place, key, parts).map(RotationDescription::XyAxes)
+            }
+            _ => {
+                let axis = self.vector(node, place, key, ["x", "y", "z"]);
+                let angle = self.field(fields, "angle");
+                axis.zip(angle).map(|(axis, angle)| RotationDescription::AxisAngle(axis, angle))
+            }
+        };
+        let readable = rotation.is_some();
+        (rotation, readable)
     }
 
     fn motor(&mut self, node: &Node, key: Span) -> Option<MotorDescription> {
@@ -233,6 +353,8 @@ impl Reader<'_> {
         let example = match (name, N) {
             ("gravity", _) => "0, 0, -9.81".to_owned(),
             ("axis", _) => "0, 0, 1".to_owned(),
+            ("quat", _) => "1, 0, 0, 0".to_owned(),
+            ("xyaxes", _) => "1, 0, 0, 0, 1, 0".to_owned(),
             (_, 2) => "-1, 1".to_owned(),
             _ => ["0"; N].join(", "),
         };

@@ -1,4 +1,4 @@
-//! Polynomials in the named parameters of a description, with exact coefficients.
+//! Polynomials in the named parameters of a description, with exact coefficients; long ones are not multiplied out ([`Number::times`]).
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -50,10 +50,10 @@ impl Polynomial {
     pub fn evaluate(&self, of: &dyn Fn(ParameterId) -> Number) -> Number {
         let mut sum = Number::zero();
         for (powers, coefficient) in &self.terms {
-            sum += &powers.iter().fold(coefficient.clone(), |term, (&parameter, &power)| {
+            sum = sum.plus(&powers.iter().fold(coefficient.clone(), |term, (&parameter, &power)| {
                 let value = of(parameter);
-                (0..power).fold(term, |term, _| &term * &value)
-            });
+                (0..power).fold(term, |term, _| term.times(&value))
+            }));
         }
         sum
     }
@@ -67,7 +67,8 @@ impl Polynomial {
                 }
             }
             Entry::Occupied(mut entry) => {
-                *entry.get_mut() += coefficient;
+                let sum = entry.get().plus(coefficient);
+                *entry.get_mut() = sum;
                 if entry.get().is_zero() {
                     entry.remove();
                 }
@@ -124,6 +125,7 @@ impl Sub for &Polynomial {
 
 impl Mul for &Polynomial {
     type Output = Polynomial;
+    #[expect(clippy::suspicious_arithmetic_impl, reason = "powers add where factors multiply")]
     fn mul(self, other: &Polynomial) -> Polynomial {
         let mut product = Polynomial::zero();
         for (a, ca) in &self.terms {
@@ -132,7 +134,7 @@ impl Mul for &Polynomial {
                 for (&parameter, &power) in b {
                     *powers.entry(parameter).or_default() += power;
                 }
-                product.add_term(powers, &(ca * cb));
+                product.add_term(powers, &ca.times(cb));
             }
         }
         product

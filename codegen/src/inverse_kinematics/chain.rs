@@ -97,7 +97,7 @@ impl Chain {
                 joints.push(Joint { prismatic, theta, d });
             }
         }
-        let tool = compose(&frame(manipulator, &joint(manipulator.tip).link_frame), &frame(manipulator, &manipulator.tool));
+        let tool = compose(&frame(manipulator, &joint(manipulator.tip).link_frame), &frame(manipulator, &manipulator.tool.frame));
         Ok(Chain { base, joints, normals, tool })
     }
 

@@ -7,16 +7,38 @@
 use std::cmp::Ordering;
 
 use super::number::text_of;
-use super::{zeros, Context};
+use super::{geometry, zeros, Context};
 use crate::description::{BodyDescription, InertiaDescription, Value, INERTIA_ELEMENTS};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::document::Expression;
+use crate::document::{excerpt, Expression};
 use crate::exact::{Number, Polynomial, Rational};
-use crate::manipulator::Body;
+use crate::manipulator::{Body, Part, Placement, Pose};
 use crate::source::Span;
 
-/// The body; `called` is how messages call it.
-pub(super) fn body(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Body> {
+/// The bodies that are fixed to each other, the first one in the frame of what carries them; `called` is how messages call it.
+pub(super) fn parts(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Vec<Part>> {
+    let mut all = vec![part(description, Some(Pose::identity()), called, context)];
+    for (i, attached) in description.attached.iter().enumerate() {
+        let name = attached.name.as_ref().map_or_else(|| format!("body {}", i + 1), |name| format!("`{}`", excerpt(&name.value)));
+        let called = format!("{name} attached to {called}");
+        let frame = geometry::pose(attached.origin.as_ref(), &format!("the origin of {called}"), context);
+        all.push(part(&attached.body, frame, &called, context));
+    }
+    all.into_iter().collect()
+}
+
+/// One body in a frame of its own.
+pub(super) fn part(description: &BodyDescription, frame: Option<Pose>, called: &str, context: &mut Context<'_>) -> Option<Part> {
+    let given = body(description, called, context);
+    let axes = match description.inertia.as_ref().and_then(|inertia| inertia.rotation.as_ref()) {
+        Some(rotation) => geometry::rotation(rotation, &format!("the inertia of {called}"), context),
+        None => Some(Vec::new()),
+    };
+    let axes = axes?.into_iter().filter(|turn| *turn != Placement::identity()).collect();
+    Some(Part::new(frame?, Pose::new(axes), given?))
+}
+
+fn body(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Body> {
     // A missing mass is reported where it is required, and 0 where it is not.
     let mass = match &description.mass {
         Some(mass) => not_negative(mass, &format!("the mass of {called}"), Code::NegativeMass, context),
@@ -51,6 +73,7 @@ pub(super) fn not_negative(value: &Expression, what: &str, code: Code, context: 
     if nominal.sign() == Ordering::Less {
         let why = match code {
             Code::NegativeFriction => "friction takes energy from the arm, so its coefficient is at least 0",
+            Code::NegativeArmature => "an armature resists acceleration as a mass does, so it is at least 0",
             Code::NegativeRotorInertia => "a moment of inertia is an integral of squared distances, so it is at least 0",
             _ => "a mass is at least 0; write 0 for a body that has none",
         };
@@ -118,6 +141,11 @@ fn judge(description: &InertiaDescription, tensor: &[Number; 6], called: &str, c
         "too large",
         help,
     );
+}
+
+/// Why no distribution of mass has this inertia tensor about its centre of mass, xx xy yy xz yz zz: a negative principal minor; `None` if one has.
+pub fn impossible_inertia(tensor: &[Number; 6]) -> Option<String> {
+    negative_minor(tensor).map(|(reason, _)| reason)
 }
 
 /// A principal minor below 0: which, and the element to blame, if it is one.

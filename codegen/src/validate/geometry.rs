@@ -1,6 +1,7 @@
-//! Angles, and Denavit-Hartenberg rows as placements.
+//! Angles, rows of joints of every convention, poses and rotations in all their writings, as placements.
 //!
 //! ```text
+//! urdf:     A_i = origin_i · motion about or along axis_i
 //! standard: A_i = Rz(theta) Tz(d) Tx(a) Rx(alpha)     joint frame: after Rz(theta) Tz(d);  link frame: after Tx(a) Rx(alpha)
 //! modified: A_i = Rx(alpha) Tx(a) Rz(theta) Tz(d)     joint frame = link frame
 //! ```
@@ -8,12 +9,12 @@
 use std::cmp::Ordering;
 
 use super::number::text_of;
-use super::{zeros, Context};
-use crate::description::{Convention, JointDescription, ToolDescription, Value};
+use super::Context;
+use crate::description::{Convention, JointDescription, PoseDescription, RotationDescription, Value};
 use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::exact::{Angle, Number, Polynomial, Rational};
-use crate::manipulator::Placement;
+use crate::manipulator::{Placement, Pose, Row};
 use crate::source::Span;
 
 /// An angle beyond this many radians is a mistake.
@@ -99,109 +100,195 @@ fn rounded(value: f64, digits: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// The frames of one row: what stands before the joint's motion, and what after.
-pub(super) struct Row {
-    pub(super) before: Placement,
-    pub(super) after: Placement,
-    /// The joint axis in the previous link's frame.
-    pub(super) axis: [Number; 3],
-}
-
-/// The row of a joint; faults are reported.
+/// The row of a joint; faults are reported. `base`: what stands before the first one.
 pub(super) fn row(
     joint: &JointDescription,
     called: &str,
+    base: Option<&Pose>,
     convention: Option<Convention>,
     context: &mut Context<'_>,
 ) -> Option<Row> {
-    let alpha = sine_cosine(&joint.alpha, &format!("alpha of joint {called}"), context);
-    let theta = sine_cosine(&joint.theta, &format!("theta of joint {called}"), context);
-    let (a, d) = (context.given(&joint.a), context.given(&joint.d));
-    let (alpha, theta, a, d, convention) = (alpha?, theta?, a?, d?, convention?);
-    let twist = compose(&translation([a, Polynomial::zero(), Polynomial::zero()]), &about(0, &alpha));
-    let turn = compose(&about(2, &theta), &translation([Polynomial::zero(), Polynomial::zero(), d]));
-    Some(match convention {
-        Convention::Standard => Row { before: turn, after: twist, axis: [Number::zero(), Number::zero(), Number::one()] },
-        // Tx and Rx about the same axis commute.
-        Convention::Modified => {
-            Row { before: compose(&twist, &turn), after: identity(), axis: [Number::zero(), -&alpha.0, alpha.1] }
+    let row = match convention {
+        Some(Convention::Urdf) => {
+            let origin = pose(joint.origin.as_ref(), &format!("the origin of joint {called}"), context);
+            let axis = joint.axis.as_ref().and_then(|axis| {
+                let help = "give the direction as a vector other than 0; `[0, 0, 1]` is the z axis of the link";
+                let direction = context.numbers(&axis.value)?;
+                unit_vector(direction, axis.span, &format!("the axis of joint {called}"), help, context)
+            });
+            Row { before: origin?, axis: axis?, after: Pose::identity() }
         }
-    })
+        convention => {
+            let alpha = sine_cosine(&joint.alpha, &format!("alpha of joint {called}"), context);
+            let theta = sine_cosine(&joint.theta, &format!("theta of joint {called}"), context);
+            let (a, d) = (context.given(&joint.a), context.given(&joint.d));
+            let (alpha, theta, a, d, convention) = (alpha?, theta?, a?, d?, convention?);
+            // Tx and Rx about the same axis commute.
+            let twist = [translation([a, Polynomial::zero(), Polynomial::zero()]), about(0, &alpha)];
+            let turn = [about(2, &theta), translation([Polynomial::zero(), Polynomial::zero(), d])];
+            let product = |two: [Placement; 2]| two[0].then(&two[1]);
+            let axis = [Number::zero(), Number::zero(), Number::one()];
+            if convention == Convention::Standard {
+                Row { before: Pose::new(vec![product(turn)]), axis, after: Pose::new(vec![product(twist)]) }
+            } else {
+                let before = vec![product(twist), product(turn)];
+                Row { before: Pose::new(before), axis, after: Pose::identity() }
+            }
+        }
+    };
+    let Some(base) = base.filter(|base| !base.elements.is_empty()) else { return Some(row) };
+    let before = Pose::new(base.elements.iter().chain(&row.before.elements).cloned().collect());
+    Some(Row { before, ..row })
 }
 
-/// The end-effector frame.
-pub(super) fn tool(tool: Option<&ToolDescription>, context: &mut Context<'_>) -> Option<Placement> {
-    let Some(tool) = tool else { return Some(identity()) };
-    let position = match &tool.xyz {
-        Some(xyz) => context.polynomials(&xyz.value),
-        None => Some(zeros()),
-    };
-    let rotation = match &tool.rpy {
-        Some(rpy) => {
+/// A frame in another, the identity where the file gives none; faults are reported. `what`: of what, as in "the tool".
+pub(super) fn pose(description: Option<&PoseDescription>, what: &str, context: &mut Context<'_>) -> Option<Pose> {
+    let Some(description) = description else { return Some(Pose::identity()) };
+    let mut elements = Some(Vec::new());
+    for element in &description.elements {
+        let xyz = element.xyz.as_ref().map(|xyz| context.polynomials(&xyz.value));
+        let turns = element.rotation.as_ref().map(|rotation| self::rotation(rotation, what, context));
+        let moved = match xyz {
+            Some(xyz) => xyz.map(|xyz| vec![translation(xyz)]),
+            None => Some(Vec::new()),
+        };
+        let turned = turns.unwrap_or_else(|| Some(Vec::new()));
+        elements = elements.zip(moved.zip(turned)).map(|(all, (moved, turned))| [all, moved, turned].concat());
+    }
+    let elements = elements.filter(|_| description.complete)?;
+    Some(Pose::new(elements.into_iter().filter(|element| *element != Placement::identity()).collect()))
+}
+
+/// The rotations about one axis each that a rotation of the file is made of; faults are reported.
+pub(super) fn rotation(description: &RotationDescription, what: &str, context: &mut Context<'_>) -> Option<Vec<Placement>> {
+    let turn = |rotation| Placement { rotation, ..Placement::identity() };
+    let help = "give a direction other than 0";
+    match description {
+        RotationDescription::Rpy(angles) => {
+            let names = ["x", "y", "z"];
             let angles =
-                [0, 1, 2].map(|i| sine_cosine(&rpy.value[i], &format!("the tool's angle about {}", ["x", "y", "z"][i]), context));
+                [0, 1, 2].map(|i| sine_cosine(&angles.value[i], &format!("{what}: the angle about {}", names[i]), context));
             let [x, y, z] = angles;
-            x.zip(y).zip(z).map(|((x, y), z)| compose(&about(2, &z), &compose(&about(1, &y), &about(0, &x))))
+            let (x, y, z) = (x?, y?, z?);
+            Some(vec![about(2, &z), about(1, &y), about(0, &x)])
         }
-        None => Some(identity()),
-    };
-    Some(Placement { rotation: rotation?.rotation, translation: position? })
+        RotationDescription::Quat(quaternion) => {
+            let [w, x, y, z] = context.numbers(&quaternion.value)?;
+            let square = [&w, &x, &y, &z].iter().fold(Number::zero(), |sum, e| &sum + &(*e * *e));
+            let span = quaternion.span;
+            if square.sign() == Ordering::Equal {
+                let message = format!("{what}: the quaternion is 0, which is no rotation");
+                context.report(Code::ZeroAxis, span, message, "all four are 0", "`[1, 0, 0, 0]` is no rotation at all");
+                return None;
+            }
+            let twice = Number::from(2).checked_div(&square).filter(|_| square.terms().count() <= MAX_SQUARE);
+            let Some(twice) = twice else {
+                too_large(span, what, context);
+                return None;
+            };
+            // 1 + 2 (w [v] + [v]²) / |q|²
+            let v = [&x, &y, &z];
+            let entry = |i: usize, j: usize| {
+                let k = (6 - i - j) % 3;
+                if i == j {
+                    let rest = (0..3).filter(|k| *k != i).fold(Number::zero(), |sum, k| &sum + &(v[k] * v[k]));
+                    return &Number::one() - &(&twice * &rest);
+                }
+                let spin = &w * v[k];
+                let spin = if (i + 1) % 3 == j { -&spin } else { spin };
+                &twice * &(&(v[i] * v[j]) + &spin)
+            };
+            Some(vec![turn(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))])
+        }
+        RotationDescription::AxisAngle(axis, angle) => {
+            let direction = context.numbers(&axis.value);
+            let unit =
+                direction.and_then(|d| unit_vector(d, axis.span, &format!("{what}: the axis of the rotation"), help, context));
+            let angle = sine_cosine(&Some(angle.clone()), &format!("{what}: the angle"), context);
+            let (u, (sine, cosine)) = (unit?, angle?);
+            // c 1 + s [u] + (1 - c) u u'
+            let rest = &Number::one() - &cosine;
+            let entry = |i: usize, j: usize| {
+                let product = (&u[i] * &u[j]).times(&rest);
+                if i == j {
+                    return product.plus(&cosine);
+                }
+                let spin = sine.times(&u[(6 - i - j) % 3]);
+                product.plus(&if (i + 1) % 3 == j { -&spin } else { spin })
+            };
+            Some(vec![turn(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))])
+        }
+        RotationDescription::XyAxes(axes) => {
+            let [a, b, c, d, e, f] = context.numbers(&axes.value)?;
+            let (first, second) = ([a, b, c], [d, e, f]);
+            let x = unit_vector(first, axes.span, &format!("{what}: the x axis"), help, context)?;
+            let along = dot(&x, &second);
+            let rest = std::array::from_fn(|i| &second[i] - &(&along * &x[i]));
+            let parallel = "give two directions that are not parallel";
+            let y = unit_vector(
+                rest,
+                axes.span,
+                &format!("{what}: the y axis, made perpendicular to the x axis,"),
+                parallel,
+                context,
+            )?;
+            let z = cross(&x, &y);
+            Some(vec![turn(std::array::from_fn(|i| [x[i].clone(), y[i].clone(), z[i].clone()]))])
+        }
+    }
+}
+
+fn too_large(span: Span, what: &str, context: &mut Context<'_>) {
+    let message = format!("{what} grows too large when its length becomes 1");
+    let help = "numbers are kept exactly, roots included: use fewer different roots and shorter decimals here";
+    context.report(Code::TooComplex, span, message, "too large to be kept exactly", help);
 }
 
 /// A unit vector along `direction`; faults are reported at `span`.
-pub(super) fn unit_vector(direction: [Number; 3], span: Span, called: &str, context: &mut Context<'_>) -> Option<[Number; 3]> {
+pub(super) fn unit_vector(
+    direction: [Number; 3],
+    span: Span,
+    what: &str,
+    help: &str,
+    context: &mut Context<'_>,
+) -> Option<[Number; 3]> {
     let square = direction.iter().fold(Number::zero(), |sum, x| &sum + &(x * x));
     if square.terms().count() > MAX_SQUARE {
-        let message = format!("the motor axis of joint {called} grows too large when its length becomes 1");
-        let help = "numbers are kept exactly, roots included: use fewer different roots and shorter decimals here";
-        context.report(Code::TooComplex, span, message, "too large to be kept exactly", help);
+        too_large(span, what, context);
         return None;
     }
     let length = square.sqrt().filter(|length| !length.is_zero());
     let Some(length) = length else {
-        let help = "give the direction as a vector other than 0, or leave `axis` out for the joint axis";
-        context.report(
-            Code::ZeroAxis,
-            span,
-            format!("the motor axis of joint {called} has no direction"),
-            "the zero vector",
-            help,
-        );
+        context.report(Code::ZeroAxis, span, format!("{what} has no direction"), "the zero vector", help);
         return None;
     };
     Some(direction.map(|x| x.checked_div(&length).expect("a length other than 0")))
 }
 
-/// No rotation, no translation.
-pub(super) fn identity() -> Placement {
-    let rotation = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { Number::one() } else { Number::zero() }));
-    Placement { rotation, translation: zeros() }
+/// a'b.
+pub(super) fn dot(a: &[Number; 3], b: &[Number; 3]) -> Number {
+    (0..3).fold(Number::zero(), |sum, k| sum.plus(&a[k].times(&b[k])))
+}
+
+/// a × b.
+pub(super) fn cross(a: &[Number; 3], b: &[Number; 3]) -> [Number; 3] {
+    std::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        a[j].times(&b[k]).minus(&a[k].times(&b[j]))
+    })
 }
 
 fn translation(by: [Polynomial; 3]) -> Placement {
-    Placement { translation: by, ..identity() }
+    Placement { translation: by, ..Placement::identity() }
 }
 
 /// The rotation about axis x, y, z (0, 1, 2) of an angle given by sine and cosine.
 fn about(axis: usize, (sine, cosine): &(Number, Number)) -> Placement {
-    let mut placement = identity();
+    let mut placement = Placement::identity();
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     placement.rotation[i][i] = cosine.clone();
     placement.rotation[j][j] = cosine.clone();
     placement.rotation[i][j] = -sine;
     placement.rotation[j][i] = sine.clone();
     placement
-}
-
-/// The frame `inner`, given in `outer`.
-pub(super) fn compose(outer: &Placement, inner: &Placement) -> Placement {
-    let rotation = std::array::from_fn(|i| {
-        std::array::from_fn(|j| (0..3).fold(Number::zero(), |sum, k| &sum + &(&outer.rotation[i][k] * &inner.rotation[k][j])))
-    });
-    let translation = std::array::from_fn(|i| {
-        (0..3).fold(outer.translation[i].clone(), |sum, k| {
-            &sum + &(&Polynomial::from(outer.rotation[i][k].clone()) * &inner.translation[k])
-        })
-    });
-    Placement { rotation, translation }
 }

@@ -10,50 +10,50 @@ use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
-use crate::manipulator::{Joint, Limits, LinkId, Motor, Placement};
+use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose};
 
-/// The joint; faults are reported. `previous_frame` is the previous link's frame in its joint frame.
+/// The joint; faults are reported. `base`: what stands before the first row.
 pub(super) fn joint(
     i: usize,
     description: &JointDescription,
-    previous_frame: Option<&Placement>,
+    base: Option<&Pose>,
     parent: Option<LinkId>,
     convention: Option<Convention>,
     context: &mut Context<'_>,
-) -> (Option<Joint>, Option<Placement>) {
+) -> Option<Joint> {
     let called = call(i, description);
-    let row = geometry::row(description, &called, convention, context);
+    let row = geometry::row(description, &called, base, convention, context);
     let kind = description.kind.as_ref().map(|k| k.value);
-    let link = description.link.as_ref().and_then(|link| bodies::body(link, &format!("the link of joint {called}"), context));
+    let link = description.link.as_ref().and_then(|link| bodies::parts(link, &format!("the link of joint {called}"), context));
     let limits = limits(&description.limits, kind, &called, context);
     let motor = match &description.motor {
-        Some(motor) => self::motor(motor, row.as_ref().map(|r| r.axis.clone()), &called, context).map(Some),
+        Some(motor) => {
+            let joint_axis = row.as_ref().map(|r| r.before.frame.direction(&r.axis));
+            self::motor(motor, joint_axis, &called, context).map(Some)
+        }
         None => Some(None),
     };
     let what = |coefficient: &str| format!("the {coefficient} friction of joint {called}");
     let viscous = optional_not_negative(&description.friction.viscous, &what("viscous"), Code::NegativeFriction, context);
     let coulomb = optional_not_negative(&description.friction.coulomb, &what("Coulomb"), Code::NegativeFriction, context);
-    let after = row.as_ref().map(|r| r.after.clone());
-    let joint = (|| {
-        let row = row?;
-        let placement = match previous_frame {
-            Some(frame) => geometry::compose(frame, &row.before),
-            None => row.before,
-        };
-        Some(Joint {
-            name: description.name.as_ref()?.value.clone(),
-            kind: kind?,
-            parent,
-            placement,
-            link_frame: row.after,
-            limits: limits?,
-            link: link?,
-            motor: motor?,
-            viscous: viscous?,
-            coulomb: coulomb?,
-        })
-    })();
-    (joint, after)
+    let armature =
+        optional_not_negative(&description.armature, &format!("the armature of joint {called}"), Code::NegativeArmature, context);
+    let row = row?;
+    Some(Joint {
+        name: description.name.as_ref()?.value.clone(),
+        kind: kind?,
+        parent,
+        // Of Denavit-Hartenberg rows as they are; of others laid later, when all rows are known.
+        placement: row.before.frame.clone(),
+        link_frame: row.after.frame.clone(),
+        row,
+        limits: limits?,
+        link: link?,
+        motor: motor?,
+        viscous: viscous?,
+        coulomb: coulomb?,
+        armature: armature?,
+    })
 }
 
 fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str, context: &mut Context<'_>) -> Option<Limits> {
@@ -128,7 +128,10 @@ fn motor(
         warn_of_massless(mass.as_ref().unwrap_or(&none), position, given.span, &of("position"), context);
     }
     let axis = match &description.axis {
-        Some(axis) => context.numbers(&axis.value).and_then(|a| geometry::unit_vector(a, axis.span, called, context)),
+        Some(axis) => context.numbers(&axis.value).and_then(|a| {
+            let help = "give the direction as a vector other than 0, or leave `axis` out for the joint axis";
+            geometry::unit_vector(a, axis.span, &format!("the motor axis of joint {called}"), help, context)
+        }),
         None => joint_axis,
     };
     Some(Motor {

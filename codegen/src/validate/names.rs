@@ -94,6 +94,11 @@ pub fn is_rust_name(name: &str) -> bool {
     !name.contains('#') && !KEYWORDS.contains(&name) && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
 }
 
+/// Whether a joint or a parameter may be called so.
+pub fn is_free_name(name: &str) -> bool {
+    is_rust_name(name) && reserved(name).is_none()
+}
+
 /// The name with everything replaced that an identifier cannot have.
 fn suggestion(name: &str) -> Option<String> {
     let fits = |c: char| c == '_' || c.is_ascii_alphanumeric();

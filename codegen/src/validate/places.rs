@@ -1,6 +1,6 @@
 //! Where the parts of an arm stand in its file: what diagnostics about its equations point at.
 
-use crate::description::{BodyDescription, RegressorDescription, RobotDescription, Value};
+use crate::description::{BodyDescription, PoseDescription, RegressorDescription, RobotDescription, RotationDescription, Value};
 use crate::document::Expression;
 use crate::source::{Span, Spanned};
 
@@ -56,9 +56,9 @@ pub enum Role {
     Parameter,
     /// Acceleration of gravity.
     Gravity,
-    /// A length: a, d, the tool's xyz.
+    /// A length: a, d, the xyz of a pose.
     Length,
-    /// An angle: alpha, theta, the tool's rpy.
+    /// An angle: alpha, theta, those of a rotation.
     Angle,
     /// A mass.
     Mass,
@@ -76,10 +76,12 @@ pub enum Role {
     RotorMass,
     /// The position of a rotor.
     RotorPosition,
-    /// The direction of a rotor's axis.
+    /// The direction of an axis, and what else a rotation is written with.
     Axis,
     /// A friction coefficient.
     Friction,
+    /// An armature.
+    Armature,
 }
 
 impl Role {
@@ -100,6 +102,7 @@ impl Role {
             Role::RotorPosition => "the position of a rotor",
             Role::Axis => "the direction of an axis",
             Role::Friction => "a friction coefficient",
+            Role::Armature => "an armature",
         }
     }
 }
@@ -108,11 +111,14 @@ impl Role {
 pub(super) fn expressions(description: &RobotDescription) -> Vec<(Role, &Expression)> {
     let mut all = Gathered::default();
     all.vector(Role::Gravity, description.gravity.as_ref());
+    all.pose(description.base.as_ref());
     for joint in description.joints.iter().flat_map(|joints| &joints.value) {
         all.value(Role::Length, &joint.a);
         all.value(Role::Angle, &joint.alpha);
         all.value(Role::Length, &joint.d);
         all.value(Role::Angle, &joint.theta);
+        all.pose(joint.origin.as_ref());
+        all.vector(Role::Axis, joint.axis.as_ref());
         all.vector(Role::Limit, joint.limits.position.as_ref());
         all.value(Role::Limit, &joint.limits.velocity);
         all.value(Role::Limit, &joint.limits.effort);
@@ -127,11 +133,9 @@ pub(super) fn expressions(description: &RobotDescription) -> Vec<(Role, &Express
         }
         all.value(Role::Friction, &joint.friction.viscous);
         all.value(Role::Friction, &joint.friction.coulomb);
+        all.value(Role::Armature, &joint.armature);
     }
-    if let Some(tool) = &description.tool {
-        all.vector(Role::Length, tool.xyz.as_ref());
-        all.vector(Role::Angle, tool.rpy.as_ref());
-    }
+    all.pose(description.tool.as_ref());
     all.body(description.payload.as_ref());
     all.list
 }
@@ -158,6 +162,31 @@ impl<'d> Gathered<'d> {
         self.vector(Role::CentreOfMass, body.com.as_ref());
         for element in body.inertia.iter().flat_map(|i| &i.elements) {
             self.value(Role::Inertia, element);
+        }
+        self.rotation(body.inertia.as_ref().and_then(|i| i.rotation.as_ref()));
+        for attached in &body.attached {
+            self.pose(attached.origin.as_ref());
+            self.body(Some(&attached.body));
+        }
+    }
+
+    fn pose(&mut self, pose: Option<&'d PoseDescription>) {
+        for element in pose.iter().flat_map(|pose| &pose.elements) {
+            self.vector(Role::Length, element.xyz.as_ref());
+            self.rotation(element.rotation.as_ref());
+        }
+    }
+
+    fn rotation(&mut self, rotation: Option<&'d RotationDescription>) {
+        match rotation {
+            None => {}
+            Some(RotationDescription::Rpy(angles)) => self.vector(Role::Angle, Some(angles)),
+            Some(RotationDescription::Quat(quaternion)) => self.vector(Role::Axis, Some(quaternion)),
+            Some(RotationDescription::XyAxes(axes)) => self.vector(Role::Axis, Some(axes)),
+            Some(RotationDescription::AxisAngle(axis, angle)) => {
+                self.vector(Role::Axis, Some(axis));
+                self.list.push((Role::Angle, angle));
+            }
         }
     }
 }

@@ -69,7 +69,7 @@ fn a_modified_row_stands_wholly_before_the_joint() {
     // Rx(pi/2) Tx(1/2) Tz(1/4): z of the joint frame is -y of the base, so the offset goes there.
     assert_eq!(joint.placement.rotation, matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]]));
     assert_eq!(position(&joint.placement), [n(1, 2), n(-1, 4), n(0, 1)]);
-    assert_eq!(joint.link_frame, geometry::identity());
+    assert_eq!(joint.link_frame, Placement::identity());
 }
 
 #[test]
@@ -95,12 +95,12 @@ fn what_is_not_given_has_the_value_of_the_format() {
     let (arm, places) = valid(&arm(&[("link:", "motor: {}\n    link:")]));
     assert_eq!(arm.task, TaskRow::ALL);
     assert_eq!(arm.regressor, RegressorChoice::Standard);
-    assert_eq!(arm.tool, geometry::identity());
+    assert_eq!(arm.tool.frame, Placement::identity());
     assert!(arm.payload.is_none() && arm.parameters.is_empty());
     assert_eq!((places.task, places.regressor), (None, None));
     let joint = &arm.joints[0];
     assert!(joint.viscous.is_none() && joint.coulomb.is_none() && joint.limits.position.is_none());
-    assert!(joint.link.com.iter().chain(&joint.link.inertia).all(Polynomial::is_zero));
+    assert!(joint.link[0].body.com.iter().chain(&joint.link[0].body.inertia).all(Polynomial::is_zero));
     let motor = joint.motor.as_ref().expect("a motor");
     assert_eq!(motor.ratio.as_number(), Some(Number::one()));
     assert!(motor.inertia.is_none() && motor.viscous.is_none() && motor.mass.is_zero());
@@ -125,21 +125,21 @@ fn the_tool_turns_about_fixed_axes_x_y_z_in_turn() {
     let tool = |rpy: &str| valid(&arm(&[("", &format!("tool: {{xyz: [1, 2, 3], rpy: {rpy}}}\n"))])).0.tool;
     let turned = tool("[pi/2, 0, pi/2]");
     // Rz(pi/2) Rx(pi/2)
-    assert_eq!(turned.rotation, matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]]));
-    assert_eq!(position(&turned), [1, 2, 3].map(Number::from));
-    assert_eq!(tool("[0, pi/2, 0]").rotation, matrix([[0, 0, 1], [0, 1, 0], [-1, 0, 0]]));
+    assert_eq!(turned.frame.rotation, matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]]));
+    assert_eq!(position(&turned.frame), [1, 2, 3].map(Number::from));
+    assert_eq!(tool("[0, pi/2, 0]").frame.rotation, matrix([[0, 0, 1], [0, 1, 0], [-1, 0, 0]]));
 }
 
 #[test]
 fn an_empty_payload_is_a_load_of_zero() {
     let payload = valid(&arm(&[("", "payload: {}\n")])).0.payload.expect("a payload");
-    assert!(payload.mass.is_zero() && payload.com.iter().chain(&payload.inertia).all(Polynomial::is_zero));
+    assert!(payload.body.mass.is_zero() && payload.body.com.iter().chain(&payload.body.inertia).all(Polynomial::is_zero));
 }
 
 #[test]
 fn inertia_stands_in_the_order_xx_xy_yy_xz_yz_zz() {
     let text = arm(&[("{mass: 2}", "{mass: 2, inertia: {xx: 11, yy: 12, zz: 13, xy: 1, xz: 2, yz: 3}}")]);
-    let inertia = only(&text).link.inertia.map(|p| p.as_number().expect("a number"));
+    let inertia = only(&text).link[0].body.inertia.clone().map(|p| p.as_number().expect("a number"));
     assert_eq!(inertia, [11, 1, 12, 2, 3, 13].map(Number::from));
 }
 
@@ -149,7 +149,7 @@ fn names_stay_symbols_where_they_enter_as_polynomials() {
     let (arm, places) = valid(&text);
     let names: Vec<&str> = arm.parameters.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["m", "l", "n"]);
-    let mass = &arm.joints[0].link.mass;
+    let mass = &arm.joints[0].link[0].body.mass;
     assert_eq!(mass.variables().into_iter().collect::<Vec<_>>(), [ParameterId(0), ParameterId(2)]);
     assert_eq!(mass.evaluate(&|id| arm.parameters[id.0 as usize].nominal.clone()), n(9, 1));
     assert_eq!(places.uses[2].len(), 2);
@@ -173,7 +173,7 @@ fn a_divisor_a_root_and_an_angle_make_numbers_of_their_names() {
     assert_eq!(names, ["m"]);
     let m = Polynomial::variable(ParameterId(0));
     let constant = |v: Number| Polynomial::from(v);
-    assert_eq!(arm.joints[0].link.mass, &(&m * &constant(n(3, 1))) + &constant(n(103, 10)));
+    assert_eq!(arm.joints[0].link[0].body.mass, &(&m * &constant(n(3, 1))) + &constant(n(103, 10)));
     assert_eq!(arm.joints[0].link_frame.translation[0], &(&m * &constant(n(1, 4))) + &constant(n(3, 1)));
 }
 
@@ -183,9 +183,9 @@ fn a_listed_name_is_independent_of_the_names_in_its_value() {
     let (arm, _) = valid(&text);
     assert_eq!(arm.regressor, RegressorChoice::Names(vec![ParameterId(1)]));
     assert_eq!(arm.parameters[1].nominal, n(2, 1));
-    assert_eq!(arm.joints[0].link.mass.variables().len(), 2);
+    assert_eq!(arm.joints[0].link[0].body.mass.variables().len(), 2);
     let text = text.replace("regressor: [h]", "regressor: [m]");
-    assert_eq!(valid(&text).0.joints[0].link.mass.variables().len(), 1);
+    assert_eq!(valid(&text).0.joints[0].link[0].body.mass.variables().len(), 1);
 }
 
 #[test]

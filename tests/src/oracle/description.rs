@@ -3,11 +3,14 @@
 //! Only what is valid is of interest here; a wrong file gets some error.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
-use serde::de::IgnoredAny;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_derive::Deserialize;
 
-use super::{Joint, Model, Motor, Ten};
+use super::{Joint, Model, Motor, Placed, Ten};
 use crate::formula::{evaluate, parse, Formula};
 
 /// A number of the file: its text, an expression.
@@ -24,8 +27,8 @@ pub struct Description {
     #[serde(default)]
     parameters: BTreeMap<String, Text>,
     joints: Vec<JointText>,
-    #[serde(default)]
-    tool: ToolText,
+    base: Option<PoseText>,
+    tool: Option<PoseText>,
     payload: Option<BodyText>,
     /// Rows of the task, as listed; none if the file does not say.
     #[serde(default)]
@@ -75,16 +78,19 @@ struct JointText {
     #[serde(rename = "name")]
     _name: String,
     r#type: String,
-    a: Text,
-    alpha: Text,
-    d: Text,
-    theta: Text,
+    a: Option<Text>,
+    alpha: Option<Text>,
+    d: Option<Text>,
+    theta: Option<Text>,
+    origin: Option<PoseText>,
+    axis: Option<[Text; 3]>,
     #[serde(rename = "limits")]
     _limits: Option<IgnoredAnyClone>,
     link: BodyText,
     motor: Option<MotorText>,
     #[serde(default)]
     friction: FrictionText,
+    armature: Option<Text>,
 }
 
 /// Whatever stands there.
@@ -104,7 +110,37 @@ struct BodyText {
     mass: Option<Text>,
     com: Option<[Text; 3]>,
     #[serde(default)]
-    inertia: BTreeMap<String, Text>,
+    inertia: InertiaText,
+    #[serde(default)]
+    attached: Vec<AttachedText>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct InertiaText {
+    xx: Option<Text>,
+    yy: Option<Text>,
+    zz: Option<Text>,
+    xy: Option<Text>,
+    xz: Option<Text>,
+    yz: Option<Text>,
+    rpy: Option<[Text; 3]>,
+    quat: Option<[Text; 4]>,
+    axis: Option<[Text; 3]>,
+    angle: Option<Text>,
+    xyaxes: Option<[Text; 6]>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AttachedText {
+    #[serde(rename = "name")]
+    _name: Option<String>,
+    origin: Option<PoseText>,
+    mass: Option<Text>,
+    com: Option<[Text; 3]>,
+    #[serde(default)]
+    inertia: InertiaText,
 }
 
 #[derive(Clone, Debug, Deserialize)]
@@ -125,11 +161,64 @@ struct FrictionText {
     coulomb: Option<Text>,
 }
 
+/// One pose, or several, each in the frame of the one before.
+#[derive(Clone, Debug)]
+struct PoseText(Vec<OnePose>);
+
+impl<'de> Deserialize<'de> for PoseText {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrMany;
+        impl<'de> Visitor<'de> for OneOrMany {
+            type Value = PoseText;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a pose or a list of poses")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<PoseText, A::Error> {
+                Ok(PoseText(vec![OnePose::deserialize(MapAccessDeserializer::new(map))?]))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<PoseText, A::Error> {
+                Ok(PoseText(Vec::deserialize(SeqAccessDeserializer::new(seq))?))
+            }
+        }
+        // Not an untagged enum: that would ask for numbers as numbers, and lose their digits.
+        deserializer.deserialize_any(OneOrMany)
+    }
+}
+
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ToolText {
+struct OnePose {
     xyz: Option<[Text; 3]>,
     rpy: Option<[Text; 3]>,
+    quat: Option<[Text; 4]>,
+    axis: Option<[Text; 3]>,
+    angle: Option<Text>,
+    xyaxes: Option<[Text; 6]>,
+}
+
+type Rotation = [[f64; 3]; 3];
+
+const STILL: Rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+fn product(a: &Rotation, b: &Rotation) -> Rotation {
+    a.map(|row| [0, 1, 2].map(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
+}
+
+fn turned(a: &Rotation, v: [f64; 3]) -> [f64; 3] {
+    a.map(|row| (0..3).map(|k| row[k] * v[k]).sum())
+}
+
+fn transposed(a: &Rotation) -> Rotation {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| a[j][i]))
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    v.map(|x| x / length)
+}
+
+fn cross([a, b, c]: [f64; 3], [d, e, f]: [f64; 3]) -> [f64; 3] {
+    [b * f - c * e, c * d - a * f, a * e - b * d]
 }
 
 /// Expressions with the parameters' values at hand.
@@ -149,25 +238,81 @@ impl Numbers {
         Ok(Some([self.one(x)?, self.one(y)?, self.one(z)?]))
     }
 
-    /// A body about its frame's origin: I = I_C + m (c·c 1 - c c').
-    fn body(&self, body: &BodyText) -> Result<Ten, String> {
-        let m = self.some(&body.mass)?.unwrap_or(0.0);
-        let [x, y, z] = self.three(&body.com)?.unwrap_or_default();
-        if let Some(key) = body.inertia.keys().find(|key| !["xx", "yy", "zz", "xy", "xz", "yz"].contains(&key.as_str())) {
-            return Err(format!("unknown element `{key}` of an inertia"));
+    /// The rotation that stands in a pose.
+    fn rotation(&self, pose: &OnePose) -> Result<Rotation, String> {
+        if let Some(rpy) = self.three(&pose.rpy)? {
+            return Ok(roll_pitch_yaw(rpy));
         }
-        let about_com = |key: &str| body.inertia.get(key).map_or(Ok(0.0), |text| self.one(text));
+        if let Some([w, x, y, z]) = &pose.quat {
+            // v turned is q v q*: its columns by products of vectors, (w² - u²) e + 2 (u·e) u + 2 w u × e.
+            let (w, u) = (self.one(w)?, [self.one(x)?, self.one(y)?, self.one(z)?]);
+            let square: f64 = u.iter().map(|x| x * x).sum();
+            let columns = [0, 1, 2].map(|k| {
+                let side = cross(u, STILL[k]);
+                [0, 1, 2].map(|i| ((w * w - square) * STILL[k][i] + 2.0 * u[k] * u[i] + 2.0 * w * side[i]) / (w * w + square))
+            });
+            return Ok(transposed(&columns));
+        }
+        if let (Some(axis), Some(angle)) = (self.three(&pose.axis)?, &pose.angle) {
+            let (u, (s, c)) = (unit(axis), self.one(angle)?.sin_cos());
+            let columns = STILL.map(|e| {
+                let side = cross(u, e);
+                let back = cross(u, side);
+                [0, 1, 2].map(|i| e[i] + s * side[i] + (1.0 - c) * back[i])
+            });
+            return Ok(transposed(&columns));
+        }
+        if let Some([a, b, c, d, e, f]) = &pose.xyaxes {
+            let x = unit([self.one(a)?, self.one(b)?, self.one(c)?]);
+            let z = unit(cross(x, [self.one(d)?, self.one(e)?, self.one(f)?]));
+            return Ok(transposed(&[x, cross(z, x), z]));
+        }
+        Ok(STILL)
+    }
+
+    fn pose(&self, pose: &Option<PoseText>) -> Result<Placed, String> {
+        let list = pose.as_ref().map_or(&[][..], |pose| &pose.0);
+        let (mut r, mut p) = (STILL, [0.0; 3]);
+        for one in list {
+            let step = turned(&r, self.three(&one.xyz)?.unwrap_or_default());
+            p = [0, 1, 2].map(|i| p[i] + step[i]);
+            r = product(&r, &self.rotation(one)?);
+        }
+        Ok((r, p))
+    }
+
+    /// Bodies that are one, about the origin of the first one's frame.
+    fn lumped(&self, body: &BodyText) -> Result<Ten, String> {
+        let mut sum = self.ten(&body.mass, &body.com, &body.inertia, (STILL, [0.0; 3]))?;
+        for other in &body.attached {
+            let ten = self.ten(&other.mass, &other.com, &other.inertia, self.pose(&other.origin)?)?;
+            sum = std::array::from_fn(|k| sum[k] + ten[k]);
+        }
+        Ok(sum)
+    }
+
+    /// A body in a frame, about the origin outside of it: I = R I_C R' + m (c·c 1 - c c').
+    fn ten(&self, mass: &Option<Text>, com: &Option<[Text; 3]>, inertia: &InertiaText, (r, p): Placed) -> Result<Ten, String> {
+        let m = self.some(mass)?.unwrap_or(0.0);
+        let step = turned(&r, self.three(com)?.unwrap_or_default());
+        let [x, y, z] = [0, 1, 2].map(|i| p[i] + step[i]);
+        let element = |text: &Option<Text>| Ok::<f64, String>(self.some(text)?.unwrap_or(0.0));
+        let (xy, xz, yz) = (element(&inertia.xy)?, element(&inertia.xz)?, element(&inertia.yz)?);
+        let own = [[element(&inertia.xx)?, xy, xz], [xy, element(&inertia.yy)?, yz], [xz, yz, element(&inertia.zz)?]];
+        let InertiaText { rpy, quat, axis, angle, xyaxes, .. } = inertia.clone();
+        let axes = product(&r, &self.rotation(&OnePose { xyz: None, rpy, quat, axis, angle, xyaxes })?);
+        let i = product(&product(&axes, &own), &transposed(&axes));
         Ok([
             m,
             m * x,
             m * y,
             m * z,
-            about_com("xx")? + m * (y * y + z * z),
-            about_com("xy")? - m * x * y,
-            about_com("yy")? + m * (x * x + z * z),
-            about_com("xz")? - m * x * z,
-            about_com("yz")? - m * y * z,
-            about_com("zz")? + m * (x * x + y * y),
+            i[0][0] + m * (y * y + z * z),
+            i[0][1] - m * x * y,
+            i[1][1] + m * (x * x + z * z),
+            i[0][2] - m * x * z,
+            i[1][2] - m * y * z,
+            i[2][2] + m * (x * x + y * y),
         ])
     }
 }
@@ -243,29 +388,45 @@ impl Description {
         let modified = match self.convention.as_str() {
             "standard" => false,
             "modified" => true,
+            "urdf" => false,
             other => return Err(format!("unknown convention `{other}`")),
         };
-        let joints = self.joints.iter().map(|j| joint(j, modified, &numbers)).collect::<Result<_, String>>()?;
-        let rpy = numbers.three(&self.tool.rpy)?.unwrap_or_default();
+        let joints = self
+            .joints
+            .iter()
+            .enumerate()
+            .map(|(i, j)| joint(j, (i == 0).then(|| self.base.clone()).flatten(), modified, &numbers))
+            .collect::<Result<_, String>>()?;
         Ok(Model {
             modified,
+            base: numbers.pose(&self.base)?,
             gravity: numbers.three(&Some(self.gravity.clone()))?.unwrap_or_default(),
             joints,
-            tool: (roll_pitch_yaw(rpy), numbers.three(&self.tool.xyz)?.unwrap_or_default()),
-            payload: self.payload.as_ref().map(|body| numbers.body(body)).transpose()?,
+            tool: numbers.pose(&self.tool)?,
+            payload: self.payload.as_ref().map(|body| numbers.lumped(body)).transpose()?,
         })
     }
 }
 
-fn joint(text: &JointText, modified: bool, numbers: &Numbers) -> Result<Joint, String> {
+fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Numbers) -> Result<Joint, String> {
     let prismatic = match text.r#type.as_str() {
         "revolute" => false,
         "prismatic" => true,
         other => return Err(format!("unknown joint type `{other}`")),
     };
-    let row = [numbers.one(&text.a)?, numbers.one(&text.alpha)?, numbers.one(&text.d)?, numbers.one(&text.theta)?];
+    let number = |text: &Option<Text>| Ok::<f64, String>(numbers.some(text)?.unwrap_or(0.0));
+    let row = [number(&text.a)?, number(&text.alpha)?, number(&text.d)?, number(&text.theta)?];
+    let origin = match numbers.three(&text.axis)? {
+        Some(axis) => Some((numbers.pose(&text.origin)?, unit(axis))),
+        None => None,
+    };
     // The joint axis in the previous link's frame: its z, tilted by alpha in a modified row.
-    let own_axis = if modified { [0.0, -row[1].sin(), row[1].cos()] } else { [0.0, 0.0, 1.0] };
+    let own_axis = match origin {
+        Some(((r, _), axis)) => turned(&r, axis),
+        None if modified => [0.0, -row[1].sin(), row[1].cos()],
+        None => [0.0, 0.0, 1.0],
+    };
+    let own_axis = turned(&numbers.pose(&base)?.0, own_axis);
     let motor = |motor: &MotorText| -> Result<Motor, String> {
         let axis = numbers.three(&motor.axis)?.unwrap_or(own_axis);
         let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -281,10 +442,12 @@ fn joint(text: &JointText, modified: bool, numbers: &Numbers) -> Result<Joint, S
     Ok(Joint {
         prismatic,
         row,
-        link: numbers.body(&text.link)?,
+        origin,
+        link: numbers.lumped(&text.link)?,
         motor: text.motor.as_ref().map(motor).transpose()?,
         viscous: numbers.some(&text.friction.viscous)?,
         coulomb: numbers.some(&text.friction.coulomb)?,
+        armature: numbers.some(&text.armature)?,
     })
 }
 

@@ -120,6 +120,10 @@ impl Model {
             tau[i] = k * acceleration;
         }
 
+        for (i, joint) in self.joints.iter().enumerate() {
+            tau[i] = tau[i] + S::from(joint.armature.unwrap_or(0.0)) * ddq[i];
+        }
+
         for i in (0..n).rev() {
             let (z, o) = posture.axes[i];
             let (force, p) = (forces[i + 1], posture.frames[i + 1].p);
@@ -253,6 +257,7 @@ impl Model {
             twice = twice + m * dot(v, v) + S::from(2.0) * dot(v, cross(w, mc)) + spin;
         }
         for (i, joint) in self.joints.iter().enumerate() {
+            twice = twice + S::from(joint.armature.unwrap_or(0.0)) * dq[i] * dq[i];
             let Some(motor) = &joint.motor else { continue };
             let spin = dot(posture.frames[i].turn(constant(motor.axis)), motions[i].w) + S::from(motor.ratio) * dq[i];
             twice = twice + S::from(motor.inertia.unwrap_or(0.0)) * spin * spin;

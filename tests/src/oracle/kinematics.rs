@@ -1,10 +1,10 @@
 //! Frames and Jacobians.
 //!
-//! The axis of joint i is z of frame i-1 in standard rows, z of frame i in modified ones. Column i of the geometric Jacobian of a
+//! The axis of joint i is z of frame i-1 in standard rows, z of frame i in modified ones, and what the row says in others. Column i of the geometric Jacobian of a
 //! point p is (z x (p - o); z) for a revolute joint with a point o of its axis, (z; 0) for a prismatic one (the book, Sect. 3.1.3).
 
-use super::vector::{constant, cross, sub, Frame, Vector};
-use super::{Dual, Matrix, Model, Scalar};
+use super::vector::{add, constant, cross, scale, sub, Frame, Vector};
+use super::{Dual, Matrix, Model, Placed, Scalar};
 
 /// Where an arm stands: link frames and joint axes in the base frame.
 pub(super) struct Posture<S> {
@@ -20,12 +20,27 @@ pub(super) struct Posture<S> {
 impl<S: Scalar> Posture<S> {
     pub(super) fn new(model: &Model, q: &[S]) -> Self {
         assert_eq!(q.len(), model.dof());
+        let placed = |(r, p): Placed| Frame { r: r.map(constant), p: constant(p) };
         let mut frames = vec![Frame::base()];
         let mut axes = Vec::new();
         for (joint, &q) in model.joints.iter().zip(q) {
+            let q_own = q;
             let [a, alpha, d, theta] = joint.row.map(S::from);
             let (d, theta) = if joint.prismatic { (d + q, theta) } else { (d, theta + q) };
             let previous = *frames.last().expect("the base is there");
+            // The rotor of joint 1 rides on the base itself, the row starts from the frame that the file gives.
+            let previous = if frames.len() == 1 { previous.then(&placed(model.base)) } else { previous };
+            if let Some((origin, axis)) = joint.origin {
+                let still = previous.then(&placed(origin));
+                let u = still.turn(constant(axis));
+                let (frame, o) = match joint.prismatic {
+                    true => (Frame { p: add(still.p, scale(q_own, u)), ..still }, previous.p),
+                    false => (still.then(&about_vector(axis, q_own)), still.p),
+                };
+                axes.push((u, o));
+                frames.push(frame);
+                continue;
+            }
             let frame = if model.modified {
                 previous.about(0, alpha.sin_cos()).along(0, a).about(2, theta.sin_cos()).along(2, d)
             } else {
@@ -38,8 +53,7 @@ impl<S: Scalar> Posture<S> {
             });
             frames.push(frame);
         }
-        let tool = Frame { r: model.tool.0.map(constant), p: constant(model.tool.1) };
-        let end = frames.last().expect("the base is there").then(&tool);
+        let end = frames.last().expect("the base is there").then(&placed(model.tool));
         Posture { frames, end, axes }
     }
 
@@ -58,6 +72,18 @@ impl<S: Scalar> Posture<S> {
         }
         rows
     }
+}
+
+/// The turn about u, of length 1, by an angle: the columns are the axes turned, e + s u × e + (1 - c) u × (u × e).
+fn about_vector<S: Scalar>(u: [f64; 3], angle: S) -> Frame<S> {
+    let (s, c) = angle.sin_cos();
+    let u = constant(u);
+    let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| {
+        let e: Vector<S> = constant(e);
+        let aside = cross(u, e);
+        add(e, add(scale(s, aside), scale(S::from(1.0) - c, cross(u, aside))))
+    });
+    Frame { r: [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i])), p: constant([0.0; 3]) }
 }
 
 fn homogeneous(frame: &Frame<f64>) -> Matrix {

@@ -58,10 +58,9 @@ impl Model {
         let (mut links, mut drives) = (Vec::new(), Vec::new());
         for joint in &mut self.joints {
             links.extend(&mut joint.link);
-            if let Some(motor) = &mut joint.motor {
-                drives.extend(motor.inertia.as_mut());
-                drives.extend(motor.viscous.as_mut());
-            }
+            let motor = joint.motor.as_mut().map(|motor| (motor.inertia.as_mut(), motor.viscous.as_mut()));
+            let (inertia, viscous) = motor.unwrap_or_default();
+            drives.extend([inertia, joint.armature.as_mut(), viscous].into_iter().flatten());
             drives.extend(joint.viscous.as_mut());
             drives.extend(joint.coulomb.as_mut());
         }

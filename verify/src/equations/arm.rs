@@ -4,7 +4,7 @@ use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{self, Manipulator};
 
-use super::vector::{Matrix, Vector};
+use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
 use crate::arithmetic::{Arithmetic, Element};
 use crate::formula::Formula;
 
@@ -52,10 +52,14 @@ pub struct Joint<E> {
     pub revolute: bool,
     /// The link that carries it.
     pub parent: Option<usize>,
-    /// Joint frame at q = 0 in the parent's joint frame.
-    pub placement: Frame<E>,
-    /// Link frame in the joint frame.
-    pub link_frame: Frame<E>,
+    /// What stands before the joint's motion, in the previous link's frame.
+    pub before: Frame<E>,
+    /// Unit vector of the joint axis in the frame after `before`.
+    pub axis: Vector<E>,
+    /// What stands after the motion: the link frame in the frame that has moved.
+    pub after: Frame<E>,
+    /// The frame in which base parameters of the link are meant, in its link frame: the generator's choice.
+    pub chosen: Frame<E>,
     /// The link, in its link frame.
     pub link: Body<E>,
     /// Its motor.
@@ -64,6 +68,8 @@ pub struct Joint<E> {
     pub viscous: E,
     /// Coulomb friction at the joint.
     pub coulomb: E,
+    /// Inertia that the joint alone feels.
+    pub armature: E,
 }
 
 /// The arm.
@@ -136,6 +142,30 @@ impl<K: Arithmetic> Builder<'_, K> {
         Some(Body { mass: self.polynomial(&body.mass)?, com: self.vector(&body.com)?, inertia: symmetric(&six) })
     }
 
+    /// The product of frames.
+    fn pose(&self, pose: &manipulator::Pose) -> Option<Frame<K::Element>> {
+        let (zero, one) = (self.arithmetic.integer(0), self.arithmetic.integer(1));
+        pose.elements.iter().try_fold(Frame::identity(&zero, &one), |all, element| Some(all.then(&self.frame(element)?)))
+    }
+
+    /// Bodies as the file gives them, lumped: their ten parameters add where they are in one frame.
+    fn lumped(&self, parts: &[manipulator::Part]) -> Option<Body<K::Element>> {
+        let zero = self.arithmetic.integer(0);
+        let mut all: Option<Body<K::Element>> = None;
+        for part in parts {
+            let given = self.body(&part.given)?;
+            let (frame, axes) = (self.pose(&part.frame)?, self.pose(&part.axes)?.rotation);
+            let turn = product(&frame.rotation, &axes);
+            let inertia = product(&product(&turn, &given.inertia), &transpose(&turn));
+            let body = Body { mass: given.mass, com: frame.point(&given.com), inertia };
+            all = Some(match all {
+                None => body,
+                Some(other) => together(&zero, &other, &body)?,
+            });
+        }
+        all
+    }
+
     fn optional(&self, polynomial: Option<&Polynomial>) -> Option<K::Element> {
         match polynomial {
             Some(polynomial) => self.polynomial(polynomial),
@@ -158,14 +188,41 @@ impl<K: Arithmetic> Builder<'_, K> {
         Some(Joint {
             revolute: joint.kind == JointKind::Revolute,
             parent: joint.parent.map(|link| link.0 as usize),
-            placement: self.frame(&joint.placement)?,
-            link_frame: self.frame(&joint.link_frame)?,
-            link: self.body(&joint.link)?,
+            before: self.pose(&joint.row.before)?,
+            axis: self.row(&joint.row.axis)?,
+            after: self.pose(&joint.row.after)?,
+            chosen: self.frame(&joint.link_frame)?.inverse(),
+            link: self.lumped(&joint.link)?,
             motor,
             viscous: self.optional(joint.viscous.as_ref())?,
             coulomb: self.optional(joint.coulomb.as_ref())?,
+            armature: self.optional(joint.armature.as_ref())?,
         })
     }
+}
+
+/// Two bodies in one frame as one (Steiner): about the common centre of mass c each adds m (d'd 1 - d d'), d from c to its own. `None` where
+/// masses that are not 0 add up to 0.
+fn together<E: Element>(zero: &E, a: &Body<E>, b: &Body<E>) -> Option<Body<E>> {
+    let mass = a.mass.plus(&b.mass);
+    let moment = add(&scale(&a.mass, &a.com), &scale(&b.mass, &b.com));
+    let com = match mass.inverse() {
+        Some(inverse) => scale(&inverse, &moment),
+        None if moment.iter().all(Element::is_zero) => moment,
+        None => return None,
+    };
+    let mut inertia = [0; 3].map(|_| [0; 3].map(|_| zero.clone()));
+    for body in [a, b] {
+        let d = sub(&body.com, &com);
+        let square = dot(&d, &d);
+        for i in 0..3 {
+            for j in 0..3 {
+                let shift = if i == j { square.minus(&d[i].times(&d[j])) } else { d[i].times(&d[j]).negated() };
+                inertia[i][j] = inertia[i][j].plus(&body.inertia[i][j]).plus(&body.mass.times(&shift));
+            }
+        }
+    }
+    Some(Body { mass, com, inertia })
 }
 
 /// A symmetric matrix from xx xy yy xz yz zz.
@@ -183,13 +240,13 @@ impl<E: Element> Arm<E> {
         }
         let payload = match &manipulator.payload {
             None => None,
-            Some(body) => Some(builder.body(body)?),
+            Some(part) => Some(builder.lumped(std::slice::from_ref(part))?),
         };
         Some(Arm {
             joints,
             gravity: builder.vector(&manipulator.gravity)?,
             tip: manipulator.tip.0 as usize,
-            tool: builder.frame(&manipulator.tool)?,
+            tool: builder.pose(&manipulator.tool)?,
             payload,
             zero: arithmetic.integer(0),
             one: arithmetic.integer(1),
@@ -210,8 +267,10 @@ impl<E: Element> Arm<E> {
         let joints = self.joints.iter().map(|joint| Joint {
             revolute: joint.revolute,
             parent: joint.parent,
-            placement: frame(&joint.placement),
-            link_frame: frame(&joint.link_frame),
+            before: frame(&joint.before),
+            axis: vector(&joint.axis),
+            after: frame(&joint.after),
+            chosen: frame(&joint.chosen),
             link: body(&joint.link),
             motor: joint.motor.as_ref().map(|motor| Motor {
                 ratio: f(&motor.ratio),
@@ -223,6 +282,7 @@ impl<E: Element> Arm<E> {
             }),
             viscous: f(&joint.viscous),
             coulomb: f(&joint.coulomb),
+            armature: f(&joint.armature),
         });
         Arm {
             joints: joints.collect(),

@@ -59,6 +59,7 @@ pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>>
         }
     }
     for (i, joint) in arm.joints.iter().enumerate() {
+        accumulate(&[i], &|_, _| joint.armature.clone());
         let Some(motor) = &joint.motor else { continue };
         let mut spin = vec![arm.zero.clone(); n];
         let mut columns = vec![i];

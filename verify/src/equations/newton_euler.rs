@@ -113,7 +113,7 @@ impl<'a, E: Element> Moving<'a, E> {
                 Some(parent) => (links[parent].clone(), pose.joints[parent].origin.clone()),
                 None => (rest, nothing()),
             };
-            let z = pose.joints[i].z();
+            let z = pose.axes[i].clone();
             let (turn, change) = (scale(&motion.rates[i], &z), scale(&motion.accelerations[i], &z));
             let mut a = before.at(&sub(&pose.joints[i].origin, &from));
             let (mut omega, mut alpha) = (before.omega.clone(), before.alpha.clone());
@@ -152,11 +152,11 @@ impl<'a, E: Element> Moving<'a, E> {
 
     fn add_wrench(&self, link: Option<usize>, point: &Vector<E>, force: &Vector<E>, moment: &Vector<E>, torques: &mut [E]) {
         for &j in link.map_or(&[][..], |link| &self.pose.ancestors[link]) {
-            let z = self.pose.joints[j].z();
+            let z = &self.pose.axes[j];
             let torque = if self.arm.joints[j].revolute {
-                dot(&z, &add(moment, &cross(&sub(point, &self.pose.joints[j].origin), force)))
+                dot(z, &add(moment, &cross(&sub(point, &self.pose.joints[j].origin), force)))
             } else {
-                dot(&z, force)
+                dot(z, force)
             };
             torques[j] = torques[j].plus(&torque);
         }
@@ -191,12 +191,18 @@ impl<'a, E: Element> Moving<'a, E> {
         torques[i] = torques[i].plus(&motor.ratio.times(inertia).times(&change));
     }
 
+    /// Adds the torque that an armature of joint `i` needs.
+    pub fn add_armature(&self, i: usize, armature: &E, torques: &mut [E]) {
+        torques[i] = torques[i].plus(&armature.times(&self.motion.accelerations[i]));
+    }
+
     /// The torques of the whole arm, without friction.
     pub fn torques(&self) -> Vec<E> {
         let mut torques = vec![self.arm.zero.clone(); self.arm.dof()];
         for (i, joint) in self.arm.joints.iter().enumerate() {
             self.add_body(Carrier::Link(i), &ten(&joint.link), &mut torques);
             self.add_rotor_mass(i, &mut torques);
+            self.add_armature(i, &joint.armature, &mut torques);
             if let Some(motor) = &joint.motor {
                 self.add_rotor_inertia(i, &motor.inertia, &mut torques);
             }

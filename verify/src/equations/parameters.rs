@@ -22,6 +22,8 @@ pub enum Standard {
     Link(usize, usize),
     /// Inertia of a joint's rotor.
     RotorInertia(usize),
+    /// Inertia that a joint alone feels.
+    Armature(usize),
     /// Viscous friction at a joint's rotor.
     RotorViscous(usize),
     /// Viscous friction at a joint.
@@ -43,6 +45,7 @@ impl Standard {
             let motor = joint.motor.as_ref();
             let given = [
                 (motor.is_some_and(|m| m.inertia.is_some()), Standard::RotorInertia(i)),
+                (joint.armature.is_some(), Standard::Armature(i)),
                 (motor.is_some_and(|m| m.viscous.is_some()), Standard::RotorViscous(i)),
                 (joint.viscous.is_some(), Standard::Viscous(i)),
                 (joint.coulomb.is_some(), Standard::Coulomb(i)),
@@ -60,6 +63,7 @@ impl Standard {
         match self {
             Standard::Link(i, k) => format!("{}{}", TEN[k], i + 1),
             Standard::RotorInertia(i) => format!("Im{}", i + 1),
+            Standard::Armature(i) => format!("Ia{}", i + 1),
             Standard::RotorViscous(i) => format!("Fm{}", i + 1),
             Standard::Viscous(i) => format!("Fv{}", i + 1),
             Standard::Coulomb(i) => format!("Fc{}", i + 1),
@@ -73,6 +77,7 @@ impl Standard {
         match self {
             Standard::Link(i, k) => ten(&arm.joints[i].link)[k].clone(),
             Standard::RotorInertia(i) => motor(i).map_or(arm.zero.clone(), |m| m.inertia.clone()),
+            Standard::Armature(i) => arm.joints[i].armature.clone(),
             Standard::RotorViscous(i) => motor(i).map_or(arm.zero.clone(), |m| m.viscous.clone()),
             Standard::Viscous(i) => arm.joints[i].viscous.clone(),
             Standard::Coulomb(i) => arm.joints[i].coulomb.clone(),
@@ -91,6 +96,7 @@ pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E
             Standard::Link(i, k) => tens[i][k] = value.clone(),
             Standard::Payload(k) => tens[n][k] = value.clone(),
             Standard::RotorInertia(i) => arm.joints[i].motor.as_mut()?.inertia = value.clone(),
+            Standard::Armature(i) => arm.joints[i].armature = value.clone(),
             Standard::RotorViscous(i) => arm.joints[i].motor.as_mut()?.viscous = value.clone(),
             Standard::Viscous(i) => arm.joints[i].viscous = value.clone(),
             Standard::Coulomb(i) => arm.joints[i].coulomb = value.clone(),
@@ -145,6 +151,7 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
                 of_rotors.torques(&|moving, torques| moving.add_body(Carrier::Tool, &unit, torques))
             }
             Standard::RotorInertia(i) => of_rotors.torques(&|moving, torques| moving.add_rotor_inertia(i, &arm.one, torques)),
+            Standard::Armature(i) => single(i, state.ddqr[i].clone()),
             Standard::RotorViscous(i) => {
                 let square = arm.joints[i].motor.as_ref().map_or(arm.zero.clone(), |m| m.ratio.times(&m.ratio));
                 single(i, square.times(&state.dqr[i]))
@@ -189,6 +196,7 @@ impl<E: Element> KeptAlone<'_, E> {
         let of_others = Reference::new(self.arm, described, dq, dqr, ddqr).torques(&|moving, torques| {
             for (i, joint) in self.arm.joints.iter().enumerate() {
                 moving.add_rotor_mass(i, torques);
+                moving.add_armature(i, &self.of(Standard::Armature(i), &joint.armature), torques);
                 if let Some(motor) = &joint.motor {
                     moving.add_rotor_inertia(i, &self.of(Standard::RotorInertia(i), &motor.inertia), torques);
                 }

@@ -2,14 +2,18 @@
 
 use super::arm::{Arm, Frame};
 use super::state::State;
-use super::vector::{add, apply, cross, product, sub, transpose, Vector};
+use super::vector::{add, apply, cross, product, scale, sub, transpose, Vector};
 use crate::arithmetic::Element;
 
 /// Frames in the base frame at one state.
 #[derive(Clone, Debug)]
 pub struct Pose<E> {
-    /// Joint frames: origin on the axis, z along it.
+    /// Frames that have moved with each joint: origin on the axis.
     pub joints: Vec<Frame<E>>,
+    /// Directions of the joint axes.
+    pub axes: Vec<Vector<E>>,
+    /// The frames in which base parameters are meant.
+    pub chosen: Vec<Frame<E>>,
     /// Link frames as the description defines them.
     pub links: Vec<Frame<E>>,
     /// The end effector.
@@ -41,9 +45,17 @@ impl<E: Element> Frame<E> {
         apply(&transpose(&self.rotation), direction)
     }
 
-    /// The third axis.
-    pub fn z(&self) -> Vector<E> {
-        [0, 1, 2].map(|i| self.rotation[i][2].clone())
+    /// No rotation, no translation.
+    pub fn identity(zero: &E, one: &E) -> Frame<E> {
+        let rotation = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { one.clone() } else { zero.clone() }));
+        Frame { rotation, origin: [0; 3].map(|_| zero.clone()) }
+    }
+
+    /// The outer frame in this one.
+    pub fn inverse(&self) -> Frame<E> {
+        let rotation = transpose(&self.rotation);
+        let origin = apply(&rotation, &self.origin).map(|x| x.negated());
+        Frame { rotation, origin }
     }
 }
 
@@ -53,37 +65,46 @@ impl<E: Element> Pose<E> {
         let (zero, one) = (&arm.zero, &arm.one);
         let mut joints: Vec<Frame<E>> = Vec::new();
         let mut ancestors: Vec<Vec<usize>> = Vec::new();
+        let mut links: Vec<Frame<E>> = Vec::new();
+        let mut axes = Vec::new();
         for (i, joint) in arm.joints.iter().enumerate() {
-            // motion: Rz(q) or Tz(q)
+            let u = &joint.axis;
             let motion = if joint.revolute {
+                // c 1 + s [u] + (1 - c) u u' (Rodrigues; the book, eq. 2.25)
                 let (s, c) = &state.angles[i];
-                let rotation = [
-                    [c.clone(), s.negated(), zero.clone()],
-                    [s.clone(), c.clone(), zero.clone()],
-                    [zero.clone(), zero.clone(), one.clone()],
-                ];
-                Frame { rotation, origin: arm.nothing() }
+                let rest = one.minus(c);
+                let entry = |a: usize, b: usize| {
+                    let dyad = rest.times(&u[a]).times(&u[b]);
+                    match (b + 3 - a) % 3 {
+                        0 => dyad.plus(c),
+                        1 => dyad.minus(&s.times(&u[3 - a - b])),
+                        _ => dyad.plus(&s.times(&u[3 - a - b])),
+                    }
+                };
+                Frame { rotation: [0, 1, 2].map(|a| [0, 1, 2].map(|b| entry(a, b))), origin: arm.nothing() }
             } else {
-                let rotation = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { one.clone() } else { zero.clone() }));
-                Frame { rotation, origin: [zero.clone(), zero.clone(), state.q[i].clone()] }
+                Frame { origin: scale(&state.q[i], u), ..Frame::identity(zero, one) }
             };
-            let moved = joint.placement.then(&motion);
+            let moved = joint.before.then(&motion);
             let (frame, mut path) = match joint.parent {
-                Some(parent) => (joints[parent].then(&moved), ancestors[parent].clone()),
+                Some(parent) => (links[parent].then(&moved), ancestors[parent].clone()),
                 None => (moved, Vec::new()),
             };
+            axes.push(frame.direction(u));
+            links.push(frame.then(&joint.after));
             joints.push(frame);
             path.insert(0, i);
             ancestors.push(path);
         }
-        let links: Vec<Frame<E>> = joints.iter().zip(&arm.joints).map(|(frame, joint)| frame.then(&joint.link_frame)).collect();
+        let chosen = links.iter().zip(&arm.joints).map(|(frame, joint)| frame.then(&joint.chosen)).collect();
         let tool = links[arm.tip].then(&arm.tool);
-        Pose { joints, links, tool, ancestors, revolute: arm.joints.iter().map(|j| j.revolute).collect(), zero: zero.clone() }
+        let revolute = arm.joints.iter().map(|j| j.revolute).collect();
+        Pose { joints, axes, chosen, links, tool, ancestors, revolute, zero: zero.clone() }
     }
 
-    /// The same pose with each link's own frame taken to be its joint frame.
+    /// The same pose with each link's own frame taken to be the one in which its base parameters are meant.
     pub fn with_links_in_joint_frames(mut self) -> Pose<E> {
-        self.links.clone_from(&self.joints);
+        self.links.clone_from(&self.chosen);
         self
     }
 
@@ -92,7 +113,7 @@ impl<E: Element> Pose<E> {
         let nothing = || [0; 3].map(|_| self.zero.clone());
         let mut columns = vec![(nothing(), nothing()); self.joints.len()];
         for &j in link.map_or(&[][..], |link| &self.ancestors[link]) {
-            let z = self.joints[j].z();
+            let z = self.axes[j].clone();
             columns[j] = if self.revolute[j] { (cross(&z, &sub(point, &self.joints[j].origin)), z) } else { (z, nothing()) };
         }
         columns

@@ -4,7 +4,7 @@ mod identification;
 
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::description::{Convention, RobotDescription};
+use armgen_codegen::description::{Convention, JointDescription, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
@@ -64,6 +64,7 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     row("robot", manipulator.name.clone());
     row("joints", manipulator.dof().to_string());
     let convention = match description.convention.as_ref().map(|c| c.value) {
+        Some(Convention::Urdf) => "urdf: origin, then the motion about or along axis",
         Some(Convention::Modified) => "modified Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
         _ => "standard Denavit-Hartenberg: Rz(theta) Tz(d) Tx(a) Rx(alpha)",
     };
@@ -72,11 +73,11 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     let gravity: Vec<String> = manipulator.gravity.iter().map(|g| decimal(&at_nominal(g))).collect();
     row("gravity", format!("({}) m/s²", gravity.join(", ")));
     let rotors = manipulator.joints.iter().filter_map(|j| j.motor.as_ref()).map(|m| &m.mass);
-    let links = manipulator.joints.iter().map(|j| &j.link.mass);
+    let links = manipulator.joints.iter().flat_map(|j| &j.link).map(|part| &part.body.mass);
     let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));
     row("mass of links and rotors", format!("{} kg", decimal(&total)));
     if let Some(payload) = &manipulator.payload {
-        row("payload", format!("{} kg", decimal(&at_nominal(&payload.mass))));
+        row("payload", format!("{} kg", decimal(&at_nominal(&payload.body.mass))));
     }
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
     let (m, n) = (rows.len(), manipulator.dof());
@@ -104,7 +105,7 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     table.text()
 }
 
-/// One row per joint: the Denavit-Hartenberg row as written, masses, motors and limits in numbers.
+/// One row per joint: the row as written, masses, motors and limits in numbers.
 fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     use Align::{Left, Right};
     let mut table = Table::new([
@@ -114,6 +115,8 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
         ("alpha", Right),
         ("d", Right),
         ("theta", Right),
+        ("origin", Left),
+        ("axis", Left),
         ("mass", Right),
         ("ratio", Right),
         ("position", Left),
@@ -123,19 +126,15 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
     let written = description.joints.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
     for (i, joint) in manipulator.joints.iter().enumerate() {
         let revolute = joint.kind == JointKind::Revolute;
-        let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
-        let dh = written.get(i).map_or_else(Default::default, |j| [text(&j.a), text(&j.alpha), text(&j.d), text(&j.theta)]);
-        let [a, alpha, mut d, mut theta] = dh;
-        // The joint variable is added to theta or to d.
-        let moved = if revolute { &mut theta } else { &mut d };
-        *moved = match moved.strip_prefix('-') {
-            _ if moved == "0" => format!("q{}", i + 1),
-            Some(rest) if !rest.contains(['+', '-']) => format!("q{} - {}", i + 1, rest.trim_start()),
-            Some(_) => format!("q{} + ({moved})", i + 1),
-            None => format!("q{} + {moved}", i + 1),
+        let urdf = matches!(description.convention.as_ref().map(|c| c.value), Some(Convention::Urdf));
+        let ([a, alpha, d, theta], [origin, axis]) = match written.get(i) {
+            None => Default::default(),
+            Some(row) if urdf => (Default::default(), urdf_row(source, row)),
+            Some(row) => (dh_row(source, row, i, revolute), Default::default()),
         };
         let number = |p: &Polynomial| decimal(&derive::parameters::nominal(manipulator, p));
         let limit = |value: &Option<Number>| value.as_ref().map_or(String::new(), decimal);
+        let mass = joint.link.iter().fold(Polynomial::zero(), |sum, part| &sum + &part.body.mass);
         table.row([
             format!("{} {}", i + 1, joint.name),
             if revolute { "revolute" } else { "prismatic" }.into(),
@@ -143,7 +142,9 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
             alpha,
             d,
             theta,
-            number(&joint.link.mass),
+            origin,
+            axis,
+            number(&mass),
             joint.motor.as_ref().map_or(String::new(), |motor| number(&motor.ratio)),
             joint.limits.position.as_ref().map_or(String::new(), |[low, high]| format!("{} to {}", decimal(low), decimal(high))),
             limit(&joint.limits.velocity),
@@ -151,6 +152,28 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
         ]);
     }
     table.text()
+}
+
+/// a, alpha, d and theta as written; the joint variable is added to theta or to d.
+fn dh_row(source: &Source, row: &JointDescription, i: usize, revolute: bool) -> [String; 4] {
+    let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
+    let [a, alpha, mut d, mut theta] = [text(&row.a), text(&row.alpha), text(&row.d), text(&row.theta)];
+    let moved = if revolute { &mut theta } else { &mut d };
+    *moved = match moved.strip_prefix('-') {
+        _ if moved == "0" => format!("q{}", i + 1),
+        Some(rest) if !rest.contains(['+', '-']) => format!("q{} - {}", i + 1, rest.trim_start()),
+        Some(_) => format!("q{} + ({moved})", i + 1),
+        None => format!("q{} + {moved}", i + 1),
+    };
+    [a, alpha, d, theta]
+}
+
+/// Translations of the origin, and the axis, as written.
+fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
+    let slice = |span| source.slice(span).to_string();
+    let origin = row.origin.iter().flat_map(|pose| &pose.elements).filter_map(|e| e.xyz.as_ref()).map(|xyz| slice(xyz.span));
+    let axis = row.axis.as_ref().map_or(String::new(), |axis| slice(axis.span));
+    [origin.collect::<Vec<_>>().join(" "), axis]
 }
 
 /// A number for people: six digits at most.

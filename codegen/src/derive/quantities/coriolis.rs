@@ -120,6 +120,7 @@ fn own_entries(pool: &mut Pool, joint: &Joint, column: &Column) -> (ExprId, Expr
         let seen = pool.mul(coupling, rotor.ratio);
         own = pool.add(own, seen);
     }
+    own = pool.add(own, joint.armature);
     (own, column.rate.map_or(ExprId::ZERO, |rate| axis(rate.coriolis)))
 }
 

@@ -73,6 +73,7 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
             let seen = pool.mul(coupling, rotor.ratio);
             own = pool.add(own, seen);
         }
+        own = pool.add(own, joint.armature);
         b[j][j] = own;
         let mut propagated = propagator.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
         while let Some(parent) = propagator.propagate_to_parent(pool, plan, &mut propagated) {

@@ -73,6 +73,9 @@ pub fn kinetic_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
             let energy = pool.mul(momentum, rates[i]);
             twice = pool.add(twice, energy);
         }
+        let momentum = pool.mul(joint.armature, rates[i]);
+        let energy = pool.mul(momentum, rates[i]);
+        twice = pool.add(twice, energy);
     }
     pool.mul(half, twice)
 }

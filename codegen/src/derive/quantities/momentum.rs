@@ -133,6 +133,8 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
             let momentum = pool.mul(coupling, rates[i]);
             spin = pool.scale(momentum, &rotor.axis);
         }
+        let own = pool.mul(joint.armature, rates[i]);
+        p[i] = pool.add(p[i], own);
         if let Some(parent) = joint.parent {
             let (linear, angular) = wrench_outward(pool, arm, i, &linear, &angular);
             let angular = pool.add_vectors(&angular, &spin);
