@@ -462,10 +462,31 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in ["", "check", "show", "generate", "verify", "count", "run", "completions"] {
+    for command in ["", "check", "show", "generate", "import", "verify", "count", "run", "completions"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");
         insta::assert_snapshot!(format!("help {command}").trim().replace(' ', "_"), text);
     }
+}
+
+/// The first commands of docs/import.md, on an arm of the tests.
+#[test]
+fn a_urdf_becomes_a_description_that_is_valid_and_verified() {
+    let folder = folder("import");
+    let path = |name: &str| folder.join(name).to_str().expect("a UTF-8 path").to_string();
+    let urdf = file("import/tests/urdf/everything.urdf");
+    let (yaml, report, module) = (path("robot.yaml"), path("report.json"), path("robot.rs"));
+    let chain = ["import", &urdf, "--base", "base", "--tip", "tip"];
+    let output = check(&[&chain[..], &["--lock", "finger=0.04", "--out", &yaml, "--report", &report]].concat(), 0);
+    assert!(err(&output).contains("moves by at most"), "{}", err(&output));
+    let report: Value = serde_json::from_str(&fs::read_to_string(&report).expect("a report")).expect("the report is JSON");
+    assert_eq!(report["joints"].as_array().map(Vec::len), Some(3));
+    check(&["check", &yaml], 0);
+    check(&["generate", &yaml, "--out", &module, "--verify", "--functions", "gravity,inertia_matrix"], 0);
+    // Without --tip two fingers and the tip may be meant.
+    let refused = check(&["import", &urdf, "--base", "base"], 1);
+    assert!(err(&refused).contains("error[several-tips]"), "{}", err(&refused));
+    check(&["import", &urdf, "--lock", "finger"], 2);
+    check(&["import", &urdf, "--snap", "1"], 2);
 }

@@ -4,6 +4,7 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod count;
 pub(crate) mod generate;
+pub(crate) mod import;
 pub(crate) mod run;
 pub(crate) mod show;
 pub(crate) mod verify;

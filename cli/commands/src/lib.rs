@@ -27,6 +27,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use commands::generate::{Beside, Choices};
+use commands::import;
 
 /// Exit code: the file is valid, or the task was done.
 const DONE: u8 = 0;
@@ -46,6 +47,7 @@ const EXAMPLES: &str = "Examples:
   armgen show robot.yaml inertia_matrix        B(q) with the numbers of the file
   armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
   armgen verify robot.yaml robot.rs            whether that file equals the equations
+  armgen import robot.urdf --out robot.yaml    a URDF as a description
   armgen run                                   move the robot that this program was built with
 
 Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
@@ -121,6 +123,25 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         choices: Choices,
         #[command(flatten)]
         beside: Beside,
+    },
+    /// Turn a serial chain of a URDF into a description
+    #[command(after_help = "Examples:
+  armgen import robot.urdf --out robot.yaml
+  armgen import robot.urdf --tip tool0 --lock finger_joint=0.04 --out robot.yaml
+  armgen import robot.urdf --snap 0 --report report.json > robot.yaml
+
+The chain goes from the root, or --base, to the only tip that there is, or --tip. Fixed joints become poses, and
+what hangs on a link beside the chain becomes part of it, exactly. 1.5708 is taken for pi/2; how far that can
+move the end effector and the torques stands in the head of the description. The format: docs/import.md.
+Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a file cannot be read or written.")]
+    Import {
+        /// URDF of the robot
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        #[command(flatten)]
+        choices: import::Choices,
+        #[command(flatten)]
+        results: import::Results,
     },
     /// Verify that a module equals the equations of its description, exactly
     #[command(after_help = "Examples:
@@ -249,6 +270,7 @@ pub fn run(built: &dyn Arm) -> ExitCode {
         Command::Check { files } => commands::check::run(&files),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
+        Command::Import { file, choices, results } => import::run(&file, choices, &results),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
         Command::Run { files, out } => commands::run::run(&files, &out, built),

@@ -206,12 +206,12 @@ fn unfit(
 }
 
 /// Whether two paths lead to one file, whatever they are called.
-fn same_file(a: &Path, b: &Path) -> bool {
+pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Writes beside the file first and then renames: nobody ever finds half of it.
-fn write(path: &Path, text: &str) -> std::io::Result<()> {
+pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
     // A rename would turn a device or a link into a plain file.
     if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
         return std::fs::write(path, text);

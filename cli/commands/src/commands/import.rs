@@ -1,0 +1,99 @@
+//! `armgen import`: a URDF to a robot.yaml.
+
+use std::path::{Path, PathBuf};
+
+use armgen_import::Options;
+use clap::{Args, ValueHint};
+
+use super::generate::{same_file, write};
+use crate::{input, terminal, DONE, UNREADABLE};
+
+/// Which arm of the file, and how it is read.
+#[derive(Debug, Args)]
+pub(crate) struct Choices {
+    /// The link that does not move; the root of the file if not given
+    #[arg(long, value_name = "LINK")]
+    base: Option<String>,
+    /// The link whose frame is the end effector's; needed where several may be
+    #[arg(long, value_name = "LINK")]
+    tip: Option<String>,
+    /// A joint that stands still, and where: an expression such as 0.04 or pi/4
+    #[arg(long, value_name = "JOINT=VALUE", value_parser = lock, allow_hyphen_values = true)]
+    lock: Vec<(String, String)>,
+    /// The robot's name; the file's if not given
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+    /// Angles within so many rad of a multiple of pi/12 are that multiple; 0 takes every digit
+    #[arg(long, value_name = "TOL", default_value_t = Options::SNAP, value_parser = tolerance)]
+    snap: f64,
+    /// Links without a mass distribution have mass 0
+    #[arg(long)]
+    massless: bool,
+}
+
+fn lock(text: &str) -> Result<(String, String), String> {
+    let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE")?;
+    Ok((joint.to_owned(), value.to_owned()))
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    match (0.0..=Options::LARGEST_SNAP).contains(&value) {
+        true => Ok(value),
+        false => Err(format!("from 0 to {} rad", Options::LARGEST_SNAP)),
+    }
+}
+
+/// Where the results go.
+#[derive(Debug, Args)]
+pub(crate) struct Results {
+    /// File to write; standard output if not given
+    #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+    out: Option<PathBuf>,
+    /// What was taken, changed and left out, as JSON
+    #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+    report: Option<PathBuf>,
+}
+
+pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
+    let source = match input::source(file) {
+        Ok(source) => source,
+        Err(code) => return code,
+    };
+    if choices.name.as_ref().is_some_and(|name| !armgen_codegen::validate::is_rust_name(name)) {
+        terminal::error("--name takes letters, digits and `_`, a letter first");
+        return UNREADABLE;
+    }
+    let Choices { base, tip, lock, name, snap, massless } = choices;
+    let options = Options { base, tip, lock, name, snap, massless };
+    let (imported, diagnostics) = armgen_import::import(&source, &options);
+    let imported = match input::report_or_exit_code(&source, imported, &diagnostics, input::Warnings::Shown) {
+        Ok(imported) => imported,
+        Err(code) => return code,
+    };
+    for out in [&results.out, &results.report].into_iter().flatten() {
+        if same_file(file, out) {
+            terminal::error(&format!("{} is the file to import: it would be overwritten; name another file", out.display()));
+            return UNREADABLE;
+        }
+    }
+    if results.out.is_some() && results.out == results.report {
+        terminal::error("--out and --report name one file");
+        return UNREADABLE;
+    }
+    for line in imported.report.lines() {
+        terminal::note(line);
+    }
+    let json = imported.report.to_json();
+    for (path, text) in [(&results.report, &json), (&results.out, &imported.yaml)] {
+        let Some(path) = path else { continue };
+        if let Err(error) = write(path, text) {
+            terminal::error(&format!("cannot write {}: {error}", path.display()));
+            return UNREADABLE;
+        }
+    }
+    match results.out {
+        Some(_) => DONE,
+        None => terminal::print(&imported.yaml),
+    }
+}

@@ -1,0 +1,177 @@
+//! How far snapping can move the flange and the torques: the triangle inequality, joint after joint.
+//!
+//! Of two arms that differ by angles D_j in the origin of row j and η_j in the direction of its axis, for all states of the box
+//!
+//! ```text
+//! |R - R'| ≤ Σ_j (D_j + 2 η_j)                                                                      (rad)
+//! |p - p'| ≤ Σ_j (D_j + 2 η_j) ρ_j + Σ_slides η_j Q_j + Σ dust     ρ_j: length of the rest of the chain   (m)
+//! ```
+//!
+//! where Q is the largest |q| of a slide. For the torques a Newton-Euler recursion runs over magnitudes of angular velocity, angular
+//! acceleration and acceleration and over their differences outwards, then over forces and moments inwards; products differ by
+//! |ab - a'b'| ≤ Δa |b| + |a'| Δb.
+//!
+//! The box: q within its limits (none: ±pi rad, ±1 m), |dq| up to the velocity limit (none: 4 rad/s, 1 m/s), |ddq| ≤ 10.
+//! Sums are floats, rounded up at the end.
+
+use crate::chain::{Arm, Body, Pose, Row};
+use crate::snap::Written;
+
+/// What a bound is multiplied by: more than all roundings here.
+const UP: f64 = 1.0 + 1e-9;
+
+/// How far the arm of robot.yaml and the one of the file are apart at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Bound {
+    /// Of the origin of the end effector, m.
+    pub(crate) flange: f64,
+    /// Of its axes, rad.
+    pub(crate) orientation: f64,
+    /// Of any joint's torque, N m or N.
+    pub(crate) torque: f64,
+}
+
+/// Length, angle by which it was turned, and length by which it was moved, of poses.
+#[derive(Clone, Copy, Debug, Default)]
+struct Way {
+    length: f64,
+    turned: f64,
+    moved: f64,
+}
+
+fn norm(v: &[Written; 3]) -> f64 {
+    v.iter().map(|x| x.value * x.value).sum::<f64>().sqrt()
+}
+
+fn offsets(v: &[Written; 3]) -> f64 {
+    v.iter().map(|x| x.offset).sum()
+}
+
+/// Poses one after another: what turns the first one moves all that follow.
+fn way(poses: &[Pose]) -> Way {
+    let mut way = Way::default();
+    for pose in poses {
+        let step = norm(&pose.xyz);
+        way.moved += way.turned * step + offsets(&pose.xyz);
+        way.length += step;
+        way.turned += pose.turned();
+    }
+    way
+}
+
+/// Largest |q| and |dq| of the box.
+fn box_of(row: &Row) -> (f64, f64) {
+    let otherwise = if row.prismatic { (1.0, 1.0) } else { (std::f64::consts::PI, 4.0) };
+    let q = row.position.as_ref().map_or(otherwise.0, |[low, high]| low.value.abs().max(high.value.abs()));
+    (q, row.velocity.as_ref().map_or(otherwise.1, |v| v.value))
+}
+
+/// A quantity of both arms: its largest size, and how far the two can be apart.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pair {
+    size: f64,
+    apart: f64,
+}
+
+impl Pair {
+    fn new(size: f64, apart: f64) -> Pair {
+        Pair { size, apart }
+    }
+
+    fn plus(self, other: Pair) -> Pair {
+        Pair::new(self.size + other.size, self.apart + other.apart)
+    }
+
+    fn times(self, other: Pair) -> Pair {
+        Pair::new(self.size * other.size, self.apart * other.size + self.size * other.apart)
+    }
+
+    /// Seen in axes that are turned by so much against those of the other arm.
+    fn turned(self, by: f64) -> Pair {
+        Pair::new(self.size, self.apart + by * self.size)
+    }
+}
+
+/// A body in its link's frame: mass, centre of mass, inertia about it.
+struct Mass {
+    m: f64,
+    com: Pair,
+    inertia: Pair,
+}
+
+fn mass(body: &Body, at: Way) -> Mass {
+    let com = Pair::new(at.length + norm(&body.com), at.moved + at.turned * norm(&body.com) + offsets(&body.com));
+    let entries = [0, 1, 2, 3, 3, 4, 4, 5, 5].map(|k| &body.inertia[k]);
+    let size = entries.iter().map(|x| x.value * x.value).sum::<f64>().sqrt();
+    let dust: f64 = entries.iter().map(|x| x.offset).sum();
+    // R I R' with R off by an angle: twice that times |I|.
+    Mass { m: body.mass.value, com, inertia: Pair::new(size, 2.0 * (at.turned + offsets(&body.rpy)) * size + dust) }
+}
+
+/// The bounds of an arm; all are 0 where nothing was taken for something else.
+pub(crate) fn of(arm: &Arm) -> Bound {
+    if arm.snap.snapped.is_empty() {
+        return Bound::default();
+    }
+    let tool = way(&arm.tool);
+    let ways: Vec<Way> = arm.rows.iter().map(|row| way(&row.origin)).collect();
+    let boxes: Vec<(f64, f64)> = arm.rows.iter().map(box_of).collect();
+    let slide = |j: usize| if arm.rows[j].prismatic { boxes[j].0 } else { 0.0 };
+    let (mut flange, mut orientation, mut rest) = (tool.moved, tool.turned, tool.length);
+    for j in (0..arm.rows.len()).rev() {
+        let eta = arm.rows[j].axis_offset;
+        // A slide along an axis that points elsewhere turns nothing.
+        let turned = ways[j].turned + if arm.rows[j].prismatic { 0.0 } else { 2.0 * eta };
+        flange += ways[j].turned * slide(j) + turned * rest + eta * slide(j) + ways[j].moved;
+        orientation += turned;
+        rest += ways[j].length + slide(j);
+    }
+    Bound { flange: flange * UP, orientation: orientation * UP, torque: torque(arm, &ways, &boxes) * UP }
+}
+
+/// Newton-Euler over magnitudes, in the axes of each link.
+fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
+    const ACCELERATION: f64 = 10.0;
+    let n = arm.rows.len();
+    let (mut w, mut dw, mut a) = (Pair::default(), Pair::default(), Pair::new(9.81, 9.81 * arm.gravity_offset));
+    let (mut forces, mut moments) = (vec![Pair::default(); n], vec![Pair::default(); n]);
+    // By how much the step from link j - 1 to link j is turned against the other arm's, and its lever.
+    let mut steps = Vec::new();
+    for (j, row) in arm.rows.iter().enumerate() {
+        let ((q, dq), eta) = (boxes[j], row.axis_offset);
+        let turned = ways[j].turned + if row.prismatic { 0.0 } else { 2.0 * eta };
+        let mut lever = Pair::new(ways[j].length, ways[j].moved);
+        if row.prismatic {
+            lever = lever.plus(Pair::new(q, (ways[j].turned + eta) * q));
+        }
+        steps.push((turned, lever));
+        let (rate, change) = (Pair::new(dq, eta * dq), Pair::new(ACCELERATION, eta * ACCELERATION));
+        a = a.plus(dw.times(lever)).plus(w.times(w).times(lever)).turned(turned);
+        (w, dw) = (w.turned(turned), dw.turned(turned));
+        if row.prismatic {
+            a = a.plus(change).plus(Pair::new(2.0, 0.0).times(w).times(rate));
+        } else {
+            dw = dw.plus(change).plus(w.times(rate));
+            w = w.plus(rate);
+        }
+        let attached = row.attached.iter().map(|other| mass(&other.body, way(&other.origin)));
+        for Mass { m, com, inertia } in row.body.iter().map(|body| mass(body, Way::default())).chain(attached) {
+            let at = a.plus(dw.times(com)).plus(w.times(w).times(com));
+            let force = Pair::new(m, 0.0).times(at);
+            forces[j] = forces[j].plus(force);
+            moments[j] = moments[j].plus(inertia.times(dw)).plus(w.times(inertia).times(w)).plus(com.times(force));
+        }
+    }
+    let mut worst: f64 = 0.0;
+    for j in (0..n).rev() {
+        let felt = if arm.rows[j].prismatic { forces[j] } else { moments[j] };
+        worst = worst.max(felt.apart + arm.rows[j].axis_offset * felt.size);
+        if j > 0 {
+            let (turned, lever) = steps[j];
+            let force = forces[j].turned(turned);
+            forces[j - 1] = forces[j - 1].plus(force);
+            moments[j - 1] = moments[j - 1].plus(moments[j].turned(turned)).plus(lever.times(force));
+        }
+    }
+    worst
+}

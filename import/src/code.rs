@@ -1,0 +1,82 @@
+//! Kinds of faults of a file to import.
+
+use armgen_codegen::codes;
+
+codes! {
+    /// Kinds of faults of a file to import.
+    pub enum Code {
+        /// Not well-formed, with a document type definition, or not the root element of a robot.
+        XmlSyntax Error "xml-syntax",
+        /// More than an arm's file may hold.
+        TooLarge Error "too-large",
+        /// A macro of xacro that was not written out.
+        Xacro Error "xacro",
+        /// A MuJoCo model.
+        MjcfFeature Error "mjcf-feature",
+        /// An attribute that must be there is not.
+        MissingAttribute Error "missing-attribute",
+        /// An element that must be there is not.
+        MissingElement Error "missing-element",
+        /// Not a number.
+        BadNumber Error "bad-number",
+        /// Too few or too many numbers.
+        WrongLength Error "wrong-length",
+        /// NaN or an infinity.
+        NotFinite Error "not-finite",
+        /// A number that no float can hold.
+        OutOfRange Error "out-of-range",
+        /// A name given to two things of one kind.
+        DuplicateName Error "duplicate-name",
+        /// A link that does not exist.
+        UnknownLink Error "unknown-link",
+        /// A joint that does not exist.
+        UnknownJoint Error "unknown-joint",
+        /// Links that hang on each other in a loop.
+        ClosedChain Error "closed-chain",
+        /// A link that hangs on two joints.
+        TwoParents Error "two-parents",
+        /// No link that everything hangs on.
+        NoRoot Error "no-root",
+        /// Several links that hang on nothing.
+        SeveralRoots Error "several-roots",
+        /// The tip is not below the base.
+        NotBelow Error "not-below",
+        /// Nothing moves between base and tip.
+        NoJoints Error "no-joints",
+        /// More moving joints than can be generated.
+        TooManyJoints Error "too-many-joints",
+        /// Several links may be the tip.
+        SeveralTips Error "several-tips",
+        /// A joint that neither turns nor slides about one axis.
+        UnsupportedJoint Error "unsupported-joint",
+        /// A joint that follows another one.
+        Mimic Error "mimic",
+        /// An axis without direction.
+        ZeroAxis Error "zero-axis",
+        /// A moving link without a mass distribution.
+        MissingInertial Error "missing-inertial",
+        /// A mass below 0.
+        NegativeMass Error "negative-mass",
+        /// A tensor with a negative principal moment.
+        ImpossibleInertia Error "impossible-inertia",
+        /// A friction coefficient below 0.
+        NegativeFriction Error "negative-friction",
+        /// Position limits that hold no interval.
+        EmptyLimits Error "empty-limits",
+        /// A value of `--lock` that is no expression.
+        BadLock Error "bad-lock",
+
+        /// A tensor element that the file does not give.
+        MissingElementOfInertia Warning "incomplete-inertia",
+        /// A limit of 0, which is taken as unknown.
+        ZeroLimit Warning "zero-limit",
+        /// A decimal that is nearly a multiple of pi/12, and taken as written.
+        RoundedAngle Warning "rounded-angle",
+        /// A link that is taken to have no mass.
+        NoMass Warning "no-mass",
+        /// A joint that is locked outside of its limits.
+        LockOutside Warning "lock-outside-limits",
+        /// What would change the motion, and is left out.
+        ChangesMotion Warning "changes-motion",
+    }
+}

@@ -1,0 +1,80 @@
+//! A serial chain of a URDF as a `robot.yaml`: exact wherever it can be, and where not, that is said and bounded.
+//!
+//! ```text
+//! xml.rs     text -> XML tree with places, bounded
+//! number.rs  digits as they stand
+//! tree.rs    links and joints
+//! chain.rs   from base to tip: rows, poses, bodies; locked branches lumped; every fault with its place
+//! snap.rs    1.5708 is pi/2
+//! bound.rs   how far that can move the flange and the torques
+//! yaml.rs    the text of robot.yaml
+//! report.rs  what became of everything, as JSON and in words
+//! build_script.rs  the face for a build.rs, which alone touches files
+//! ```
+//!
+//! Poses stay lists and bodies stay apart (`attached`): robot.yaml multiplies and adds them exactly, so that no product of rotations is ever
+//! written as digits. Formats: URDF as in <https://wiki.ros.org/urdf/XML>.
+
+mod bound;
+pub mod build_script;
+mod chain;
+mod code;
+mod number;
+mod options;
+mod report;
+mod snap;
+mod tree;
+mod xml;
+mod yaml;
+
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::source::Source;
+
+pub use code::Code;
+pub use options::Options;
+pub use report::Report;
+
+/// What became of a file.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The text of robot.yaml.
+    pub yaml: String,
+    /// What was taken, changed and left out.
+    pub report: Report,
+}
+
+/// The arm of a file: URDF. All faults of the file with their places; there is an arm if and only if none of them is an error.
+pub fn import(source: &Source, options: &Options) -> (Option<Imported>, Diagnostics) {
+    let mut diagnostics = Diagnostics::new();
+    let imported = read(source, options, &mut diagnostics);
+    diagnostics.sort();
+    (imported.filter(|_| !diagnostics.has_errors()), diagnostics)
+}
+
+fn read(source: &Source, options: &Options, diagnostics: &mut Diagnostics) -> Option<Imported> {
+    let document = xml::parse(source, diagnostics)?;
+    let root = document.root_element();
+    match root.tag_name().name() {
+        "robot" => {}
+        "mujoco" => {
+            let message = "this is a MuJoCo model, which is not read yet";
+            let help = "give the URDF of the robot";
+            diagnostics.push(Diagnostic::new(Code::MjcfFeature, xml::place(root), message, "", help));
+            return None;
+        }
+        other => {
+            let message = format!("the file holds `{}`, not a robot", xml::shown(other));
+            let help = "a URDF begins with `<robot name=\"...\">`";
+            diagnostics.push(Diagnostic::new(Code::XmlSyntax, xml::place(root), message, "not `robot`", help));
+            return None;
+        }
+    }
+    let tree = tree::Tree::read(root, diagnostics)?;
+    let arm = chain::arm(source, &tree, options, diagnostics)?;
+    if diagnostics.has_errors() {
+        return None;
+    }
+    let bound = bound::of(&arm);
+    let report = report::of(source, &tree, &arm, bound);
+    Some(Imported { yaml: yaml::text(source, &arm, &report), report })
+}

@@ -1,0 +1,31 @@
+//! What to make of a file.
+
+/// What to make of a file.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The link that does not move; the root of the file if `None`.
+    pub base: Option<String>,
+    /// The link whose frame is the end effector's; the only one that it can be if `None`.
+    pub tip: Option<String>,
+    /// Joints that stand still, each with an expression: `("finger", "0.04")`.
+    pub lock: Vec<(String, String)>,
+    /// The name of the robot; the file's if `None`.
+    pub name: Option<String>,
+    /// Angles within so many rad of a multiple of pi/12 are that multiple; 0: every digit is taken.
+    pub snap: f64,
+    /// Links without a mass distribution have mass 0.
+    pub massless: bool,
+}
+
+impl Options {
+    /// The tolerance that [`Options::default`] has: four decimals of every multiple of pi/12 up to 2 pi are nearer.
+    pub const SNAP: f64 = 2e-5;
+    /// The largest tolerance.
+    pub const LARGEST_SNAP: f64 = 1e-2;
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { base: None, tip: None, lock: Vec::new(), name: None, snap: Options::SNAP, massless: false }
+    }
+}

@@ -1,0 +1,135 @@
+//! What became of a file: as JSON for programs, and in a few lines for people.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::source::{Source, Span};
+use serde_json::{json, Map, Value};
+
+use crate::bound::Bound;
+use crate::chain::{left_out, Arm};
+use crate::snap::Snapped;
+use crate::tree::Tree;
+
+/// What was taken, changed and left out.
+#[derive(Clone, Debug)]
+pub struct Report {
+    json: Value,
+    lines: Vec<String>,
+}
+
+impl Report {
+    /// As JSON: `robot`, `format`, `base`, `tip`, `joints`, `snapped`, `rounded`, `locked`, `lumped`, `left_out`, `bound`.
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(&self.json).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
+    /// In words, a line for each kind of change.
+    pub fn lines(&self) -> &[String] {
+        &self.lines
+    }
+}
+
+/// The report of an arm.
+pub(crate) fn of(source: &Source, tree: &Tree<'_, '_>, arm: &Arm, bound: Bound) -> Report {
+    let at = |span: Span| {
+        let place = source.place(span.start);
+        (place.line, place.column)
+    };
+    let placed = |span: Span, entries: Vec<(&str, Value)>| {
+        let (line, column) = at(span);
+        let mut map = Map::new();
+        entries.into_iter().for_each(|(key, value)| _ = map.insert(key.to_owned(), value));
+        map.insert("line".into(), json!(line));
+        map.insert("column".into(), json!(column));
+        Value::Object(map)
+    };
+    let snapped =
+        |s: &Snapped| placed(s.span, vec![("written", json!(s.written)), ("taken", json!(s.taken)), ("offset", json!(s.offset))]);
+    let lumped = arm.rows.iter().flat_map(|row| row.attached.iter().map(move |other| (row, other)));
+    let lumped: Vec<Value> =
+        lumped.map(|(row, other)| placed(other.span, vec![("link", json!(other.link)), ("into", json!(row.name))])).collect();
+    let locked: Vec<Value> = arm
+        .locked
+        .iter()
+        .map(|lock| placed(lock.span, vec![("joint", json!(lock.joint)), ("value", json!(lock.text))]))
+        .collect();
+    let joints: Vec<Value> =
+        arm.rows.iter().map(|row| placed(row.span, vec![("name", json!(row.name)), ("source", json!(row.joint))])).collect();
+    let rounded: Vec<Value> = if arm.gravity_rounded { vec![json!({"what": "gravity", "digits": 17})] } else { Vec::new() };
+    let left_out = left_out(tree);
+    let json = json!({
+        "robot": arm.name,
+        "format": "urdf",
+        "base": arm.base,
+        "tip": arm.tip,
+        "joints": joints,
+        "snapped": arm.snap.snapped.iter().map(snapped).collect::<Vec<_>>(),
+        "rounded": rounded,
+        "locked": locked,
+        "lumped": lumped,
+        "left_out": left_out,
+        "bound": {"flange": bound.flange, "orientation": bound.orientation, "torque": bound.torque},
+    });
+    Report { lines: words(source, arm, bound, &left_out), json }
+}
+
+fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, usize>) -> Vec<String> {
+    let mut lines = arm.notes.clone();
+    let names = |list: Vec<&str>| list.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    lines.push(format!("`{}` to `{}`: {}", arm.base, arm.tip, counted(arm.rows.len(), "moving joint")));
+    let renamed: Vec<String> =
+        arm.rows.iter().filter(|row| row.name != row.joint).map(|row| format!("`{}` is `{}`", row.joint, row.name)).collect();
+    if !renamed.is_empty() {
+        lines.push(format!("renamed: {}", renamed.join(", ")));
+    }
+    if !arm.snap.snapped.is_empty() {
+        lines.push(format!(
+            "{} taken for what they mean: the end effector moves by at most {:.1e} m and {:.1e} rad, a torque by {:.1e} N m (or N)",
+            counted(arm.snap.snapped.len(), "number"),
+            bound.flange,
+            bound.orientation,
+            bound.torque
+        ));
+    }
+    if let Some((span, text)) = arm.snap.near.first() {
+        let place = source.place(span.start);
+        lines.push(format!(
+            "{} within 0.002 rad of a multiple of pi/12 and taken as written, the first one {text} in line {}; `--snap` takes more for what they mean",
+            counted(arm.snap.near.len(), "angle"),
+            place.line
+        ));
+    }
+    let lumped: Vec<&str> = arm.rows.iter().flat_map(|row| &row.attached).map(|other| other.link.as_str()).collect();
+    if !lumped.is_empty() {
+        lines.push(format!("fixed to the links that carry them: {}", names(lumped)));
+    }
+    let locked: Vec<String> = arm.locked.iter().map(|lock| format!("`{}` at {}", lock.joint, lock.text)).collect();
+    if !locked.is_empty() {
+        lines.push(format!("joints that stand still: {}", locked.join(", ")));
+    }
+    if !arm.massless.is_empty() {
+        lines.push(format!("links without mass: {}", names(arm.massless.iter().map(String::as_str).collect())));
+    }
+    if arm.left_out_branches > 0 {
+        lines.push(format!("{} of the base left out: they do not move with the arm", counted(arm.left_out_branches, "branch")));
+    }
+    if arm.gravity_rounded {
+        lines.push("gravity in the axes of the base link is rounded to 17 digits".into());
+    }
+    if !left_out.is_empty() {
+        let all: Vec<String> = left_out.iter().map(|(name, count)| format!("{count} {name}")).collect();
+        lines.push(format!("left out: {}", all.join(", ")));
+    }
+    lines
+}
+
+/// `1 number`, `2 numbers`.
+fn counted(count: usize, word: &str) -> String {
+    match (count, word.strip_suffix("ch")) {
+        (1, _) => format!("1 {word}"),
+        (_, Some(start)) => format!("{count} {start}ches"),
+        _ => format!("{count} {word}s"),
+    }
+}

@@ -1,0 +1,241 @@
+//! Digits that mean something: `1.5708` is pi/2.
+//!
+//! An angle within a tolerance of a multiple of pi/12 is that multiple, an axis within it of a vector of -1, 0, 1 is that vector; lengths and
+//! products of inertia that are nothing but rounding are 0. Everything that is taken for something else is recorded with what was written.
+
+use std::f64::consts::PI;
+
+use armgen_codegen::source::Span;
+
+use crate::number::Decimal;
+
+/// Lengths up to this, m, and products of inertia up to this part of the largest moment are rounding.
+const DUST: f64 = 1e-14;
+/// Angles as near to a multiple as this, rad, are mentioned where they are taken as written.
+const NEAR: f64 = 2e-3;
+
+/// What was taken for something else.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Snapped {
+    pub(crate) span: Span,
+    pub(crate) written: String,
+    pub(crate) taken: String,
+    /// How far apart they are: rad, or m, or kg m²; rounded up.
+    pub(crate) offset: f64,
+}
+
+/// A number in robot.yaml.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Written {
+    /// An expression.
+    pub(crate) text: String,
+    /// Its value.
+    pub(crate) value: f64,
+    /// How far that is from what the file says.
+    pub(crate) offset: f64,
+    /// So many twelfths of pi, where it is an angle that is some.
+    pub(crate) twelfths: Option<i64>,
+    /// The place of what it stands for.
+    pub(crate) span: Span,
+}
+
+impl Written {
+    pub(crate) fn as_is(decimal: &Decimal) -> Written {
+        Written {
+            text: decimal.text.clone(),
+            value: decimal.value,
+            offset: 0.0,
+            twelfths: decimal.is_zero().then_some(0),
+            span: decimal.span,
+        }
+    }
+
+    pub(crate) fn zero() -> Written {
+        Written::as_is(&Decimal::zero())
+    }
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.text == "0"
+    }
+}
+
+/// Snaps within a tolerance and remembers.
+#[derive(Debug)]
+pub(crate) struct Snap {
+    /// rad; 0: every digit is taken.
+    pub(crate) tolerance: f64,
+    pub(crate) snapped: Vec<Snapped>,
+    /// Angles that are taken as written although they are nearly a multiple of pi/12.
+    pub(crate) near: Vec<(Span, String)>,
+}
+
+impl Snap {
+    pub(crate) fn new(tolerance: f64) -> Snap {
+        Snap { tolerance, snapped: Vec::new(), near: Vec::new() }
+    }
+
+    fn take(&mut self, from: &Decimal, text: String, value: f64, offset: f64) -> Written {
+        // The float of the difference is wrong by a few units in the last place of the operands.
+        let offset = offset * (1.0 + 1e-9) + 4e-16 * from.value.abs().max(f64::MIN_POSITIVE);
+        self.snapped.push(Snapped { span: from.span, written: from.text.clone(), taken: text.clone(), offset });
+        Written { text, value, offset, twelfths: None, span: from.span }
+    }
+
+    /// An angle.
+    pub(crate) fn angle(&mut self, angle: &Decimal) -> Written {
+        let step = PI / 12.0;
+        let count = (angle.value / step).round();
+        let off = (angle.value - count * step).abs();
+        if angle.is_zero() || count.abs() > 1e6 {
+            return Written::as_is(angle);
+        }
+        if self.tolerance > 0.0 && off <= self.tolerance {
+            let count = count as i64;
+            return Written { twelfths: Some(count), ..self.take(angle, multiple_of_pi(count), count as f64 * step, off) };
+        }
+        if count != 0.0 && off <= NEAR {
+            self.near.push((angle.span, angle.text.clone()));
+        }
+        Written::as_is(angle)
+    }
+
+    /// A length.
+    pub(crate) fn length(&mut self, length: &Decimal) -> Written {
+        if self.tolerance > 0.0 && !length.is_zero() && length.value.abs() <= DUST {
+            return self.take(length, "0".into(), 0.0, length.value.abs());
+        }
+        Written::as_is(length)
+    }
+
+    /// A product of inertia beside the largest moment of its tensor.
+    pub(crate) fn product(&mut self, product: &Decimal, largest: f64) -> Written {
+        if self.tolerance > 0.0 && !product.is_zero() && product.value.abs() <= DUST * largest {
+            return self.take(product, "0".into(), 0.0, product.value.abs());
+        }
+        Written::as_is(product)
+    }
+
+    /// A direction other than 0, and the angle by which it was turned.
+    pub(crate) fn direction(&mut self, axis: &[Decimal; 3], span: Span) -> ([Written; 3], f64) {
+        let as_is = axis.each_ref().map(Written::as_is);
+        let length = axis.iter().map(|x| x.value * x.value).sum::<f64>().sqrt();
+        if self.tolerance == 0.0 || !length.is_finite() || length == 0.0 {
+            return (as_is, 0.0);
+        }
+        let unit = [0, 1, 2].map(|k| axis[k].value / length);
+        // A component below sin(pi/8) is nearer to 0 than to that of any vector of -1, 0, 1 that has it.
+        let near = unit.map(|x| if x.abs() < 0.38 { 0.0 } else { x.signum() });
+        let size = near.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let target = near.map(|x| x / size);
+        let [a, b] = [unit, target];
+        let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        let off = cross.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let texts = near.map(|x| {
+            if x == 0.0 {
+                "0"
+            } else if x > 0.0 {
+                "1"
+            } else {
+                "-1"
+            }
+        });
+        let exactly = (0..3).all(|k| (axis[k].value == 0.0) == (near[k] == 0.0)) && {
+            let sizes: Vec<&str> = axis.iter().filter(|x| !x.is_zero()).map(|x| x.text.trim_start_matches('-')).collect();
+            sizes.windows(2).all(|two| two[0] == two[1])
+        };
+        if off > self.tolerance {
+            return (as_is, 0.0);
+        }
+        let taken = texts.map(|text| Written {
+            text: text.into(),
+            value: text.parse().unwrap_or(0.0),
+            offset: 0.0,
+            twelfths: None,
+            span,
+        });
+        if exactly {
+            return (taken, 0.0);
+        }
+        let offset = off * (1.0 + 1e-9) + 1e-15;
+        let written = axis.each_ref().map(|x| x.text.clone()).join(" ");
+        self.snapped.push(Snapped { span, written, taken: texts.join(" "), offset });
+        (taken, offset)
+    }
+}
+
+/// `n` twelfths of pi as an expression.
+pub(crate) fn multiple_of_pi(n: i64) -> String {
+    let gcd = |mut a: i64, mut b: i64| {
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        a.abs()
+    };
+    if n == 0 {
+        return "0".into();
+    }
+    let common = gcd(n, 12);
+    let (above, below) = (n / common, 12 / common);
+    let start = match above {
+        1 => "pi".to_owned(),
+        -1 => "-pi".to_owned(),
+        n => format!("{n}*pi"),
+    };
+    if below == 1 {
+        start
+    } else {
+        format!("{start}/{below}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::decimal;
+    use armgen_codegen::diagnostic::Diagnostics;
+
+    fn read(word: &str) -> Decimal {
+        decimal(word, Span::default(), "x", &mut Diagnostics::new()).expect("a number")
+    }
+
+    #[track_caller]
+    fn angle(word: &str, tolerance: f64, taken: &str, near: usize) {
+        let mut snap = Snap::new(tolerance);
+        let written = snap.angle(&read(word));
+        assert_eq!((written.text.as_str(), snap.near.len()), (taken, near), "{word}");
+        assert_eq!(snap.snapped.len(), usize::from(written.text != word), "{word}");
+    }
+
+    #[test]
+    fn four_decimals_of_every_multiple_are_the_multiple() {
+        for n in (-24..=24_i64).filter(|n| *n != 0) {
+            angle(&format!("{:.4}", n as f64 * PI / 12.0), 2e-5, &multiple_of_pi(n), 0);
+        }
+        angle("0", 2e-5, "0", 0);
+        angle("1.5708", 0.0, "1.5708", 1);
+        angle("1.571", 2e-5, "1.571", 1);
+        angle("1e-6", 2e-5, "0", 0);
+        angle("1e-4", 2e-5, "1e-4", 0);
+        angle("0.7", 2e-5, "0.7", 0);
+    }
+
+    #[track_caller]
+    fn direction(words: [&str; 3], taken: [&str; 3], recorded: usize) {
+        let mut snap = Snap::new(2e-5);
+        let (written, offset) = snap.direction(&words.map(read), Span::default());
+        assert_eq!(written.map(|w| w.text), taken, "{words:?}");
+        assert_eq!((snap.snapped.len(), usize::from(offset > 0.0)), (recorded, recorded), "{words:?}");
+    }
+
+    #[test]
+    fn directions() {
+        direction(["0", "0", "-1"], ["0", "0", "-1"], 0);
+        direction(["0", "0", "2"], ["0", "0", "1"], 0);
+        direction(["0.7071", "0.7071", "0"], ["1", "1", "0"], 0);
+        direction(["0.70711", "-0.7071", "1e-9"], ["1", "-1", "0"], 1);
+        direction(["0.577", "0.577", "-0.577"], ["1", "1", "-1"], 0);
+        direction(["0.6", "0.8", "0"], ["0.6", "0.8", "0"], 0);
+        direction(["1e-5", "0", "1"], ["0", "0", "1"], 1);
+        direction(["1e-4", "0", "1"], ["1e-4", "0", "1"], 0);
+    }
+}

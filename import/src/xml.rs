@@ -1,0 +1,160 @@
+//! XML as a tree with places, within bounds that hold before anything is built from it.
+//!
+//! A scan of the text, linear in its length, counts elements, attributes of one element and nesting; what exceeds the bounds is never given
+//! to the parser, whose search for duplicate attributes is quadratic.
+
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::source::{Source, Span};
+use roxmltree::{Document, Error, Node, ParsingOptions};
+
+use crate::Code;
+
+/// Bytes of a file.
+const MAX_BYTES: usize = 16 << 20;
+/// Elements of a file.
+const MAX_ELEMENTS: usize = 100_000;
+/// Attributes of an element.
+const MAX_ATTRIBUTES: usize = 1000;
+/// Elements within each other.
+const MAX_DEPTH: usize = 256;
+
+/// The tree of a text; `None` with the fault reported.
+pub(crate) fn parse<'s>(source: &'s Source, diagnostics: &mut Diagnostics) -> Option<Document<'s>> {
+    if let Err((at, what)) = scan(source.text()) {
+        let help = "an arm's file has far less: take out what is not about links and joints";
+        diagnostics.push(Diagnostic::new(Code::TooLarge, Span::new(at, at), format!("the file has {what}"), "", help));
+        return None;
+    }
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: u32::MAX, ..ParsingOptions::default() };
+    match Document::parse_with_options(source.text(), options) {
+        Ok(document) => Some(document),
+        Err(error) => {
+            diagnostics.push(refusal(source, &error));
+            None
+        }
+    }
+}
+
+fn refusal(source: &Source, error: &Error) -> Diagnostic {
+    let at = offset(source, error.pos());
+    let span = Span::new(at, (at + 1).min(source.text().len()));
+    let (code, message, help) = match error {
+        Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return xacro(span),
+        Error::UnknownNamespace(prefix, _) => (
+            Code::XmlSyntax,
+            format!("the prefix `{}` has no namespace", shown(prefix)),
+            "take elements and attributes with this prefix out, or declare it with `xmlns:`".to_owned(),
+        ),
+        Error::DtdDetected => (
+            Code::XmlSyntax,
+            "a document type definition stands here".to_owned(),
+            "write what its entities stand for out, and take the definition out".to_owned(),
+        ),
+        other => {
+            // The message ends with the place, which is shown anyway.
+            let text = other.to_string();
+            let text = text.rsplit_once(" at ").map_or(text.as_str(), |(start, _)| start).to_owned();
+            (
+                Code::XmlSyntax,
+                format!("not well-formed XML: {}", shown(&text)),
+                "each tag that is opened is closed, each attribute is `name=\"value\"`".to_owned(),
+            )
+        }
+    };
+    Diagnostic::new(code, span, message, "here", help)
+}
+
+/// A part of xacro at a place.
+pub(crate) fn xacro(span: Span) -> Diagnostic {
+    let help = "write the file out first: `xacro FILE.xacro > FILE.urdf`";
+    Diagnostic::new(Code::Xacro, span, "this is a part of xacro, not of a URDF", "not written out", help)
+}
+
+/// The byte at a line and column of the parser, both from 1.
+fn offset(source: &Source, place: roxmltree::TextPos) -> usize {
+    let text = source.text();
+    let line: usize = text.split_inclusive('\n').take(place.row.saturating_sub(1) as usize).map(str::len).sum();
+    let column = place.col.saturating_sub(1) as usize;
+    let within = text[line..].char_indices().nth(column).map_or(text.len() - line, |(at, _)| at);
+    line + within
+}
+
+/// A text of the file for a message: not too long.
+pub(crate) fn shown(text: &str) -> String {
+    armgen_codegen::document::excerpt(text)
+}
+
+/// Counts; where something is too much, the place and what.
+fn scan(text: &str) -> Result<(), (usize, String)> {
+    if text.len() > MAX_BYTES {
+        return Err((0, format!("{} bytes, more than {MAX_BYTES}", text.len())));
+    }
+    let bytes = text.as_bytes();
+    let (mut at, mut elements, mut depth) = (0, 0, 0usize);
+    let after = |from: usize, end: &str| text[from..].find(end).map_or(bytes.len(), |found| from + found + end.len());
+    while let Some(found) = text[at..].find('<') {
+        let start = at + found;
+        let rest = &bytes[start..];
+        if rest.starts_with(b"<!--") {
+            at = after(start + 4, "-->");
+        } else if rest.starts_with(b"<![CDATA[") {
+            at = after(start + 9, "]]>");
+        } else if rest.starts_with(b"<?") {
+            at = after(start + 2, "?>");
+        } else if rest.starts_with(b"</") {
+            depth = depth.saturating_sub(1);
+            at = after(start + 2, ">");
+        } else {
+            let (mut quote, mut attributes, mut end) = (None, 0, start + 1);
+            while let Some(&byte) = bytes.get(end) {
+                match (quote, byte) {
+                    (Some(open), _) if byte == open => quote = None,
+                    (Some(_), _) => {}
+                    (None, b'"' | b'\'') => quote = Some(byte),
+                    (None, b'=') => attributes += 1,
+                    (None, b'>') => break,
+                    _ => {}
+                }
+                end += 1;
+            }
+            elements += 1;
+            if bytes.get(end.wrapping_sub(1)) != Some(&b'/') {
+                depth += 1;
+            }
+            if elements > MAX_ELEMENTS {
+                return Err((start, format!("more than {MAX_ELEMENTS} elements")));
+            }
+            if attributes > MAX_ATTRIBUTES {
+                return Err((start, format!("an element with more than {MAX_ATTRIBUTES} attributes")));
+            }
+            if depth > MAX_DEPTH {
+                return Err((start, format!("more than {MAX_DEPTH} elements within each other")));
+            }
+            at = (end + 1).min(bytes.len());
+        }
+    }
+    Ok(())
+}
+
+/// A place that nothing in the file belongs to: its beginning.
+pub(crate) fn beginning() -> Span {
+    Span::new(0, 0)
+}
+
+/// The place of an element: its opening tag's name.
+pub(crate) fn place(node: Node<'_, '_>) -> Span {
+    let start = node.range().start;
+    Span::new(start, start + 1 + node.tag_name().name().len())
+}
+
+/// The first child of a name without namespace.
+pub(crate) fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    node.children().find(|n| n.is_element() && n.tag_name().name() == name)
+}
+
+/// Text and place of an attribute.
+pub(crate) fn attribute<'a>(node: Node<'a, '_>, name: &str) -> Option<(&'a str, Span)> {
+    let attribute = node.attributes().find(|a| a.name() == name && a.namespace().is_none())?;
+    let range = attribute.range_value();
+    Some((attribute.value(), Span::new(range.start, range.end)))
+}

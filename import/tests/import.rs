@@ -1,0 +1,105 @@
+//! What is easily read wrongly, in one arm of our own making; and that the result is a valid description.
+
+use armgen_codegen::diagnostic::Colour;
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::source::Source;
+use armgen_codegen::validate;
+use armgen_import::{import, Imported, Options};
+
+const EVERYTHING: &str = include_str!("urdf/everything.urdf");
+
+fn options() -> Options {
+    Options {
+        base: Some("base".into()),
+        tip: Some("tip".into()),
+        lock: vec![("finger".into(), "0.04".into())],
+        ..Options::default()
+    }
+}
+
+#[track_caller]
+fn imported(text: &str, options: &Options) -> Imported {
+    let source = Source::new("folder/everything.urdf", text);
+    let (imported, diagnostics) = import(&source, options);
+    imported.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never)))
+}
+
+#[track_caller]
+fn valid(yaml: &str) -> Manipulator {
+    let source = Source::new("robot.yaml", yaml);
+    let (arm, diagnostics) = validate::read(&source);
+    arm.unwrap_or_else(|| panic!("{}\n{yaml}", diagnostics.render(&source, Colour::Never))).0
+}
+
+#[test]
+fn everything_becomes_a_description_that_a_person_can_read() {
+    let Imported { yaml, report } = imported(EVERYTHING, &options());
+    insta::with_settings!({prepend_module_to_snapshot => false, omit_expression => true}, {
+        insta::assert_snapshot!("everything.yaml", yaml);
+        insta::assert_snapshot!("everything.json", report.to_json());
+    });
+    let arm = valid(&yaml);
+    assert_eq!(arm.dof(), 3);
+    // Link 1 is the upper arm and the bracket, link 3 the stick and two fingers.
+    assert_eq!(arm.joints.iter().map(|joint| joint.link.len()).collect::<Vec<_>>(), [2, 1, 3]);
+}
+
+#[test]
+fn every_digit_is_kept_where_nothing_is_snapped() {
+    let every = imported(EVERYTHING, &Options { snap: 0.0, ..options() });
+    for digits in ["-1.5708", "1.57079632679", "1e-19", "0.7071, 0.7071, 1e-7"] {
+        assert!(every.yaml.contains(digits), "{digits} is missing:\n{}", every.yaml);
+    }
+    valid(&every.yaml);
+    assert!(every.report.to_json().contains("\"torque\": 0.0"));
+}
+
+#[test]
+fn what_is_snapped_to_nothing_counts_in_the_bound() {
+    let text = EVERYTHING.replace("<origin xyz=\"0 0 0.5\"/>", "<origin xyz=\"0 0 0.5\" rpy=\"1e-6 0 0\"/>");
+    let flange = |text: &str| {
+        let json = imported(text, &options()).report.to_json();
+        let (_, rest) = json.split_once("\"orientation\": ").expect("a bound");
+        rest.split([',', '\n']).next().and_then(|number| number.trim().parse::<f64>().ok()).expect("a number")
+    };
+    assert!(flange(&text) > flange(EVERYTHING) + 0.99e-6);
+}
+
+#[test]
+fn a_joint_of_the_chain_can_be_locked() {
+    let mut options = options();
+    options.lock.push(("slide".into(), "0.3/2".into()));
+    options.lock.push(("2nd".into(), "pi/4".into()));
+    let yaml = imported(EVERYTHING, &options).yaml;
+    assert_eq!(valid(&yaml).dof(), 1);
+    assert!(yaml.contains("angle: pi/4"), "{yaml}");
+}
+
+#[test]
+fn an_arm_costs_the_same_whatever_frames_its_links_have() {
+    // The second file draws the first link's frame elsewhere: turned by right angles, and slid along the axis. The end effector is the same.
+    let robot = |o1: &str, a1: &str, o2: &str, a2: &str, com: &str| {
+        let body = |com: &str| {
+            format!("<inertial><origin xyz='{com}'/><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>")
+        };
+        format!(
+            "<robot name='r'><link name='b'/><link name='l1'>{}</link><link name='l2'>{}</link>\
+             <joint name='j1' type='continuous'><origin {o1}/><axis xyz='{a1}'/><parent link='b'/><child link='l1'/></joint>\
+             <joint name='j2' type='continuous'><origin {o2}/><axis xyz='{a2}'/><parent link='l1'/><child link='l2'/></joint></robot>",
+            body("0 0 0"),
+            body(com)
+        )
+    };
+    let plain = robot("xyz='0 0 0.5'", "0 0 1", "xyz='0.3 0 0' rpy='-1.5708 0 0'", "0 0 1", "0.2 0 0");
+    let turned = robot("xyz='0 0 0.7' rpy='0 1.5708 0'", "-1 0 0", "xyz='0.2 0 0.3' rpy='-1.5708 -1.5708 0'", "0 0 1", "0.2 0 0");
+    let counts = [plain, turned].map(|urdf| {
+        let yaml = imported(&urdf, &Options::default()).yaml;
+        let model = armgen_codegen::Model::new(valid(&yaml));
+        let module = armgen_codegen::schedule::module(&model, &armgen_codegen::schedule::Options::default());
+        ["inverse_dynamics", "inertia_matrix", "coriolis_matrix", "gravity", "forward_dynamics"].map(|name| {
+            let function = module.functions.iter().find(|f| f.name() == name).unwrap_or_else(|| panic!("{name}"));
+            (name, function.steps.len())
+        })
+    });
+    assert_eq!(counts[0], counts[1]);
+}
