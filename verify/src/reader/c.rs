@@ -226,7 +226,7 @@ impl<'a> Reader<'a, '_> {
             _ => format!("static inline void {robot}_"),
         };
         let line = lines.number();
-        let here = |reason: String| Fault { line: line, reason };
+        let here = |reason: String| Fault { line, reason };
         let name = lines.between(&begin, "(")?;
         if returns == Some(0) && name.contains("_part_") {
             self.part(lines, name)?;

@@ -40,7 +40,7 @@ fn tuple(entries: &[String]) -> String {
 }
 
 /// The entries of a tuple as it is written.
-fn entries<'a>(text: &'a str, line: usize) -> Result<Vec<&'a str>, Fault> {
+fn entries(text: &str, line: usize) -> Result<Vec<&str>, Fault> {
     let inner = match text {
         "()" => return Ok(Vec::new()),
         text => text.strip_prefix('(').and_then(|text| text.strip_suffix(",)")),
