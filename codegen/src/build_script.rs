@@ -37,6 +37,8 @@ pub enum BuildError {
     Description(Source, Diagnostics),
     /// A name that no function has.
     Functions(UnknownFunctions),
+    /// A name that is to be allowed and that no kind of warning has, and what to write.
+    Warning(String, String),
     /// A function that was asked for and that this arm does not have.
     Absent(PathBuf, Absent),
     /// `OUT_DIR` is not set: this is no build script.
@@ -51,6 +53,7 @@ impl fmt::Display for BuildError {
             BuildError::Read(path, error) => write!(f, "error: cannot read {}: {error}", path.display()),
             BuildError::Description(source, diagnostics) => f.write_str(&diagnostics.render(source, Colour::Never)),
             BuildError::Functions(unknown) => write!(f, "error: {unknown}"),
+            BuildError::Warning(kind, help) => write!(f, "error: no kind of warning is called `{kind}`: {help}"),
             BuildError::Absent(path, Absent { function, reason }) => {
                 write!(f, "error: {} has no `{function}`: {reason}", path.display())
             }
@@ -65,7 +68,7 @@ impl std::error::Error for BuildError {
         match self {
             BuildError::Read(_, error) | BuildError::Write(_, error) => Some(error),
             BuildError::Functions(unknown) => Some(unknown),
-            BuildError::Description(..) | BuildError::Absent(..) | BuildError::NoOutDir => None,
+            BuildError::Description(..) | BuildError::Warning(..) | BuildError::Absent(..) | BuildError::NoOutDir => None,
         }
     }
 }
@@ -79,6 +82,8 @@ pub struct Robot {
     stem: Option<String>,
     c_abi: bool,
     inverse_kinematics: bool,
+    strict: bool,
+    allow: Vec<String>,
 }
 
 impl Robot {
@@ -91,6 +96,8 @@ impl Robot {
             stem: None,
             c_abi: false,
             inverse_kinematics: false,
+            strict: false,
+            allow: Vec::new(),
         }
     }
 
@@ -152,6 +159,21 @@ impl Robot {
         self
     }
 
+    /// Ends the build on a warning of the description.
+    #[must_use]
+    pub fn strict(mut self) -> Robot {
+        self.strict = true;
+        self
+    }
+
+    /// Is silent about kinds of warnings by their names, `["missing-inertia"]`, say, as `allow` in the description is. A name that no warning
+    /// has ends the build.
+    #[must_use]
+    pub fn allow<S: Into<String>>(mut self, kinds: impl IntoIterator<Item = S>) -> Robot {
+        self.allow.extend(kinds.into_iter().map(Into::into));
+        self
+    }
+
     /// Writes the module and the trait implementation into `OUT_DIR`, named after the description's file, or ends the build with the reason.
     pub fn generate(&self) {
         if let Err(error) = self.try_generate() {
@@ -176,10 +198,17 @@ impl Robot {
         if !self.functions.is_empty() {
             options.functions = Selection::named(&self.functions).map_err(BuildError::Functions)?;
         }
-        let (generated, diagnostics) = crate::generate(&source, &options);
+        for kind in &self.allow {
+            crate::validate::warning(kind).map_err(|help| BuildError::Warning(kind.clone(), help))?;
+        }
+        let (generated, mut diagnostics) = crate::generate(&source, &options);
+        diagnostics.allow(&self.allow);
         let Some(generated) = generated else { return Err(BuildError::Description(source, diagnostics)) };
         if let (false, Some(absent)) = (options.functions.is_all(), generated.absent.first()) {
             return Err(BuildError::Absent(self.description.clone(), absent.clone()));
+        }
+        if self.strict && !diagnostics.is_empty() {
+            return Err(BuildError::Description(source, diagnostics));
         }
         for warning in diagnostics.iter() {
             let place = source.place(warning.span().range().start);

@@ -40,6 +40,8 @@ pub struct RobotDescription {
     pub task: Option<Spanned<Vec<Spanned<TaskRow>>>>,
     /// The regressor's columns. The span is the key's.
     pub regressor: Option<Spanned<RegressorDescription>>,
+    /// Kinds of warnings that are meant as they are.
+    pub allow: Vec<Spanned<String>>,
 }
 
 /// What a row of a joint is.

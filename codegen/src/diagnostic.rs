@@ -206,6 +206,9 @@ codes! {
         /// The inertia matrix is singular for every q.
         SingularInertia Error "singular-inertia",
 
+        /// `allow` names what is no kind of warning.
+        UnknownWarning Error "unknown-warning",
+
         // Warnings.
         /// Principal moments that no body has.
         TriangleInequality Warning "triangle-inequality",
@@ -217,6 +220,30 @@ codes! {
         DegreesSuspected Warning "degrees-suspected",
         /// A decimal that is nearly a multiple of pi/12.
         RoundedAngle Warning "rounded-angle",
+        /// A length that no arm has.
+        ImplausibleReach Warning "implausible-reach",
+        /// Masses that do not fit the size of the arm.
+        ImplausibleMass Warning "implausible-mass",
+        /// One link that outweighs all others by far.
+        OutlyingMass Warning "outlying-mass",
+        /// A centre of mass farther away than the arm is long.
+        ImplausibleCom Warning "implausible-com",
+        /// A radius of gyration beyond what the link spans.
+        ImplausibleInertia Warning "implausible-inertia",
+        /// An inertia smaller than that of any solid of the mass.
+        ImplausibleDensity Warning "implausible-density",
+        /// A heavy link without an inertia.
+        MissingInertia Warning "missing-inertia",
+        /// A rotor inertia that seems to be the one at the joint.
+        ReflectedRotor Warning "reflected-rotor",
+        /// A gear that would speed up.
+        InvertedRatio Warning "inverted-ratio",
+        /// A gravity of no planet.
+        ImplausibleGravity Warning "implausible-gravity",
+        /// A velocity limit beyond what joints reach.
+        ImplausibleVelocity Warning "implausible-velocity",
+        /// A length or an angle that is next to nothing.
+        Dust Warning "dust",
     }
 }
 
@@ -309,6 +336,11 @@ impl Diagnostics {
         for diagnostic in others.list {
             self.push(diagnostic);
         }
+    }
+
+    /// Drops the warnings of these kinds.
+    pub fn allow<S: AsRef<str>>(&mut self, kinds: &[S]) {
+        self.list.retain(|d| d.code.severity() == Severity::Error || !kinds.iter().any(|kind| kind.as_ref() == d.code.name()));
     }
 
     /// In the order of the text.

@@ -12,10 +12,13 @@
 //! choices.rs     task, regressor
 //! places.rs      where things stand, for what is found out later
 //! equations.rs   faults that only the equations show
+//! plausible.rs   values that can be, but hardly are meant
+//! allow.rs       warnings that the file allows
 //! ```
 //!
 //! Absent from here on: spans, conventions, expressions, impossible values. Nothing after this stage can fail.
 
+mod allow;
 mod bodies;
 mod choices;
 mod equations;
@@ -27,6 +30,7 @@ mod names;
 mod number;
 mod parameters;
 mod places;
+mod plausible;
 
 use std::collections::BTreeMap;
 
@@ -36,6 +40,7 @@ use crate::exact::Polynomial;
 use crate::kinds::{Scalar, MAX_JOINTS};
 use crate::manipulator::{Joint, LinkId, Manipulator, Pose};
 use crate::source::{Source, Span};
+pub use allow::warning;
 pub use bodies::impossible_inertia;
 pub use equations::{product_out_of_range, values_leave_the_scalar};
 use evaluate::Evaluator;
@@ -55,7 +60,9 @@ pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
 /// As [`read`], with numbers that must fit `scalar`.
 pub fn read_for(source: &Source, scalar: Scalar) -> (Option<(Manipulator, Places)>, Diagnostics) {
     let (description, mut diagnostics) = RobotDescription::parse(source);
+    let allowed = description.as_ref().map_or_else(Vec::new, |d| allow::check(&d.allow, &mut diagnostics));
     let valid = description.and_then(|d| validate(source, &d, scalar, &mut diagnostics));
+    diagnostics.allow(&allowed);
     assert!(valid.is_some() || diagnostics.has_errors(), "what is no arm has a fault that says why");
     diagnostics.sort();
     (valid.filter(|_| !diagnostics.has_errors()), diagnostics)
@@ -109,6 +116,7 @@ fn validate(
     if context.diagnostics.has_errors() {
         return None;
     }
+    plausible::check(description, &mut context);
     let (mut joints, tool) = (joints?, tool?);
     let symbols = context.evaluator.parameters.symbols();
     frames::lay(&mut joints, &tool, convention == Some(Convention::Urdf), &symbols);

@@ -53,6 +53,11 @@ const EXAMPLES: &str = "Examples:
 Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
 2 a file cannot be read, is not UTF-8 or cannot be written, or the options are wrong.";
 
+/// A kind of warning by its name.
+fn kind_of_warning(name: &str) -> Result<String, String> {
+    armgen_codegen::validate::warning(name).map(|()| name.to_owned())
+}
+
 /// From a robot arm's data sheet to its exact equations of motion, and to plain no_std Rust
 #[derive(Debug, Parser)]
 #[command(name = "armgen", version, styles = STYLES, after_help = EXAMPLES, max_term_width = 100, arg_required_else_help = true)]
@@ -67,13 +72,21 @@ enum Command {
     #[command(after_help = "Examples:
   armgen check robot.yaml
   armgen check robots/*.yaml
+  armgen check robot.yaml --strict --allow triangle-inequality
 
+A file may allow kinds of warnings itself: `allow: [missing-inertia]`.
 The summary goes to standard output; errors and warnings go to standard error, each with FILE:LINE:COLUMN.
-Exit codes: 0 valid (perhaps with warnings), 1 faulty, 2 a file cannot be opened or is not UTF-8.")]
+Exit codes: 0 valid (perhaps with warnings), 1 faulty (with --strict also: warnings), 2 a file cannot be opened or is not UTF-8.")]
     Check {
         /// Descriptions of robot arms
         #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
         files: Vec<PathBuf>,
+        /// Fail on warnings
+        #[arg(long)]
+        strict: bool,
+        /// Be silent about a kind of warning; may be given several times
+        #[arg(long, value_name = "KIND", value_parser = kind_of_warning)]
+        allow: Vec<String>,
     },
     /// Show the equations in closed form, or as numbered steps where they are long
     #[command(after_help = "Examples:
@@ -267,7 +280,7 @@ fn pass_parser() -> impl TypedValueParser<Value = Pass> {
 pub fn run(built: &dyn Arm) -> ExitCode {
     let arguments = Arguments::parse();
     let code = match arguments.command {
-        Command::Check { files } => commands::check::run(&files),
+        Command::Check { files, strict, allow } => commands::check::run(&files, &commands::check::Doubts { strict, allow }),
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
         Command::Import { file, choices, results } => import::run(&file, choices, &results),

@@ -23,6 +23,7 @@ const ROBOT: &[Key] = &[
     optional("payload"),
     optional("task"),
     optional("regressor"),
+    optional("allow"),
 ];
 const JOINT: &[Key] = &[
     required("name", "name: shoulder"),
@@ -128,6 +129,7 @@ impl Reader<'_> {
             payload: fields.get("payload").and_then(|(key, node)| self.body(node, key, "`payload`", PAYLOAD)),
             task: fields.get("task").and_then(|(key, node)| self.task(node, key)),
             regressor: fields.get("regressor").and_then(|(key, node)| self.regressor(node, key)),
+            allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
         }
     }
 
@@ -315,6 +317,12 @@ impl Reader<'_> {
         let rows =
             items.iter().filter_map(|item| self.choice(item, item.span, "a row of `task`", &words, Code::UnknownTaskRow, help));
         Some(Spanned::new(rows.collect(), key))
+    }
+
+    fn allow(&mut self, node: &Node, key: Span) -> Vec<Spanned<String>> {
+        let help = "write kinds of warnings in brackets, and why beside it: `allow: [implausible-reach]   # a crane`";
+        let items = self.list(node, key, "allow", "a list", help).unwrap_or_default();
+        items.iter().filter_map(|item| self.word(item, item.span, "an element of `allow`")).collect()
     }
 
     fn regressor(&mut self, node: &Node, key: Span) -> Option<Spanned<RegressorDescription>> {

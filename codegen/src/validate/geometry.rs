@@ -41,13 +41,26 @@ pub(super) fn sine_cosine(value: &Value, what: &str, context: &mut Context<'_>) 
     Some((angle.sin(), angle.cos()))
 }
 
-/// Warns of a limit in degrees, or rounded.
+/// Warns of a limit in degrees. A rounded one limits as well as another.
 pub(super) fn doubt_limit(expression: &Expression, radians: &Number, what: &str, context: &mut Context<'_>) {
-    doubt_angle(expression, radians, what, SUSPECT_LIMIT, context);
+    let _ = doubt_degrees(expression, radians, what, SUSPECT_LIMIT, context);
 }
 
 /// Warns of an angle above `suspect` that is written as a decimal, and of one that is nearly a multiple of pi/12.
 fn doubt_angle(expression: &Expression, radians: &Number, what: &str, suspect: f64, context: &mut Context<'_>) {
+    if let Some((written, radians)) = doubt_degrees(expression, radians, what, suspect, context) {
+        doubt_rounded(written, &radians, what, context);
+    }
+}
+
+/// Warns of an angle above `suspect` that is written as a decimal; where it is written and its value, if it is not above.
+fn doubt_degrees(
+    expression: &Expression,
+    radians: &Number,
+    what: &str,
+    suspect: f64,
+    context: &mut Context<'_>,
+) -> Option<(Span, Number)> {
     // A name that stands for a decimal is as doubtful as the decimal; the remedy belongs to its definition.
     let definition = expression.as_name().and_then(|name| context.evaluator.parameters.get(name));
     let definition = definition.and_then(|entry| entry.value.zip(entry.nominal.clone()));
@@ -61,8 +74,14 @@ fn doubt_angle(expression: &Expression, radians: &Number, what: &str, suspect: f
             let help = format!("angles are in radians; write `deg({text})` if degrees are meant");
             context.report(Code::DegreesSuspected, written.span, message, "in degrees?", help);
         }
-        return;
+        return None;
     }
+    Some((written.span, radians))
+}
+
+/// Warns of an angle that is nearly a multiple of pi/12.
+fn doubt_rounded(written: Span, radians: &Number, what: &str, context: &mut Context<'_>) {
+    let float = radians.to_f64();
     if radians.as_rational().is_none() {
         return;
     }
@@ -72,11 +91,11 @@ fn doubt_angle(expression: &Expression, radians: &Number, what: &str, suspect: f
         return;
     }
     let twelfths = Number::from(Rational::from(multiple as i64) / Rational::from(12));
-    let off = (&radians - &(&twelfths * &Number::pi())).to_f64();
+    let off = (radians - &(&twelfths * &Number::pi())).to_f64();
     let meant = multiple_of_pi(multiple as i64);
-    let message = format!("{what}: {} rad is nearly, but not, {meant} (off by {:.1e} rad)", text_of(&radians), off.abs());
+    let message = format!("{what}: {} rad is nearly, but not, {meant} (off by {:.1e} rad)", text_of(radians), off.abs());
     let help = format!("write `{meant}` if that is meant; it has an exact sine and cosine. The decimal is taken as written");
-    context.report(Code::RoundedAngle, written.span, message, format!("`{meant}`?"), help);
+    context.report(Code::RoundedAngle, written, message, format!("`{meant}`?"), help);
 }
 
 /// `n` twelfths of pi as one writes it.

@@ -12,7 +12,7 @@ use armgen_codegen::kinds::{JointKind, Scalar};
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_codegen::{derive, inverse_kinematics, Model};
+use armgen_codegen::{derive, inverse_kinematics, validate, Model};
 
 use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY};
@@ -20,11 +20,11 @@ use crate::{input, terminal, DONE, FAULTY};
 use super::verify::with_spinner;
 
 /// Checks every file; the exit code is the worst of them.
-pub(crate) fn run(files: &[PathBuf]) -> u8 {
+pub(crate) fn run(files: &[PathBuf], doubts: &Doubts) -> u8 {
     let mut worst = DONE;
     for (i, file) in files.iter().enumerate() {
-        let code = match checked(file) {
-            Ok(summary) => terminal::print(&if i > 0 { format!("\n{summary}") } else { summary }),
+        let code = match checked(file, doubts) {
+            Ok((summary, code)) => code.max(terminal::print(&if i > 0 { format!("\n{summary}") } else { summary })),
             Err(code) => code,
         };
         worst = worst.max(code);
@@ -32,9 +32,21 @@ pub(crate) fn run(files: &[PathBuf]) -> u8 {
     worst
 }
 
-fn checked(file: &Path) -> Result<String, u8> {
+/// What is made of warnings.
+#[derive(Debug)]
+pub(crate) struct Doubts {
+    /// They are failures.
+    pub(crate) strict: bool,
+    /// Kinds of which nothing is said.
+    pub(crate) allow: Vec<String>,
+}
+
+/// The summary, and the exit code.
+fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
     let source = input::source(file)?;
-    let (manipulator, diagnostics) = input::manipulator(&source, Scalar::F64, input::Warnings::Shown)?;
+    let (valid, mut diagnostics) = validate::read_for(&source, Scalar::F64);
+    diagnostics.allow(&doubts.allow);
+    let (manipulator, _) = input::report_or_exit_code(&source, valid, &diagnostics, input::Warnings::Shown)?;
     let (description, _) = RobotDescription::parse(&source);
     // Only generating the module shows whether products of valid numbers still fit the scalar.
     let (module, all) = with_spinner("deriving", || armgen_codegen::generate(&source, &Options::default()));
@@ -43,7 +55,14 @@ fn checked(file: &Path) -> Result<String, u8> {
         return Err(FAULTY);
     }
     let model = Model::new(manipulator);
-    Ok(summary(&source, &description.unwrap_or_default(), &model, &diagnostics))
+    let code = if doubts.strict && diagnostics.warnings() > 0 {
+        let warnings = input::counted(diagnostics.warnings(), "warning");
+        terminal::error(&format!("{}: {warnings}, and --strict", source.name()));
+        FAULTY
+    } else {
+        DONE
+    };
+    Ok((summary(&source, &description.unwrap_or_default(), &model, &diagnostics), code))
 }
 
 fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics) -> String {

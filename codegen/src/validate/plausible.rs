@@ -1,0 +1,361 @@
+//! Values that can be, but hardly are meant: wrong units, wrong sides of a gear, points that no data sheet has.
+//!
+//! Each threshold asks what no arm does, not what most do; what passes them may still be wrong.
+//!
+//! | kind | warns of | since |
+//! |---|---|---|
+//! | `implausible-reach` | a length beyond 30 m | the longest arms, of space stations and concrete pumps, have links of some 10 m; 0.05 m written in mm is 50 |
+//! | `implausible-mass` | masses of more than 2000 kg per cubic reach | industrial arms have 3 to 80; a solid cube of that side made of light alloy has 2700 |
+//! | `outlying-mass` | a link of five times the mass of all others together | the heaviest links of arms have about half of the whole |
+//! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link |
+//! | `implausible-inertia` | a radius of gyration above what the link spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
+//! | `implausible-density` | an inertia below half of that of a lead ball of the link's mass | of all bodies of one mass and density a ball has the least |
+//! | `missing-inertia` | no inertia on a link of a twentieth of the arm's mass | a point mass has none, and no link is one |
+//! | `reflected-rotor` | a rotor that weighs more at its joint, ratio² I, than three times the whole arm at its reach | gears are chosen to match |
+//! | `inverted-ratio` | a ratio below 1/5 | gears of arms slow down: rotor speed over joint speed is at least 1 |
+//! | `implausible-gravity` | a size that no planet or moon of a lander has, to 2 in 100 | tables of planets |
+//! | `implausible-velocity` | a limit beyond 40 rad/s or 20 m/s | the fastest wrists of packing robots turn at 35 |
+//! | `dust` | a length or an angle that is not 0 but below 1e-9 | less than the size of an atom at any reach; exact equations carry it along |
+
+use super::{call, Context};
+use crate::description::{BodyDescription, JointDescription, PoseDescription, RobotDescription, RotationDescription, Value};
+use crate::diagnostic::Code;
+use crate::document::Expression;
+use crate::kinds::JointKind;
+use crate::source::Span;
+
+const LONGEST: f64 = 30.0;
+const MASS_PER_CUBE: f64 = 2000.0;
+const OUTLYING: f64 = 5.0;
+const LEAD: f64 = 11_340.0;
+const OF_LEAD_BALL: f64 = 0.5;
+const HEAVY_PART: f64 = 0.05;
+const REFLECTED: f64 = 3.0;
+const LEAST_RATIO: f64 = 0.2;
+const FASTEST_TURN: f64 = 40.0;
+const FASTEST_SLIDE: f64 = 20.0;
+const DUST: f64 = 1e-9;
+/// Shorter arms, m, are those of examples: nothing follows from their size.
+const SMALL_REACH: f64 = 0.05;
+/// What a link spans beyond its frames and twice its centre of mass, m: flanges, housings, counterweights.
+const HOUSING: f64 = 0.2;
+/// Sizes of gravity, m/s², of bodies on which something has landed or may, and what they are.
+const GRAVITIES: [f64; 10] = [1.352, 1.62, 3.7, 8.87, 9.81, 10.0, 8.69, 10.44, 11.15, 24.79];
+const GRAVITY_PART: f64 = 0.02;
+
+/// What is said of all joints at once.
+struct Arm<'d> {
+    joints: &'d [JointDescription],
+    /// |a| + |d| of each row, m.
+    lengths: Vec<f64>,
+    /// How far each joint slides, m; infinite where it has no limits.
+    strokes: Vec<f64>,
+    /// Sum of all |a| and |d| and of the tool, and of strokes where these are next to nothing; m.
+    reach: f64,
+    /// Of all links, kg.
+    masses: Vec<f64>,
+}
+
+/// Warns of what is implausible in a description without errors.
+pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
+    let Some(joints) = description.joints.as_ref().map(|list| list.value.as_slice()) else { return };
+    gravity(description, context);
+    let mut lengths = Vec::new();
+    for (i, joint) in joints.iter().enumerate() {
+        let called = call(i, joint);
+        let of = |(value, name): (&Value, &str), context: &mut Context<'_>| {
+            length(value, &format!("`{name}` of joint {called}"), context)
+        };
+        let origin =
+            joint.origin.as_ref().map_or(0.0, |pose| translation(pose, &format!("the origin of joint {called}"), context));
+        lengths.push(of((&joint.a, "a"), context) + of((&joint.d, "d"), context) + origin);
+        for (value, name) in [(&joint.alpha, "alpha"), (&joint.theta, "theta")] {
+            dust(value, &format!("`{name}` of joint {called}"), "rad", context);
+        }
+    }
+    let mut reach: f64 = lengths.iter().sum();
+    if let Some(tool) = &description.tool {
+        reach += translation(tool, "the tool", context);
+    }
+    let strokes: Vec<f64> = joints.iter().map(|joint| stroke(joint, context)).collect();
+    if reach < 2.0 * SMALL_REACH {
+        reach += strokes.iter().filter(|stroke| stroke.is_finite()).sum::<f64>();
+    }
+    let mass =
+        |joint: &JointDescription, context: &mut Context<'_>| joint.link.as_ref().map_or(0.0, |link| number(&link.mass, context));
+    let masses = joints.iter().map(|joint| mass(joint, context)).collect();
+    let arm = Arm { joints, lengths, strokes, reach, masses };
+    let doubted = arm.check_masses(context);
+    for (i, joint) in joints.iter().enumerate() {
+        let called = call(i, joint);
+        if let Some(link) = &joint.link {
+            arm.check_body(i, link, &called, doubted, context);
+        }
+        arm.check_motor(joint, &called, context);
+        check_velocity(joint, &called, context);
+    }
+}
+
+/// The length of a pose's translations, m; angles and lengths that are next to nothing are told of.
+fn translation(pose: &PoseDescription, what: &str, context: &mut Context<'_>) -> f64 {
+    let mut whole = 0.0;
+    for element in &pose.elements {
+        let xyz = element.xyz.iter().flat_map(|xyz| xyz.value.iter());
+        whole += xyz.map(|value| length(value, what, context).powi(2)).sum::<f64>().sqrt();
+        if let Some(RotationDescription::Rpy(angles)) = &element.rotation {
+            angles.value.iter().for_each(|value| dust(value, what, "rad", context));
+        }
+    }
+    whole
+}
+
+/// How far a joint slides, m: 0 where it turns, infinite where it has no limits.
+fn stroke(joint: &JointDescription, context: &mut Context<'_>) -> f64 {
+    match (&joint.kind, &joint.limits.position) {
+        (Some(kind), _) if kind.value == JointKind::Revolute => 0.0,
+        (_, Some(limits)) => limits.value.iter().map(|value| number(value, context).abs()).sum(),
+        (_, None) => f64::INFINITY,
+    }
+}
+
+/// The value in the description; 0 where there is none.
+fn number(value: &Value, context: &mut Context<'_>) -> f64 {
+    value.as_ref().and_then(|expression| context.number(expression)).map_or(0.0, |number| number.to_f64())
+}
+
+/// Where a value is written: at the definition where it is a name.
+fn written(value: &Expression, context: &Context<'_>) -> Span {
+    let definition = value.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value);
+    definition.map_or(value.span, |definition| definition.span)
+}
+
+/// The size of a length, m; warns of one that is too long, and of one that is next to nothing.
+fn length(value: &Value, what: &str, context: &mut Context<'_>) -> f64 {
+    dust(value, what, "m", context);
+    let size = number(value, context);
+    if let (true, Some(expression)) = (size.abs() > LONGEST, value) {
+        let span = written(expression, context);
+        let message = format!("{what} is {} m long: no arm is", short(size.abs()));
+        let help = format!("lengths are in m; if this is in mm, write {}", short(size / 1e3));
+        context.report(Code::ImplausibleReach, span, message, "in mm?", help);
+    }
+    size.abs()
+}
+
+fn dust(value: &Value, what: &str, unit: &str, context: &mut Context<'_>) {
+    let size = number(value, context);
+    if let (true, Some(expression)) = (size != 0.0 && size.abs() < DUST, value) {
+        let span = written(expression, context);
+        let message = format!("{what} is {size:e} {unit}: not 0, but next to nothing");
+        let help = "write 0: exact equations carry the number along, at the cost of operations, and nothing comes of it";
+        context.report(Code::Dust, span, message, "0?", help);
+    }
+}
+
+fn gravity(description: &RobotDescription, context: &mut Context<'_>) {
+    let Some(gravity) = &description.gravity else { return };
+    let size = gravity.value.iter().map(|value| number(value, context).powi(2)).sum::<f64>().sqrt();
+    let is_one = |size: f64| GRAVITIES.iter().any(|g| (size / g - 1.0).abs() < GRAVITY_PART);
+    if size == 0.0 || is_one(size) {
+        return;
+    }
+    let help = if size == 1.0 {
+        "give the acceleration, not its direction alone: 9.81 times this".to_owned()
+    } else if let Some((factor, unit)) =
+        [(100.0, "cm/s²"), (1000.0, "mm/s²")].into_iter().find(|(factor, _)| is_one(size / factor))
+    {
+        format!("in m/s², not {unit}: the size would be {}", short(size / factor))
+    } else {
+        "on earth it is 9.81 m/s²; `[0, 0, -9.81]` where z0 points up".to_owned()
+    };
+    let message = format!("gravity of {} m/s² is that of no planet or moon", short(size));
+    context.report(Code::ImplausibleGravity, gravity.span, message, "its size", help);
+}
+
+impl Arm<'_> {
+    /// Whether masses are doubted: then nothing follows from them.
+    fn check_masses(&self, context: &mut Context<'_>) -> bool {
+        let total: f64 = self.masses.iter().sum();
+        let Some(heaviest) = (0..self.masses.len()).reduce(|a, b| if self.masses[b] > self.masses[a] { b } else { a }) else {
+            return true;
+        };
+        let Some(expression) = self.joints[heaviest].link.as_ref().and_then(|link| link.mass.as_ref()) else {
+            return false;
+        };
+        let span = written(expression, context);
+        let (mass, called) = (self.masses[heaviest], call(heaviest, &self.joints[heaviest]));
+        if self.reach > SMALL_REACH && total > MASS_PER_CUBE * self.reach.powi(3) {
+            let message = format!(
+                "the links weigh {} kg, on an arm of {} m: more than solid metal; the heaviest is the link of joint {called}",
+                short(total),
+                short(self.reach)
+            );
+            let help = format!("masses are in kg, lengths in m; if this is in g, write {}", short(mass / 1e3));
+            context.report(Code::ImplausibleMass, span, message, "in g?", help);
+            return true;
+        }
+        let with_mass = self.masses.iter().filter(|mass| **mass > 0.0).count();
+        if with_mass > 2 && mass > OUTLYING * (total - mass) {
+            let message = format!(
+                "the link of joint {called} weighs {} kg, {} times as much as all others together",
+                short(mass),
+                short((mass / (total - mass)).round())
+            );
+            let help = format!("if a point has slipped, write {}", short(mass / 10.0));
+            context.report(Code::OutlyingMass, span, message, "ten times off?", help);
+            return true;
+        }
+        false
+    }
+
+    /// Centre of mass and inertia of a link.
+    fn check_body(&self, i: usize, link: &BodyDescription, called: &str, doubted: bool, context: &mut Context<'_>) {
+        let mass = self.masses[i];
+        // With bodies fixed to it the link is another than its own numbers say.
+        if self.reach < SMALL_REACH || mass <= 0.0 || !link.attached.is_empty() {
+            return;
+        }
+        let mut com = 0.0;
+        if let Some(given) = &link.com {
+            for value in &given.value {
+                dust(value, &format!("the centre of mass of the link of joint {called}"), "m", context);
+                com += number(value, context).powi(2);
+            }
+            com = com.sqrt();
+            if com > self.reach {
+                let message = format!(
+                    "the centre of mass of the link of joint {called} is {} m from its frame, and the arm is {} m long",
+                    short(com),
+                    short(self.reach)
+                );
+                let (factor, unit) = if com > 30.0 * self.reach { (1e3, "mm") } else { (10.0, "tenths") };
+                let help =
+                    format!("if this is in {unit}, {} m would be meant; it counts from the link's frame", short(com / factor));
+                context.report(Code::ImplausibleCom, given.span, message, format!("in {unit}?"), help);
+                return;
+            }
+        }
+        let Some(inertia) = &link.inertia else {
+            let total: f64 = self.masses.iter().sum();
+            // An arm without any inertia is one of point masses, and meant.
+            let others = self.joints.iter().any(|joint| joint.link.as_ref().is_some_and(|link| link.inertia.is_some()));
+            if others && mass > HEAVY_PART * total {
+                let message = format!("the link of joint {called} weighs {} kg and has no inertia: it is a point", short(mass));
+                let help = "give `inertia` about the centre of mass, or write `inertia: {}` if a point mass is meant";
+                context.report(Code::MissingInertia, link.key, message, "no `inertia` below", help);
+            }
+            return;
+        };
+        let elements: Vec<f64> = inertia.elements.iter().map(|value| number(value, context)).collect();
+        let [xx, _, yy, _, _, zz] = elements[..] else { return };
+        let largest = xx.max(yy).max(zz);
+        if largest <= 0.0 {
+            return;
+        }
+        let gyration = (largest / mass).sqrt();
+        let span = self.span(i, com);
+        if gyration > span {
+            let units = [(1e4, "kg cm²"), (1e6, "kg mm²"), (1e9, "g mm²"), (10.0, "tenths")];
+            // The unit in which the radius comes nearest to a fifth of what the link spans.
+            let off = |factor: f64| (gyration / factor.sqrt() / (0.2 * span)).ln().abs();
+            let (factor, unit) = units.into_iter().reduce(|a, b| if off(b.0) < off(a.0) { b } else { a }).unwrap_or(units[0]);
+            let message = format!(
+                "the inertia of the link of joint {called} has a radius of gyration of {} m, more than the {} m that the link can span",
+                short(gyration),
+                short(span)
+            );
+            let help = format!(
+                "inertias are in kg m², about the centre of mass; if this is in {unit}, {} would be meant",
+                short(largest / factor)
+            );
+            context.report(Code::ImplausibleInertia, inertia.key, message, format!("in {unit}?"), help);
+        }
+        // 2/5 m r² of the ball, r = (3 m / (4 pi rho))^(1/3).
+        let radius = (3.0 * mass / (4.0 * std::f64::consts::PI * LEAD)).cbrt();
+        let ball = 0.4 * mass * radius * radius;
+        if !doubted && largest < OF_LEAD_BALL * ball {
+            let message = format!(
+                "no solid of {} kg is as small as the inertia of the link of joint {called} says: a ball of lead has {} kg m²",
+                short(mass),
+                short(ball)
+            );
+            let help = format!(
+                "check the mass (in kg) and the inertia (in kg m², about the centre of mass), of which the largest element is {}",
+                short(largest)
+            );
+            context.report(Code::ImplausibleDensity, inertia.key, message, "too small", help);
+        }
+    }
+
+    /// What the link of joint `i` can span, m: from the joint before it to the one after it, and about its centre of mass.
+    fn span(&self, i: usize, com: f64) -> f64 {
+        let part = |i: usize| self.lengths.get(i).unwrap_or(&0.0) + self.strokes.get(i).unwrap_or(&0.0);
+        part(i) + part(i + 1) + 2.0 * com + HOUSING
+    }
+
+    fn check_motor(&self, joint: &JointDescription, called: &str, context: &mut Context<'_>) {
+        let Some(motor) = &joint.motor else { return };
+        let ratio = motor.ratio.as_ref().map_or(1.0, |ratio| context.number(ratio).map_or(1.0, |number| number.to_f64())).abs();
+        if let (true, Some(expression)) = (ratio > 0.0 && ratio < LEAST_RATIO, &motor.ratio) {
+            let span = written(expression, context);
+            let message =
+                format!("the gear of joint {called} would make the joint {} times as fast as the rotor", short(1.0 / ratio));
+            let help = format!("`ratio` is rotor speed over joint speed; if this is the inverse, write {}", short(1.0 / ratio));
+            context.report(Code::InvertedRatio, span, message, "inverted?", help);
+            return;
+        }
+        let (Some(expression), inertia) = (&motor.inertia, number(&motor.inertia, context)) else { return };
+        let total: f64 = self.masses.iter().sum();
+        let reach = if joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute) { self.reach } else { 1.0 };
+        let whole = total * reach * reach;
+        let reflected = inertia * ratio * ratio;
+        if whole > 0.0 && self.reach > SMALL_REACH && ratio > 1.0 && reflected > REFLECTED * whole {
+            let span = written(expression, context);
+            let message = format!(
+                "the rotor of joint {called} counts as {} at the joint, ratio² times its inertia; the whole arm at its reach is {}",
+                short(reflected),
+                short(whole)
+            );
+            let help = format!(
+                "give the inertia at the rotor; if this is the one at the joint, write {}",
+                short(inertia / (ratio * ratio))
+            );
+            context.report(Code::ReflectedRotor, span, message, "reflected already?", help);
+        }
+    }
+}
+
+fn check_velocity(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
+    let Some(expression) = &joint.limits.velocity else { return };
+    let velocity = number(&joint.limits.velocity, context);
+    let turns = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
+    let span = written(expression, context);
+    if turns && velocity > FASTEST_TURN {
+        let text = context.source.slice(span).to_owned();
+        let message =
+            format!("the velocity limit of joint {called} is {} rad/s: no joint of an arm turns as fast", short(velocity));
+        let help = format!(
+            "rates are in rad/s; if this is in degrees per second, write `deg({text})`, which is {}",
+            short(velocity.to_radians())
+        );
+        context.report(Code::ImplausibleVelocity, span, message, "in degrees per second?", help);
+    } else if !turns && velocity > FASTEST_SLIDE {
+        let message =
+            format!("the velocity limit of joint {called} is {} m/s: no joint of an arm slides as fast", short(velocity));
+        let help = format!("rates are in m/s; if this is in mm/s, write {}", short(velocity / 1e3));
+        context.report(Code::ImplausibleVelocity, span, message, "in mm/s?", help);
+    }
+}
+
+/// Four digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    if !(-4..=8).contains(&digits) {
+        return format!("{value:.3e}");
+    }
+    let scale = 10f64.powi(digits);
+    format!("{}", (value * scale).round() / scale)
+}
