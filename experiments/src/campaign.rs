@@ -47,7 +47,12 @@ impl<'a> Job<'a> {
         self.prepared = Some(self.arm.prepare(self.experiment));
     }
 
-    /// What has to be said before anything moves.
+    /// What can be seen of it before anything moves, and hardly is meant.
+    pub fn doubts(&self) -> Vec<String> {
+        self.arm.look(self.experiment)
+    }
+
+    /// What has to be said of its loop before anything moves.
     pub fn warning(&self) -> Option<String> {
         self.prepared.as_ref()?.as_ref().ok()?.warning()
     }

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! instance.rs      one robot: its data, its functions, and the runs compiled for it
+//! look.rs          what can be seen before anything moves
 //! postures.rs clik.rs control.rs      one kind of run each; path.rs needs no robot
 //! demonstration.rs for a robot without experiments: from posture to posture within its limits
 //! ```
@@ -13,6 +14,7 @@ mod clik;
 mod control;
 mod demonstration;
 mod instance;
+mod look;
 mod path;
 mod postures;
 
@@ -24,6 +26,10 @@ use crate::model::{Experiment, Record, Robot};
 pub trait Arm: Sync {
     /// What is known of it.
     fn robot(&self) -> &Robot;
+
+    /// What can be seen of an experiment before anything moves, and hardly is meant: a start outside the limits, a path beyond reach, a
+    /// start off the path.
+    fn look(&self, experiment: &Experiment) -> Vec<String>;
 
     /// What is known of a run before anything moves.
     ///

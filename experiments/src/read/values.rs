@@ -145,9 +145,12 @@ impl Reader<'_> {
         values.into_iter().map(|value| value.map(|x| x.value)).collect()
     }
 
-    /// The list of numbers under a key.
+    /// The list of numbers under a key; of gains and limits one number stands for as many equal ones.
     pub(super) fn numbers(&mut self, fields: &Fields<'_>, name: &str, wanted: Numbers<'_>) -> Option<Vec<f64>> {
         let (at, node) = fields.get(name)?;
+        if let (Kind::Scalar(_), Allowed::Positive | Allowed::NotNegative) = (&node.kind, wanted.allowed) {
+            return self.value(node, at, name, wanted.allowed).map(|x| vec![x.value; wanted.len]);
+        }
         self.list(node, at, name, wanted)
     }
 

@@ -57,6 +57,10 @@ where
         &self.robot
     }
 
+    fn look(&self, experiment: &Experiment) -> Vec<String> {
+        Instance::look(self, experiment)
+    }
+
     fn prepare<'a>(&'a self, experiment: &'a Experiment) -> Result<Box<dyn Run + 'a>, String> {
         let body = &experiment.body;
         Ok(match body {

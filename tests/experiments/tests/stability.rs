@@ -88,3 +88,30 @@ fn what_diverges_in_motion_is_called_so() {
         assert_eq!(end.is_err() || largest > 1.0, diverges, "{period}: {largest}");
     }
 }
+
+/// What was meant otherwise is said before anything moves.
+#[test]
+fn a_start_in_degrees_and_a_path_beyond_reach_are_seen() {
+    let arm = armgen_experiment_tests::ur10_load();
+    let folder = common::root().join("tests/experiments/ur10");
+    let said_of = |from: &str, to: &str| {
+        let text = text_of(&folder, "adaptive_load.yaml").replace(from, to);
+        let experiment = match parse(&folder, "adaptive_load.yaml", &text, arm.robot()) {
+            Parsed::Experiment(experiment) => experiment,
+            other => panic!("{}", said(&other)),
+        };
+        let doubts = Job::new(&experiment, &*arm).doubts();
+        doubts
+    };
+    let start = "[0, -pi/2, pi/2, -pi/2, -pi/2, 0]";
+    assert_eq!(said_of("", "").len(), 1, "its start is a little off its path");
+    let degrees = said_of(start, "[0, -90, 90, -90, -90, 0]");
+    assert_eq!(degrees.iter().filter(|line| line.contains("in degrees? write `deg(")).count(), 4, "{degrees:?}");
+    let turned = said_of(start, "[7, -pi/2, pi/2, -pi/2, -pi/2, 0]");
+    assert!(turned[0].contains("outside its limits") && turned[0].contains("0.7168"), "{turned:?}");
+    assert!(said_of(start, "[3, -pi/2, pi/2, -pi/2, -pi/2, 0]").iter().any(|line| line.starts_with("the start is off the path")));
+    let far = said_of("paths/circle.yaml", "paths/far.yaml");
+    assert!(far[0].starts_with("the path leaves the reach of the arm: at 0 s it is 5.0249 m from the base"), "{far:?}");
+    assert!(far[0].ends_with("it is nearest at 4 s, 3.0414 m"), "{far:?}");
+    assert_eq!(said_of("k_p: [400, 400, 400, 400, 400, 400]", "k_p: 400"), said_of("", ""));
+}

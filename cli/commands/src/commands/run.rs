@@ -117,7 +117,7 @@ fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path) -> u8 {
         bar.inc(1);
     });
     for job in &jobs {
-        if let Some(warning) = job.warning() {
+        for warning in job.doubts().into_iter().chain(job.warning()) {
             bar.suspend(|| terminal::warning(&format!("{}: {warning}", job.experiment().name)));
         }
     }
