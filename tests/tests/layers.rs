@@ -45,7 +45,7 @@ const CODEGEN: Layers = &[
     ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "pass", "program", "ring", "suggest"]),
     ("emit", &["catalogue", "exact", "inverse_kinematics", "kinds", "program", "ring", "source"]),
     ("show", &["catalogue", "derive", "exact", "ring"]),
-    ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source"]),
+    ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source", "validate"]),
 ];
 
 const RUNTIME: Layers = &[
