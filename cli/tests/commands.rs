@@ -385,6 +385,23 @@ fn error_bounds_stand_in_the_documentation_and_in_a_companion() {
 }
 
 #[test]
+fn inverse_kinematics_is_named_shown_and_written() {
+    let scara = file("robots/scara.yaml");
+    let text = out(&check(&["check", &scara], 0));
+    assert!(text.contains("all revolute axes parallel (joints 1 2 4): at most 2 solutions"), "{text}");
+    let text = out(&check(&["show", &scara, "inverse_kinematics"], 0));
+    assert!(text.starts_with("inverse_kinematics: all revolute axes parallel (joints 1 2 4), at most 2 solutions\n"), "{text}");
+    assert!(text.contains("two links in the plane") && text.contains("singular: elbow stretched"), "{text}");
+    let text = out(&check(&["show", &file("robots/panda7.yaml"), "inverse_kinematics"], 0));
+    assert!(text.starts_with("inverse_kinematics: none, "), "{text}");
+    check(&["show", &scara, "inverse_kinematics", "--format", "json"], 2);
+    let module = folder("inverse_kinematics").join("robot.rs");
+    check(&["generate", &scara, "--out", module.to_str().expect("UTF-8"), "--ik"], 0);
+    let text = fs::read_to_string(module.with_file_name("robot_ik.rs")).expect("inverse kinematics");
+    assert!(text.contains("pub fn inverse_kinematics(t: &[[Real; 4]; 4]) -> Solutions {"), "{text}");
+}
+
+#[test]
 fn the_face_for_c_stands_beside_the_module() {
     let folder = folder("c_abi");
     let module = folder.join("robot.rs");

@@ -12,6 +12,7 @@ mod chain;
 mod classes;
 mod frame;
 mod general;
+mod steps;
 
 use crate::exact::Number;
 use crate::kinds::{JointKind, TaskRow};

@@ -175,6 +175,11 @@ fn classes_of_robots() {
     for (name, class, most, text) in made_up() {
         let found = classified(name, &text).unwrap_or_else(|reason| panic!("{name}: {reason}"));
         assert!(found.class.starts_with(class) && found.most == most, "{name}: {} {}", found.class, found.most);
+        // The steps name every joint of the arm, and no other but a virtual one.
+        let (shown, joints) = (found.text(), text.matches("type: ").count());
+        println!("{shown}");
+        assert!((1..=joints).all(|joint| shown.contains(&joint.to_string())), "{shown}");
+        assert!(!shown.contains(&format!("q{}", joints + 2)), "{shown}");
     }
 }
 

@@ -14,6 +14,9 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: Sh
         Ok(model) => model,
         Err(code) => return code,
     };
+    if quantities.iter().any(|name| name.replace('-', "_") == INVERSE_KINEMATICS) {
+        return inverse_kinematics(&model, quantities.len() > 1 || symbolic || format != ShowFormat::Text);
+    }
     let items = match items(&model, quantities) {
         Ok(items) => items,
         Err(message) => {
@@ -32,6 +35,20 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: Sh
         ShowFormat::Latex => sheet.latex(),
         ShowFormat::Json => sheet.json(),
     })
+}
+
+/// What is no quantity but a procedure: its class and its steps.
+const INVERSE_KINEMATICS: &str = "inverse_kinematics";
+
+fn inverse_kinematics(model: &Model, otherwise: bool) -> u8 {
+    if otherwise {
+        terminal::error(&format!("`{INVERSE_KINEMATICS}` is shown alone, as text with numbers: leave the rest out"));
+        return UNREADABLE;
+    }
+    match armgen_codegen::inverse_kinematics::of(&model.manipulator) {
+        Ok(found) => terminal::print(&found.text()),
+        Err(reason) => terminal::print(&format!("{INVERSE_KINEMATICS}: none, {reason}\n")),
+    }
 }
 
 fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {

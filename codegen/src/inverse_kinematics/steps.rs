@@ -1,0 +1,184 @@
+//! The construction as numbered steps, for people.
+
+use super::chain::Arrangement;
+use super::classes::Regional;
+use super::{Construction, InverseKinematics, Target};
+
+impl InverseKinematics {
+    /// Class, steps and what is singular, as lines of text.
+    pub fn text(&self) -> String {
+        let target = match self.target {
+            Target::Pose => "given T = (R p; 0 1)",
+            Target::Planar => "given the position and the turn about the parallel axes, of T = (R p; 0 1)",
+            Target::Position => "given the position p",
+        };
+        let mut text = format!("inverse_kinematics: {}, at most {} solutions\n  {target}\n", self.class, self.most);
+        let (steps, singular) = self.steps();
+        let last = steps.len();
+        for (i, step) in steps.iter().enumerate() {
+            text += &format!("  {:width$}  {step}\n", i + 1, width = last.to_string().len());
+        }
+        if !singular.is_empty() {
+            text += &format!("  singular: {}\n", singular.join("; "));
+        }
+        text
+    }
+
+    fn steps(&self) -> (Vec<String>, Vec<String>) {
+        let (mut steps, mut singular) = (Vec::new(), Vec::new());
+        let mut add = |(more, places): (Vec<String>, Vec<String>)| {
+            steps.extend(more);
+            singular.extend(places);
+        };
+        match &self.construction {
+            Construction::SphericalTriple(way, case) => {
+                let [_, _, _, d, e, f] = numbers(way);
+                let point = format!("the point in which axes {d}, {e} and {f} meet does not feel them: where the pose takes it");
+                add((vec![read(way), point], vec![]));
+                add(case.steps(way));
+                add((
+                    vec![
+                        format!("q{e} from the cosine between axes {d} and {f}: a cos q{e} = b                wrist: + / -"),
+                        format!("q{d} and q{f} from the rotation that is left"),
+                    ],
+                    vec![format!("axes {d} and {f} parallel (q{d} and q{f} free together)")],
+                ));
+            }
+            Construction::ThreeParallel(way, polished) => {
+                let [a, x, y, z, b, c] = numbers(way);
+                let pair = format!("across axes {x}, {y} and {z} nothing moves but q{a} and q{b}: two equations linear in their sines and cosines");
+                let roots = if *polished {
+                    format!("eliminated to one of degree 2 on the circle of q{a} or q{b}: at most four roots; Newton's method for the last digits")
+                } else {
+                    format!("one of them free of one angle: q{a}, then q{b}, each a cos q + b sin q = d            + / -")
+                };
+                add((
+                    vec![
+                        read(way),
+                        pair,
+                        roots,
+                        format!("q{c} from the direction of axes {x}, {y} and {z}"),
+                        format!("q{y} and q{x}: two links in the plane                    elbow: + / -"),
+                        format!("q{z} from the turn that is left"),
+                    ],
+                    vec![
+                        format!("elbow stretched or folded (sin q{y} = 0 in the loop)"),
+                        format!("axis {c} parallel to axis {x} (q{c} free)"),
+                    ],
+                ));
+            }
+            Construction::ParallelTurns(way, case) => {
+                let [.., d] = numbers::<4>(way);
+                add((vec![read(way), format!("the origin of joint {d} does not feel it: where the pose takes it")], vec![]));
+                add(case.steps(way));
+                add((vec![format!("q{d} from the turn that is left; none if R is tilted against the axes")], vec![]));
+            }
+            Construction::Position(way, case) => {
+                add((vec![read(way)], vec![]));
+                add(case.steps(way));
+            }
+            Construction::ThreePrismatic(way, turning) => {
+                let joints = numbers::<6>(way);
+                let [r1, r2, r3] = turning.map(|place| joints[place]);
+                add((
+                    vec![
+                        read(way),
+                        format!("the rotation does not feel the slides: q{r2} from the cosine between axes {r1} and {r3}        wrist: + / -"),
+                        format!("q{r1} and q{r3} from the rotation that is left"),
+                        "the slides from three linear equations".into(),
+                    ],
+                    vec![format!("axes {r1} and {r3} parallel (q{r1} and q{r3} free together)"), "slides in one plane".into()],
+                ));
+            }
+            Construction::General(ways) => {
+                let [a, b, c, d, e, f] = numbers(&ways[0]);
+                add((
+                    vec![
+                        read(&ways[0]),
+                        format!("14 equations of axis {f} as it is seen from behind link {b} both ways: free of q{f}, bilinear in ({d} {e}) and ({a} {b})"),
+                        format!("q{a} and q{b} eliminated by linear algebra; M(q{c}), 12 x 12, is left"),
+                        format!("det M(q{c}), of degree 8 on the circle (16 roots), from 24 samples"),
+                        format!("at each real root q{d} and q{e} from the kernel of M, q{a} and q{b} by a triangular solve, then q{f}"),
+                        "Newton's method on the six equations of the pose".into(),
+                        format!("where that is not certain to be complete, the same in the order {}, and both are joined", listed(&ways[1])),
+                    ],
+                    vec!["det J = 0 (solutions meet)".into()],
+                ));
+            }
+        }
+        (steps, singular)
+    }
+}
+
+/// The numbers of the joints in the order of the loop, from 1.
+fn numbers<const N: usize>(way: &Arrangement) -> [usize; N] {
+    std::array::from_fn(|place| way.order[place] + 1)
+}
+
+fn listed(way: &Arrangement) -> String {
+    way.order.iter().map(|joint| (joint + 1).to_string()).collect::<Vec<_>>().join(" ")
+}
+
+fn read(way: &Arrangement) -> String {
+    format!("the loop that arm and pose close, read in the order {}", listed(way))
+}
+
+impl Regional {
+    /// The steps that bring a point to a point, and their singular places.
+    fn steps(&self, way: &Arrangement) -> (Vec<String>, Vec<String>) {
+        let [a, b, c] = numbers(way);
+        let two = |steps: &[String], places: &[String]| (steps.to_vec(), places.to_vec());
+        let elbow = format!("q{c} and q{b}: two links in the plane                    elbow: + / -");
+        let stretched = format!("elbow stretched or folded (axis {b}, axis {c} and the point in one plane)");
+        let on = |axis: usize| format!("the point on axis {axis} (q{axis} free)");
+        match self.function {
+            "regional_elbow" => two(
+                &[format!("q{a} by the component along axis {b}: a cos q{a} + b sin q{a} = d    shoulder: + / -"), elbow],
+                &[stretched, on(a)],
+            ),
+            "regional_crossing" => two(
+                &[
+                    format!("q{c} by the distance from the point in which axes {a} and {b} meet: a cos q{c} + b sin q{c} = d    + / -"),
+                    format!("q{b} by the height along axis {a}: a cos q{b} + b sin q{b} = d    + / -"),
+                    format!("q{a} by the direction across axis {a}"),
+                ],
+                &[stretched, on(a), on(b)],
+            ),
+            "regional_slide_elbow" => two(&[elbow, format!("q{a}: the length that is left along joint {a}")], &[stretched]),
+            "regional_mid_slide_elbow" => two(
+                &[format!("q{b} by the height along axis {a}"), format!("q{c} and q{a}: two links in the plane        elbow: + / -")],
+                &["elbow stretched or folded".into(), on(a)],
+            ),
+            "regional_slide_across" => two(
+                &[
+                    format!("q{c} by the component along axis {b}: a cos q{c} + b sin q{c} = d    + / -"),
+                    format!("q{b} by the component across it: a cos q{b} + b sin q{b} = d    + / -"),
+                    format!("q{a}: the length that is left along joint {a}"),
+                ],
+                &[on(b)],
+            ),
+            "regional_mid_slide_across" => two(
+                &[
+                    format!("q{c} by the height along axis {a}: a cos q{c} + b sin q{c} = d    + / -"),
+                    format!("q{b}: a line that meets a circle about axis {a}    + / -"),
+                    format!("q{a} by the direction across axis {a}"),
+                ],
+                &[on(a)],
+            ),
+            "regional_plane_then_turn" => {
+                two(&[format!("q{c} by the component normal to both slides    + / -"), format!("q{a} and q{b} are linear")], &[])
+            }
+            "regional_slide_turn_slide" => {
+                two(&[format!("q{b}: the slides and what is left in one plane    + / -"), format!("q{a} and q{c} are linear")], &[])
+            }
+            "regional_slides" => two(&[format!("q{a}, q{b} and q{c} from three linear equations")], &[]),
+            _ => two(
+                &[
+                    format!("q{a} and q{b} eliminated from the squared length and the height: an equation of degree 2 on the circle of q{c}, at most four roots"),
+                    format!("q{b} from two linear equations, q{a} from what is left; Newton's method for the last digits"),
+                ],
+                &[format!("double roots in q{c}"), on(a), on(b)],
+            ),
+        }
+    }
+}
