@@ -37,7 +37,7 @@ pub(crate) fn parse<'s>(source: &'s Source, diagnostics: &mut Diagnostics) -> Op
 
 fn refusal(source: &Source, error: &Error) -> Diagnostic {
     let at = offset(source, error.pos());
-    let span = Span::new(at, (at + 1).min(source.text().len()));
+    let span = Span::new(at, character_end(source.text(), at));
     let (code, message, help) = match error {
         Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return xacro(span),
         Error::UnknownNamespace(prefix, _) => (
@@ -144,7 +144,13 @@ pub(crate) fn beginning() -> Span {
 /// The place of an element: its opening tag's name.
 pub(crate) fn place(node: Node<'_, '_>) -> Span {
     let start = node.range().start;
-    Span::new(start, start + 1 + node.tag_name().name().len())
+    let end = start + node.tag_name().name().len();
+    Span::new(start, character_end(node.document().input_text(), end))
+}
+
+/// The first end of a character behind a place.
+fn character_end(text: &str, at: usize) -> usize {
+    (at + 1..text.len()).find(|&end| text.is_char_boundary(end)).unwrap_or(text.len())
 }
 
 /// The first child of a name without namespace.

@@ -7,7 +7,11 @@ const BODY: &str = r#"<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0
 
 #[track_caller]
 fn check(text: impl Into<String>, code: Option<Code>) {
-    let (imported, diagnostics) = import(&Source::new("robot.urdf", text), &Options::default());
+    let source = Source::new("robot.urdf", text);
+    let (imported, diagnostics) = import(&source, &Options::default());
+    for label in diagnostics.iter().flat_map(|diagnostic| &diagnostic.labels) {
+        assert!(source.text().get(label.span.range()).is_some(), "{label:?} begins or ends within a character");
+    }
     let codes: Vec<&str> = diagnostics.iter().map(|d| d.code.name()).collect();
     assert_eq!(imported.is_some(), code.is_none(), "{codes:?}");
     if let Some(code) = code {
@@ -29,6 +33,13 @@ fn spellings_of_the_text() {
     check(format!("<?xml version='1.0'?>\n<!-- <robot> -->\n{}", arm("<![CDATA[ <a> ]]>")), None);
     check(arm("<origin xyz='0 0 &#48;.5'/>"), None);
     check(arm("").replace("robot name", "robot title"), None);
+}
+
+/// Found by fuzzing.
+#[test]
+fn places_hold_whole_characters() {
+    check(arm("<limit velocity='1'/\u{fffd}"), Some(Code::XmlSyntax));
+    check(arm("<\u{fffd}:\u{e9} xmlns:\u{fffd}='x'/>"), None);
 }
 
 #[test]
