@@ -313,6 +313,11 @@ fn a_certificate_is_written_and_verified_again() {
         assert!(err(&output).contains("robot.cert.json: the certificate cannot be read: "), "{}", err(&output));
         fs::remove_file(&certificate).expect("it is there");
         check(&["verify", &yaml, path], 0);
+        // The text of the module is judged, and this is not all of it.
+        let text = fs::read_to_string(&module).expect("the module");
+        fs::write(&module, format!("\u{feff}{text}")).expect("a file");
+        let output = check(&["verify", &yaml, path], 1);
+        assert!(err(&output).contains("begins with a byte order mark"), "{}", err(&output));
     }
 }
 

@@ -40,6 +40,18 @@ pub(crate) fn source(path: &Path) -> Result<Source, u8> {
     Ok(Source::new(name, text))
 }
 
+/// A file that armgen has written: its text is what it is judged by, so a byte order mark in front of it, which reading drops, is refused.
+pub(crate) fn written(path: &Path) -> Result<Source, u8> {
+    const MARK: &[u8] = "\u{feff}".as_bytes();
+    let mut start = [0; MARK.len()];
+    if File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == MARK {
+        let name = path.display();
+        terminal::error(&format!("{name} begins with a byte order mark, which no file that armgen writes does"));
+        return Err(FAULTY);
+    }
+    source(path)
+}
+
 /// How much of a valid file's warnings goes to standard error.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Warnings {

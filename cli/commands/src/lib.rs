@@ -164,8 +164,8 @@ Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a 
 The text of the module is read back by a checker of its own, which derives the equations from the
 description the textbook's way and compares both, exactly, at random points of prime fields and at
 a rational one. If a certificate, robot.cert.json, stands beside robot.rs, it must be of these two
-texts. Not judged are documentation comments, the compiler, and the sines and cosines themselves:
-for those see docs/sine-and-cosine.md.
+texts. Of the documentation costs, bounds and the head are judged, other words are not; nor are the
+compiler, and the sines and cosines themselves: for those see docs/sine-and-cosine.md.
 Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is named),
 2 a file cannot be opened or is not UTF-8.")]
     Verify {

@@ -27,10 +27,10 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     let by_extension = || Language::of_extension(module.extension()?.to_str()?);
     let language = language.or_else(by_extension).unwrap_or_default();
     let source = input::source(description)?;
-    let text = input::source(module)?;
+    let text = input::written(module)?;
     let beside = certificate_beside(module);
     let certificate = match beside.exists() {
-        true => Some(Certificate::from_json(input::source(&beside)?.text()).map_err(|error| {
+        true => Some(Certificate::from_json(input::written(&beside)?.text()).map_err(|error| {
             terminal::error(&format!("{}: {error}", beside.display()));
             FAULTY
         })?),
