@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Lines, Syntax, CONSTANTS};
+use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Returned, Sizes};
 use crate::enclosure::Float;
@@ -23,13 +23,6 @@ const CHECK: &str = include_str!("javascript/check.mjs");
 const SIGN: &str = include_str!("javascript/sign.mjs");
 const STD: &str = include_str!("javascript/std.mjs");
 const FAST: &str = include_str!("javascript/sines.mjs");
-
-/// A part of a long function: its arguments, and where its lines begin.
-struct Part<'a> {
-    arguments: Vec<&'a str>,
-    body: usize,
-    used: bool,
-}
 
 fn comment(lines: &[&str]) -> Vec<String> {
     lines.iter().map(|line| line.strip_prefix(" *").unwrap_or(line).to_string()).filter(|line| !line.is_empty()).collect()
@@ -82,7 +75,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         sign: "sign(".into(),
         define: ["    const ".into(), " = ".into(), ";".into()],
     };
-    let mut reader = Reader { syntax: &syntax, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 2] };
+    let mut reader = Reader { syntax: &syntax, sizes, parts: Parts::default(), steps: 0, asks: [false; 2] };
     let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
     while !lines.ended() {
         if let Some((name, function)) = reader.function(&mut lines)? {
@@ -92,7 +85,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
             functions.push((name, Ok(function)));
         }
     }
-    if let Some(name) = reader.parts.iter().find_map(|(name, part)| (!part.used).then_some(name)) {
+    if let Some(name) = reader.parts.unused() {
         return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
     }
     if [trig.is_some(), sign] != reader.asks {
@@ -104,7 +97,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
 struct Reader<'a, 'r> {
     syntax: &'r Syntax,
     sizes: Sizes,
-    parts: BTreeMap<&'a str, Part<'a>>,
+    parts: Parts<'a>,
     steps: usize,
     asks: [bool; 2],
 }
@@ -222,10 +215,7 @@ impl<'a> Reader<'a, '_> {
             lines.at += 1;
         }
         lines.expect("}")?;
-        match self.parts.insert(name, Part { arguments, body, used: false }) {
-            Some(_) => Err(Fault { line, reason: format!("`{name}` stands twice") }),
-            None => Ok(()),
-        }
+        self.parts.add(name, arguments, body, line)
     }
 
     /// The call of a part, taken in as if its lines stood here.
@@ -236,38 +226,15 @@ impl<'a> Reader<'a, '_> {
         }
         let line = lines.number();
         let name = format!("{function}Part{number}");
-        let part = self.parts.get_mut(name.as_str()).ok_or_else(|| lines.fault(format!("there is no part `{name}`")))?;
-        part.used = true;
-        let passed: String = part.arguments.iter().map(|argument| format!("{argument}, ")).collect();
+        let passed = self.parts.passed(&name, lines)?;
         let names = lines.between(&format!("{begin}{passed}["), "]);")?;
-        let all = body.program.arguments.clone();
-        if let Some(wrong) = part.arguments.iter().find(|a| !all.iter().any(|own| own.name() == **a)) {
-            return Err(Fault { line, reason: format!("`{wrong}` is not an argument of the function") });
-        }
         let names: Vec<&str> = if names.is_empty() { Vec::new() } else { names.split(", ").collect() };
-        let taken = names.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
-        let back = std::mem::replace(&mut lines.at, part.body);
-        let scope = body.enter();
-        // Of the function's arguments it knows those that it takes.
-        body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
-        for (i, value) in taken.into_iter().enumerate() {
-            if !body.element(lines, &format!("taken[{i}]"), value)? {
-                return Err(lines.fault(format!("value {i} that the part takes has no name")));
-            }
-        }
-        body.definitions(lines)?;
-        let line = lines.number();
-        let given = lines.between("    return [", "];")?.split(", ");
-        let given = given.map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
-        lines.expect("}")?;
-        body.leave(scope);
-        body.program.arguments = all;
-        lines.at = back;
-        for (i, value) in given.into_iter().enumerate() {
-            if !body.element(lines, &format!("given{number}[{i}]"), value)? {
-                return Err(lines.fault(format!("value {i} that the part gives has no name")));
-            }
-        }
+        let results = |lines: &mut Lines<'a>| {
+            let names = lines.between("    return [", "];")?.split(", ").collect();
+            lines.expect("}")?;
+            Ok(names)
+        };
+        self.parts.take_in(&name, lines, body, (names, line), results, &format!("given{number}"))?;
         Ok(true)
     }
 }

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Lines, Syntax, CONSTANTS};
+use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
@@ -24,13 +24,6 @@ const SIGN: &str = include_str!("python/sign.py");
 const STD: &str = include_str!("python/std.py");
 const FAST_F64: &str = include_str!("python/sines_f64.py");
 const FAST_F32: &str = include_str!("python/sines_f32.py");
-
-/// A part of a long function: its arguments, and where its lines begin.
-struct Part<'a> {
-    arguments: Vec<&'a str>,
-    body: usize,
-    used: bool,
-}
 
 fn tuple(entries: &[String]) -> String {
     match entries {
@@ -109,7 +102,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         define: ["    ".into(), " = ".into(), String::new()],
     };
     let mut reader =
-        Reader { syntax: &syntax, real, sizes, parts: BTreeMap::new(), structures: Vec::new(), steps: 0, asks: [false; 2] };
+        Reader { syntax: &syntax, real, sizes, parts: Parts::default(), structures: Vec::new(), steps: 0, asks: [false; 2] };
     let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
     while !lines.ended() {
         if let Some((name, function)) = reader.item(&mut lines)? {
@@ -119,7 +112,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
             functions.push((name, Ok(function)));
         }
     }
-    if let Some(name) = reader.parts.iter().find_map(|(name, part)| (!part.used).then_some(name)) {
+    if let Some(name) = reader.parts.unused() {
         return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
     }
     if [trig.is_some(), sign] != reader.asks {
@@ -142,7 +135,7 @@ struct Reader<'a, 'r> {
     syntax: &'r Syntax,
     real: Float,
     sizes: Sizes,
-    parts: BTreeMap<&'a str, Part<'a>>,
+    parts: Parts<'a>,
     structures: Vec<String>,
     steps: usize,
     asks: [bool; 2],
@@ -260,10 +253,7 @@ impl<'a> Reader<'a, '_> {
             lines.at += 1;
         }
         lines.at += 1;
-        match self.parts.insert(name, Part { arguments, body, used: false }) {
-            Some(_) => Err(Fault { line, reason: format!("`{name}` stands twice") }),
-            None => Ok(()),
-        }
+        self.parts.add(name, arguments, body, line)
     }
 
     /// The call of a part, taken in as if its lines stood here.
@@ -274,36 +264,13 @@ impl<'a> Reader<'a, '_> {
             return Ok(false);
         }
         let line = lines.number();
-        let part = self.parts.get_mut(name.as_str()).ok_or_else(|| lines.fault(format!("there is no part `{name}`")))?;
-        part.used = true;
-        let passed: String = part.arguments.iter().map(|argument| format!("{argument}, ")).collect();
+        let passed = self.parts.passed(&name, lines)?;
         let names = entries(lines.between(&format!("{begin}{passed}"), ")")?, line)?;
-        let all = body.program.arguments.clone();
-        if let Some(wrong) = part.arguments.iter().find(|a| !all.iter().any(|own| own.name() == **a)) {
-            return Err(Fault { line, reason: format!("`{wrong}` is not an argument of the function") });
-        }
-        let taken = names.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
-        let back = std::mem::replace(&mut lines.at, part.body);
-        let scope = body.enter();
-        // Of the function's arguments it knows those that it takes.
-        body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
-        for (i, value) in taken.into_iter().enumerate() {
-            if !body.element(lines, &format!("taken[{i}]"), value)? {
-                return Err(lines.fault(format!("value {i} that the part takes has no name")));
-            }
-        }
-        body.definitions(lines)?;
-        let line = lines.number();
-        let given = entries(lines.between("    return ", "")?, line)?;
-        let given = given.into_iter().map(|name| body.value(name, line)).collect::<Result<Vec<usize>, Fault>>()?;
-        body.leave(scope);
-        body.program.arguments = all;
-        lines.at = back;
-        for (i, value) in given.into_iter().enumerate() {
-            if !body.element(lines, &format!("given_{number}[{i}]"), value)? {
-                return Err(lines.fault(format!("value {i} that the part gives has no name")));
-            }
-        }
+        let results = |lines: &mut Lines<'a>| {
+            let line = lines.number();
+            entries(lines.between("    return ", "")?, line)
+        };
+        self.parts.take_in(&name, lines, body, (names, line), results, &format!("given_{number}"))?;
         Ok(true)
     }
 }
