@@ -19,6 +19,11 @@ use crate::{FAULTY, UNREADABLE};
 
 /// The text of a file, or the exit code after a message that says why there is none.
 pub(crate) fn source(path: &Path) -> Result<Source, u8> {
+    Ok(Source::new(path.display().to_string(), text(path)?))
+}
+
+/// The text of a file as it is; why it cannot be had goes to standard error.
+fn text(path: &Path) -> Result<String, u8> {
     let name = path.display().to_string();
     let mut bytes = Vec::new();
     // Never more than that, whatever the file is: a device may have no end.
@@ -31,25 +36,22 @@ pub(crate) fn source(path: &Path) -> Result<Source, u8> {
         terminal::error(&format!("{name} is longer than {} MiB: no file that armgen reads or writes is", LONGEST >> 20));
         return Err(UNREADABLE);
     }
-    let text = String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count() + 1;
         terminal::error(&format!("{name} is not UTF-8: line {line} holds a byte that belongs to no character; save it as UTF-8"));
         UNREADABLE
-    })?;
-    Ok(Source::new(name, text))
+    })
 }
 
 /// A file that armgen has written: its text is what it is judged by, so a byte order mark in front of it, which reading drops, is refused.
 pub(crate) fn written(path: &Path) -> Result<Source, u8> {
-    const MARK: &[u8] = "\u{feff}".as_bytes();
-    let mut start = [0; MARK.len()];
-    if File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == MARK {
-        let name = path.display();
+    let (name, text) = (path.display().to_string(), text(path)?);
+    if text.starts_with('\u{feff}') {
         terminal::error(&format!("{name} begins with a byte order mark, which no file that armgen writes does"));
         return Err(FAULTY);
     }
-    source(path)
+    Ok(Source::new(name, text))
 }
 
 /// How much of a valid file's warnings goes to standard error.
