@@ -7,6 +7,7 @@
 //! Absent from here on: YAML, unknown keys, wrong kinds of values, malformed expressions. What could not be read is `None`, and its
 //! fault is reported; so validation goes on with the rest, and every fault of a file comes in one go.
 
+mod other_formats;
 mod reader;
 
 use crate::diagnostic::Diagnostics;

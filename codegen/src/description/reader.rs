@@ -1,5 +1,6 @@
 //! Tree of nodes -> [`RobotDescription`]: which keys there are, and what kind of value stands under each.
 
+use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
     LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, RegressorDescription,
@@ -77,29 +78,9 @@ const POSE: &[Key] =
 /// Poses in one list.
 const MOST_POSES: usize = 64;
 
-/// Keys that other formats use for what has another name here.
-const OTHER_NAMES: &[(&str, &str)] = &[
-    ("m", "mass"),
-    ("r", "a"),
-    ("centre_of_mass", "com"),
-    ("center_of_mass", "com"),
-    ("cog", "com"),
-    ("kind", "type"),
-    ("joint_type", "type"),
-    ("links", "joints"),
-    ("g", "gravity"),
-    ("dh", "convention"),
-    ("gear", "ratio"),
-    ("gear_ratio", "ratio"),
-    ("load", "payload"),
-    ("torque", "effort"),
-    ("lower", "position"),
-    ("upper", "position"),
-];
-
 /// The description that the tree holds.
 pub(super) fn read(source: &Source, root: Option<&Node>, diagnostics: &mut Diagnostics) -> Option<RobotDescription> {
-    let mut reader = Reader::new(diagnostics).with_other_names(OTHER_NAMES);
+    let mut reader = Reader::new(diagnostics).with_other_names(OTHER_NAMES).with_other_places(OTHER_PLACES);
     let begin = "begin with `name: my_robot`, `convention: standard`, `gravity: [0, 0, -9.81]` and `joints:`";
     let root = reader.root(source, root, "a description", begin)?;
     Some(reader.robot(root))
@@ -221,6 +202,9 @@ impl Reader<'_> {
             mass: self.field(fields, "mass"),
             com: fields.get("com").and_then(|(key, node)| self.vector(node, key, "com", ["x", "y", "z"])),
             inertia: fields.get("inertia").and_then(|(key, node)| {
+                if self.tensor_as_list(node) {
+                    return None;
+                }
                 let fields = self.mapping(node, "`inertia`", key, INERTIA)?;
                 let elements = INERTIA_ELEMENTS.map(|name| self.field(&fields, name));
                 let complete = INERTIA_ELEMENTS.iter().zip(&elements).all(|(name, e)| e.is_some() == fields.get(name).is_some());

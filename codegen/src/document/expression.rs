@@ -9,6 +9,8 @@
 //!
 //! A decimal is exactly the fraction that its digits say. Every part of the tree knows its place in the file.
 
+mod units;
+
 use dashu_int::{IBig, UBig};
 
 use super::excerpt;
@@ -411,13 +413,8 @@ impl<'a> Parser<'a> {
                     "write the number in decimal digits",
                 ));
             }
-            let help = if word.eq_ignore_ascii_case("deg") {
-                format!("write `deg({number})` for degrees")
-            } else if is_unit(word) {
-                WITHOUT_UNIT.to_owned()
-            } else {
-                format!("write `{number}*{}` if a product is meant", excerpt(word))
-            };
+            let help = units::without(&self.text[..self.at], self.rest())
+                .unwrap_or_else(|| format!("write `{number}*{}` if a product is meant", excerpt(word)));
             return Err(self.error(self.at, end, "this sticks to a number", help));
         }
         Ok(())
@@ -433,10 +430,13 @@ impl<'a> Parser<'a> {
             let last = self.text[..end].char_indices().next_back().map_or(0, |(at, _)| at);
             return self.error(last, end, "it ends here, before it is complete", "write a number or a name after this");
         };
+        if let Some(help) = units::without(&self.text[..self.at], self.rest()) {
+            return self.error(self.at, self.text.trim_end().len(), "a unit", help);
+        }
         let help = match c {
             ',' => "write a decimal point (`0.5`); a list of values stands in [ ]",
             '^' => "powers are not supported: write the product out: `a*a`",
-            '\u{b0}' => "write an angle in degrees as `deg(90)`",
+            '\u{b0}' => units::DEGREES,
             '\u{2212}' | '\u{2013}' | '\u{2014}' => "write the minus sign `-` of the keyboard",
             '\u{d7}' | '\u{b7}' | '\u{22c5}' => "write a product with `*`",
             '\u{f7}' => "write a quotient with `/`",
@@ -446,7 +446,6 @@ impl<'a> Parser<'a> {
             '$' | '{' | '}' => "write names as they are, without braces",
             '=' | '<' | '>' | '!' | '&' | '|' | '?' | ':' => "an expression has only the operators + - * /",
             '(' | '0'..='9' | '.' => "write an operator (+ - * /) between two values",
-            c if is_name_start(c) && is_unit(self.rest()) => WITHOUT_UNIT,
             c if is_name_start(c) => "write an operator (+ - * /) between two values",
             _ => "an expression may use + - * / ( ), decimals, 1e-3, pi, deg(90), sqrt(2) and the names under `parameters`",
         };
@@ -465,13 +464,6 @@ pub(crate) fn out_of_range(span: Span, text: String, above: bool) -> Diagnostic 
         )
     };
     Diagnostic::new(Code::OutOfRange, span, message, if above { "too large" } else { "too small" }, help)
-}
-
-const WITHOUT_UNIT: &str = "remove the unit: all values are in SI units (m, kg, s, rad, N)";
-
-fn is_unit(word: &str) -> bool {
-    let word = word.trim_end();
-    matches!(word, "m" | "mm" | "cm" | "kg" | "g" | "s" | "rad" | "N" | "Nm" | "kg*m^2" | "kgm2" | "m/s" | "rad/s")
 }
 
 fn is_name_start(c: char) -> bool {

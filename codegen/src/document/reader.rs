@@ -62,18 +62,26 @@ pub struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
     /// Keys that other formats use, and what they are called here.
     other_names: &'static [(&'static str, &'static str)],
+    /// Keys of other formats that are no key here, each with a key beside which it is out of place, and what to write instead.
+    other_places: &'static [(&'static str, &'static str, &'static str)],
 }
 
 impl<'d> Reader<'d> {
     /// A reader that reports to `diagnostics`.
     pub fn new(diagnostics: &'d mut Diagnostics) -> Reader<'d> {
-        Reader { diagnostics, other_names: &[] }
+        Reader { diagnostics, other_names: &[], other_places: &[] }
     }
 
     /// The same with keys that other formats use for what has another name here.
     #[must_use]
     pub fn with_other_names(self, other_names: &'static [(&'static str, &'static str)]) -> Reader<'d> {
         Reader { other_names, ..self }
+    }
+
+    /// The same with keys that other formats use in mappings that know the second key, and what to write instead.
+    #[must_use]
+    pub fn with_other_places(self, other_places: &'static [(&'static str, &'static str, &'static str)]) -> Reader<'d> {
+        Reader { other_places, ..self }
     }
 
     /// Reports a fault.
@@ -136,13 +144,15 @@ impl<'d> Reader<'d> {
             let absent: Vec<&'static str> = names.iter().copied().filter(|name| !fields.has(name)).collect();
             let other =
                 self.other_names.iter().find(|(other, name)| *other == key.value && names.contains(name)).map(|(_, name)| *name);
-            let meant = other.or_else(|| did_you_mean(&key.value, &absent)).or_else(|| did_you_mean(&key.value, &names));
+            let place = self.other_places.iter().find(|(other, beside, _)| *other == key.value && names.contains(beside));
+            let near = || did_you_mean(&key.value, &absent).or_else(|| did_you_mean(&key.value, &names));
+            let meant = other.or_else(|| near().filter(|_| place.is_none()));
             let found = excerpt(&key.value);
             let allowed = format!("keys here: {}", names.join(", "));
             let help = match meant {
                 _ if key.value == "<<" => "merge keys are not supported: write the values out".to_owned(),
                 Some(meant) => format!("did you mean `{meant}`? {allowed}"),
-                None => allowed,
+                None => place.map_or(allowed, |(.., help)| (*help).to_owned()),
             };
             self.report(Code::UnknownKey, key.span, format!("{what} has no key `{found}`"), "unknown key", help);
             // Read it as what was meant, so that its value is checked and the other key is not called missing.

@@ -4,6 +4,8 @@
 //! duplicate key is found (not the first alone), and aliases, tags and second documents can be judged where they stand.
 //! Absent from here on: YAML syntax, anchors and aliases (a node that is referred to is copied), duplicate keys.
 
+mod cause;
+
 use std::collections::BTreeMap;
 
 use serde_yaml::granit_parser::{options, ErrorKind, Event, Parser, ScalarStyle, ScanError, Span as ParserSpan, StructureStyle};
@@ -255,10 +257,12 @@ impl Builder<'_> {
             self.anchors.insert(anchor, node.clone());
         }
         self.nodes += 1;
+        let waits_for_dash = self.lacks_dash(&node);
         match self.open.last_mut().map(|open| &mut open.content) {
             None => self.root = Some(node),
             Some(Content::List(items)) => items.push(node),
             Some(Content::Mapping(entries, seen, waiting)) => match waiting.take() {
+                None if waits_for_dash => self.begin_entry(node),
                 None => *waiting = Some(key(node, seen, self.diagnostics)),
                 Some(Some(key)) => entries.push((key, node)),
                 Some(None) => {}
@@ -267,15 +271,55 @@ impl Builder<'_> {
         Some(())
     }
 
+    /// Whether a key is the one that its mapping, an entry of a list, began with: then the dash of the next entry is missing.
+    fn lacks_dash(&self, node: &Node) -> bool {
+        let [.., Open { flow: false, content: Content::List(_), .. }, Open { flow: false, content, anchor: 0, .. }] =
+            &self.open[..]
+        else {
+            return false;
+        };
+        let (Content::Mapping(entries, _, None), Kind::Scalar(scalar)) = (content, &node.kind) else { return false };
+        // A mapping of one key that stands there twice is a slip of another kind.
+        entries.len() > 1 && entries[0].0.value == scalar.text
+    }
+
+    /// Ends the mapping before a key that lacks its dash, and begins the next entry of the list with it.
+    fn begin_entry(&mut self, node: Node) {
+        let Some(Open { start, content: Content::Mapping(entries, ..), .. }) = self.open.pop() else { return };
+        let at = node.span;
+        let (first, end) = (entries[0].0.span, entries.last().map_or(start.end, |(_, value)| value.span.end));
+        let name = match &node.kind {
+            Kind::Scalar(scalar) => super::excerpt(&scalar.text),
+            _ => String::new(),
+        };
+        self.diagnostics.push(
+            Diagnostic::new(
+                Code::DuplicateKey,
+                at,
+                format!("a dash is missing: `{name}` stands twice in one entry of a list"),
+                "the next entry begins here",
+                format!("write `- {name}: ...`, the dash in the column of the dashes above"),
+            )
+            .also(first, "the entry begins here"),
+        );
+        let entry = Node { span: Span::new(start.start.min(first.start), end), kind: Kind::Mapping(entries) };
+        if let Some(Content::List(items)) = self.open.last_mut().map(|open| &mut open.content) {
+            items.push(entry);
+        }
+        let mut seen = BTreeMap::new();
+        let waiting = key(node, &mut seen, self.diagnostics);
+        let content = Content::Mapping(Vec::new(), seen, Some(waiting));
+        self.open.push(Open { start: at, anchor: 0, flow: false, content });
+    }
+
     fn syntax_error(&mut self, error: &ScanError) {
         let at = error.marker().byte_offset().unwrap_or(0).min(self.source.text().len());
         let mut span = self.visible(at);
         let (mut message, mut help) = explain(error.kind());
         // In brackets a tab is a blank, and the bracket says more.
         let in_brackets = self.open.iter().any(|open| open.flow);
-        if let Some((cause, kind)) = cause(self.source.text(), at, error.kind()).filter(|_| !in_brackets) {
-            span = cause;
-            (message, help) = explain(&kind);
+        if let Some(cause) = cause::find(self.source.text(), at, error.kind()).filter(|_| !in_brackets) {
+            (span, message, help) = (cause.span, cause.message, cause.help);
         }
         let code = match error.kind() {
             ErrorKind::RecursionLimitExceeded => Code::TooLarge,
@@ -337,98 +381,6 @@ fn key(node: Node, seen: &mut BTreeMap<String, Span>, diagnostics: &mut Diagnost
     }
     seen.insert(scalar.text.clone(), node.span);
     Some(Spanned::new(scalar.text, node.span))
-}
-
-/// The likely cause of a parse error that surfaced at `at`, with its place, if it can be found: a quote that was opened above, a tab in the
-/// indentation of the line or of one beside it, a key without a colon in the line above.
-fn cause(text: &str, at: usize, kind: &ErrorKind) -> Option<(Span, ErrorKind)> {
-    use ErrorKind as E;
-    match kind {
-        E::InvalidQuotedScalarIndent | E::UnclosedQuotedScalar | E::DocumentIndicatorInQuotedScalar => {
-            let opened = opened_quote(text.get(..at)?)?;
-            Some((Span::new(opened, opened + 1), E::UnclosedQuotedScalar))
-        }
-        E::MappingValueNotAllowed => tab_beside(text, at).or_else(|| key_without_colon(text, at)),
-        E::InvalidIndentation
-        | E::ExpectedDocumentStart
-        | E::ExpectedBlockMappingKey
-        | E::ExpectedBlockSequenceEntry
-        | E::SimpleKeyExpected
-        | E::InvalidSimpleKey
-        | E::MappingKeyNotAllowed
-        | E::InvalidColonPlacement
-        | E::BlockSequenceEntryNotAllowed
-        | E::TabNotAllowed
-        | E::TabInBlockIndentation
-        | E::TabInIndentation
-        | E::TabInPlainScalar => tab_beside(text, at),
-        _ => None,
-    }
-}
-
-/// Lines with their places, without their ends.
-fn lines(text: &str) -> Vec<(usize, &str)> {
-    let mut begin = 0;
-    let line = |line: &'_ str| {
-        begin += line.len();
-        begin - line.len()
-    };
-    let starts: Vec<usize> = text.split_inclusive('\n').map(line).collect();
-    starts.into_iter().zip(text.split_inclusive('\n').map(str::trim_end)).collect()
-}
-
-/// A tab before what stands in the line of `at` or in one beside it.
-fn tab_beside(text: &str, at: usize) -> Option<(Span, ErrorKind)> {
-    let lines = lines(text);
-    let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
-    lines[here.saturating_sub(1)..lines.len().min(here + 2)].iter().find_map(|(start, line)| {
-        let visible = line.trim_start();
-        let tab = line[..line.len() - visible.len()].find('\t').filter(|_| !visible.starts_with('#'))?;
-        Some((Span::new(start + tab, start + tab + 1), ErrorKind::TabInIndentation))
-    })
-}
-
-/// The line above, if it is no key but stands like one: it is taken to go on in the line of `at`, whose own colon is then one too many.
-fn key_without_colon(text: &str, at: usize) -> Option<(Span, ErrorKind)> {
-    let lines = lines(text);
-    let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
-    let mut above = lines[..here].iter().rev().filter(|(_, line)| !line.trim().is_empty());
-    let (start, line) = above.next()?;
-    let indentation = |line: &str| line.len() - line.trim_start_matches([' ', '-']).len();
-    let own = text.get(lines[here].0..at)?;
-    let word = line.trim_start();
-    let like_a_key =
-        !own.contains(':') && indentation(lines[here].1) == indentation(line) && !word.contains([':', '[', ']', '{', '}', ',']);
-    // Below a key with a value it goes on with that.
-    let begins = above.next().is_none_or(|(_, before)| before.ends_with(':') || indentation(before) >= indentation(line));
-    (like_a_key && begins && !word.starts_with(['#', '-', '"', '\'']))
-        .then(|| (Span::new(start + line.len() - word.len(), start + line.len()), ErrorKind::SimpleKeyExpected))
-}
-
-/// The quote that is open at the end of a text.
-fn opened_quote(text: &str) -> Option<usize> {
-    let mut open: Option<(usize, char)> = None;
-    // The last character, and the last one that is no blank, a line's end among them.
-    let (mut last, mut visible) = ('\n', '\n');
-    let mut characters = text.char_indices().peekable();
-    while let Some((at, c)) = characters.next() {
-        match open {
-            Some((_, '"')) if c == '\\' => drop(characters.next()),
-            Some((_, '\'')) if c == '\'' && characters.next_if(|(_, next)| *next == '\'').is_some() => {}
-            Some((_, quote)) if c == quote => open = None,
-            Some(_) => {}
-            None if c == '#' && last.is_whitespace() => while characters.next_if(|(_, next)| *next != '\n').is_some() {},
-            None if matches!(c, '"' | '\'') && matches!(visible, '\n' | ':' | '-' | '?' | '[' | '{' | ',') => {
-                open = Some((at, c))
-            }
-            None => {}
-        }
-        last = c;
-        if !c.is_whitespace() || c == '\n' {
-            visible = c;
-        }
-    }
-    open.map(|(at, _)| at)
 }
 
 /// What the reader's complaint means, and what to do about it.

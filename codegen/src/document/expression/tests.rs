@@ -87,7 +87,7 @@ fn errors_stand_where_they_are() {
     check_error("2**3\n ~~", BadExpression);
     check_error("2*(3 4)\n     ~", BadExpression);
     check_error("2pi\n ~~", BadExpression);
-    check_error("5 kg\n  ~", BadExpression);
+    check_error("5 kg\n  ~~", BadExpression);
     check_error("1e\n ~", BadExpression);
     check_error("1.2.3\n~~~~~", BadExpression);
     check_error("0x10\n~~~~", BadExpression);

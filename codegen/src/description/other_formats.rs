@@ -1,0 +1,163 @@
+//! Words and shapes that other formats have for what is written otherwise here: URDF, SDF, the Robotics Toolbox (RTB), MuJoCo.
+
+use crate::diagnostic::Code;
+use crate::document::reader::Reader;
+use crate::document::yaml::{Kind, Node};
+
+/// Keys of other formats, and what they are called here in the same place.
+pub(super) const OTHER_NAMES: &[(&str, &str)] = &[
+    ("m", "mass"),
+    ("r", "a"),
+    ("centre_of_mass", "com"),
+    ("center_of_mass", "com"),
+    ("cog", "com"),
+    ("kind", "type"),
+    ("joint_type", "type"),
+    ("links", "joints"),
+    ("g", "gravity"),
+    ("dh", "convention"),
+    ("gear", "ratio"),
+    ("gear_ratio", "ratio"),
+    ("G", "ratio"),
+    ("Jm", "inertia"),
+    ("load", "payload"),
+    ("torque", "effort"),
+    ("damping", "viscous"),
+    ("B", "viscous"),
+    ("Fv", "viscous"),
+    ("Tc", "coulomb"),
+    ("Fc", "coulomb"),
+    ("frictionloss", "coulomb"),
+    ("friction", "coulomb"),
+    ("inertial", "link"),
+    ("I", "inertia"),
+    ("qlim", "position"),
+    ("range", "position"),
+    ("ee", "tool"),
+    ("end_effector", "tool"),
+    ("world", "base"),
+];
+
+const MOTOR: &str = "the rotor stands in a mapping of its own: `motor: {ratio: ..., inertia: ...}`";
+const FRICTION: &str = "friction stands in a mapping of its own: `friction: {viscous: ..., coulomb: ...}`";
+const LINK: &str =
+    "the body stands in a mapping of its own: `link: {mass: ..., com: [x, y, z], inertia: {xx: ..., yy: ..., zz: ...}}`";
+const LIMITS: &str =
+    "limits stand in a mapping of their own: `limits: {position: [lowest, highest], velocity: ..., effort: ...}`";
+const POSITION: &str = "write both limits in one list: `position: [lowest, highest]`";
+const ROW: &str = "rows of Denavit and Hartenberg have `a`, `alpha`, `d`, `theta`; frames of a URDF, `origin` and `axis`, belong to `convention: urdf`";
+
+/// Keys of other formats, a key that is known where they are out of place, and what to write instead.
+pub(super) const OTHER_PLACES: &[(&str, &str, &str)] = &[
+    ("dynamics", "friction", "URDF's `dynamics: {damping, friction}` is `friction: {viscous: ..., coulomb: ...}` here"),
+    ("damping", "friction", FRICTION),
+    ("viscous", "friction", FRICTION),
+    ("coulomb", "friction", FRICTION),
+    ("frictionloss", "friction", FRICTION),
+    ("B", "motor", "RTB's `B` is friction at the rotor: `motor: {ratio: ..., viscous: ...}`"),
+    ("Tc", "friction", "RTB's `Tc` is Coulomb friction at the rotor; times the ratio it is `friction: {coulomb: ...}`"),
+    ("Jm", "motor", MOTOR),
+    ("G", "motor", MOTOR),
+    ("gear", "motor", MOTOR),
+    ("ratio", "motor", MOTOR),
+    ("mass", "link", LINK),
+    ("com", "link", LINK),
+    ("inertia", "link", LINK),
+    ("I", "link", LINK),
+    ("qlim", "limits", "RTB's `qlim` is `limits: {position: ...}` here"),
+    ("limit", "limits", LIMITS),
+    ("range", "limits", LIMITS),
+    ("position", "limits", LIMITS),
+    ("velocity", "limits", LIMITS),
+    ("effort", "limits", LIMITS),
+    ("lower", "limits", LIMITS),
+    ("upper", "limits", LIMITS),
+    ("lower", "effort", POSITION),
+    ("upper", "effort", POSITION),
+    ("origin", "theta", ROW),
+    ("axis", "theta", ROW),
+    ("offset", "theta", "the offset of a joint variable is `theta` of a revolute joint, `d` of a prismatic one"),
+    ("sigma", "type", "RTB's `sigma` is `type: revolute` (0) or `type: prismatic` (1)"),
+    ("parent", "type", "joints stand in the order from base to tip; each hangs on the one before it"),
+    ("child", "type", "joints stand in the order from base to tip; each hangs on the one before it"),
+    (
+        "a",
+        "origin",
+        "the convention `urdf` has `origin` and `axis`; `a`, `alpha`, `d`, `theta` belong to `standard` and `modified`",
+    ),
+    (
+        "alpha",
+        "origin",
+        "the convention `urdf` has `origin` and `axis`; `a`, `alpha`, `d`, `theta` belong to `standard` and `modified`",
+    ),
+    (
+        "origin",
+        "com",
+        "URDF's `origin` of an inertial is `com: [x, y, z]`, and its `rpy` stands beside the elements of `inertia`",
+    ),
+    ("rpy", "com", "the axes of the tensor stand beside its elements: `inertia: {xx: ..., rpy: [r, p, y]}`"),
+];
+
+/// Where an element of a tensor stands in a list of nine.
+const ELEMENTS: [(&str, usize, usize); 6] = [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
+
+impl Reader<'_> {
+    /// Whether a tensor is written as a list, which is reported with the mapping that it would be.
+    pub(super) fn tensor_as_list(&mut self, node: &Node) -> bool {
+        let Kind::List(items) = &node.kind else { return false };
+        let rows: Vec<&[Node]> =
+            items.iter().map(|item| if let Kind::List(row) = &item.kind { row.as_slice() } else { &[] }).collect();
+        let texts = |nodes: &[Node]| -> Option<Vec<String>> {
+            let text = |node: &Node| if let Kind::Scalar(scalar) = &node.kind { Some(scalar.text.clone()) } else { None };
+            nodes.iter().map(text).collect()
+        };
+        let flat = match rows.iter().map(|row| texts(row)).collect::<Option<Vec<_>>>() {
+            Some(rows) if rows.iter().any(|row| !row.is_empty()) => rows.concat(),
+            _ => texts(items).unwrap_or_default(),
+        };
+        let mut message = "`inertia` is a list; its elements have names here".to_owned();
+        let mut either = "";
+        let help = match &flat[..] {
+            nine if nine.len() == 9 => {
+                let at = |i: usize, j: usize| nine[3 * i + j].as_str();
+                let unsymmetric = ELEMENTS.iter().find(|(_, i, j)| !same(at(*i, *j), at(*j, *i)));
+                if let Some((name, i, j)) = unsymmetric {
+                    let mirrored: String = name.chars().rev().collect();
+                    message = format!("the tensor is not symmetric: {name} is {}, {mirrored} is {}", at(*i, *j), at(*j, *i));
+                    either = "the two are one element; see which of them is right, and ";
+                }
+                let elements: Vec<(&str, &str)> = ELEMENTS.iter().map(|(name, i, j)| (*name, at(*i, *j))).collect();
+                format!("{either}write `inertia: {}`", mapping(&elements))
+            }
+            six if six.len() == 6 => {
+                let order = |names: [&'static str; 6]| {
+                    mapping(&names.iter().copied().zip(six.iter().map(String::as_str)).collect::<Vec<_>>())
+                };
+                format!(
+                    "six numbers do not say in which order they are: as [xx, yy, zz, xy, yz, xz] of RTB write `inertia: {}`, as [xx, xy, xz, yy, yz, zz] of a URDF `inertia: {}`",
+                    order(["xx", "yy", "zz", "xy", "yz", "xz"]),
+                    order(["xx", "xy", "xz", "yy", "yz", "zz"])
+                )
+            }
+            [xx, yy, zz] => format!("write `inertia: {}`", mapping(&[("xx", xx), ("yy", yy), ("zz", zz)])),
+            _ => "write its elements by name: `inertia: {xx: 0.01, yy: 0.02, zz: 0.015, xy: 0}`".to_owned(),
+        };
+        self.report(Code::WrongKind, node.span, message, "not `key: value`", help);
+        true
+    }
+}
+
+/// Elements by name, without zeros.
+fn mapping(elements: &[(&str, &str)]) -> String {
+    let kept = elements.iter().filter(|(_, text)| text.parse() != Ok(0.0));
+    let entries: Vec<String> = kept.map(|(name, text)| format!("{name}: {}", crate::document::excerpt(text))).collect();
+    format!("{{{}}}", entries.join(", "))
+}
+
+/// Whether two texts are the same number, or the same text.
+fn same(a: &str, b: &str) -> bool {
+    match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a.trim() == b.trim(),
+    }
+}
