@@ -2,6 +2,7 @@
 
 pub mod c;
 pub mod javascript;
+pub mod matlab;
 pub mod python;
 pub mod rust;
 
@@ -12,3 +13,4 @@ mod plain;
 
 pub use language::Language;
 pub use origin::{Notes, Origin};
+pub use plain::camel;

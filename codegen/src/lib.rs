@@ -102,13 +102,19 @@ impl Generated {
         emit::javascript::declarations(&self.program, &self.origin, &self.notes)
     }
 
-    /// The module in another language, with the same notes.
+    /// The files of the package in MATLAB.
+    pub fn package(&self) -> Vec<emit::matlab::File> {
+        emit::matlab::print(&self.program, &self.origin, &self.notes)
+    }
+
+    /// The module in another language, with the same notes; the files of a package as one text.
     pub fn in_language(&self, language: Language) -> String {
         match language {
             Language::Rust => self.module.clone(),
             Language::C => emit::c::standalone(&self.program, &self.origin, &self.notes),
             Language::JavaScript => emit::javascript::print(&self.program, &self.origin, &self.notes),
             Language::Python => emit::python::print(&self.program, &self.origin, &self.notes),
+            Language::Matlab => emit::matlab::joined(&self.package()),
         }
     }
 

@@ -12,6 +12,7 @@ mod documentation;
 mod items;
 mod javascript;
 mod lexer;
+pub mod matlab;
 mod parser;
 mod plain;
 mod python;
@@ -86,6 +87,7 @@ impl Module {
             Language::C => c::read(text),
             Language::JavaScript => javascript::read(text),
             Language::Python => python::read(text),
+            Language::Matlab => matlab::read(text),
         }
     }
 

@@ -117,6 +117,11 @@ fn callers_of_the_page_print_what_it_says() {
 }
 
 #[test]
+fn a_package_is_called_as_its_help_says() {
+    run::check_package();
+}
+
+#[test]
 fn fast_math_is_refused() {
     run::check_fast_math();
 }

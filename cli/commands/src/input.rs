@@ -54,6 +54,42 @@ pub(crate) fn written(path: &Path) -> Result<Source, u8> {
     Ok(Source::new(name, text))
 }
 
+/// The files of a package of MATLAB as one text. Whatever else stands in the folder could take the place of a function.
+pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
+    let name = folder.display().to_string();
+    let unreadable = |error: std::io::Error| {
+        terminal::error(&format!("cannot read {name}: {error}"));
+        UNREADABLE
+    };
+    let mut files = Vec::new();
+    let mut length = 0;
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let path = entry.map_err(unreadable)?.path();
+        let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if file.starts_with('.') {
+            continue;
+        }
+        if path.is_dir() || !file.ends_with(".m") {
+            terminal::error(&format!(
+                "{} is not of a package that armgen writes, and could hide a function of it",
+                path.display()
+            ));
+            return Err(FAULTY);
+        }
+        let text = written(&path)?.text().to_string();
+        length += text.len();
+        if length > LONGEST {
+            terminal::error(&format!(
+                "the files of {name} are longer than {} MiB: no package that armgen writes is",
+                LONGEST >> 20
+            ));
+            return Err(UNREADABLE);
+        }
+        files.push((file, text));
+    }
+    Ok(Source::new(name, armgen_verify::reader::matlab::joined(files)))
+}
+
 /// How much of a valid file's warnings goes to standard error.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Warnings {

@@ -121,9 +121,10 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
   armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
   armgen generate robot.yaml --language c --out robot.h   the same functions in C, without Rust
+  armgen generate robot.yaml --language matlab --out +robot
   armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
 
-The module is one file of free functions over arrays: in Rust no allocation, no std, no dependency but libm.
+The module is one file of free functions over arrays, in MATLAB a folder: in Rust no allocation, no std, no dependency but libm.
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Generate {
         /// Description of the robot arm
@@ -172,7 +173,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
         /// Description of the robot arm
         #[arg(value_name = "ROBOT.yaml", value_hint = ValueHint::FilePath)]
         description: PathBuf,
-        /// The module that was generated from it
+        /// The module that was generated from it, of MATLAB the folder
         #[arg(value_name = "ROBOT.rs", value_hint = ValueHint::FilePath)]
         module: PathBuf,
         /// The language of the module; that of its extension if not given

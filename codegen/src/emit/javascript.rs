@@ -33,7 +33,7 @@ impl Syntax for JavaScript {
 /// The module.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let mut text = head(module, origin, notes, "//");
-    for constant in constants(module) {
+    for constant in constants(module, 0) {
         text += "\n";
         text += &comment(&constant.documentation, &[]);
         let _ = writeln!(text, "export const {} = {};", constant.name, value_of(&constant.value));
@@ -57,7 +57,7 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
 /// The declarations of the module.
 pub fn declarations(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let mut text = head(module, origin, notes, "//");
-    for constant in constants(module) {
+    for constant in constants(module, 0) {
         text += "\n";
         text += &comment(&constant.documentation, &[]);
         let _ = writeln!(text, "export declare const {}: {};", constant.name, type_of(&constant.value));

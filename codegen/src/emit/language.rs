@@ -15,11 +15,13 @@ pub enum Language {
     JavaScript,
     /// Python: functions over arrays of NumPy, torch, jax and others.
     Python,
+    /// MATLAB and Octave: a package, a folder with a file for each function.
+    Matlab,
 }
 
 impl Language {
     /// All of them.
-    pub const ALL: [Language; 4] = [Language::Rust, Language::C, Language::JavaScript, Language::Python];
+    pub const ALL: [Language; 5] = [Language::Rust, Language::C, Language::JavaScript, Language::Python, Language::Matlab];
 
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
@@ -28,6 +30,7 @@ impl Language {
             Language::C => "c",
             Language::JavaScript => "javascript",
             Language::Python => "python",
+            Language::Matlab => "matlab",
         }
     }
 
@@ -38,6 +41,7 @@ impl Language {
             Language::C => "C",
             Language::JavaScript => "JavaScript",
             Language::Python => "Python",
+            Language::Matlab => "MATLAB",
         }
     }
 
@@ -48,6 +52,7 @@ impl Language {
             Language::C => &["h"],
             Language::JavaScript => &["mjs", "js"],
             Language::Python => &["py"],
+            Language::Matlab => &["m"],
         }
     }
 
@@ -60,7 +65,7 @@ impl Language {
     pub fn scalars(self) -> &'static [Scalar] {
         match self {
             Language::Rust | Language::C | Language::Python => &[Scalar::F64, Scalar::F32],
-            Language::JavaScript => &[Scalar::F64],
+            Language::JavaScript | Language::Matlab => &[Scalar::F64],
         }
     }
 
@@ -68,7 +73,7 @@ impl Language {
     pub fn trig(self) -> Trig {
         match self {
             Language::Rust => Trig::Libm,
-            Language::C | Language::JavaScript | Language::Python => Trig::Fast,
+            Language::C | Language::JavaScript | Language::Python | Language::Matlab => Trig::Fast,
         }
     }
 }

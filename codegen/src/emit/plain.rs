@@ -129,7 +129,7 @@ pub(super) fn of_robot(text: &str, name: &str, macros: &str) -> String {
 }
 
 /// `inertia_matrix` as `inertiaMatrix`.
-pub(super) fn camel(name: &str) -> String {
+pub fn camel(name: &str) -> String {
     let mut words = name.split('_');
     let first = words.next().unwrap_or_default().to_string();
     words.fold(first, |text, word| {
@@ -156,8 +156,8 @@ pub(super) struct Constant {
     pub(super) value: Value,
 }
 
-/// The constants of a module, in order.
-pub(super) fn constants(module: &Module) -> Vec<Constant> {
+/// The constants of a module, in order; `first`: what a language counts from.
+pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
     let text = |text: &String| Value::Text(text.clone());
     let number = |value: &Option<Number>, negative: bool| match value {
         Some(value) => Value::Number(value.clone()),
@@ -170,6 +170,10 @@ pub(super) fn constants(module: &Module) -> Vec<Constant> {
     };
     let position = |joint: &Joint| Value::Array(vec![number(&joint.position[0], true), number(&joint.position[1], false)]);
     let said = |name: &'static str, words: &str, value: Value| Constant { name, documentation: vec![Block::text(words)], value };
+    let [a, b, c, d, e, f] = std::array::from_fn(|row| row + first);
+    let rows = format!(
+        "Rows of the geometric Jacobian that make up the operational space: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
+    );
     let title = Block::text("Names of the parameters, in the order of the columns of {regressor}:");
     let note = module.base_parameters.then(documentation::base_note);
     let mut all = vec![
@@ -197,11 +201,7 @@ pub(super) fn constants(module: &Module) -> Vec<Constant> {
             joints(&|joint| number(&joint.effort, false)),
         ),
         said("TASK_ROWS", "Number of rows of the operational space.", Value::Count(module.task.len())),
-        said(
-            "TASK",
-            "Rows of the geometric Jacobian that make up the operational space: 0 1 2 along x y z, 3 4 5 about x y z, in the base frame.",
-            Value::Array(module.task.iter().map(|&row| Value::Count(row)).collect()),
-        ),
+        said("TASK", &rows, Value::Array(module.task.iter().map(|&row| Value::Count(row + first)).collect())),
         said("PARAMETERS", "Number of parameters.", Value::Count(module.parameters.len())),
         Constant {
             name: "PARAMETER_NAMES",

@@ -39,7 +39,7 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let python = Python { scalar: module.scalar };
     let mut text = head(module, origin, notes, "#");
     text += "\nfrom __future__ import annotations\n\nfrom typing import Any, Final, NamedTuple\n\n";
-    let public: Vec<String> = constants(module)
+    let public: Vec<String> = constants(module, 0)
         .iter()
         .map(|constant| constant.name.to_string())
         .chain(["DTYPE".into()])
@@ -54,7 +54,7 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     }
     let names: String = names.iter().map(|name| format!("    \"{name}\",\n")).collect();
     let _ = writeln!(text, "__all__ = [\n{names}]");
-    for constant in constants(module) {
+    for constant in constants(module, 0) {
         text += "\n";
         for line in documentation::plain(&constant.documentation, &link) {
             text += format!("# {line}").trim_end();

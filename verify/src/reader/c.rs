@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::plain::{promised, sizes, Body, Comments, Constants, Lines, Syntax, CONSTANTS};
+use super::plain::{promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
@@ -135,28 +135,16 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix,
         sign: format!("{}_sign(", robot.name),
         define: [format!("    const {}_real ", robot.name), " = ".into(), ";".into()],
+        list: ("[", "]"),
+        angles: ", ",
     };
     let own_epilogue = robot.own(EPILOGUE);
     let end = Lines::new(&own_epilogue, COMMENTS)?;
     let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 2] };
-    let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
-    while !lines.is(end.peek()) {
-        if let Some((name, function)) = reader.function(&mut lines)? {
-            if functions.iter().any(|(other, _)| *other == name) {
-                return Err(lines.fault(format!("function `{name}` stands twice")));
-            }
-            functions.push((name, Ok(function)));
-        }
-    }
+    let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign])?;
     fixed(&mut lines, EPILOGUE)?;
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
-    }
-    if let Some(name) = reader.parts.iter().find_map(|(name, part)| (!part.used).then_some(name)) {
-        return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
-    }
-    if [trig.is_some(), sign] != reader.asks {
-        return Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs"));
     }
     Ok(Module { real, trig, head, constants, functions })
 }
@@ -167,7 +155,8 @@ fn constants(
     robot: &Robot,
     (real, word, suffix): (Float, &str, &'static str),
 ) -> Result<BTreeMap<String, Constant>, Fault> {
-    let form = Constants { real, suffix, array: ("{", "}"), truth: ["0", "1"], infinity: "INFINITY" };
+    let form =
+        Constants { real, suffix, quotes: '"', list: |_, _| ["{", ", ", "}", "{}"], truth: ["0", "1"], infinity: "INFINITY" };
     let mut constants = BTreeMap::new();
     // In their order; what follows the others is of arms that have it.
     for name in ["NAME", "JOINT_IS_REVOLUTE", "", "DOF", "PARAMETERS", "TASK_ROWS", "TASK", "JOINT_NAMES"]
@@ -213,9 +202,16 @@ struct Reader<'a, 'r> {
     asks: [bool; 2],
 }
 
-impl<'a> Reader<'a, '_> {
-    /// Takes a function, or a part of one.
-    fn function(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
+impl<'a> Functions<'a> for Reader<'a, '_> {
+    fn unused(&self) -> Option<&'a str> {
+        self.parts.iter().find_map(|(name, part)| (!part.used).then_some(*name))
+    }
+
+    fn asks(&self) -> [bool; 2] {
+        self.asks
+    }
+
+    fn item(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
         let Robot { name: robot, upper } = self.robot;
         let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| comment(&line.comment));
         let returns = ["void", &format!("{robot}_real")]
@@ -285,7 +281,9 @@ impl<'a> Reader<'a, '_> {
         (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
         Ok(Some((name.into(), Function { documentation, program: body.program })))
     }
+}
 
+impl<'a> Reader<'a, '_> {
     /// The sines and cosines of all angles of a function.
     fn sines(&self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>) -> Result<(), Fault> {
         let Robot { name: robot, upper } = self.robot;

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Lines, Parts, Syntax, CONSTANTS};
+use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Returned, Sizes};
 use crate::enclosure::Float;
@@ -35,7 +35,8 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let form = Constants {
         real: Float::F64,
         suffix: "",
-        array: ("Object.freeze([", "])"),
+        quotes: '"',
+        list: |_, _| ["Object.freeze([", ", ", "])", "Object.freeze([])"],
         truth: ["false", "true"],
         infinity: "Infinity",
     };
@@ -74,23 +75,11 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix: "",
         sign: "sign(".into(),
         define: ["    const ".into(), " = ".into(), ";".into()],
+        list: ("[", "]"),
+        angles: ", ",
     };
     let mut reader = Reader { syntax: &syntax, sizes, parts: Parts::default(), steps: 0, asks: [false; 2] };
-    let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
-    while !lines.ended() {
-        if let Some((name, function)) = reader.function(&mut lines)? {
-            if functions.iter().any(|(other, _)| *other == name) {
-                return Err(lines.fault(format!("function `{name}` stands twice")));
-            }
-            functions.push((name, Ok(function)));
-        }
-    }
-    if let Some(name) = reader.parts.unused() {
-        return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
-    }
-    if [trig.is_some(), sign] != reader.asks {
-        return Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs"));
-    }
+    let functions = reader.all(&mut lines, "", [trig.is_some(), sign])?;
     Ok(Module { real: Float::F64, trig, head, constants, functions })
 }
 
@@ -102,9 +91,16 @@ struct Reader<'a, 'r> {
     asks: [bool; 2],
 }
 
-impl<'a> Reader<'a, '_> {
-    /// Takes a function, or a part of one.
-    fn function(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
+impl<'a> Functions<'a> for Reader<'a, '_> {
+    fn unused(&self) -> Option<&'a str> {
+        self.parts.unused()
+    }
+
+    fn asks(&self) -> [bool; 2] {
+        self.asks
+    }
+
+    fn item(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
         if lines.peek().starts_with("function ") {
             self.part(lines)?;
             return Ok(None);
@@ -160,7 +156,9 @@ impl<'a> Reader<'a, '_> {
         (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
         Ok(Some((own, Function { documentation, program: body.program })))
     }
+}
 
+impl<'a> Reader<'a, '_> {
     /// A number, or an array with its rows in lines.
     #[expect(clippy::too_many_arguments, reason = "how a line begins, goes on and ends, and what stands there")]
     fn array(

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use super::constant::Constant;
 use super::lexer::{is_hidden, name_of, Fault};
-use super::LONGEST;
+use super::{Function, LONGEST};
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Literal, Output, Program, Step};
@@ -93,6 +93,13 @@ impl<'a> Lines<'a> {
     /// The line that stands here, nothing behind the last.
     pub(super) fn peek(&self) -> &'a str {
         self.all.get(self.at).map_or("", |line| line.text)
+    }
+
+    /// The same lines behind so many of other files.
+    pub(super) fn behind(mut self, before: usize) -> Lines<'a> {
+        self.all.iter_mut().for_each(|line| line.number += before);
+        self.last += before;
+        self
     }
 
     pub(super) fn number(&self) -> usize {
@@ -254,6 +261,18 @@ pub(super) struct Syntax {
     pub(super) sign: String,
     /// Around the value of a name: `const double `, ` = `, `;`.
     pub(super) define: [String; 3],
+    /// Around the index of a value in a list.
+    pub(super) list: (&'static str, &'static str),
+    /// Between two angles.
+    pub(super) angles: &'static str,
+}
+
+impl Syntax {
+    /// A value of a list, counted from 0.
+    fn value(&self, list: &str, index: usize) -> String {
+        let (open, close) = self.list;
+        format!("{list}{open}{}{close}", index + self.first)
+    }
 }
 
 /// The values of constants, as they stand in a line.
@@ -261,8 +280,10 @@ pub(super) struct Syntax {
 pub(super) struct Constants {
     pub(super) real: Float,
     pub(super) suffix: &'static str,
-    /// Around an array.
-    pub(super) array: (&'static str, &'static str),
+    /// Around a text.
+    pub(super) quotes: char,
+    /// What an array of such entries begins with, between them, at its end, and an array without entries; whether it stands in another.
+    pub(super) list: fn(Entry, bool) -> [&'static str; 4],
     pub(super) truth: [&'static str; 2],
     /// Infinity; a minus sign stands before it where it is negative.
     pub(super) infinity: &'static str,
@@ -302,34 +323,35 @@ impl Constants {
         let mut place = Place { rest: text, line };
         let known = CONSTANTS.iter().find(|(known, ..)| *known == name);
         let (_, entry, depth) = known.ok_or_else(|| place.fault("there is no constant of that name"))?;
-        let value = self.value(&mut place, *entry, *depth)?;
+        let value = self.value(&mut place, *entry, *depth, false)?;
         place.ends()?;
         Ok(value)
     }
 
-    fn value(&self, place: &mut Place<'_>, entry: Entry, depth: usize) -> Result<Constant, Fault> {
+    fn value(&self, place: &mut Place<'_>, entry: Entry, depth: usize, inner: bool) -> Result<Constant, Fault> {
         if depth > 0 {
-            if self.array == ("(", ",)") && place.eat("()") {
+            let [begin, between, end, empty] = (self.list)(entry, inner);
+            if place.eat(empty) {
                 return Ok(Constant::Array(Vec::new()));
             }
-            place.expect(self.array.0)?;
+            place.expect(begin)?;
             let mut entries = Vec::new();
-            while !place.eat(self.array.1) {
+            while entries.is_empty() || !place.eat(end) {
                 if !entries.is_empty() {
-                    place.expect(", ")?;
+                    place.expect(between)?;
                 }
                 if entries.len() == MOST_ENTRIES {
                     return Err(place.fault("a constant has too many entries"));
                 }
-                entries.push(self.value(place, entry, depth - 1)?);
+                entries.push(self.value(place, entry, depth - 1, true)?);
             }
             return Ok(Constant::Array(entries));
         }
         Ok(match entry {
             Entry::Text => {
-                place.expect("\"")?;
+                place.expect(self.quotes.encode_utf8(&mut [0; 4]))?;
                 let start = *place;
-                let (text, rest) = place.rest.split_once('"').ok_or_else(|| start.fault("a text should end"))?;
+                let (text, rest) = place.rest.split_once(self.quotes).ok_or_else(|| start.fault("a text should end"))?;
                 if !text.chars().all(|c| c.is_alphanumeric() || c == '_' || !c.is_ascii()) {
                     return Err(start.fault("a name can stand"));
                 }
@@ -497,7 +519,7 @@ impl<'a, 's> Body<'a, 's> {
             if place.rest.is_empty() {
                 return Ok(waves);
             }
-            place.expect(", ")?;
+            place.expect(self.syntax.angles)?;
         }
     }
 
@@ -622,6 +644,41 @@ impl<'a, 's> Body<'a, 's> {
     }
 }
 
+/// What stands behind the constants of a module: functions, and what belongs to them.
+pub(super) trait Functions<'a> {
+    /// Takes a function; nothing where something else stands here: a part of one, the type of its results.
+    fn item(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault>;
+
+    /// A part that no function calls.
+    fn unused(&self) -> Option<&'a str>;
+
+    /// Whether functions use sines, and signs.
+    fn asks(&self) -> [bool; 2];
+
+    /// Takes all functions, up to a line or the end of the text; `has`: whether the module has sines, and a sign.
+    fn all(&mut self, lines: &mut Lines<'a>, end: &str, has: [bool; 2]) -> Result<Vec<(String, Read)>, Fault> {
+        let mut functions: Vec<(String, Read)> = Vec::new();
+        while !lines.ended() && !lines.is(end) {
+            if let Some((name, function)) = self.item(lines)? {
+                if functions.iter().any(|(other, _)| *other == name) {
+                    return Err(lines.fault(format!("function `{name}` stands twice")));
+                }
+                functions.push((name, Ok(function)));
+            }
+        }
+        if let Some(name) = self.unused() {
+            return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
+        }
+        match has == self.asks() {
+            true => Ok(functions),
+            false => Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs")),
+        }
+    }
+}
+
+/// A function, or what is wrong with it.
+type Read = Result<Function, String>;
+
 /// The names of all functions that a module may have.
 pub(super) fn names_of() -> impl Iterator<Item = String> {
     let forms = |promise: &Promise| [promise.name.to_string(), format!("{}_with", promise.name)];
@@ -683,7 +740,7 @@ impl<'a> Parts<'a> {
         // Of the function's arguments it knows those that it takes.
         body.program.arguments.retain(|own| part.arguments.contains(&own.name()));
         for (i, value) in taken.into_iter().enumerate() {
-            if !body.element(lines, &format!("taken[{i}]"), value)? {
+            if !body.element(lines, &body.syntax.value("taken", i), value)? {
                 return Err(lines.fault(format!("value {i} that the part takes has no name")));
             }
         }
@@ -694,7 +751,7 @@ impl<'a> Parts<'a> {
         body.program.arguments = all;
         lines.at = back;
         for (i, value) in values.into_iter().enumerate() {
-            if !body.element(lines, &format!("{given}[{i}]"), value)? {
+            if !body.element(lines, &body.syntax.value(given, i), value)? {
                 return Err(lines.fault(format!("value {i} that the part gives has no name")));
             }
         }

@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Lines, Parts, Syntax, CONSTANTS};
+use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
@@ -65,7 +65,14 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         Some("\"float32\"") => Float::F32,
         _ => return Err(lines.fault("the module has no type of its numbers")),
     };
-    let form = Constants { real, suffix: "", array: ("(", ",)"), truth: ["False", "True"], infinity: "float(\"inf\")" };
+    let form = Constants {
+        real,
+        suffix: "",
+        quotes: '"',
+        list: |_, _| ["(", ", ", ",)", "()"],
+        truth: ["False", "True"],
+        infinity: "float(\"inf\")",
+    };
     let mut constants: BTreeMap<String, Constant> = BTreeMap::new();
     for (name, ..) in CONSTANTS {
         let begin = format!("{name}: Final = ");
@@ -100,24 +107,12 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix: "",
         sign: "_sign(xp, ".into(),
         define: ["    ".into(), " = ".into(), String::new()],
+        list: ("[", "]"),
+        angles: ", ",
     };
     let mut reader =
         Reader { syntax: &syntax, real, sizes, parts: Parts::default(), structures: Vec::new(), steps: 0, asks: [false; 2] };
-    let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
-    while !lines.ended() {
-        if let Some((name, function)) = reader.item(&mut lines)? {
-            if functions.iter().any(|(other, _)| *other == name) {
-                return Err(lines.fault(format!("function `{name}` stands twice")));
-            }
-            functions.push((name, Ok(function)));
-        }
-    }
-    if let Some(name) = reader.parts.unused() {
-        return Err(lines.fault(format!("`{name}` is needed by no function of the module")));
-    }
-    if [trig.is_some(), sign] != reader.asks {
-        return Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs"));
-    }
+    let functions = reader.all(&mut lines, "", [trig.is_some(), sign])?;
     let named = constants.len() + 1;
     let own = CONSTANTS.iter().map(|(name, ..)| (*name).to_string()).filter(|name| constants.contains_key(name));
     let mut wanted: Vec<String> = own.chain(["DTYPE".into()]).collect();
@@ -141,8 +136,15 @@ struct Reader<'a, 'r> {
     asks: [bool; 2],
 }
 
-impl<'a> Reader<'a, '_> {
-    /// Takes a function, a part of one, or a type of results.
+impl<'a> Functions<'a> for Reader<'a, '_> {
+    fn unused(&self) -> Option<&'a str> {
+        self.parts.unused()
+    }
+
+    fn asks(&self) -> [bool; 2] {
+        self.asks
+    }
+
     fn item(&mut self, lines: &mut Lines<'a>) -> Result<Option<(String, Function)>, Fault> {
         if lines.peek().starts_with("class ") {
             self.class(lines)?;
@@ -202,7 +204,9 @@ impl<'a> Reader<'a, '_> {
         (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
         Ok(Some((name.into(), Function { documentation, program: body.program })))
     }
+}
 
+impl<'a> Reader<'a, '_> {
     /// An array with its entries in lines: how it begins, the indent, how it ends.
     fn array(
         &self,

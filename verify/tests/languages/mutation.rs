@@ -167,6 +167,7 @@ fn code_lines(text: &str, language: Language) -> Vec<(usize, usize)> {
                 inside ^= quotes == 1;
                 was || quotes > 0 || line.starts_with('#')
             }
+            Language::Matlab => line.starts_with('%'),
         };
         if !comment && line.chars().any(|c| c.is_ascii_graphic()) {
             code.push((at, at + line.len()));

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use armgen_codegen::emit::Language;
+use armgen_codegen::emit::{camel, Language};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::Generated;
@@ -165,6 +165,7 @@ pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
             Language::C => c(&folder, &robot, &generated, effort),
             Language::JavaScript => javascript(&folder, &robot, &generated),
             Language::Python => python(&folder, &robot, &generated),
+            Language::Matlab => octave(&folder, &robot, &generated),
         };
         for run in runs {
             let results: usize = robot.functions.iter().map(|function| compare(&folder, &robot, function, &run)).sum();
@@ -330,11 +331,6 @@ fn javascript(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String
     vec!["node".into()]
 }
 
-fn camel(name: &str) -> String {
-    let words = name.split('_').enumerate();
-    words.map(|(i, word)| if i == 0 { word.to_string() } else { word[..1].to_uppercase() + &word[1..] }).collect()
-}
-
 /// A Python that has NumPy.
 fn numpy() -> Option<&'static str> {
     let has =
@@ -370,6 +366,49 @@ fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     std::fs::create_dir_all(folder.join("numpy")).expect("a folder");
     succeed(Command::new(python).current_dir(folder).args(["main.py", "states", "numpy"]));
     vec!["numpy".into()]
+}
+
+/// Writes the files of the package.
+fn write_package(folder: &Path, generated: &Generated) {
+    std::fs::create_dir_all(folder).expect("a folder");
+    generated.package().into_iter().for_each(|file| write(folder.join(file.name), file.text));
+}
+
+/// The package in MATLAB, by Octave, all states at once.
+fn octave(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
+    if !there("octave-cli", "octave") {
+        return Vec::new();
+    }
+    let length = robot.parameters + 6 * robot.dof;
+    let mut main = format!(
+        "function main()\n    file = fopen('states', 'r');\n    x = fread(file, [{length}, Inf], 'double');\n    fclose(file);\n"
+    );
+    let mut run = String::new();
+    for function in &robot.functions {
+        let of_argument = |(argument, start): &(Argument, usize)| {
+            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
+            format!("x({}:{}, :)", start + 1, start + length)
+        };
+        let arguments: Vec<String> = function.arguments.iter().map(of_argument).collect();
+        let results: Vec<String> = (1..=function.results.len()).map(|k| format!("r{k}")).collect();
+        let call = format!("robot.{}({})", camel(&function.name), arguments.join(", "));
+        let _ = writeln!(main, "    [{}] = {call};", results.join(", "));
+        // By rows, as elsewhere.
+        let by_rows = |(result, (_, array, entries)): (&String, &(String, Array, usize))| match array.len() {
+            0 | 1 => format!("reshape({result}, {entries}, [])"),
+            2 => format!("reshape(permute({result}, [2, 1, 3]), {entries}, [])"),
+            _ => format!("reshape(permute({result}, [2, 1, 3, 4]), {entries}, [])"),
+        };
+        let all: Vec<String> = results.iter().zip(&function.results).map(by_rows).collect();
+        let all = if function.results.iter().all(|(.., entries)| *entries == 0) { "[]".into() } else { all.join("; ") };
+        let _ = writeln!(main, "    put('{}', [{all}]);", function.name);
+    }
+    run += "end\n\nfunction put(name, results)\n    file = fopen(['octave/', name], 'w');\n    fwrite(file, results, 'double');\n    fclose(file);\nend\n";
+    write_package(&folder.join("+robot"), generated);
+    write(folder.join("main.m"), main + &run);
+    std::fs::create_dir_all(folder.join("octave")).expect("a folder");
+    succeed(Command::new("octave-cli").current_dir(folder).args(["--no-init-file", "--eval", "main"]));
+    vec!["octave".into()]
 }
 
 /// The block of a kind of the page of languages, the first behind a heading.
@@ -414,6 +453,64 @@ pub(crate) fn check_page() {
         write(folder.join("caller.py"), block("Python", "python"));
         prints(Command::new(python).current_dir(&folder).arg("caller.py"), &block("Python", "text"));
     }
+    if there("octave-cli", "octave") {
+        write_package(&folder.join("+scara"), &generated);
+        write(folder.join("caller.m"), block("MATLAB and Octave", "matlab"));
+        prints(
+            Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "caller.m"]),
+            &block("MATLAB and Octave", "text"),
+        );
+    }
+}
+
+/// What the callers of a package are told: of a row where a column is wanted, of other numbers, by `help`.
+pub(crate) fn check_package() {
+    let (folder, generated) = folder_of("languages_package");
+    if !there("octave-cli", "octave") {
+        return;
+    }
+    write_package(&folder.join("+scara"), &generated);
+    // One file alone, with another name, as in a block of Simulink.
+    let gravity = generated.package().into_iter().find(|file| file.name == "inverseDynamics.m").expect("a function");
+    write(folder.join("block.m"), gravity.text.replace("= inverseDynamics(", "= block("));
+    write(
+        folder.join("main.m"),
+        "function main()
+    told(@() scara.gravity([0.1, 0.2, 0.3, 0.4]), 'armgen:size', 'q is 1 x 4 where 4 x 1 is wanted');
+    told(@() scara.coriolisMatrix(zeros(4, 3), zeros(4, 2)), 'armgen:size', 'dq is 4 x 2 where 4 x 1 is wanted');
+    told(@() scara.gravity(single([0.1; 0.2; 0.3; 0.4])), 'armgen:type', 'double precision');
+    told(@() scara.gravity(1i * [0.1; 0.2; 0.3; 0.4]), 'armgen:type', 'real numbers');
+    q = reshape(linspace(-3, 3, 20), 4, 5);
+    all = scara.inertiaMatrix(q);
+    assert(isequal(size(all), [4, 4, 5]));
+    for k = 1:5
+        assert(isequal(all(:, :, k), scara.inertiaMatrix(q(:, k))));
+    end
+    assert(isequal(size(scara.linkFrames(q)), [4, 4, 4, 5]));
+    [inertia, coriolis, gravity] = scara.equationsOfMotion(q, [1; 2; 3; 4]);
+    assert(isequal(inertia, all) && isequal(size(coriolis), [4, 4, 5]) && isequal(gravity, scara.gravity(q)));
+    assert(isequal(size(scara.potentialEnergy(q)), [1, 5]));
+    model = scara.model();
+    assert(model.dof == 4 && strcmp(model.name, 'scara') && numel(model.jointNames) == 4);
+    assert(isequal(scara.gravityWith(model.nominalParameters, q), scara.gravity(q)) || ...
+        max(max(abs(scara.gravityWith(model.nominalParameters, q) - scara.gravity(q)))) < 1e-9);
+    assert(isequal(size(scara.gravity(zeros(4, 0))), [4, 0]));
+    assert(isequal(block(q, q, q), scara.inverseDynamics(q, q, q)));
+    assert(~isempty(strfind(evalc('help scara.inertiaMatrix'), 'inertiaMatrix(q)')));
+end
+
+function told(call, identifier, words)
+    try
+        call();
+    catch fault
+        assert(strcmp(fault.identifier, identifier) && ~isempty(strfind(fault.message, words)), fault.message);
+        return;
+    end
+    error('nothing was said: %s', words);
+end
+",
+    );
+    succeed(Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "--eval", "main"]));
 }
 
 /// What reorders sums is refused by the header itself, and without `math.h` it needs no header.

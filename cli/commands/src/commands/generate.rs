@@ -96,6 +96,10 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         terminal::error(&reason);
         return UNREADABLE;
     }
+    if let (None, Language::Matlab) = (out, language) {
+        terminal::error("a package of MATLAB is a folder of files: say where it goes, with `--out +robot`");
+        return UNREADABLE;
+    }
     if let (None, [first, ..]) = (out, beside.flags().as_slice()) {
         terminal::error(&format!(
             "{first} writes beside the module: say where that goes, with `--out {}`",
@@ -144,11 +148,20 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             return UNREADABLE;
         }
     }
-    for (path, text) in files {
-        if let Err(error) = write(&path, &text) {
+    if language == Language::Matlab && !out.is_dir() {
+        if let Err(error) = std::fs::create_dir(out) {
+            terminal::error(&format!("cannot make the folder {}: {error}", out.display()));
+            return UNREADABLE;
+        }
+    }
+    for (path, text) in &files {
+        if let Err(error) = write(path, text) {
             terminal::error(&format!("cannot write {}: {error}", path.display()));
             return UNREADABLE;
         }
+    }
+    if language == Language::Matlab {
+        warn_of_others(out, &files);
     }
     let certificate = certificate_beside(out);
     if !beside.verify && certificate.exists() {
@@ -160,9 +173,25 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     DONE
 }
 
-/// The name of a file of a language.
+/// The name of a file of a language, or of a folder.
 fn file_of(language: Language, stem: &str) -> String {
-    format!("{stem}.{}", language.extensions()[0])
+    match language {
+        Language::Matlab => format!("+{stem}"),
+        language => format!("{stem}.{}", language.extensions()[0]),
+    }
+}
+
+/// What stands in the folder of a package and is not of it could hide a function.
+fn warn_of_others(folder: &Path, files: &[(PathBuf, String)]) {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut others: Vec<PathBuf> = entries.filter(|path| files.iter().all(|(own, _)| own != path)).collect();
+    others.sort();
+    for path in others {
+        terminal::warning(&format!(
+            "{} is not of this module: remove it, or it is taken for one of its functions",
+            path.display()
+        ));
+    }
 }
 
 /// Why a module cannot be generated in a language as asked, and what to do instead.
@@ -186,6 +215,13 @@ fn unfit(
     }
     if language == Language::Rust {
         return None;
+    }
+    let name = out.and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+    let of_package = |name: &String| name.strip_prefix('+').is_some_and(|name| name.is_ascii() && validate::is_rust_name(name));
+    if let Some(name) = name.filter(|name| language == Language::Matlab && !of_package(name)) {
+        return Some(format!(
+            "`{name}` is no package of MATLAB, a folder whose name is `+` and a name of letters, digits and `_`: write `--out +robot`"
+        ));
     }
     let only_rust = [
         (beside.bounds, "--bounds", "its companion is Rust"),
@@ -245,7 +281,6 @@ fn files(
 ) -> Result<Vec<(PathBuf, String)>, String> {
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let mut files = Vec::new();
-    let module = generated.in_language(language);
     if language == Language::JavaScript {
         let extension = if out.extension().is_some_and(|extension| extension == "js") { "d.ts" } else { "d.mts" };
         files.push((out.with_extension(extension), generated.declarations()));
@@ -280,16 +315,20 @@ fn files(
         files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));
     }
     if beside.runtime {
-        files.push((out.with_file_name(format!("{stem}_runtime.rs")), generated.runtime));
+        files.push((out.with_file_name(format!("{stem}_runtime.rs")), generated.runtime.clone()));
     }
     if beside.c_abi {
-        files.push((out.with_extension("h"), generated.c.header));
-        files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers));
+        files.push((out.with_extension("h"), generated.c.header.clone()));
+        files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers.clone()));
     }
     if beside.ik {
         files.push((out.with_file_name(format!("{stem}_ik.rs")), all_solutions));
     }
     // The module first.
-    files.insert(0, (out.to_path_buf(), module));
+    let module = match language {
+        Language::Matlab => generated.package().into_iter().map(|file| (out.join(file.name), file.text)).collect(),
+        language => vec![(out.to_path_buf(), generated.in_language(language))],
+    };
+    files.splice(0..0, module);
     Ok(files)
 }

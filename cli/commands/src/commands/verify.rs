@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
 
-use armgen_codegen::emit::Language;
+use armgen_codegen::emit::{camel, Language};
 use armgen_verify::certificate::Certificate;
-use armgen_verify::reader::ModuleText;
+use armgen_verify::reader::{matlab, ModuleText};
 use armgen_verify::report::Report;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -25,9 +25,9 @@ pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>)
 
 fn verified(description: &Path, module: &Path, language: Option<Language>) -> Result<u8, u8> {
     let by_extension = || Language::of_extension(module.extension()?.to_str()?);
-    let language = language.or_else(by_extension).unwrap_or_default();
+    let language = if module.is_dir() { Some(Language::Matlab) } else { language.or_else(by_extension) }.unwrap_or_default();
     let source = input::source(description)?;
-    let text = input::written(module)?;
+    let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
     let beside = certificate_beside(module);
     let certificate = match beside.exists() {
         true => Some(Certificate::from_json(input::written(&beside)?.text()).map_err(|error| {
@@ -52,8 +52,16 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     }
     let (line, fault) =
         placed(text.text(), language, &report.first_fault().unwrap_or_else(|| "the module has no functions".into()));
-    let line = line.map_or_else(String::new, |line| format!(":{line}"));
-    terminal::error(&format!("{}{line}: {fault}", text.name()));
+    let place = match line {
+        // The lines of a package are those of its files.
+        Some(line) if language == Language::Matlab => {
+            let (file, line) = matlab::file_of(text.text(), line).unwrap_or(("", line));
+            format!("{}:{line}", module.join(file).display())
+        }
+        Some(line) => format!("{}:{line}", text.name()),
+        None => text.name().to_string(),
+    };
+    terminal::error(&format!("{place}: {fault}"));
     let (description, module) = (description.display(), module.display());
     let language = if language == Language::Rust { String::new() } else { format!(" --language {}", language.name()) };
     terminal::note(&format!(
@@ -81,13 +89,18 @@ fn placed(module: &str, language: Language, fault: &str) -> (Option<usize>, Stri
 /// The line where the function or constant begins that a fault is of, counted from 1.
 fn line_of(module: &str, fault: &str, language: Language) -> Option<usize> {
     let name = fault.split(|c: char| c != '_' && !c.is_alphanumeric()).next()?;
-    let camel = camel(name);
-    let name = if language == Language::JavaScript { camel.as_str() } else { name };
+    let is_constant = name.starts_with(|c: char| c.is_ascii_uppercase());
+    let name = match language {
+        Language::JavaScript if !is_constant => camel(name),
+        Language::Matlab => camel(&name.to_ascii_lowercase()),
+        _ => name.to_string(),
+    };
     let (words, before): (&[&str], &str) = match language {
         Language::Rust => (&["pub fn ", "pub const "], " "),
         Language::C => (&["static inline ", "#define "], "_"),
         Language::JavaScript => (&["export function ", "export const "], " "),
         Language::Python => (&["def ", ""], ""),
+        Language::Matlab => (&["function ", "    m."], ""),
     };
     let begins = |line: &str| {
         let found = words.iter().any(|word| line.starts_with(word)).then(|| line.find(&format!("{before}{name}")));
@@ -131,16 +144,5 @@ pub(crate) fn with_spinner<T>(what: &'static str, work: impl FnOnce() -> T) -> T
         let value = work();
         drop(done);
         value
-    })
-}
-
-/// `inertia_matrix` as `inertiaMatrix`.
-fn camel(name: &str) -> String {
-    let mut words = name.split('_');
-    let first = words.next().unwrap_or_default().to_string();
-    words.fold(first, |text, word| {
-        let mut letters = word.chars();
-        let initial = letters.next().map(|c| c.to_ascii_uppercase());
-        text + &initial.into_iter().chain(letters).collect::<String>()
     })
 }

@@ -1,0 +1,99 @@
+//! `armgen generate --language` as its users run it: what is written, what is verified, and what is refused with a way out.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+/// A description of the repository.
+fn scara() -> String {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").canonicalize().expect("the repository exists");
+    root.join("robots/scara.yaml").to_str().expect("a UTF-8 path").to_string()
+}
+
+/// A new folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
+
+/// Runs the program; what it said on standard error.
+#[track_caller]
+fn check(folder: &PathBuf, arguments: &[&str], code: i32) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_armgen")).current_dir(folder).args(arguments).output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "armgen {arguments:?}\n{said}");
+    said
+}
+
+#[test]
+fn every_language_is_written_and_verified() {
+    let folder = folder("languages");
+    for (language, out, beside) in [
+        ("c", "scara.h", vec![]),
+        ("javascript", "scara.mjs", vec!["scara.d.mts"]),
+        ("python", "scara.py", vec![]),
+        ("matlab", "+scara", vec!["+scara/Contents.m", "+scara/model.m", "+scara/inverseDynamicsWith.m"]),
+    ] {
+        check(&folder, &["generate", &scara(), "--language", language, "--out", out, "--verify"], 0);
+        check(&folder, &["verify", &scara(), out], 0);
+        assert!(beside.iter().all(|file| folder.join(file).is_file()), "{language}");
+        let certificate = folder.join(out).with_extension("cert.json");
+        assert!(certificate.is_file(), "{}", certificate.display());
+        fs::remove_file(certificate).expect("a certificate");
+    }
+}
+
+#[test]
+fn what_is_spoilt_in_a_package_is_found_in_its_file() {
+    let folder = folder("spoilt_package");
+    check(&folder, &["generate", &scara(), "--language", "matlab", "--out", "+scara"], 0);
+    let gravity = folder.join("+scara/gravity.m");
+    let text = fs::read_to_string(&gravity).expect("the file");
+    let spoilt = text.replacen("gravity(3, :) = -98.1", "gravity(3, :) = -98.2", 1).replacen(
+        "result(3, :) = -98.1",
+        "result(3, :) = -98.2",
+        1,
+    );
+    assert_ne!(text, spoilt);
+    fs::write(&gravity, spoilt).expect("the file");
+    let said = check(&folder, &["verify", &scara(), "+scara"], 1);
+    assert!(said.contains("+scara/gravity.m:1: gravity"), "{said}");
+    fs::write(&gravity, text.replacen("    n = size(q, 2);\n", "    n = size(q, 2);\n    q = 2 * q;\n", 1)).expect("the file");
+    let said = check(&folder, &["verify", &scara(), "+scara"], 1);
+    assert!(said.contains("+scara/gravity.m:") && said.contains("`q = 2 * q;` where an emitted module has"), "{said}");
+    fs::write(&gravity, text.replacen("%#codegen\n", "%{\n%#codegen\n%}\n", 1)).expect("the file");
+    let said = check(&folder, &["verify", &scara(), "+scara"], 1);
+    assert!(said.contains("a comment that begins or ends one of many lines"), "{said}");
+    fs::write(&gravity, &text).expect("the file");
+    check(&folder, &["verify", &scara(), "+scara"], 0);
+    // It would be called instead of the function.
+    fs::write(folder.join("+scara/gravity.p"), "").expect("a file");
+    let said = check(&folder, &["verify", &scara(), "+scara"], 1);
+    assert!(said.contains("could hide a function"), "{said}");
+    let said = check(&folder, &["generate", &scara(), "--language", "matlab", "--out", "+scara"], 0);
+    assert!(said.contains("gravity.p is not of this module"), "{said}");
+}
+
+#[test]
+fn what_a_language_lacks_is_refused_with_a_way_out() {
+    let folder = folder("refused_languages");
+    for (arguments, words) in [
+        (vec!["--language", "matlab"], "with `--out +robot`"),
+        (vec!["--language", "matlab", "--out", "robot.m"], "`robot.m` is no package of MATLAB"),
+        (vec!["--language", "matlab", "--out", "+1robot"], "`+1robot` is no package of MATLAB"),
+        (vec!["--language", "matlab", "--scalar", "f32", "--out", "+robot"], "leave `--scalar f32` out"),
+        (vec!["--language", "c", "--out", "robot.m"], "robot.m is a file of MATLAB, and the module is in C"),
+        (vec!["--language", "python", "--out", "robot.mjs"], "write `--language javascript` or `--out robot.py`"),
+        (vec!["--language", "c", "--trig", "libm"], "take `--trig fast` or `--trig std`"),
+        (vec!["--language", "javascript", "--ik"], "--ik does not go with `--language javascript`"),
+    ] {
+        let description = scara();
+        let mut all = vec!["generate", description.as_str()];
+        all.extend(&arguments);
+        let said = check(&folder, &all, 2);
+        assert!(said.contains(words), "{arguments:?}: {said}");
+    }
+    assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0, "nothing is written where something fails");
+}

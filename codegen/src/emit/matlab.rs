@@ -1,0 +1,284 @@
+//! The module in MATLAB and Octave: a package, a folder with a file for each function. Columns of arguments are states, and the last dimension
+//! of results is that of states.
+//!
+//! Every file has what it needs as local functions, so that any of them may be copied into a block of Simulink.
+
+use std::fmt::Write;
+
+use super::documentation::{self, Block, Link};
+use super::origin::{Notes, Origin};
+use super::plain::{blocks, camel, constants, expression, head, places, waves, Syntax, Value};
+use crate::catalogue::{Argument, Quantity};
+use crate::exact::Number;
+use crate::kinds::Scalar;
+use crate::program::listing::{decimal, Line, Listing, Name, Part};
+use crate::program::{Function, Module, Operation, Trig};
+use crate::ring::Symbol;
+
+const CHECK: &str = include_str!("matlab/check.m");
+const SIGN: &str = include_str!("matlab/sign.m");
+const STD: &str = include_str!("matlab/std.m");
+const FAST: &str = include_str!("matlab/sines.m");
+
+/// A file of a package.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name in the folder.
+    pub name: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// The files of a package as one text, in the order of their names: in front of each stands a line with its name.
+pub fn joined(files: &[File]) -> String {
+    let mut files: Vec<&File> = files.iter().collect();
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    files.iter().map(|file| format!("%%% {}\n{}", file.name, file.text)).collect()
+}
+
+struct Matlab;
+
+impl Syntax for Matlab {
+    fn number(&self, value: &Number) -> String {
+        decimal(value, Scalar::F64)
+    }
+
+    fn sign(&self, entry: &str) -> String {
+        format!("signOf({entry})")
+    }
+
+    fn entry(&self, argument: Argument, index: usize) -> String {
+        format!("{}({}, :)", argument.name(), index + 1)
+    }
+
+    fn operator(&self, operation: Operation) -> &'static str {
+        match operation {
+            Operation::Add => "+",
+            Operation::Subtract => "-",
+            Operation::Multiply => ".*",
+            Operation::Divide => "./",
+        }
+    }
+}
+
+/// The files of the package.
+pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> Vec<File> {
+    let head = head(module, origin, notes, "%");
+    let mut files = vec![contents(module, &head), model(module, &head)];
+    files.extend(module.functions.iter().map(|function| file(module, function, &head, notes)));
+    files
+}
+
+/// What `help` shows of the package.
+fn contents(module: &Module, head: &str) -> File {
+    let described = |function: &Function| match documentation::function(function, module, true).first() {
+        Some(Block::Text(lines)) => lines.iter().map(|line| documentation::linked(line, &link)).collect::<Vec<_>>().join(" "),
+        _ => String::new(),
+    };
+    let mut rows = vec![("model".to_string(), "Names, limits and parameters.".to_string())];
+    rows.extend(module.functions.iter().map(|function| (camel(&function.name()), described(function))));
+    let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let mut text = format!("% Equations of motion of the robot {}\n%\n", module.name);
+    for (name, described) in rows {
+        let _ = writeln!(text, "%   {name:width$} - {described}");
+    }
+    File { name: "Contents.m".into(), text: format!("{text}\n{head}") }
+}
+
+/// The constants, as fields of a struct.
+fn model(module: &Module, head: &str) -> File {
+    let mut text = String::from("function m = model()\n%MODEL  Names, limits and parameters, as fields of a struct.\n");
+    let _ = write!(text, "\n{}%#codegen\n    m = struct();\n", origin_of(head));
+    for constant in constants(module, 1) {
+        text += "\n";
+        text += &comment(&constant.documentation, "");
+        let _ = writeln!(text, "    m.{} = {};", field(constant.name), value_of(&constant.value));
+    }
+    text += "end\n";
+    File { name: "model.m".into(), text }
+}
+
+/// The field of a constant: `jointNames` of `JOINT_NAMES`.
+fn field(constant: &str) -> String {
+    camel(&constant.to_ascii_lowercase())
+}
+
+/// The line that says where a file came from.
+fn origin_of(head: &str) -> String {
+    head.lines().next().unwrap_or_default().to_string() + "\n"
+}
+
+fn link(link: Link<'_>) -> String {
+    match link {
+        Link::Function(name) => format!("`{}`", camel(name)),
+        Link::Argument(name) => format!("`{name}`"),
+        Link::Constant(name) => format!("`{}` of `model`", field(name)),
+    }
+}
+
+/// A comment, `first` in front of its first line.
+fn comment(blocks: &[Block], first: &str) -> String {
+    let line = |(i, line): (usize, String)| {
+        let begin = if i > 0 && !first.is_empty() {
+            "   "
+        } else if first.is_empty() {
+            " "
+        } else {
+            first
+        };
+        format!("%{begin}{line}").trim_end().to_string() + "\n"
+    };
+    documentation::plain(blocks, &link).into_iter().enumerate().map(line).collect()
+}
+
+/// A constant as it is written: what has entries is a column, what has rows a matrix.
+fn value_of(value: &Value) -> String {
+    match value {
+        Value::Text(text) => format!("'{text}'"),
+        Value::Count(count) => count.to_string(),
+        Value::Truth(truth) => truth.to_string(),
+        Value::Number(number) => Matlab.number(number),
+        Value::Infinite(negative) => if *negative { "-Inf" } else { "Inf" }.into(),
+        Value::Array(entries) => {
+            let all = |separator: &str| entries.iter().map(value_of).collect::<Vec<_>>().join(separator);
+            match entries.first() {
+                None => "zeros(0, 1)".into(),
+                Some(Value::Text(_)) => format!("{{{}}}", all("; ")),
+                Some(Value::Array(_)) => {
+                    let row = |entry: &Value| match entry {
+                        Value::Array(row) => format!("[{}]", row.iter().map(value_of).collect::<Vec<_>>().join(", ")),
+                        other => value_of(other),
+                    };
+                    format!("[{}]", entries.iter().map(row).collect::<Vec<_>>().join("; "))
+                }
+                Some(_) => format!("[{}]", all("; ")),
+            }
+        }
+    }
+}
+
+/// The names of the results of a function.
+fn results(quantity: &Quantity) -> Vec<String> {
+    quantity.result.iter().map(|part| camel(part.name)).collect()
+}
+
+/// The file of a function.
+fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File {
+    let listing = Listing::of(function);
+    let parts = listing.parts();
+    let name = camel(&function.name());
+    let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
+    let results = results(function.quantity);
+    let returned = match results.as_slice() {
+        [one] => one.clone(),
+        several => format!("[{}]", several.join(", ")),
+    };
+    let call = format!("{returned} = {name}({})", names.join(", "));
+    let mut text = format!("function {call}\n");
+    let mut all = blocks(module, function, notes);
+    all.insert(1, Block::Verbatim(vec![call]));
+    all.push(Block::text(
+        "Columns of arguments are states, a single column is that of all; `m[i][j]` of state k is m(i, j, k), indices from 1. What is said of \
+         the head of this file stands in Contents.m.",
+    ));
+    text += &comment(&all, &format!("{}  ", name.to_uppercase()));
+    let _ = write!(text, "\n{}%#codegen\n", origin_of(head));
+    match names.as_slice() {
+        [one] => define(&mut text, "n", &format!("size({one}, 2)")),
+        several => {
+            let sizes: Vec<String> = several.iter().map(|name| format!("size({name}, 2)")).collect();
+            define(&mut text, "n", &format!("max([{}])", sizes.join(", ")));
+        }
+    }
+    for argument in &function.arguments {
+        let rows = match argument {
+            Argument::Pi => module.parameters.len(),
+            _ => module.joints.len(),
+        };
+        let _ = writeln!(text, "    check('{0}', {0}, {rows}, n);", argument.name());
+    }
+    let waves = waves(module, function, &Matlab);
+    if !waves.is_empty() {
+        let angles: Vec<&str> = waves.iter().map(|wave| wave.angle.as_str()).collect();
+        define(&mut text, "[sine, cosine]", &format!("sinCos([{}])", angles.join("; ")));
+    }
+    for (wave, i) in waves.iter().zip(1..) {
+        for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {
+            if let Some(value) = value {
+                define(&mut text, value, &format!("{from}({i}, :)"));
+            }
+        }
+    }
+    if parts.is_empty() {
+        lines(&mut text, &listing.lines);
+    }
+    for (part, number) in parts.iter().zip(1..) {
+        call_of(&mut text, &name, part, number);
+    }
+    for (part, result) in function.quantity.result.iter().zip(&results) {
+        let lengths: Vec<usize> = part.lengths.iter().map(|length| length.of(&module.sizes())).collect();
+        let sizes: Vec<String> = paged(&lengths).iter().map(ToString::to_string).collect();
+        define(&mut text, result, &format!("zeros({}, n)", if sizes.is_empty() { "1".into() } else { sizes.join(", ") }));
+    }
+    for ((part, place), entry) in places(function.quantity, &module.sizes()).iter().zip(&listing.entries) {
+        let indices: Vec<String> = paged(place).iter().map(|index| (index + 1).to_string()).collect();
+        let indices = if indices.is_empty() { "1".into() } else { indices.join(", ") };
+        define(&mut text, &format!("{}({indices}, :)", camel(part.name)), &expression(entry, &Matlab));
+    }
+    text += "end\n";
+    for (part, number) in parts.iter().zip(1..) {
+        print_part(&mut text, &name, part, number);
+    }
+    let symbols = function.symbols();
+    let sines = symbols.iter().any(|symbol| symbol.angle().is_some());
+    let signs = symbols.iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)));
+    for (wanted, block) in [(true, CHECK), (sines, if module.trig == Trig::Fast { FAST } else { STD }), (signs, SIGN)] {
+        if wanted {
+            text += "\n";
+            text += block;
+        }
+    }
+    File { name: format!("{name}.m"), text }
+}
+
+/// Indices of an entry, or lengths: a list of matrices has its place in the list behind rows and columns.
+fn paged(indices: &[usize]) -> Vec<usize> {
+    let (pages, matrix) = indices.split_at(indices.len().saturating_sub(2));
+    matrix.iter().chain(pages).copied().collect()
+}
+
+fn define(text: &mut String, name: &str, value: &str) {
+    let _ = writeln!(text, "    {name} = {value};");
+}
+
+fn lines(text: &mut String, lines: &[Line]) {
+    for line in lines {
+        define(text, &Name::Step(line.name).text(), &expression(&line.value, &Matlab));
+    }
+}
+
+/// The values of a list, as a cell array.
+fn cells(values: &[Name]) -> String {
+    format!("{{{}}}", values.iter().map(|value| value.text()).collect::<Vec<_>>().join(", "))
+}
+
+fn print_part(text: &mut String, function: &str, part: &Part, number: usize) {
+    let arguments: Vec<&str> = part.arguments.iter().map(|a| a.name()).chain(["taken"]).collect();
+    let _ =
+        writeln!(text, "\nfunction given = {function}Part{number}({})\n% Part {number} of `{function}`.", arguments.join(", "));
+    for (value, i) in part.taken.iter().zip(1..) {
+        define(text, &value.text(), &format!("taken{{{i}}}"));
+    }
+    lines(text, &part.lines);
+    define(text, "given", &cells(&part.given));
+    *text += "end\n";
+}
+
+fn call_of(text: &mut String, function: &str, part: &Part, number: usize) {
+    let arguments = part.arguments.iter().map(|a| a.name().to_string()).chain([cells(&part.taken)]);
+    let arguments: Vec<String> = arguments.collect();
+    define(text, &format!("given{number}"), &format!("{function}Part{number}({})", arguments.join(", ")));
+    for (value, i) in part.given.iter().zip(1..) {
+        define(text, &value.text(), &format!("given{number}{{{i}}}"));
+    }
+}

@@ -1,0 +1,344 @@
+//! Reads a package in MATLAB, its files as one text.
+//!
+//! ```text
+//! package  = { %%% FILE  file }                    files in the order of their names: Contents.m, which is a comment, model.m, functions
+//! model    = function m = model()  m = struct();  { m.FIELD = VALUE; }  end
+//! function = function RESULTS = NAME(ARGUMENTS)  n = COLUMNS;  { check('ARGUMENT', ARGUMENT, ROWS, n); } [ waves ] { line } { call { line } }
+//!            { RESULT = zeros(SIZES, n); } { RESULT(INDICES, :) = SUM; } end { part } check [ sines ] [ sign ]
+//! waves    = [sine, cosine] = sinCos([ANGLES]);  { NAME = sine(I, :); | NAME = cosine(I, :); }
+//! line     = NAME = SUM;
+//! call     = givenK = NAMEPartK(ARGUMENTS, {NAMES});  { NAME = givenK{I}; }
+//! ```
+
+use std::collections::BTreeMap;
+
+use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS};
+use super::{Constant, Fault, Function, Module, LONGEST};
+use crate::contract::{Promise, Sizes};
+use crate::enclosure::Float;
+use crate::program::Argument;
+
+const COMMENTS: Comments = Comments { line: Some("%"), block: None };
+
+const CHECK: &str = include_str!("matlab/check.m");
+const SIGN: &str = include_str!("matlab/sign.m");
+const STD: &str = include_str!("matlab/std.m");
+const FAST: &str = include_str!("matlab/sines.m");
+
+/// What the line in front of a file begins with, behind which its name stands.
+const FILE: &str = "%%% ";
+
+/// The files of a package, names and texts, as the one text that is read.
+pub fn joined(mut files: Vec<(String, String)>) -> String {
+    files.sort();
+    files.iter().map(|(name, text)| format!("{FILE}{name}\n{text}")).collect()
+}
+
+/// The file that a line of the one text is of, and the line there.
+pub fn file_of(text: &str, line: usize) -> Option<(&str, usize)> {
+    let before = text.split('\n').zip(1..=line).filter_map(|(text, number)| Some((text.strip_prefix(FILE)?, number)));
+    before.last().map(|(name, number)| (name, line - number))
+}
+
+/// A file: its name, its text, and the lines of other files in front of it.
+struct File<'a> {
+    name: &'a str,
+    text: &'a str,
+    before: usize,
+}
+
+impl<'a> File<'a> {
+    fn lines(&self) -> Result<Lines<'a>, Fault> {
+        let lines = Lines::new(self.text, COMMENTS).map_err(|fault| Fault { line: fault.line + self.before, ..fault })?;
+        // Alone in a line these begin and end a comment of many lines.
+        let braces = |line: &str| matches!(line.strip_prefix('%').map(str::trim), Some("{" | "}"));
+        match self.text.split('\n').position(braces) {
+            Some(at) => {
+                Err(Fault { line: at + 1 + self.before, reason: "a comment that begins or ends one of many lines".into() })
+            }
+            None => Ok(lines.behind(self.before)),
+        }
+    }
+}
+
+fn files(text: &str) -> Result<Vec<File<'_>>, Fault> {
+    let mut files: Vec<File<'_>> = Vec::new();
+    let (mut rest, mut before) = (text, 0);
+    while !rest.is_empty() {
+        let (head, behind) = rest.split_once('\n').unwrap_or((rest, ""));
+        let fault = |reason: String| Fault { line: before + 1, reason };
+        let name = head.strip_prefix(FILE).ok_or_else(|| fault("a file of a package has its name in front".into()))?;
+        if files.last().is_some_and(|last| last.name >= name) {
+            return Err(fault(format!("`{name}` is not behind the file before it")));
+        }
+        let end = behind.find(&format!("\n{FILE}")).map_or(behind.len(), |at| at + 1);
+        let (text, others) = behind.split_at(end);
+        files.push(File { name, text, before: before + 1 });
+        before += 1 + text.matches('\n').count();
+        rest = others;
+    }
+    Ok(files)
+}
+
+/// Reads a package.
+pub(super) fn read(text: &str) -> Result<Module, Fault> {
+    if text.len() > LONGEST {
+        return Err(Fault { line: 1, reason: format!("the text is longer than {} MiB", LONGEST >> 20) });
+    }
+    let files = files(text)?;
+    let named = |name: &str| {
+        let file = files.iter().find(|file| file.name == name);
+        file.ok_or_else(|| Fault { line: 1, reason: format!("the package has no `{name}`") })
+    };
+    let (contents, model) = (named("Contents.m")?, named("model.m")?);
+    if !contents.lines()?.ended() {
+        return Err(contents.lines()?.fault(format!("{} in a file of comments", contents.lines()?.shown())));
+    }
+    let head = contents.text.split('\n').skip_while(|line| !line.starts_with("% @generated"));
+    let head = head.map_while(|line| line.strip_prefix('%')).map(String::from).collect();
+    let constants = constants(&mut model.lines()?)?;
+    let sizes = sizes(&constants)?;
+    let syntax = Syntax {
+        index: ("(", ", :)"),
+        first: 1,
+        operators: [" .* ", " ./ "],
+        suffix: "",
+        sign: "signOf(".into(),
+        define: ["    ".into(), " = ".into(), ";".into()],
+        list: ("{", "}"),
+        angles: "; ",
+    };
+    let mut reader = Reader { syntax: &syntax, sizes, steps: 0, trig: None };
+    let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
+    for file in files.iter().filter(|file| !["Contents.m", "model.m"].contains(&file.name)) {
+        let (name, function) = reader.file(file)?;
+        functions.push((name, Ok(function)));
+    }
+    let order: Vec<String> = names_of().collect();
+    functions.sort_by_key(|(name, _)| order.iter().position(|other| other == name));
+    Ok(Module { real: Float::F64, trig: reader.trig, head, constants, functions })
+}
+
+/// The fields of the model.
+fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault> {
+    let form = Constants {
+        real: Float::F64,
+        suffix: "",
+        quotes: '\'',
+        list: |entry, inner| match (entry, inner) {
+            (Entry::Text, _) => ["{", "; ", "}", "zeros(0, 1)"],
+            (_, false) => ["[", "; ", "]", "zeros(0, 1)"],
+            (_, true) => ["[", ", ", "]", "zeros(0, 1)"],
+        },
+        truth: ["false", "true"],
+        infinity: "Inf",
+    };
+    lines.expect("function m = model()")?;
+    lines.expect("    m = struct();")?;
+    let mut constants = BTreeMap::new();
+    for (name, ..) in CONSTANTS {
+        let begin = format!("    m.{} = ", camel(&name.to_ascii_lowercase()));
+        if name.contains("BASE_") && !lines.peek().starts_with(&begin) {
+            continue;
+        }
+        let number = lines.number();
+        let value = lines.between(&begin, ";")?;
+        let value = form.read(name, value, number)?;
+        let value = match value {
+            // Rows are counted from 1 here.
+            Constant::Array(rows) if name == "TASK" => {
+                let from_0 = |row: &Constant| match row {
+                    Constant::Integer(row) => row.checked_sub(1).map(Constant::Integer),
+                    _ => None,
+                };
+                let rows: Option<Vec<Constant>> = rows.iter().map(from_0).collect();
+                Constant::Array(rows.ok_or_else(|| Fault { line: number, reason: "rows are counted from 1".into() })?)
+            }
+            value => value,
+        };
+        constants.insert(name.into(), value);
+    }
+    lines.expect("end")?;
+    match lines.ended() {
+        true => Ok(constants),
+        false => Err(lines.fault(format!("{} behind the end of the function", lines.shown()))),
+    }
+}
+
+/// Indices or lengths with those of a list of matrices behind rows and columns.
+fn paged(indices: &[usize]) -> Vec<usize> {
+    match indices {
+        [page, row, column] => vec![*row, *column, *page],
+        others => others.to_vec(),
+    }
+}
+
+fn list(numbers: &[usize]) -> String {
+    match numbers {
+        [] => "1".into(),
+        numbers => numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+    }
+}
+
+struct Reader<'r> {
+    syntax: &'r Syntax,
+    sizes: Sizes,
+    steps: usize,
+    trig: Option<&'static str>,
+}
+
+impl Reader<'_> {
+    /// The function of a file, parts and all.
+    fn file(&mut self, file: &File<'_>) -> Result<(String, Function), Fault> {
+        let mut lines = file.lines()?;
+        let begin = |reason: String| Fault { line: file.before + 1, reason };
+        let name = file.name.strip_suffix(".m").unwrap_or_default();
+        let known = names_of().find(|known| camel(known) == name);
+        let (own, (promise, arguments)) = known
+            .and_then(|own| Some((own.clone(), promised(&own)?)))
+            .ok_or_else(|| begin(format!("`{}` is not a file that an emitted package has", file.name)))?;
+        // Parts stand behind the function that calls them.
+        let mut parts = Parts::default();
+        lines.at =
+            lines.all.iter().skip(1).position(|line| line.text.starts_with("function ")).map_or(lines.all.len(), |at| at + 1);
+        let behind_function = lines.at;
+        while lines.peek().starts_with("function given = ") {
+            part(&mut parts, &mut lines)?;
+        }
+        let behind_parts = std::mem::replace(&mut lines.at, 0);
+
+        let function = self.function(&mut lines, (own.clone(), promise, arguments), name, &mut parts)?;
+        if lines.at != behind_function {
+            return Err(lines.fault(format!("{} behind the end of the function", lines.shown())));
+        }
+        if let Some(part) = parts.unused() {
+            return Err(lines.fault(format!("`{part}` is needed by no function of the file")));
+        }
+        lines.at = behind_parts;
+        lines.expect_all(CHECK, COMMENTS)?;
+        let (function, [sines, sign]) = function;
+        if sines {
+            let fast = Lines::new(FAST, COMMENTS)?;
+            let fast = lines.all.get(lines.at + 1).map(|line| line.text) == fast.all.get(1).map(|line| line.text);
+            let trig = if fast { "fast" } else { "std" };
+            if *self.trig.get_or_insert(trig) != trig {
+                return Err(lines.fault("the functions of a package have the same sines"));
+            }
+            lines.expect_all(if fast { FAST } else { STD }, COMMENTS)?;
+        }
+        if sign {
+            lines.expect_all(SIGN, COMMENTS)?;
+        }
+        match lines.ended() {
+            true => Ok((own, function)),
+            false => Err(lines.fault(format!("{} behind the end of the file's functions", lines.shown()))),
+        }
+    }
+
+    /// The function itself, and whether it needs sines and signs.
+    fn function<'a>(
+        &mut self,
+        lines: &mut Lines<'a>,
+        (own, promise, arguments): (String, &'static Promise, Vec<Argument>),
+        name: &str,
+        parts: &mut Parts<'a>,
+    ) -> Result<(Function, [bool; 2]), Fault> {
+        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let results: Vec<String> = promise.returned.named().iter().map(|(name, _)| camel(name)).collect();
+        let returned = match results.as_slice() {
+            [one] => one.clone(),
+            several => format!("[{}]", several.join(", ")),
+        };
+        lines.expect(&format!("function {returned} = {name}({})", names.join(", ")))?;
+        let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| line.comment.clone());
+        let documentation = documentation.into_iter().map(String::from).collect();
+        let columns: Vec<String> = names.iter().map(|name| format!("size({name}, 2)")).collect();
+        match columns.as_slice() {
+            [one] => lines.expect(&format!("    n = {one};"))?,
+            several => lines.expect(&format!("    n = max([{}]);", several.join(", ")))?,
+        }
+        for argument in &arguments {
+            let rows = if *argument == Argument::Pi { self.sizes.p } else { self.sizes.n };
+            lines.expect(&format!("    check('{0}', {0}, {rows}, n);", argument.name()))?;
+        }
+        let mut body = Body::new(&own, arguments, self.syntax, Float::F64, self.steps);
+        if lines.peek().starts_with("    [sine, cosine] = ") {
+            let line = lines.number();
+            let angles = lines.between("    [sine, cosine] = sinCos([", "]);")?;
+            for ((sine, cosine), i) in body.angles(angles, line)?.into_iter().zip(1..) {
+                let first = body.element(lines, &format!("sine({i}, :)"), sine)?;
+                let second = body.element(lines, &format!("cosine({i}, :)"), cosine)?;
+                if !first && !second {
+                    return Err(lines.fault(format!("neither the sine nor the cosine of angle {i} has a name")));
+                }
+            }
+        }
+        body.definitions(lines)?;
+        let mut calls = 0;
+        while call(parts, lines, &mut body, name, calls + 1)? {
+            calls += 1;
+            body.definitions(lines)?;
+        }
+        for ((_, lengths), result) in promise.returned.named().into_iter().zip(&results) {
+            let lengths: Vec<usize> = lengths.iter().map(|length| length.of(&self.sizes)).collect();
+            lines.expect(&format!("    {result} = zeros({}, n);", list(&paged(&lengths))))?;
+        }
+        for place in promise.returned.places(&self.sizes) {
+            let (part, indices) = promise.returned.part_of(&place);
+            let indices = indices.split(['[', ']']).filter_map(|index| Some(index.parse::<usize>().ok()? + 1));
+            let indices: Vec<usize> = indices.collect();
+            let begin = format!("    {}({}, :) = ", camel(&part), list(&paged(&indices)));
+            let line = lines.number();
+            let value = lines.between(&begin, ";")?;
+            body.output(place, value, line)?;
+        }
+        lines.expect("end")?;
+        self.steps = body.steps();
+        Ok((Function { documentation, program: body.program }, body.asks))
+    }
+}
+
+/// The head of a part; its lines are read where it is called.
+fn part<'a>(parts: &mut Parts<'a>, lines: &mut Lines<'a>) -> Result<(), Fault> {
+    let line = lines.number();
+    let (name, arguments) = lines.between("function given = ", ")")?.split_once('(').unwrap_or_default();
+    let mut arguments: Vec<&str> = arguments.split(", ").collect();
+    if arguments.pop() != Some("taken") {
+        return Err(Fault { line, reason: "a part takes values, as its last argument".into() });
+    }
+    let body = lines.at;
+    while !lines.is("end") {
+        if lines.ended() {
+            return Err(lines.fault("the text is cut off"));
+        }
+        lines.at += 1;
+    }
+    lines.expect("end")?;
+    parts.add(name, arguments, body, line)
+}
+
+/// The call of a part, taken in as if its lines stood here.
+fn call<'a>(
+    parts: &mut Parts<'a>,
+    lines: &mut Lines<'a>,
+    body: &mut Body<'a, '_>,
+    function: &str,
+    number: usize,
+) -> Result<bool, Fault> {
+    let name = format!("{function}Part{number}");
+    let begin = format!("    given{number} = {name}(");
+    if !lines.peek().starts_with(&begin) {
+        return Ok(false);
+    }
+    let line = lines.number();
+    let passed = parts.passed(&name, lines)?;
+    let names = lines.between(&format!("{begin}{passed}{{"), "});")?;
+    let names: Vec<&str> = if names.is_empty() { Vec::new() } else { names.split(", ").collect() };
+    let results = |lines: &mut Lines<'a>| {
+        let names = lines.between("    given = {", "};")?.split(", ").collect();
+        lines.expect("end")?;
+        Ok(names)
+    };
+    parts.take_in(&name, lines, body, (names, line), results, &format!("given{number}"))?;
+    Ok(true)
+}
