@@ -484,7 +484,7 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in ["", "check", "show", "generate", "import", "verify", "count", "run", "completions"] {
+    for command in ["", "check", "show", "generate", "import", "verify", "count", "page", "run", "completions"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");

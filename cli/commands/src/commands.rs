@@ -5,6 +5,7 @@ pub(crate) mod completions;
 pub(crate) mod count;
 pub(crate) mod generate;
 pub(crate) mod import;
+pub(crate) mod page;
 pub(crate) mod run;
 pub(crate) mod show;
 pub(crate) mod verify;

@@ -48,6 +48,7 @@ const EXAMPLES: &str = "Examples:
   armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
   armgen verify robot.yaml robot.rs            whether that file equals the equations
   armgen import robot.urdf --out robot.yaml    a URDF as a description
+  armgen page robot.yaml --out robot.html      the arm, its equations and numbers, to look at
   armgen run                                   move the robot that this program was built with
 
 Exit codes: 0 done, 1 something is wrong in a file or outside its expectation,
@@ -202,6 +203,22 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = pass_parser())]
         without: Vec<Pass>,
     },
+    /// Write the page of an arm: one HTML file to look at, without network or server
+    #[command(after_help = "Examples:
+  armgen page robot.yaml --out robot.html                then open robot.html in a browser
+
+The page shows the arm with its frames, the rows of the description as a draughtsman would draw them,
+the bodies as cuboids of their inertia, and the numbers of the emitted functions at the posture of
+its sliders (docs/page.md).
+Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
+    Page {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// File to write
+        #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+        out: PathBuf,
+    },
     /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected
     #[command(after_help = "Examples:
   armgen run                                     everything in experiments/, into out/
@@ -287,6 +304,7 @@ pub fn run(built: &dyn Arm) -> ExitCode {
         Command::Import { file, choices, results } => import::run(&file, choices, &results),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
+        Command::Page { file, out } => commands::page::run(&file, &out),
         Command::Run { files, out } => commands::run::run(&files, &out, built),
         Command::Completions { shell } => commands::completions::run(shell),
     };

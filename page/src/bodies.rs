@@ -1,0 +1,54 @@
+//! The bodies of an arm: mass, centre of mass, and the cuboid of even density that has the inertia.
+//!
+//! A cuboid with edges a, b, c along its principal axes has I1 = m (b² + c²)/12 and its likes, so
+//!
+//! ```text
+//! a² = 6 (I2 + I3 - I1) / m
+//! ```
+//!
+//! which is negative for a tensor that no body has. The eigenvalues are found in the browser, where the cuboid is drawn; here the bodies
+//! are only gathered in numbers.
+
+use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::manipulator::{Manipulator, Part};
+use serde_json::{json, Value};
+
+use crate::rows::frame;
+
+/// The bodies of all links, those of the payload in the end effector's frame: name, frame that carries them (from 1, or `e`), mass, centre
+/// of mass, tensor xx xy yy xz yz zz.
+pub(crate) fn bodies(manipulator: &Manipulator) -> Value {
+    let of = |name: String, carrier: Value, part: &Part| {
+        let number = |p: &_| nominal(manipulator, p).to_f64();
+        json!({
+            "name": name,
+            "frame": carrier,
+            "mass": number(&part.body.mass),
+            "com": part.body.com.each_ref().map(number),
+            "inertia": part.body.inertia.each_ref().map(number),
+        })
+    };
+    let mut all = Vec::new();
+    for (i, joint) in manipulator.joints.iter().enumerate() {
+        for (k, part) in joint.link.iter().enumerate() {
+            let name = if k == 0 { joint.name.clone() } else { format!("{} + {k}", joint.name) };
+            all.push(of(name, json!(i + 1), part));
+        }
+    }
+    if let Some(payload) = &manipulator.payload {
+        all.push(of("payload".into(), json!("e"), payload));
+    }
+    Value::Array(all)
+}
+
+/// The frame of the end effector in that of the last link.
+pub(crate) fn tool(manipulator: &Manipulator) -> Value {
+    json!(frame(manipulator, &manipulator.tool.frame))
+}
+
+/// The mass of links and rotors, kg.
+pub(crate) fn total_mass(manipulator: &Manipulator) -> f64 {
+    let rotors = manipulator.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
+    let links = manipulator.joints.iter().flat_map(|joint| &joint.link).map(|part| &part.body.mass);
+    links.chain(rotors).map(|mass| nominal(manipulator, mass).to_f64()).sum()
+}

@@ -1,0 +1,158 @@
+//! The HTML of a page: everything that is there without a script, and the places that the script fills.
+
+use std::fmt::Write;
+
+use armgen_codegen::description::{Convention, RobotDescription};
+use armgen_codegen::Model;
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::html::{decimal, escape, json};
+use crate::rows::{convention, Row};
+use crate::{bodies, sheet, warnings};
+
+const STYLE: &str = include_str!("../web/page.css");
+
+/// What a page is made of.
+pub(crate) struct Parts<'p> {
+    pub(crate) model: &'p Model,
+    pub(crate) description: &'p RobotDescription,
+    pub(crate) rows: &'p [Row],
+    pub(crate) warnings: warnings::Warnings<'p>,
+    /// What the script is given.
+    pub(crate) data: &'p Value,
+    /// The script.
+    pub(crate) script: &'p str,
+}
+
+/// The whole page.
+pub(crate) fn document(parts: &Parts<'_>) -> String {
+    let name = escape(&parts.model.manipulator.name);
+    let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    let _ = write!(
+        text,
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '{}'; style-src '{}'; img-src data:\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"generator\" content=\"armgen {}\">\n\
+         <link rel=\"icon\" href=\"data:,\">\n<title>{name}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n",
+        hash(parts.script),
+        hash(STYLE),
+        env!("CARGO_PKG_VERSION"),
+    );
+    text += &header(parts);
+    text += "<main>\n";
+    text += ARM;
+    text += &sliders(parts.rows);
+    text += "</section>\n<div id=\"content\">\n";
+    let sections = sections(parts);
+    text += "<nav aria-label=\"Sections\">";
+    for (id, title, _) in &sections {
+        let _ = write!(text, "<a href=\"#{id}\">{title}</a>");
+    }
+    text += "</nav>\n";
+    for (id, title, content) in &sections {
+        let _ = write!(
+            text,
+            "<section id=\"{id}\" aria-labelledby=\"{id}-title\">\n<h2 id=\"{id}-title\">{title}</h2>\n{content}</section>\n"
+        );
+    }
+    text += "</div>\n</main>\n<noscript><p class=\"warning\">Without scripts this page shows its tables only: no picture, no numbers.</p></noscript>\n";
+    let _ = write!(
+        text,
+        "<script type=\"application/json\" id=\"data\">{}</script>\n<script type=\"module\">{}</script>\n</body>\n</html>\n",
+        json(parts.data),
+        parts.script
+    );
+    text
+}
+
+/// The sections beside the picture: identifier, title, content.
+fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
+    let table = sheet::table(parts.rows, convention(parts.description), &parts.warnings);
+    let frames = "<details open><summary>Frames</summary><div id=\"frames\"></div></details>\n";
+    let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
+    vec![("data-sheet", "Data sheet", table + frames + bodies), ("numbers", "Numbers", "<div id=\"quantities\"></div>\n".into())]
+}
+
+fn header(parts: &Parts<'_>) -> String {
+    let manipulator = &parts.model.manipulator;
+    let joints = manipulator.dof();
+    let rows = match convention(parts.description) {
+        Convention::Standard => "standard DH",
+        Convention::Modified => "modified DH",
+        Convention::Urdf => "rows of a URDF",
+    };
+    format!(
+        "<header>\n<h1>{}</h1>\n<p>{joints} joint{}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
+         <button type=\"button\" id=\"angle-unit\" aria-label=\"Unit of angles: rad\">rad</button>\n\
+         <button type=\"button\" id=\"length-unit\" aria-label=\"Unit of lengths: m\">m</button>\n\
+         <button type=\"button\" id=\"theme\">dark</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n</header>\n",
+        escape(&manipulator.name),
+        if joints == 1 { "" } else { "s" },
+        decimal(bodies::total_mass(manipulator)),
+    )
+}
+
+const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
+<svg id="arm" viewBox="0 0 600 480" role="img" tabindex="0" aria-labelledby="arm-title arm-description">
+<title id="arm-title">The arm</title><desc id="arm-description"></desc>
+</svg>
+<p id="grid-step" class="small"></p>
+<div class="controls" role="group" aria-label="View">
+<button type="button" data-view="front">front</button><button type="button" data-view="side">side</button><button type="button" data-view="top">top</button><button type="button" data-view="oblique">oblique</button>
+</div>
+<div class="controls layers" role="group" aria-label="Shown in the picture">
+<label><input type="checkbox" id="show-frames" checked> frames</label>
+<label><input type="checkbox" id="show-links" checked> links</label>
+<label><input type="checkbox" id="show-bodies"> bodies</label>
+<label><input type="checkbox" id="show-grid" checked> grid</label>
+</div>
+"##;
+
+fn sliders(rows: &[Row]) -> String {
+    let mut text = String::from("<div id=\"sliders\">\n");
+    for (i, row) in rows.iter().enumerate() {
+        let k = i + 1;
+        let name = escape(&row.name);
+        let unit = if row.revolute { "rad" } else { "m" };
+        let _ = writeln!(
+            text,
+            "<div class=\"joint\" data-joint=\"{k}\"><label for=\"q{k}\"><i>q</i><sub>{k}</sub> {name}</label>\
+             <input type=\"range\" id=\"q{k}\" step=\"any\">\
+             <input type=\"number\" id=\"q{k}-value\" step=\"any\" aria-label=\"q{k}, exact\"><span class=\"unit\" data-unit=\"{unit}\">{unit}</span>\
+             <label class=\"rate\">d<i>q</i> <input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}, {unit}/s\"></label>\
+             <label class=\"rate\">dd<i>q</i> <input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}, {unit}/s²\"></label>\
+             <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span></div>"
+        );
+    }
+    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\">play</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"
+}
+
+/// The source of a policy that is this very text.
+fn hash(text: &str) -> String {
+    format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in bytes.chunks(3) {
+        let at = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
+        let bits = at(0) << 16 | at(1) << 8 | at(2);
+        for k in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * k)) as usize & 63];
+            text.push(if k <= chunk.len() { char::from(digit) } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn base64_is_that_of_rfc_4648() {
+        for (plain, coded) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(super::base64(plain.as_bytes()), coded);
+        }
+    }
+}

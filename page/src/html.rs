@@ -1,0 +1,67 @@
+//! Text that becomes part of a page: escaped wherever it comes from.
+
+/// As the content of an element or the value of an attribute in double quotes.
+pub(crate) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            // Line breaks stay; what cannot stand in HTML, or turns the direction of writing, is shown by its number.
+            '\n' | '\t' => escaped.push(c),
+            c if c.is_control() || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}') => {
+                escaped.push_str(&format!("\\u{{{:x}}}", u32::from(c)));
+            }
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// JSON that can stand in a script element: `<` never stands as itself.
+pub(crate) fn json(value: &serde_json::Value) -> String {
+    value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// A number for people: six digits at most.
+pub(crate) fn decimal(value: f64) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !(1e-4..1e6).contains(&value.abs()) {
+        let text = format!("{value:.5e}");
+        let (digits, exponent) = text.split_once('e').expect("the exponent was asked for");
+        let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+        return format!("{digits}e{exponent}");
+    }
+    let decimals = (5 - value.abs().log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_string(),
+        false => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_is_markup_is_left() {
+        assert_eq!(escape("</p> & \"it's\"\u{202e}\0"), "&lt;/p&gt; &amp; &quot;it&#39;s&quot;\\u{202e}\\u{0}");
+        assert_eq!(json(&serde_json::json!("</script>\u{2028}")), "\"\\u003c/script>\\u2028\"");
+    }
+
+    #[test]
+    fn numbers_have_six_digits_at_most() {
+        let check = |value: f64, expected: &str| assert_eq!(decimal(value), expected);
+        check(0.0, "0");
+        check(-9.81, "-9.81");
+        check(1.0 / 3.0, "0.333333");
+        check(5e-5, "5e-5");
+        check(123_456_789.0, "1.23457e8");
+    }
+}

@@ -1,0 +1,135 @@
+//! The page of a robot: one HTML file, to be opened from disk, without network or server.
+//!
+//! ```text
+//! description -> rows, bodies, warnings ─┬─> document: HTML that is there without a script
+//!             -> the module in JavaScript ┴─> script: the files of web/ around it; data: what they are given
+//! ```
+//!
+//! What the page computes of the robot, the emitted JavaScript computes. Text goes in, text comes out; the same text always.
+//!
+//! A page fetches nothing and runs no script but its own: its policy names the hash of the one script and of the one style. Texts reach the
+//! document escaped, or as text nodes and attributes that the script sets.
+
+mod bodies;
+mod document;
+mod html;
+mod rows;
+mod script;
+mod sheet;
+mod warnings;
+
+use armgen_codegen::description::{Convention, RobotDescription};
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::emit::{javascript, Notes, Origin};
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::program::{Module, Trig};
+use armgen_codegen::schedule::Options;
+use armgen_codegen::source::Source;
+use armgen_codegen::{schedule, validate, Model, Scalar};
+use serde_json::{json, Value};
+
+/// The functions that a page computes with, if the arm has them.
+const FUNCTIONS: &[&str] = &[
+    "direct_kinematics",
+    "link_frames",
+    "geometric_jacobian",
+    "inertia_matrix",
+    "coriolis_matrix",
+    "gravity",
+    "friction",
+    "inverse_dynamics",
+    "kinetic_energy",
+    "potential_energy",
+];
+
+/// A function with more operations than this is left out of the page, with a line that says so, if the page can do without.
+const OPERATIONS: usize = 6000;
+
+/// Functions that the page has however long they are.
+const ALWAYS: &[&str] =
+    &["direct_kinematics", "link_frames", "geometric_jacobian", "inertia_matrix", "gravity", "inverse_dynamics"];
+
+/// The page of the arm that `source` describes, and all there is to say about the text. There is a page if and only if no diagnostic is an
+/// error.
+pub fn page(source: &Source) -> (Option<String>, Diagnostics) {
+    let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
+    let Some((manipulator, places)) = valid else { return (None, diagnostics) };
+    let (description, _) = RobotDescription::parse(source);
+    let description = description.unwrap_or_default();
+    let model = Model::new(manipulator);
+    let mut module = schedule::module(&model, &Options { trig: Trig::Fast, ..Options::default() });
+    if let Some(value) = module.out_of_range() {
+        diagnostics.push(validate::product_out_of_range(&places, Scalar::F64, value));
+        return (None, diagnostics);
+    }
+    let left_out = keep_what_is_used(&mut module);
+    let text = javascript::print(&module, &Origin::of(source), &Notes::default());
+    let rows = rows::rows(source, &description, &model.manipulator);
+    let data = data(&model.manipulator, &description, &rows, &module, &left_out);
+    let script = script::script(&text);
+    let page = document::document(&document::Parts {
+        model: &model,
+        description: &description,
+        rows: &rows,
+        warnings: warnings::Warnings::new(source, &description, &diagnostics),
+        data: &data,
+        script: &script,
+    });
+    (Some(page), diagnostics)
+}
+
+/// Leaves the functions that a page computes with; those that are too long for it are named with their operations.
+fn keep_what_is_used(module: &mut Module) -> Vec<(String, usize)> {
+    let mut left_out = Vec::new();
+    module.functions.retain(|function| {
+        let name = function.name();
+        if !FUNCTIONS.contains(&name.as_str()) {
+            return false;
+        }
+        let operations = function.steps.len();
+        let kept = operations <= OPERATIONS || ALWAYS.contains(&name.as_str());
+        if !kept {
+            left_out.push((name, operations));
+        }
+        kept
+    });
+    left_out
+}
+
+/// What the script is given.
+fn data(
+    manipulator: &Manipulator,
+    description: &RobotDescription,
+    rows: &[rows::Row],
+    module: &Module,
+    left_out: &[(String, usize)],
+) -> Value {
+    let row = |row: &rows::Row| {
+        let values = row.denavit_hartenberg.as_ref();
+        json!({
+            "name": row.name,
+            "type": if row.revolute { "revolute" } else { "prismatic" },
+            "dh": values.map(|all| all.each_ref().map(|value| value.number)),
+            "before": row.before,
+            "axis": row.axis,
+            "after": row.after,
+            "limits": row.limits,
+        })
+    };
+    json!({
+        "name": manipulator.name,
+        "convention": match rows::convention(description) {
+            Convention::Standard => "standard",
+            Convention::Modified => "modified",
+            Convention::Urdf => "urdf",
+        },
+        "gravity": module.gravity.each_ref().map(armgen_codegen::exact::Number::to_f64),
+        "base": rows::base(manipulator, description),
+        "rows": rows.iter().map(row).collect::<Vec<_>>(),
+        "tool": bodies::tool(manipulator),
+        "bodies": bodies::bodies(manipulator),
+        "task": module.task,
+        "functions": module.functions.iter().map(|function| function.name()).collect::<Vec<_>>(),
+        "leftOut": left_out,
+    })
+}

@@ -1,0 +1,137 @@
+//! The rows of a description: each value as it is written, its number, its place.
+
+use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::description::{Convention, JointDescription, PoseDescription, RobotDescription};
+use armgen_codegen::document::Expression;
+use armgen_codegen::exact::Polynomial;
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::{Joint, Manipulator, Placement, Pose};
+use armgen_codegen::source::Source;
+
+/// A frame in another: rotation and translation by rows.
+pub(crate) type Frame = [[f64; 4]; 3];
+
+/// One row.
+pub(crate) struct Row {
+    /// Name of the joint.
+    pub(crate) name: String,
+    /// Whether it turns.
+    pub(crate) revolute: bool,
+    /// a, alpha, d, theta; none in rows of the convention urdf.
+    pub(crate) denavit_hartenberg: Option<[Value; 4]>,
+    /// Origin and axis as written, in rows of the convention urdf.
+    pub(crate) urdf: Option<[String; 2]>,
+    /// What stands before the motion, from the frame before: of the first row from the frame that `base` gives.
+    pub(crate) before: Vec<Frame>,
+    /// Direction of the joint axis after it.
+    pub(crate) axis: [f64; 3],
+    /// What stands after the motion.
+    pub(crate) after: Vec<Frame>,
+    /// Lowest and highest position.
+    pub(crate) limits: Option<[f64; 2]>,
+    /// Limits as written.
+    pub(crate) limits_written: String,
+    /// The line on which it begins.
+    pub(crate) line: usize,
+}
+
+/// A value of a row.
+pub(crate) struct Value {
+    /// As it is written.
+    pub(crate) written: String,
+    /// In m or rad.
+    pub(crate) number: f64,
+}
+
+/// What the convention of a description is.
+pub(crate) fn convention(description: &RobotDescription) -> Convention {
+    description.convention.as_ref().map_or(Convention::Standard, |convention| convention.value)
+}
+
+/// All rows.
+pub(crate) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> Vec<Row> {
+    let written = description.joints.iter().flat_map(|joints| &joints.value);
+    let convention = convention(description);
+    let base = base_elements(manipulator, convention);
+    let joints = manipulator.joints.iter().zip(written).enumerate();
+    let skip = |i| if i == 0 { base } else { 0 };
+    joints.map(|(i, (joint, written))| row(source, manipulator, convention, joint, written, skip(i))).collect()
+}
+
+/// The frame from which the first row starts, in the base frame.
+pub(crate) fn base(manipulator: &Manipulator, description: &RobotDescription) -> Frame {
+    let elements = &manipulator.joints[0].row.before.elements;
+    let count = base_elements(manipulator, convention(description));
+    frame(manipulator, &Pose::new(elements[..count].to_vec()).frame)
+}
+
+/// How many elements of what stands before the first motion are the base's.
+fn base_elements(manipulator: &Manipulator, convention: Convention) -> usize {
+    let elements = manipulator.joints[0].row.before.elements.len();
+    match convention {
+        Convention::Standard => elements - 1,
+        Convention::Modified => elements - 2,
+        // Nobody sees where the base ends and the origin begins.
+        Convention::Urdf => 0,
+    }
+}
+
+fn row(
+    source: &Source,
+    manipulator: &Manipulator,
+    convention: Convention,
+    joint: &Joint,
+    written: &JointDescription,
+    skip: usize,
+) -> Row {
+    let number = |p: &Polynomial| nominal(manipulator, p).to_f64();
+    let frames = |elements: &[Placement]| -> Vec<Frame> { elements.iter().map(|e| frame(manipulator, e)).collect() };
+    let before = &joint.row.before.elements[skip..];
+    let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
+    let (turn, twist) = match convention {
+        Convention::Standard => (before.last(), joint.row.after.elements.last()),
+        Convention::Modified => (before.last(), before.first()),
+        Convention::Urdf => (None, None),
+    };
+    let denavit_hartenberg = turn.zip(twist).map(|(turn, twist)| {
+        let angle = |of: &Placement, i: usize, j: usize| of.rotation[i][j].to_f64().atan2(of.rotation[j][j].to_f64());
+        let value = |value, number| Value { written: text(value), number };
+        [
+            value(&written.a, number(&twist.translation[0])),
+            value(&written.alpha, angle(twist, 2, 1)),
+            value(&written.d, number(&turn.translation[2])),
+            value(&written.theta, angle(turn, 1, 0)),
+        ]
+    });
+    Row {
+        name: joint.name.clone(),
+        revolute: joint.kind == JointKind::Revolute,
+        denavit_hartenberg,
+        urdf: (convention == Convention::Urdf).then(|| {
+            let axis = written.axis.as_ref().map_or(String::new(), |axis| source.slice(axis.span).to_string());
+            [pose_text(source, written.origin.as_ref()), axis]
+        }),
+        before: frames(before),
+        axis: joint.row.axis.each_ref().map(armgen_codegen::exact::Number::to_f64),
+        after: frames(&joint.row.after.elements),
+        limits: joint.limits.position.as_ref().map(|limits| limits.each_ref().map(armgen_codegen::exact::Number::to_f64)),
+        limits_written: written.limits.position.as_ref().map_or(String::new(), |limits| source.slice(limits.span).to_string()),
+        line: source.place(written.span.start).line,
+    }
+}
+
+/// A pose as it is written, on one line.
+fn pose_text(source: &Source, pose: Option<&PoseDescription>) -> String {
+    let xyz = pose.into_iter().flat_map(|pose| &pose.elements).filter_map(|element| element.xyz.as_ref());
+    xyz.map(|xyz| source.slice(xyz.span).to_string()).collect::<Vec<_>>().join(" ")
+}
+
+/// A placement with the numbers of the description.
+pub(crate) fn frame(manipulator: &Manipulator, placement: &Placement) -> Frame {
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| match j {
+            3 => nominal(manipulator, &placement.translation[i]).to_f64(),
+            _ => placement.rotation[i][j].to_f64(),
+        })
+    })
+}

@@ -1,0 +1,131 @@
+//! The script of a page: ES modules, a concept a file, joined into one text.
+//!
+//! Each file becomes a function that is called once and returns what the file exports; an import takes from what an earlier one returned.
+//! So nothing has to be built, and the files are tested as they stand. Imports and exports have one form each:
+//!
+//! ```text
+//! import { name, name } from "./file.mjs";
+//! export function name    export async function name    export class name    export const name
+//! ```
+
+use std::fmt::Write;
+
+/// The files, each after those that it imports.
+const FILES: &[(&str, &str)] = &[
+    ("vector", include_str!("../web/vector.mjs")),
+    ("format", include_str!("../web/format.mjs")),
+    ("dom", include_str!("../web/dom.mjs")),
+    ("linear", include_str!("../web/linear.mjs")),
+    ("kinematics", include_str!("../web/kinematics.mjs")),
+    ("view", include_str!("../web/view.mjs")),
+    ("solids", include_str!("../web/solids.mjs")),
+    ("bodies", include_str!("../web/bodies.mjs")),
+    ("scene", include_str!("../web/scene.mjs")),
+    ("dimension", include_str!("../web/dimension.mjs")),
+    ("state", include_str!("../web/state.mjs")),
+    ("sliders", include_str!("../web/sliders.mjs")),
+    ("picture", include_str!("../web/picture.mjs")),
+    ("sheet", include_str!("../web/sheet.mjs")),
+    ("numbers", include_str!("../web/numbers.mjs")),
+    ("settings", include_str!("../web/settings.mjs")),
+    ("main", include_str!("../web/main.mjs")),
+];
+
+/// The script of a page around an emitted module.
+pub(crate) fn script(module: &str) -> String {
+    let mut text = String::from("globalThis.robot = ");
+    text += &closed(module);
+    for (name, file) in FILES {
+        let _ = write!(text, "const {} = ", variable(name));
+        text += &closed(file);
+    }
+    inert(&text)
+}
+
+/// The name under which the exports of a file are known to those after it.
+fn variable(file: &str) -> String {
+    format!("{file}_mjs")
+}
+
+/// A file as a function that is called once, and returns its exports, frozen.
+fn closed(file: &str) -> String {
+    let mut exports: Vec<&str> = Vec::new();
+    let mut text = String::from("(() => {\n");
+    let mut lines = file.lines();
+    while let Some(line) = lines.next() {
+        if line.starts_with("import ") {
+            let mut import = line.to_owned();
+            while !import.ends_with(';') {
+                import += lines.next().expect("an import ends with a semicolon");
+            }
+            let (names, from) =
+                import.trim_start_matches("import ").split_once(" from \"./").expect("import { .. } from \"./..\"");
+            let from = from.strip_suffix(".mjs\";").expect("imports are of files of this folder");
+            let _ = writeln!(text, "const {names} = {};", variable(from));
+        } else if let Some(rest) = line.strip_prefix("export ") {
+            let rest = rest.trim();
+            let mut words = rest.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|word| !["", "async"].contains(word));
+            let kind = words.next().expect("an export says what it is");
+            assert!(["function", "class", "const"].contains(&kind), "an export of another form: {line}");
+            exports.push(words.next().expect("an export has a name"));
+            text += rest;
+            text.push('\n');
+        } else {
+            text += line;
+            text.push('\n');
+        }
+    }
+    let _ = write!(text, "return Object.freeze({{ {} }});\n}})();\n", exports.join(", "));
+    text
+}
+
+/// The same script without the texts at which HTML would see an end or a comment: they stand in strings and comments only.
+fn inert(script: &str) -> String {
+    let mut text = String::with_capacity(script.len());
+    let mut rest = script;
+    while let Some(at) = rest.find('<') {
+        text.push_str(&rest[..=at]);
+        rest = &rest[at + 1..];
+        let starts = |with: &str| rest.get(..with.len()).is_some_and(|start| start.eq_ignore_ascii_case(with));
+        if starts("!--") || starts("/script") || starts("script") {
+            text.push('\\');
+        }
+    }
+    text + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_import_what_earlier_ones_export() {
+        let mut known: Vec<(String, Vec<String>)> = Vec::new();
+        for (name, file) in FILES {
+            let text = closed(file);
+            assert!(!text.contains("\nimport ") && !text.contains("\nexport "), "{name}");
+            for line in text.lines().filter(|line| line.ends_with("_mjs;")) {
+                let (names, from) = line.trim_start_matches("const {").split_once("} = ").expect("an import");
+                let from = from.trim_end_matches("_mjs;");
+                let (_, exports) = known.iter().find(|(file, _)| file == from).unwrap_or_else(|| panic!("{name} before {from}"));
+                for import in names.split(',').map(str::trim).filter(|import| !import.is_empty()) {
+                    assert!(exports.iter().any(|export| export == import), "{name}: {from} has no {import}");
+                }
+            }
+            let (_, returned) = text.rsplit_once("return Object.freeze({ ").expect("exports");
+            let exports = returned.split_once(" }").expect("exports").0.split(", ").map(str::to_owned).collect();
+            known.push(((*name).to_owned(), exports));
+        }
+    }
+
+    #[test]
+    fn a_script_holds_no_end_of_script() {
+        assert_eq!(inert("// <!-- </SCRIPT <script a < b"), "// <\\!-- <\\/SCRIPT <\\script a < b");
+    }
+
+    #[test]
+    #[should_panic(expected = "an export of another form")]
+    fn other_exports_are_refused() {
+        closed("export default 1;\n");
+    }
+}

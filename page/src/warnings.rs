@@ -1,0 +1,61 @@
+//! Warnings of a description, each at the row that it is about.
+
+use std::fmt::Write;
+
+use armgen_codegen::description::RobotDescription;
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::source::Source;
+
+use crate::html::escape;
+
+/// The warnings by row, and those that are about no row.
+pub(crate) struct Warnings<'d> {
+    rows: Vec<Vec<&'d Diagnostic>>,
+    others: Vec<&'d Diagnostic>,
+    source: &'d Source,
+}
+
+impl<'d> Warnings<'d> {
+    pub(crate) fn new(source: &'d Source, description: &RobotDescription, diagnostics: &'d Diagnostics) -> Warnings<'d> {
+        let joints: Vec<usize> = description.joints.iter().flat_map(|all| &all.value).map(|joint| joint.span.start).collect();
+        let mut warnings = Warnings { rows: joints.iter().map(|_| Vec::new()).collect(), others: Vec::new(), source };
+        for diagnostic in diagnostics.iter() {
+            let at = diagnostic.span().start;
+            // A key of the file itself ends the rows.
+            let after = |start: usize| {
+                let between = source.text().get(start..at).unwrap_or_default();
+                between.lines().skip(1).any(|line| line.starts_with(|c: char| c.is_ascii_alphabetic()))
+            };
+            match joints.iter().rposition(|&start| start <= at).filter(|&row| !after(joints[row])) {
+                Some(row) => warnings.rows[row].push(diagnostic),
+                None => warnings.others.push(diagnostic),
+            }
+        }
+        warnings
+    }
+
+    /// Those of a row, as a list.
+    pub(crate) fn of_row(&self, row: usize) -> String {
+        self.rows.get(row).map_or_else(String::new, |all| self.list(all))
+    }
+
+    /// Those of no row, as a list.
+    pub(crate) fn others(&self) -> String {
+        self.list(&self.others)
+    }
+
+    fn list(&self, all: &[&Diagnostic]) -> String {
+        let mut text = String::new();
+        for diagnostic in all {
+            let line = self.source.place(diagnostic.span().start).line;
+            let _ = writeln!(
+                text,
+                "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line}): {}. {}.</p>",
+                escape(diagnostic.code.name()),
+                escape(&diagnostic.message),
+                escape(&diagnostic.help),
+            );
+        }
+        text
+    }
+}

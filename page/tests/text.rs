@@ -1,0 +1,37 @@
+//! Pages as texts: the same input gives the same bytes, faulty descriptions none, and no text of a file becomes markup.
+
+use armgen_codegen::source::Source;
+
+const ARM: &str = "name: arm
+convention: standard
+gravity: [0, 0, -9.81]
+joints:
+  - {name: only, type: revolute, a: 0.5, alpha: 0, d: 0, theta: 0, link: {mass: 1, com: [0, 0, 0], inertia: {xx: 1, yy: 1, zz: 1}}}
+";
+
+fn page(name: &str, text: &str) -> String {
+    armgen_page::page(&Source::new(name, text)).0.expect("a valid description")
+}
+
+#[test]
+fn the_same_text_gives_the_same_bytes_wherever_it_lies() {
+    assert_eq!(page("a/arm.yaml", ARM), page("/b/c/arm.yaml", ARM));
+}
+
+#[test]
+fn a_faulty_description_gives_its_diagnostics_and_no_page() {
+    let (page, diagnostics) = armgen_page::page(&Source::new("arm.yaml", ARM.replace("mass: 1", "mass: -1")));
+    assert!(page.is_none() && diagnostics.has_errors());
+}
+
+#[test]
+fn nothing_of_a_name_or_an_expression_is_markup() {
+    let name = "<!-- <script> \" ' \u{2028} <img src=x onerror=alert(1)>.yaml";
+    let text = format!("# </script><script>commented()</script>\n{ARM}");
+    let page = page(name, &text);
+    assert!(!page.contains("commented()"), "comments of a description are no part of a page");
+    // The name of the file stands in the head of the module, in a comment of the script.
+    assert_eq!(page.matches("<script").count(), 2);
+    assert_eq!(page.matches("</script").count(), 2);
+    assert!(!page.contains("<!--"));
+}

@@ -1,0 +1,57 @@
+/** Numbers for people, and the units that they are shown in. */
+
+/** Six digits at most. @param {number} value */
+export function short(value) {
+    if (value === 0) return "0";
+    if (!Number.isFinite(value)) return String(value).replace("Infinity", "∞").replace("-", "−");
+    const size = Math.abs(value);
+    let text;
+    if (size < 1e-4 || size >= 1e6) {
+        const [digits, exponent] = value.toExponential(5).split("e");
+        text = `${trimmed(digits)}e${Number(exponent)}`;
+    } else {
+        text = trimmed(value.toFixed(Math.max(0, 5 - Math.floor(Math.log10(size)))));
+    }
+    return text.replaceAll("-", "−");
+}
+
+/** @param {string} digits */
+function trimmed(digits) {
+    return digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits;
+}
+
+/** All digits: read back it is the same number, zeros of both signs included. @param {number} value */
+export function exact(value) {
+    return Object.is(value, -0) ? "-0" : String(value);
+}
+
+/** The units chosen by the reader; what is computed is always in m and rad. */
+export const units = { length: "m", angle: "rad" };
+
+/** A number that is shown in the unit of the reader. @param {number} value @param {string} unit m, rad, or another */
+export function inUnit(value, unit) {
+    if (unit === "m" && units.length === "mm") return value * 1000;
+    if (unit === "rad" && units.angle === "deg") return (value * 180) / Math.PI;
+    return value;
+}
+
+/** A number of the reader's unit in m or rad. @param {number} value @param {string} unit */
+export function fromUnit(value, unit) {
+    if (unit === "m" && units.length === "mm") return value / 1000;
+    if (unit === "rad" && units.angle === "deg") return (value * Math.PI) / 180;
+    return value;
+}
+
+/** The name of the unit that the reader sees. @param {string} unit */
+export function unitName(unit) {
+    if (unit === "m") return units.length;
+    if (unit === "rad") return units.angle;
+    return unit;
+}
+
+/** With its unit. @param {number} value @param {string} unit */
+export function withUnit(value, unit) {
+    const shown = inUnit(value, unit);
+    // A turn of 90 degrees is 90, not 90.00000000000001.
+    return unitName(unit) === "deg" ? `${short(shown)}°` : `${short(shown)} ${unitName(unit)}`;
+}

@@ -1,0 +1,135 @@
+/**
+ * Small linear algebra: eigenvalues of symmetric matrices by Jacobi's rotations, determinants by elimination, and what follows of a Jacobian
+ * (manipulability, ellipsoids, condition).
+ */
+
+/** @typedef {number[][]} Matrix */
+
+/** Eigenvalues of a symmetric matrix, largest first, and unit eigenvectors as columns. @param {Matrix} symmetric */
+export function eigen(symmetric) {
+    const n = symmetric.length;
+    const a = symmetric.map((row) => row.slice());
+    const v = a.map((_, i) => a.map((_, j) => (i === j ? 1 : 0)));
+    for (let sweep = 0; sweep < 60; sweep++) {
+        let off = 0;
+        for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) off += a[p][q] * a[p][q];
+        if (off === 0) break;
+        for (let p = 0; p < n; p++) {
+            for (let q = p + 1; q < n; q++) {
+                if (a[p][q] === 0) continue;
+                const theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+                const t = (theta < 0 ? -1 : 1) / (Math.abs(theta) + Math.sqrt(theta * theta + 1));
+                const c = 1 / Math.sqrt(t * t + 1);
+                const s = t * c;
+                for (let k = 0; k < n; k++) {
+                    const [x, y] = [a[k][p], a[k][q]];
+                    a[k][p] = c * x - s * y;
+                    a[k][q] = s * x + c * y;
+                }
+                for (let k = 0; k < n; k++) {
+                    const [x, y] = [a[p][k], a[q][k]];
+                    a[p][k] = c * x - s * y;
+                    a[q][k] = s * x + c * y;
+                }
+                a[p][q] = 0;
+                a[q][p] = 0;
+                for (let k = 0; k < n; k++) {
+                    const [x, y] = [v[k][p], v[k][q]];
+                    v[k][p] = c * x - s * y;
+                    v[k][q] = s * x + c * y;
+                }
+            }
+        }
+    }
+    const order = a.map((_, i) => i).sort((i, j) => a[j][j] - a[i][i]);
+    return { values: order.map((i) => a[i][i]), vectors: v.map((row) => order.map((i) => row[i])) };
+}
+
+/** By elimination with the largest pivot. @param {Matrix} matrix */
+export function determinant(matrix) {
+    const a = matrix.map((row) => row.slice());
+    let product = 1;
+    for (let k = 0; k < a.length; k++) {
+        let pivot = k;
+        for (let i = k + 1; i < a.length; i++) if (Math.abs(a[i][k]) > Math.abs(a[pivot][k])) pivot = i;
+        if (a[pivot][k] === 0) return 0;
+        if (pivot !== k) {
+            [a[pivot], a[k]] = [a[k], a[pivot]];
+            product = -product;
+        }
+        product *= a[k][k];
+        for (let i = k + 1; i < a.length; i++) {
+            const factor = a[i][k] / a[k][k];
+            for (let j = k; j < a.length; j++) a[i][j] -= factor * a[k][j];
+        }
+    }
+    return product;
+}
+
+/** J J'. @param {Matrix} j */
+export function gram(j) {
+    return j.map((a) => j.map((b) => a.reduce((sum, x, k) => sum + x * b[k], 0)));
+}
+
+/**
+ * Singular values of a matrix, largest first, by rotations that make its columns (or rows, where there are fewer) perpendicular to each
+ * other (Hestenes, 1958): small ones keep their digits, which eigenvalues of J J' do not.
+ *
+ * @param {Matrix} j
+ */
+export function singularValues(j) {
+    const rows = j.map((row) => row.slice());
+    for (let sweep = 0; sweep < 60; sweep++) {
+        let turned = false;
+        for (let p = 0; p < rows.length; p++) {
+            for (let q = p + 1; q < rows.length; q++) {
+                const product = (a, b) => a.reduce((sum, x, k) => sum + x * b[k], 0);
+                const [aa, bb, ab] = [product(rows[p], rows[p]), product(rows[q], rows[q]), product(rows[p], rows[q])];
+                if (ab === 0 || Math.abs(ab) <= 1e-16 * Math.sqrt(aa * bb)) continue;
+                turned = true;
+                const zeta = (bb - aa) / (2 * ab);
+                const t = (zeta < 0 ? -1 : 1) / (Math.abs(zeta) + Math.sqrt(1 + zeta * zeta));
+                const c = 1 / Math.sqrt(1 + t * t);
+                const s = c * t;
+                for (let k = 0; k < rows[p].length; k++) {
+                    const [x, y] = [rows[p][k], rows[q][k]];
+                    rows[p][k] = c * x - s * y;
+                    rows[q][k] = s * x + c * y;
+                }
+            }
+        }
+        if (!turned) break;
+    }
+    return rows.map((row) => Math.hypot(...row)).sort((a, b) => b - a);
+}
+
+/** w = sqrt(det(J J')) = the product of the singular values; 0 for more rows than columns. @param {Matrix} j */
+export function manipulability(j) {
+    return j.length > j[0].length ? 0 : singularValues(j).reduce((product, s) => product * s, 1);
+}
+
+/** The largest singular value over the smallest; infinite at a singular posture. @param {Matrix} j */
+export function condition(j) {
+    if (j.length > j[0].length) return Infinity;
+    const values = singularValues(j);
+    return values[0] / values[values.length - 1];
+}
+
+/**
+ * The outline of the ellipsoid x' A^-1 x = 1 in an orthographic view: the ellipse of P A P', P the two directions of the screen. Its
+ * semi-axes and the angle of the first.
+ *
+ * @param {Matrix} a symmetric, 3 by 3
+ * @param {number[]} right
+ * @param {number[]} up
+ */
+export function outline(a, right, up) {
+    const form = (u, v) => u.reduce((sum, x, i) => sum + x * a[i].reduce((inner, y, j) => inner + y * v[j], 0), 0);
+    const [xx, xy, yy] = [form(right, right), form(right, up), form(up, up)];
+    const { values, vectors } = eigen([
+        [xx, xy],
+        [xy, yy],
+    ]);
+    const semi = values.map((value) => Math.sqrt(Math.max(0, value)));
+    return { semi, angle: Math.atan2(vectors[1][0], vectors[0][0]) };
+}

@@ -1,0 +1,20 @@
+/** The page: reads its data, makes its parts, draws for the first time. */
+
+import { byId } from "./dom.mjs";
+import { numbers } from "./numbers.mjs";
+import { Picture } from "./picture.mjs";
+import { settings } from "./settings.mjs";
+import { sheet } from "./sheet.mjs";
+import { player, sliders } from "./sliders.mjs";
+import { home, State } from "./state.mjs";
+
+const data = JSON.parse(byId("data").textContent);
+const state = new State(data.rows.length);
+settings(state);
+sliders(data, state);
+player(data, state);
+const picture = new Picture(data, state);
+sheet(data, state, picture);
+numbers(data, state);
+state.move(home(data));
+document.documentElement.dataset.ready = String(Math.round(performance.now()));

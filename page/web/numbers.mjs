@@ -1,0 +1,179 @@
+/**
+ * What the emitted module gives at the posture of the sliders, and what follows of it. Six digits are shown, all digits stand in
+ * `data-value` and are copied.
+ */
+
+import { byId, copy, html } from "./dom.mjs";
+import { exact, short } from "./format.mjs";
+import { condition, determinant, manipulability } from "./linear.mjs";
+
+/**
+ * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
+ *     rowNames?: string[], columnNames?: string[]}} Quantity
+ */
+
+/** @param {any} data @param {import("./state.mjs").State} state */
+export function numbers(data, state) {
+    const host = byId("quantities");
+    const shown = quantities(data, state).map((quantity) => table(quantity));
+    host.append(...shown.map((one) => one.element));
+    for (const [name, operations] of data.leftOut) {
+        const title = name.replaceAll("_", " ");
+        host.append(html("p", { class: "small" }, `The ${title} is left out: ${operations} operations. `, html("code", {}, `armgen generate ROBOT.yaml --functions ${name}`), " prints it."));
+    }
+    const update = () => {
+        for (const one of shown) if (one.element.open) one.update();
+    };
+    state.on("motion", update);
+    for (const one of shown) one.element.addEventListener("toggle", () => one.element.open && one.update());
+    return shown;
+}
+
+/** @param {any} data @param {import("./state.mjs").State} state @returns {Quantity[]} */
+function quantities(data, state) {
+    const n = data.rows.length;
+    const has = (name) => data.functions.includes(name);
+    const joints = data.rows.map((row) => row.name);
+    const velocity = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
+    const list = [
+        matrix("direct_kinematics", "T_e", "End effector in the base frame", "m", 4, 4, () => robot.directKinematics(state.q)),
+        vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]),
+        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian", "m, 1", 6, n, () => robot.geometricJacobian(state.q)), rowNames: velocity, columnNames: joints },
+    ];
+    const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
+    if (data.task.length === n) list.push(scalar("det", "det J", "Determinant of the Jacobian of the task", "", () => determinant(task())));
+    list.push(scalar("w", "w", "Manipulability of the task, sqrt(det(J J'))", "", () => manipulability(task())));
+    list.push(scalar("condition", "σ₁/σₘ", "Condition number of the Jacobian of the task", "", () => condition(task())));
+    list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m², kg m, kg", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
+    if (has("coriolis_matrix")) {
+        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
+        list.push(scalar("skew_symmetry", "N", "Largest entry of the symmetric part of dB/dt − 2C, dB/dt by differences", "", () => skewSymmetry(state)));
+    }
+    list.push(vector("gravity", "g", "Gravity term", "N m, N", n, () => robot.gravity(state.q), joints));
+    if (has("friction")) list.push(vector("friction", "F", "Friction", "N m, N", n, () => robot.friction(state.dq), joints));
+    list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B ddq + C dq + F + g", "N m, N", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
+    if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
+    if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));
+    return list;
+}
+
+function matrix(name, symbol, title, unit, rows, columns, of) {
+    return { name, symbol, title, unit, rows, columns, of };
+}
+
+function vector(name, symbol, title, unit, rows, of, rowNames) {
+    return { name, symbol, title, unit, rows, columns: 0, of, rowNames };
+}
+
+function scalar(name, symbol, title, unit, of) {
+    return { name, symbol, title, unit, rows: 0, columns: 0, of };
+}
+
+/** Roll, pitch and yaw of a frame; at pitch = ±90 degrees roll is taken as 0. @param {number[][]} t */
+export function rollPitchYaw(t) {
+    const pitch = Math.atan2(-t[2][0], Math.hypot(t[0][0], t[1][0]));
+    if (Math.hypot(t[0][0], t[1][0]) < 1e-12) return [0, pitch, Math.atan2(-t[0][1], t[1][1])];
+    return [Math.atan2(t[2][1], t[2][2]), pitch, Math.atan2(t[1][0], t[0][0])];
+}
+
+/** dB/dt by central differences of fourth order along dq, less 2 C: its symmetric part is 0 but for what differences can tell. @param {import("./state.mjs").State} state */
+function skewSymmetry(state) {
+    const { q, dq } = state;
+    const speed = Math.hypot(...dq);
+    if (speed === 0) return 0;
+    const h = 1e-3 / speed;
+    const b = (t) => robot.inertiaMatrix(q.map((x, i) => x + t * dq[i]));
+    const [far, near, nearer, farther] = [b(-2 * h), b(-h), b(h), b(2 * h)];
+    const c = robot.coriolisMatrix(q, dq);
+    let largest = 0;
+    for (let i = 0; i < q.length; i++) {
+        for (let j = 0; j <= i; j++) {
+            const rate = (far[i][j] - 8 * near[i][j] + 8 * nearer[i][j] - farther[i][j]) / (12 * h);
+            largest = Math.max(largest, Math.abs(rate - c[i][j] - c[j][i]));
+        }
+    }
+    return largest;
+}
+
+/** @param {Quantity} quantity */
+function table(quantity) {
+    const { name, symbol, title, unit, rows, columns } = quantity;
+    const cells = [];
+    const cell = (row, column) => {
+        const attributes = { "data-quantity": name, "data-row": row || undefined, "data-column": column || undefined };
+        const td = html(rows === 0 ? "span" : "td", { class: "entry", ...attributes });
+        cells.push({ td, value: NaN });
+        return td;
+    };
+    const head = html("summary", {}, html("b", {}, symbol), ` ${title}${unit ? `, ${unit}` : ""}`);
+    const element = html("details", { open: true, class: "quantity", "data-of": name }, head);
+    if (rows === 0) {
+        head.append(" = ", cell(0, 0));
+    } else {
+        const rowName = (i) => (quantity.rowNames ? `${i} ${quantity.rowNames[i - 1]}` : String(i));
+        const body = html("tbody");
+        for (let i = 1; i <= rows; i++) {
+            const row = html("tr", {}, html("th", { scope: "row" }, rowName(i)));
+            for (let j = 1; j <= Math.max(columns, 1); j++) row.append(cell(i, columns ? j : 0));
+            body.append(row);
+        }
+        const table = html("table", { class: "matrix", "aria-label": `${symbol}: ${title}` });
+        if (columns > 0) {
+            const names = Array.from({ length: columns }, (_, j) => (quantity.columnNames ? `${j + 1} ${quantity.columnNames[j]}` : String(j + 1)));
+            table.append(html("thead", {}, html("tr", {}, html("td"), ...names.map((column) => html("th", { scope: "col" }, column)))));
+        }
+        table.append(body);
+        lightNames(table);
+        const scroll = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": `${symbol}: ${title}` }, table);
+        element.append(scroll, copyButtons(quantity));
+    }
+    const update = () => {
+        const flat = [quantity.of()].flat(2);
+        cells.forEach((cell, k) => {
+            const value = flat[k];
+            if (Object.is(cell.value, value)) return;
+            cell.value = value;
+            cell.td.textContent = short(value);
+            cell.td.setAttribute("data-value", exact(value));
+        });
+    };
+    return { element, update, quantity };
+}
+
+/** An entry under the pointer lights the names of its row and its column. @param {HTMLElement} table */
+function lightNames(table) {
+    const light = (target, on) => {
+        const td = target instanceof Element ? target.closest("td.entry") : null;
+        if (!td) return;
+        const row = td.parentElement;
+        const column = [...(row?.children ?? [])].indexOf(td);
+        for (const name of [row?.firstElementChild, table.querySelector("thead tr")?.children[column]]) name?.classList.toggle("lit", on);
+    };
+    table.addEventListener("pointerover", (event) => light(event.target, true));
+    table.addEventListener("pointerout", (event) => light(event.target, false));
+}
+
+/** The table as a text of another program, all digits. @param {any} value @param {string} form */
+export function tableText(value, form) {
+    const rows = value.map((row) => (Array.isArray(row) ? row.map(exact) : [exact(row)]));
+    switch (form) {
+        case "MATLAB":
+            return `[${rows.map((row) => row.join(", ")).join("; ")}]`;
+        case "NumPy":
+            return Array.isArray(value[0]) ? `np.array([${rows.map((row) => `[${row.join(", ")}]`).join(", ")}])` : `np.array([${rows.flat().join(", ")}])`;
+        case "LaTeX":
+            return `\\begin{bmatrix}\n${rows.map((row) => row.join(" & ")).join(" \\\\\n")}\n\\end{bmatrix}`;
+        default:
+            return rows.map((row) => row.join("\t")).join("\n");
+    }
+}
+
+/** @param {Quantity} quantity */
+function copyButtons(quantity) {
+    const buttons = ["text", "MATLAB", "NumPy", "LaTeX"].map((form) => {
+        const button = html("button", { type: "button", class: "copy", "aria-label": `Copy ${quantity.symbol} as ${form}` }, form);
+        button.addEventListener("click", () => copy(tableText(quantity.of(), form), `${quantity.symbol} as ${form}`));
+        return button;
+    });
+    return html("div", { class: "controls copies" }, "copy as ", ...buttons);
+}

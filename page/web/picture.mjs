@@ -1,0 +1,288 @@
+/** The picture of the arm: layers of an SVG, drawn again at every motion; drag orbits, wheel zooms, keys and buttons choose views. */
+
+import { cuboid } from "./bodies.mjs";
+import { dimensions } from "./dimension.mjs";
+import { byId, set, svg } from "./dom.mjs";
+import { exact, short, withUnit } from "./format.mjs";
+import { Arm, step, unit } from "./scene.mjs";
+import { Ball, Box, drawSolids } from "./solids.mjs";
+import { along, column, compose, identity, norm, origin, place } from "./vector.mjs";
+import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
+
+const LAYERS = ["grid", "points", "trail", "links", "bodies", "ghosts", "ellipsoids", "frames", "dimensions", "gravity"];
+
+export class Picture {
+    /** @param {any} data @param {import("./state.mjs").State} state */
+    constructor(data, state) {
+        this.data = data;
+        this.state = state;
+        this.view = new View();
+        this.svg = byId("arm");
+        this.svg.append(gradients());
+        /** @type {Record<string, SVGGElement>} */
+        this.layers = {};
+        for (const name of LAYERS) {
+            this.layers[name] = svg("g", { class: `layer ${name}` });
+            this.svg.append(this.layers[name]);
+        }
+        this.arm = new Arm(data);
+        this.bodies = data.bodies.map((body) => bodySolids(body, data, this.arm.size)).filter((all) => all !== null);
+        const names = ["0", ...data.rows.map((_, i) => String(i + 1)), "e"];
+        this.frames = names.map((name) => frameElements(name));
+        this.layers.frames.append(...this.frames.map((frame) => frame.element));
+        /** Which row is drawn as on a sheet, from 0. @type {number | null} */
+        this.row = null;
+        /** What others draw in the picture, after the arm. @type {((picture: Picture) => void)[]} */
+        this.extras = [];
+        this.fitted = false;
+        this.listen();
+        state.on("motion", () => this.draw());
+        state.on("units", () => this.draw());
+    }
+
+    /** Frames of the links and of the end effector at the posture that is shown. */
+    pose() {
+        const { q } = this.state;
+        return { links: robot.linkFrames(q), end: robot.directKinematics(q) };
+    }
+
+    /** Lays the arm into the picture. */
+    fit() {
+        const { size } = this.arm;
+        const around = this.arm.points.flatMap((p) => [-1, 1].flatMap((s) => [0, 1, 2].map((k) => p.map((x, i) => (i === k ? x + s * 0.12 * size : x)))));
+        this.view.fit([...around, [0, 0, 0]]);
+    }
+
+    /** Draws everything. */
+    draw() {
+        const { links, end } = this.pose();
+        this.links = links;
+        this.end = end;
+        this.arm.place(this.state.q, links, end);
+        if (!this.fitted) {
+            this.fitted = true;
+            this.fit();
+        }
+        this.redraw();
+        const at = ["x", "y", "z"].map((name, i) => `${name} = ${withUnit(end[i][3], "m")}`).join(", ");
+        const posture = this.data.rows.map((row, i) => `q${i + 1} = ${withUnit(this.state.q[i], row.type === "revolute" ? "rad" : "m")}`);
+        byId("arm-description").textContent = `Posture ${posture.join(", ")}. End effector at ${at}. View: ${this.view.name || "turned by hand"}.`;
+    }
+
+    /** Draws the same posture again. */
+    redraw() {
+        const { view, links, end } = this;
+        drawSolids(this.layers.links, this.arm.solids, view);
+        this.drawFrames([identity(), ...links, end]);
+        this.drawBodies();
+        this.drawGrid();
+        this.drawGravity();
+        this.drawDimensions();
+        for (const extra of this.extras) extra(this);
+    }
+
+    /** The frame that row i starts from. @param {number} i */
+    start(i) {
+        return i === 0 ? this.data.base : this.links[i - 1];
+    }
+
+    drawFrames(frames) {
+        const length = 0.11 * this.arm.size;
+        const taken = [];
+        frames.forEach((frame, k) => {
+            const { element, axes, text } = this.frames[k];
+            const at = origin(frame);
+            element.setAttribute("data-origin", at.map(exact).join(" "));
+            const [x, y] = this.view.project(at);
+            axes.forEach((axis, j) => {
+                const [u, v] = this.view.project(along(at, length, column(frame, j)));
+                set(axis, { x1: x.toFixed(1), y1: y.toFixed(1), x2: u.toFixed(1), y2: v.toFixed(1) });
+            });
+            // Frames at one place get their names beside each other.
+            let shift = 0;
+            while (taken.some(([a, b]) => Math.abs(a - x - shift) < 13 && Math.abs(b - y) < 13)) shift += 14;
+            taken.push([x + shift, y]);
+            set(text, { x: (x + shift + 5).toFixed(1), y: (y + 15).toFixed(1) });
+        });
+    }
+
+    drawBodies() {
+        if (!byId("show-bodies").checked) {
+            this.layers.bodies.replaceChildren();
+            return;
+        }
+        const solids = [];
+        for (const { carrier, cuboid: shape, box, point, com } of this.bodies) {
+            const frame = carrier === "e" ? this.end : this.links[carrier - 1];
+            if (box) {
+                box.place(compose(frame, shape.frame), shape.edges.map((edge) => edge / 2));
+                solids.push(box);
+            }
+            point.at = place(frame, com);
+            solids.push(point);
+        }
+        drawSolids(this.layers.bodies, solids, this.view);
+    }
+
+    drawGrid() {
+        const shown = byId("show-grid").checked;
+        const { size } = this.arm;
+        const length = step(size / 4);
+        byId("grid-step").textContent = shown ? `Grid of ${withUnit(length, "m")} in the plane z = 0 of the base` : "";
+        if (!shown) {
+            this.layers.grid.replaceChildren();
+            return;
+        }
+        const count = Math.ceil((0.9 * size) / length);
+        const reach = count * length;
+        let d = "";
+        const line = (a, b) => {
+            const [[x, y], [u, v]] = [this.view.project(a), this.view.project(b)];
+            d += `M${x.toFixed(1)} ${y.toFixed(1)}L${u.toFixed(1)} ${v.toFixed(1)}`;
+        };
+        for (let i = -count; i <= count; i++) {
+            line([i * length, -reach, 0], [i * length, reach, 0]);
+            line([-reach, i * length, 0], [reach, i * length, 0]);
+        }
+        if (!this.layers.grid.firstChild) this.layers.grid.append(svg("path"));
+        /** @type {Element} */ (this.layers.grid.firstChild).setAttribute("d", d);
+    }
+
+    /** An arrow in the corner, as long as it is seen. */
+    drawGravity() {
+        const { gravity } = this.data;
+        const size = norm(gravity);
+        const [x, y] = [46, HEIGHT - 60];
+        if (size === 0) {
+            this.layers.gravity.replaceChildren(svg("text", { x: 12, y: HEIGHT - 14 }, "no gravity"));
+            return;
+        }
+        const [u, v] = this.view.projectDirection(unit(gravity)).map((c) => (c / this.view.scale) * 36);
+        const angle = Math.atan2(v, u);
+        const wing = (turn) => `${x + u - 9 * Math.cos(angle + turn)} ${y + v - 9 * Math.sin(angle + turn)}`;
+        const seen = Math.hypot(u, v) > 3;
+        const mark = seen
+            ? svg("path", { d: `M${x} ${y}L${x + u} ${y + v}M${wing(0.4)}L${x + u} ${y + v}L${wing(-0.4)}` })
+            : svg("circle", { cx: x, cy: y, r: 5 });
+        this.layers.gravity.replaceChildren(mark, svg("text", { x: 12, y: HEIGHT - 8 }, `gravity ${short(size)} m/s²`));
+    }
+
+    drawDimensions() {
+        if (this.row === null) {
+            if (this.layers.dimensions.firstChild) this.layers.dimensions.replaceChildren();
+            return;
+        }
+        const i = this.row;
+        const elements = dimensions(this.view, this.data, i, this.start(i), this.state.q[i], this.arm.size);
+        this.layers.dimensions.replaceChildren(svg("g", { "data-dimension": i + 1 }, ...elements));
+    }
+
+    /** @param {number | null} row */
+    focusRow(row) {
+        if (this.row === row) return;
+        this.row = row;
+        this.drawDimensions();
+    }
+
+    /** @param {string} name */
+    choose(name) {
+        this.view.choose(name);
+        this.fit();
+        this.draw();
+        this.mark();
+    }
+
+    mark() {
+        for (const button of document.querySelectorAll("button[data-view]")) {
+            button.setAttribute("aria-pressed", String(button.getAttribute("data-view") === this.view.name));
+        }
+    }
+
+    orbit(azimuth, elevation) {
+        this.view.orbit(azimuth, elevation);
+        this.redraw();
+        this.mark();
+    }
+
+    zoom(factor) {
+        this.view.scale *= factor;
+        this.redraw();
+    }
+
+    listen() {
+        for (const button of document.querySelectorAll("button[data-view]")) {
+            button.addEventListener("click", () => this.choose(button.getAttribute("data-view") ?? "oblique"));
+        }
+        for (const name of ["frames", "links"]) {
+            byId(`show-${name}`).addEventListener("input", () => {
+                this.layers[name].style.display = byId(`show-${name}`).checked ? "" : "none";
+            });
+        }
+        for (const name of ["bodies", "grid"]) byId(`show-${name}`).addEventListener("input", () => this.redraw());
+        this.svg.addEventListener("pointerdown", (event) => this.svg.setPointerCapture(event.pointerId));
+        this.svg.addEventListener("pointermove", (event) => {
+            if (this.svg.hasPointerCapture(event.pointerId)) this.orbit(-event.movementX * 0.01, event.movementY * 0.01);
+        });
+        this.svg.addEventListener(
+            "wheel",
+            (event) => {
+                event.preventDefault();
+                this.zoom(Math.exp(-event.deltaY * 0.001));
+            },
+            { passive: false },
+        );
+        const names = Object.keys(VIEWS);
+        const keys = {
+            ArrowLeft: () => this.orbit(-0.1, 0),
+            ArrowRight: () => this.orbit(0.1, 0),
+            ArrowUp: () => this.orbit(0, 0.1),
+            ArrowDown: () => this.orbit(0, -0.1),
+            "+": () => this.zoom(1.2),
+            "=": () => this.zoom(1.2),
+            "-": () => this.zoom(1 / 1.2),
+            1: () => this.choose(names[0]),
+            2: () => this.choose(names[1]),
+            3: () => this.choose(names[2]),
+            0: () => this.choose(names[3]),
+        };
+        this.svg.addEventListener("keydown", (event) => {
+            const act = keys[event.key];
+            if (!act || event.ctrlKey || event.metaKey || event.altKey) return;
+            event.preventDefault();
+            act();
+        });
+        // Texts keep their size where the picture is narrow.
+        new ResizeObserver(() => {
+            this.svg.style.setProperty("--pixel", String(Math.max(1, Math.min(2, WIDTH / this.svg.clientWidth))));
+        }).observe(this.svg);
+        this.mark();
+    }
+}
+
+/** The shades across a cylinder. */
+function gradients() {
+    const all = ["link", "joint", "base"].map((name) => {
+        const stop = (offset, shade) => svg("stop", { offset, class: `${name}-${shade}` });
+        return svg("linearGradient", { id: `shade-${name}`, x1: 0, y1: 0, x2: 0, y2: 1 }, stop(0, "edge"), stop(0.4, "middle"), stop(1, "edge"));
+    });
+    return svg("defs", {}, ...all);
+}
+
+/** @param {string} name */
+function frameElements(name) {
+    const axes = ["x", "y", "z"].map((axis) => svg("line", { class: `axis-${axis}` }));
+    const text = svg("text", { class: "frame-name" }, name);
+    const element = svg("g", { "data-frame": name }, ...axes, text);
+    return { element, axes, text };
+}
+
+/** What is drawn of a body; nothing of one without mass. */
+function bodySolids(body, data, size) {
+    const shape = cuboid(body);
+    if (!shape) return null;
+    const heaviest = Math.max(...data.bodies.map((other) => other.mass));
+    const point = new Ball(size * 0.02 * Math.cbrt(body.mass / heaviest), "com");
+    const box = shape.empty ? null : new Box(shape.possible ? "cuboid" : "cuboid impossible");
+    return { carrier: body.frame, cuboid: shape, box, point, com: body.com };
+}
+

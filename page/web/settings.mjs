@@ -1,0 +1,39 @@
+/** Units, theme and print. */
+
+import { byId } from "./dom.mjs";
+import { units } from "./format.mjs";
+
+/** @param {import("./state.mjs").State} state */
+export function settings(state) {
+    const toggle = (id, kind, names, title) => {
+        const button = byId(id);
+        button.addEventListener("click", () => {
+            units[kind] = units[kind] === names[0] ? names[1] : names[0];
+            button.textContent = units[kind];
+            button.setAttribute("aria-label", `${title}: ${units[kind]}`);
+            state.changed("units");
+        });
+    };
+    toggle("angle-unit", "angle", ["rad", "deg"], "Unit of angles");
+    toggle("length-unit", "length", ["m", "mm"], "Unit of lengths");
+
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    const theme = byId("theme");
+    const root = document.documentElement;
+    const current = () => root.dataset.theme ?? (dark.matches ? "dark" : "light");
+    const name = () => {
+        theme.textContent = current() === "dark" ? "light" : "dark";
+        theme.setAttribute("aria-label", `Change to the ${theme.textContent} theme`);
+    };
+    theme.addEventListener("click", () => {
+        root.dataset.theme = current() === "dark" ? "light" : "dark";
+        name();
+        state.changed("theme");
+    });
+    dark.addEventListener("change", () => {
+        name();
+        state.changed("theme");
+    });
+    name();
+    byId("print").addEventListener("click", () => window.print());
+}

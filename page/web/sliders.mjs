@@ -1,0 +1,120 @@
+/**
+ * Sliders, and fields for exact numbers. A range holds fifteen digits only, so the field beside it rules where it was typed.
+ */
+
+import { byId, copy } from "./dom.mjs";
+import { exact, fromUnit, inUnit, unitName } from "./format.mjs";
+import { range } from "./state.mjs";
+
+/** @param {any} data @param {import("./state.mjs").State} state */
+export function sliders(data, state) {
+    const parts = data.rows.map((row, i) => {
+        const k = i + 1;
+        return {
+            unit: row.type === "revolute" ? "rad" : "m",
+            limits: row.limits,
+            range: byId(`q${k}`),
+            field: byId(`q${k}-value`),
+            outside: byId(`q${k}-outside`),
+            rate: byId(`dq${k}`),
+            acceleration: byId(`ddq${k}`),
+        };
+    });
+    parts.forEach((part, i) => {
+        [part.range.min, part.range.max] = range(data.rows[i]).map(String);
+        part.range.addEventListener("input", () => {
+            state.q[i] = part.range.valueAsNumber;
+            state.changed("motion");
+        });
+        const typed = (field, values, unit) =>
+            field.addEventListener("input", () => {
+                const value = field.valueAsNumber;
+                if (!Number.isFinite(value)) return;
+                values()[i] = fromUnit(value, unit);
+                state.changed("motion");
+            });
+        typed(part.field, () => state.q, part.unit);
+        typed(part.rate, () => state.dq, part.unit);
+        typed(part.acceleration, () => state.ddq, part.unit);
+    });
+    const show = () => {
+        parts.forEach((part, i) => {
+            const q = state.q[i];
+            if (part.range.valueAsNumber !== q) part.range.value = String(q);
+            write(part.field, q, part.unit);
+            write(part.rate, state.dq[i], part.unit);
+            write(part.acceleration, state.ddq[i], part.unit);
+            const { limits } = part;
+            const outside = limits !== null && (q < limits[0] || q > limits[1]);
+            if (part.outside.hidden === outside) part.outside.hidden = !outside;
+        });
+    };
+    state.on("motion", show);
+    state.on("units", () => {
+        for (const span of document.querySelectorAll("#sliders .unit")) {
+            span.textContent = unitName(span.getAttribute("data-unit") ?? "");
+        }
+        show();
+    });
+    byId("zero").addEventListener("click", () => {
+        state.dq.fill(0);
+        state.ddq.fill(0);
+        state.move(state.q.map(() => 0));
+    });
+    byId("copy-q").addEventListener("click", () => copy(`[${state.q.map(exact).join(", ")}]`, "q"));
+}
+
+/** Leaves a field alone that holds the number already, while somebody types into it. @param {any} field @param {number} value @param {string} unit */
+function write(field, value, unit) {
+    if (fromUnit(field.valueAsNumber, unit) === value) return;
+    field.value = exact(inUnit(value, unit));
+}
+
+/** Sweeps the joints one after the other, and stops at a touch; with reduced motion it steps. @param {any} data @param {import("./state.mjs").State} state */
+export function player(data, state) {
+    const button = byId("play");
+    const reduced = matchMedia("(prefers-reduced-motion: reduce)");
+    let stop = () => {};
+    const play = () => {
+        const home = state.q.slice();
+        const begin = performance.now();
+        const [each, joints] = [reduced.matches ? 4 : 3, data.rows.length];
+        let timer = 0;
+        const tick = () => {
+            const seconds = (performance.now() - begin) / 1000;
+            const joint = Math.floor(seconds / each);
+            if (joint >= joints) {
+                state.move(home);
+                stop();
+                return;
+            }
+            let phase = (seconds / each) % 1;
+            if (reduced.matches) phase = Math.floor(phase * 4) / 4;
+            const [low, high] = range(data.rows[joint]);
+            const q = home.slice();
+            const wave = Math.sin(2 * Math.PI * phase);
+            q[joint] = wave > 0 ? home[joint] + wave * (high - home[joint]) : home[joint] + wave * (home[joint] - low);
+            state.move(q);
+            timer = reduced.matches ? window.setTimeout(tick, 500) : requestAnimationFrame(tick);
+        };
+        stop = () => {
+            if (reduced.matches) clearTimeout(timer);
+            else cancelAnimationFrame(timer);
+            button.textContent = "play";
+            button.setAttribute("aria-pressed", "false");
+            stop = () => {};
+        };
+        button.textContent = "stop";
+        button.setAttribute("aria-pressed", "true");
+        tick();
+    };
+    button.addEventListener("click", () => {
+        if (button.getAttribute("aria-pressed") === "true") stop();
+        else play();
+    });
+    for (const event of ["pointerdown", "keydown"]) {
+        document.addEventListener(event, (touched) => {
+            if (touched.target !== button) stop();
+        });
+    }
+}
