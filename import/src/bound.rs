@@ -14,7 +14,9 @@
 //! The box: q within its limits (none: ±pi rad, ±1 m), |dq| up to the velocity limit (none: 4 rad/s, 1 m/s), |ddq| ≤ 10.
 //! Sums are floats, rounded up at the end.
 
-use crate::chain::{Arm, Body, Pose, Row};
+use crate::body::Body;
+use crate::chain::{Arm, Row};
+use crate::pose::Pose;
 use crate::snap::Written;
 
 /// What a bound is multiplied by: more than all roundings here.
@@ -62,8 +64,8 @@ fn way(poses: &[Pose]) -> Way {
 /// Largest |q| and |dq| of the box.
 fn box_of(row: &Row) -> (f64, f64) {
     let otherwise = if row.prismatic { (1.0, 1.0) } else { (std::f64::consts::PI, 4.0) };
-    let q = row.position.as_ref().map_or(otherwise.0, |[low, high]| low.value.abs().max(high.value.abs()));
-    (q, row.velocity.as_ref().map_or(otherwise.1, |v| v.value))
+    let q = row.motion.position.as_ref().map_or(otherwise.0, |[low, high]| low.value.abs().max(high.value.abs()));
+    (q, row.motion.velocity.as_ref().map_or(otherwise.1, |v| v.value))
 }
 
 /// A quantity of both arms: its largest size, and how far the two can be apart.
@@ -105,7 +107,7 @@ fn mass(body: &Body, at: Way) -> Mass {
     let size = entries.iter().map(|x| x.value * x.value).sum::<f64>().sqrt();
     let dust: f64 = entries.iter().map(|x| x.offset).sum();
     // R I R' with R off by an angle: twice that times |I|.
-    Mass { m: body.mass.value, com, inertia: Pair::new(size, 2.0 * (at.turned + offsets(&body.rpy)) * size + dust) }
+    Mass { m: body.mass.value, com, inertia: Pair::new(size, 2.0 * (at.turned + body.turn.turned()) * size + dust) }
 }
 
 /// The bounds of an arm; all are 0 where nothing was taken for something else.
@@ -119,7 +121,7 @@ pub(crate) fn of(arm: &Arm) -> Bound {
     let slide = |j: usize| if arm.rows[j].prismatic { boxes[j].0 } else { 0.0 };
     let (mut flange, mut orientation, mut rest) = (tool.moved, tool.turned, tool.length);
     for j in (0..arm.rows.len()).rev() {
-        let eta = arm.rows[j].axis_offset;
+        let eta = arm.rows[j].motion.axis_offset;
         // A slide along an axis that points elsewhere turns nothing.
         let turned = ways[j].turned + if arm.rows[j].prismatic { 0.0 } else { 2.0 * eta };
         flange += ways[j].turned * slide(j) + turned * rest + eta * slide(j) + ways[j].moved;
@@ -133,12 +135,13 @@ pub(crate) fn of(arm: &Arm) -> Bound {
 fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
     const ACCELERATION: f64 = 10.0;
     let n = arm.rows.len();
-    let (mut w, mut dw, mut a) = (Pair::default(), Pair::default(), Pair::new(9.81, 9.81 * arm.gravity_offset));
+    let (mut w, mut dw, mut a) =
+        (Pair::default(), Pair::default(), Pair::new(arm.gravity_size, arm.gravity_size * arm.gravity_offset));
     let (mut forces, mut moments) = (vec![Pair::default(); n], vec![Pair::default(); n]);
     // By how much the step from link j - 1 to link j is turned against the other arm's, and its lever.
     let mut steps = Vec::new();
     for (j, row) in arm.rows.iter().enumerate() {
-        let ((q, dq), eta) = (boxes[j], row.axis_offset);
+        let ((q, dq), eta) = (boxes[j], row.motion.axis_offset);
         let turned = ways[j].turned + if row.prismatic { 0.0 } else { 2.0 * eta };
         let mut lever = Pair::new(ways[j].length, ways[j].moved);
         if row.prismatic {
@@ -165,7 +168,7 @@ fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
     let mut worst: f64 = 0.0;
     for j in (0..n).rev() {
         let felt = if arm.rows[j].prismatic { forces[j] } else { moments[j] };
-        worst = worst.max(felt.apart + arm.rows[j].axis_offset * felt.size);
+        worst = worst.max(felt.apart + arm.rows[j].motion.axis_offset * felt.size);
         if j > 0 {
             let (turned, lever) = steps[j];
             let force = forces[j].turned(turned);

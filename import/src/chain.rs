@@ -2,84 +2,32 @@
 //!
 //! A fixed or locked joint is one more pose; what hangs on a moving link beside the chain is attached to it. Nothing is multiplied out here.
 
-mod bodies;
 mod gravity;
 mod locks;
 mod tips;
-mod values;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::btree_map::{BTreeMap, Entry};
+use std::collections::BTreeSet;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::kinds::MAX_JOINTS;
 use armgen_codegen::source::{Source, Span};
 use armgen_codegen::validate::{is_free_name, is_rust_name};
 
-use crate::number::Decimal;
-use crate::snap::{Snap, Written};
-use crate::tree::{Kind, Tree};
-use crate::xml::{beginning, child, place, shown};
+use crate::body::Body;
+use crate::format::{Extent, Format, Motion};
+use crate::pose::Pose;
+use crate::snap::Snap;
+use crate::tree::{Kind, Role, Tree};
+use crate::values::Values;
+use crate::xml::{beginning, shown};
 use crate::{Code, Options};
-pub(crate) use bodies::{Body, ELEMENTS};
 pub(crate) use locks::Lock;
-use values::Values;
 
 /// Poses in one list of robot.yaml.
 const MAX_POSES: usize = 60;
 /// Bodies of an arm: beyond, robot.yaml would be longer than may be read.
 const MAX_BODIES: usize = 1000;
-
-/// A translation and a rotation.
-#[derive(Clone, Debug)]
-pub(crate) struct Pose {
-    pub(crate) xyz: [Written; 3],
-    pub(crate) turn: Turn,
-}
-
-/// A rotation.
-#[derive(Clone, Debug)]
-pub(crate) enum Turn {
-    /// About fixed x, y, z.
-    Rpy([Written; 3]),
-    /// About an axis, by an expression.
-    AxisAngle(AxisAngle),
-}
-
-/// A rotation about an axis.
-#[derive(Clone, Debug)]
-pub(crate) struct AxisAngle {
-    pub(crate) axis: [Written; 3],
-    /// By how much snapping turned the axis, rad.
-    pub(crate) axis_offset: f64,
-    /// The angle, an expression.
-    pub(crate) angle: String,
-    /// Its value.
-    pub(crate) value: f64,
-}
-
-impl Pose {
-    /// By how much snapping turned it at most, rad.
-    pub(crate) fn turned(&self) -> f64 {
-        match &self.turn {
-            Turn::Rpy(rpy) => rpy.iter().map(|angle| angle.offset).sum(),
-            Turn::AxisAngle(turn) => 2.0 * turn.axis_offset,
-        }
-    }
-
-    /// Whether it is the identity in the file, too.
-    fn is_nothing(&self) -> bool {
-        self.is_identity() && self.turned() == 0.0 && self.xyz.iter().all(|x| x.offset == 0.0)
-    }
-
-    /// Whether it is the identity in robot.yaml.
-    pub(crate) fn is_identity(&self) -> bool {
-        let still = match &self.turn {
-            Turn::Rpy(rpy) => rpy.iter().all(Written::is_zero),
-            Turn::AxisAngle(..) => false,
-        };
-        still && self.xyz.iter().all(Written::is_zero)
-    }
-}
 
 /// A body that is fixed to a moving link.
 #[derive(Clone, Debug)]
@@ -101,14 +49,7 @@ pub(crate) struct Row {
     pub(crate) span: Span,
     pub(crate) prismatic: bool,
     pub(crate) origin: Vec<Pose>,
-    pub(crate) axis: [Written; 3],
-    /// By how much snapping turned it, rad.
-    pub(crate) axis_offset: f64,
-    pub(crate) position: Option<[Decimal; 2]>,
-    pub(crate) velocity: Option<Decimal>,
-    pub(crate) effort: Option<Decimal>,
-    pub(crate) viscous: Option<Decimal>,
-    pub(crate) coulomb: Option<Decimal>,
+    pub(crate) motion: Motion,
     /// The link's own body, if the file gives it one.
     pub(crate) body: Option<Body>,
     pub(crate) attached: Vec<Attached>,
@@ -126,7 +67,8 @@ pub(crate) struct Arm {
     pub(crate) gravity: [String; 3],
     /// Whether these are rounded.
     pub(crate) gravity_rounded: bool,
-    /// By how much snapping turned it, rad.
+    /// Its size, and by how much snapping turned it, rad.
+    pub(crate) gravity_size: f64,
     pub(crate) gravity_offset: f64,
     pub(crate) rows: Vec<Row>,
     pub(crate) tool: Vec<Pose>,
@@ -141,8 +83,9 @@ pub(crate) struct Arm {
 }
 
 /// What is being put together.
-struct Builder<'r, 'a, 'i> {
-    tree: &'r Tree<'a, 'i>,
+struct Builder<'r> {
+    tree: &'r Tree,
+    format: &'r dyn Format,
     locks: locks::Locks<'r>,
     values: Values<'r>,
     /// Which joints lie on the chain.
@@ -154,7 +97,13 @@ struct Builder<'r, 'a, 'i> {
 }
 
 /// The chain of a tree; faults are reported.
-pub(crate) fn arm(source: &Source, tree: &Tree<'_, '_>, options: &Options, diagnostics: &mut Diagnostics) -> Option<Arm> {
+pub(crate) fn arm(
+    source: &Source,
+    tree: &Tree,
+    format: &dyn Format,
+    options: &Options,
+    diagnostics: &mut Diagnostics,
+) -> Option<Arm> {
     let locks = locks::Locks::new(tree, &options.lock, diagnostics)?;
     let base = named_link(tree, options.base.as_deref(), "--base", diagnostics)?;
     let base = match base {
@@ -167,7 +116,7 @@ pub(crate) fn arm(source: &Source, tree: &Tree<'_, '_>, options: &Options, diagn
         None => tips::only(tree, base, &locks, diagnostics)?,
     };
     let Some(path) = tree.path(base, tip) else {
-        let (from, to) = (tree.links[base].name, tree.links[tip].name);
+        let (from, to) = (&tree.links[base].name, &tree.links[tip].name);
         let message = format!("the link `{}` is not below `{}`", shown(to), shown(from));
         let way = tips::way_up(tree, tip);
         let below = format!("a link below `{}` as `--tip`", shown(from));
@@ -175,8 +124,8 @@ pub(crate) fn arm(source: &Source, tree: &Tree<'_, '_>, options: &Options, diagn
             Some(way) => format!("above it are {way}: take one of them as `--base`, or {below}"),
             None => format!("it hangs on nothing: take {below}"),
         };
-        let fault = Diagnostic::new(Code::NotBelow, place(tree.links[tip].node), message, "this is to be the tip", help);
-        diagnostics.push(fault.also(place(tree.links[base].node), "this is to be the base"));
+        let fault = Diagnostic::new(Code::NotBelow, tree.links[tip].span, message, "this is to be the tip", help);
+        diagnostics.push(fault.also(tree.links[base].span, "this is to be the base"));
         return None;
     };
     let moving: Vec<usize> = path.iter().copied().filter(|&j| tree.joints[j].kind.moves() && locks.of(j).is_none()).collect();
@@ -187,33 +136,35 @@ pub(crate) fn arm(source: &Source, tree: &Tree<'_, '_>, options: &Options, diagn
         diagnostics.push(Diagnostic::new(Code::TooManyJoints, tree.joints[joint].span, message, "one too many", help));
         return None;
     }
-    warn_of_simulation(tree, diagnostics);
+    format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, diagnostics);
     let values = Values { source, diagnostics, snap: Snap::new(options.snap) };
     let on_path = path.iter().copied().collect();
-    let mut builder = Builder { tree, locks, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
+    let mut builder =
+        Builder { tree, format, locks, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
     let (rows, tool) = builder.rows(&path)?;
     if rows.is_empty() && !builder.values.diagnostics.has_errors() {
-        let message = format!("nothing moves between `{}` and `{}`", shown(tree.links[base].name), shown(tree.links[tip].name));
+        let message = format!("nothing moves between `{}` and `{}`", shown(&tree.links[base].name), shown(&tree.links[tip].name));
         let help = "choose a `--tip` below a joint that turns or slides";
-        builder.values.report(Code::NoJoints, place(tree.links[tip].node), message, "", help);
+        builder.values.report(Code::NoJoints, tree.links[tip].span, message, "", help);
         return None;
     }
-    let (gravity, gravity_rounded, gravity_offset) = builder.gravity(base)?;
+    let gravity = builder.gravity(base);
     let first = path.iter().position(|joint| moving.first() == Some(joint)).unwrap_or(0);
     let on_base = path[..first].iter().map(|&j| tree.joints[j].parent).chain(path.get(first).map(|&j| tree.joints[j].parent));
-    let left_out_branches =
-        on_base.flat_map(|link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint)).count();
+    let left_out_branches = on_base.flat_map(|link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint));
+    let left_out_branches = left_out_branches.filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame).count();
     builder.values.warn_of_near_angles();
     let Builder { values, locked, massless, .. } = builder;
-    let robot_name = options.name.clone().unwrap_or_else(|| identifier(tree.name, &mut BTreeSet::new(), is_rust_name));
+    let robot_name = options.name.clone().unwrap_or_else(|| identifier(&tree.name, &mut BTreeSet::new(), is_rust_name));
     Some(Arm {
         name: robot_name,
-        robot: tree.name.to_owned(),
-        base: tree.links[base].name.to_owned(),
-        tip: tree.links[tip].name.to_owned(),
-        gravity,
-        gravity_rounded,
-        gravity_offset,
+        robot: tree.name.clone(),
+        base: tree.links[base].name.clone(),
+        tip: tree.links[tip].name.clone(),
+        gravity: gravity.texts,
+        gravity_rounded: gravity.rounded,
+        gravity_size: gravity.size,
+        gravity_offset: gravity.offset,
         rows,
         tool,
         snap: values.snap,
@@ -225,7 +176,7 @@ pub(crate) fn arm(source: &Source, tree: &Tree<'_, '_>, options: &Options, diagn
 }
 
 /// The link that an option names, `Some(None)` if the option is not given.
-fn named_link(tree: &Tree<'_, '_>, name: Option<&str>, option: &str, diagnostics: &mut Diagnostics) -> Option<Option<usize>> {
+fn named_link(tree: &Tree, name: Option<&str>, option: &str, diagnostics: &mut Diagnostics) -> Option<Option<usize>> {
     let Some(name) = name else { return Some(None) };
     let found = tree.link(name);
     if found.is_none() {
@@ -253,31 +204,30 @@ fn identifier(name: &str, taken: &mut BTreeSet<String>, free: fn(&str) -> bool) 
     chosen
 }
 
-impl Builder<'_, '_, '_> {
+impl Builder<'_> {
     /// Rows of the moving joints, and the poses after the last one.
     fn rows(&mut self, path: &[usize]) -> Option<(Vec<Row>, Vec<Pose>)> {
         let tree = self.tree;
         let mut rows: Vec<Row> = Vec::new();
         let mut pending: Vec<Pose> = Vec::new();
-        let mut names = BTreeSet::new();
+        let (mut links, mut names) = (Vec::new(), BTreeSet::new());
         for &index in path {
             let joint = &tree.joints[index];
-            let origin = self.values.origin(joint.node, "the origin of a joint");
+            let origin = self.format.origin(index, &mut self.values);
             let moves = joint.kind.moves() && self.locks.of(index).is_none();
-            if moves {
-                self.refuse_mimic(index);
-                pending.extend(origin);
-                pending.retain(|pose| !pose.is_nothing());
-                let mut row = self.row(index, std::mem::take(&mut pending));
-                row.name = identifier(joint.name, &mut names, is_free_name);
-                rows.push(row);
-            } else {
-                pending.extend(origin);
-                let locked = self.standing(index, true);
-                pending.extend(locked);
-            }
+            pending.extend(origin);
             pending.retain(|pose| !pose.is_nothing());
             self.check_length(&pending, joint.span)?;
+            if moves {
+                self.refuse_mimic(index);
+                let mut row = self.row(index, std::mem::take(&mut pending));
+                row.name = identifier(&joint.name, &mut names, is_free_name);
+                rows.push(row);
+                links.push(joint.child);
+            } else {
+                pending.extend(self.standing(index, true));
+                pending.retain(|pose| !pose.is_nothing());
+            }
             if let Some(row) = rows.last_mut() {
                 let own = moves.then_some(joint.child);
                 let (body, attached, unreadable) = self.bodies(joint.child, &pending, own)?;
@@ -286,8 +236,8 @@ impl Builder<'_, '_, '_> {
                 row.attached.extend(attached);
             }
         }
-        for row in &mut rows {
-            self.complete(row);
+        for (row, link) in rows.iter_mut().zip(links) {
+            self.complete(link, row);
         }
         Some((rows, pending))
     }
@@ -305,48 +255,24 @@ impl Builder<'_, '_, '_> {
     /// A joint that follows another one cannot move by itself.
     fn refuse_mimic(&mut self, index: usize) {
         let joint = &self.tree.joints[index];
-        if let Some(mimic) = child(joint.node, "mimic") {
-            let message = format!("the joint `{}` of the chain follows another one", shown(joint.name));
-            let help = format!("lock it where it is to stand: `--lock {}=0`", shown(joint.name));
-            self.values.report(Code::Mimic, place(mimic), message, "", help);
+        if let Some((_, span)) = self.format.leader(index) {
+            let message = format!("the joint `{}` of the chain follows another one", shown(&joint.name));
+            let help = format!("lock it where it is to stand: `--lock {}=0`", shown(&joint.name));
+            self.values.report(Code::Mimic, span, message, "", help);
         }
     }
 
     /// A moving joint without its bodies.
     fn row(&mut self, index: usize, origin: Vec<Pose>) -> Row {
         let joint = &self.tree.joints[index];
-        let (axis, axis_offset) =
-            self.values.axis(joint.node, joint.name).unwrap_or_else(|| (std::array::from_fn(|_| Written::zero()), 0.0));
-        let limit = child(joint.node, "limit");
-        let mut optional = |node: Option<roxmltree::Node<'_, '_>>, name: &str| {
-            node.and_then(|node| self.values.scalar(node, name, &format!("`{name}` of joint `{}`", shown(joint.name))))
-        };
-        let (lower, upper) = (optional(limit, "lower"), optional(limit, "upper"));
-        let (velocity, effort) = (optional(limit, "velocity"), optional(limit, "effort"));
-        let dynamics = child(joint.node, "dynamics");
-        let (viscous, coulomb) = (optional(dynamics, "damping"), optional(dynamics, "friction"));
-        let position = match limit {
-            Some(limit) if joint.kind != Kind::Continuous => self.values.position(limit, lower, upper, joint.name),
-            _ => None,
-        };
-        let velocity = self.values.largest(velocity, "velocity", joint.name);
-        let effort = self.values.largest(effort, "effort", joint.name);
-        let viscous = self.values.coefficient(viscous, joint.name);
-        let coulomb = self.values.coefficient(coulomb, joint.name);
         Row {
             name: String::new(),
-            joint: joint.name.to_owned(),
-            link: self.tree.links[joint.child].name.to_owned(),
+            joint: joint.name.clone(),
+            link: self.tree.links[joint.child].name.clone(),
             span: joint.span,
             prismatic: joint.kind == Kind::Prismatic,
             origin,
-            axis,
-            axis_offset,
-            position,
-            velocity,
-            effort,
-            viscous,
-            coulomb,
+            motion: self.format.motion(index, &mut self.values),
             body: None,
             attached: Vec::new(),
             unreadable: false,
@@ -366,12 +292,12 @@ impl Builder<'_, '_, '_> {
         }
         if joint.kind == Kind::Other {
             if lock.as_ref().is_none_or(|lock| lock.value != 0.0) {
-                let word = joint.node.attribute("type").unwrap_or_default();
+                let word = self.format.kind_of(index);
                 let message =
-                    format!("the joint `{}` is `{}`, which is no joint about or along one axis", shown(joint.name), shown(word));
+                    format!("the joint `{}` is `{word}`, which is no joint about or along one axis", shown(&joint.name));
                 let help = match on_path {
-                    true => format!("begin the arm below it with `--base`, or hold it: `--lock {}=0`", shown(joint.name)),
-                    false => format!("hold it: `--lock {}=0`", shown(joint.name)),
+                    true => format!("begin the arm below it with `--base`, or hold it: `--lock {}=0`", shown(&joint.name)),
+                    false => format!("hold it: `--lock {}=0`", shown(&joint.name)),
                 };
                 self.values.report(Code::UnsupportedJoint, joint.span, message, "", help);
             }
@@ -381,34 +307,32 @@ impl Builder<'_, '_, '_> {
             Some(lock) => lock,
             None => self.following(index)?,
         };
-        self.values.warn_outside(joint, &lock);
+        self.warn_outside(index, &lock);
         self.locked.push(lock.clone());
         if lock.value == 0.0 {
             return None;
         }
-        let (axis, offset) = self.values.axis(joint.node, joint.name)?;
-        Some(locks::pose(joint.kind, axis, offset, &lock))
+        let (axis, offset) = self.format.axis(index, &mut self.values)?;
+        Some(Pose::of_joint(joint.kind == Kind::Prismatic, axis, offset, &lock.text, lock.value, lock.span))
     }
 
     /// Where a joint beside the chain stands that is not locked: at 0, or where the joint that it follows makes it.
     fn following(&mut self, index: usize) -> Option<Lock> {
         let joint = &self.tree.joints[index];
-        let zero = Lock { joint: joint.name.to_owned(), text: "0".into(), value: 0.0, span: joint.span };
-        let Some(mimic) = child(joint.node, "mimic") else { return Some(zero) };
-        let leader = mimic.attribute("joint").unwrap_or_default();
+        let zero = Lock { joint: joint.name.clone(), text: "0".into(), value: 0.0, span: joint.span };
+        let Some((leader, span)) = self.format.leader(index) else { return Some(zero) };
         let Some(found) = self.tree.joint(leader) else {
             let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
             let help = self.tree.meant_joint(leader);
-            self.values.report(Code::UnknownJoint, place(mimic), message, "", help);
+            self.values.report(Code::UnknownJoint, span, message, "", help);
             return None;
         };
-        let factor = self.values.scalar(mimic, "multiplier", "the multiplier of `mimic`");
-        let offset = self.values.scalar(mimic, "offset", "the offset of `mimic`").unwrap_or_else(Decimal::zero);
+        let (factor, offset) = self.format.ratio(index, &mut self.values);
         let at = self.locks.of(found).cloned();
         if at.is_none() && self.on_path.contains(&found) && self.tree.joints[found].kind.moves() {
-            let message = format!("the joint `{}` follows `{}`, which moves", shown(joint.name), shown(leader));
-            let help = format!("lock it where it is to stand: `--lock {}=0`", shown(joint.name));
-            self.values.report(Code::Mimic, place(mimic), message, "", help);
+            let message = format!("the joint `{}` follows `{}`, which moves", shown(&joint.name), shown(leader));
+            let help = format!("lock it where it is to stand: `--lock {}=0`", shown(&joint.name));
+            self.values.report(Code::Mimic, span, message, "", help);
             return None;
         }
         Some(locks::follow(zero, at.as_ref(), factor.as_ref(), &offset))
@@ -420,10 +344,10 @@ impl Builder<'_, '_, '_> {
         let (mut body, mut attached, mut unreadable) = (None, Vec::new(), false);
         let mut open = vec![(link, at.to_vec())];
         while let Some((link, poses)) = open.pop() {
-            let found = self.values.body(tree.links[link].node, tree.links[link].name);
+            let found = self.format.body(link, &mut self.values);
             self.bodies += usize::from(found.is_some());
             if self.bodies > MAX_BODIES {
-                let span = place(tree.links[link].node);
+                let span = tree.links[link].span;
                 self.values.report(
                     Code::TooLarge,
                     span,
@@ -434,18 +358,24 @@ impl Builder<'_, '_, '_> {
                 return None;
             }
             match found {
-                Some(found) if own == Some(link) => body = Some(found),
-                Some(body) => {
-                    let span = place(tree.links[link].node);
-                    attached.push(Attached { link: tree.links[link].name.to_owned(), origin: poses.clone(), body, span });
+                Some((frame, found)) if own == Some(link) && frame.is_empty() => body = Some(found),
+                Some((frame, body)) => {
+                    let origin = poses.iter().cloned().chain(frame).collect();
+                    attached.push(Attached { link: tree.links[link].name.clone(), origin, body, span: tree.links[link].span });
                 }
-                None => unreadable |= child(tree.links[link].node, "inertial").is_some(),
+                None => {
+                    unreadable |= self.format.has_body(link);
+                    if self.format.lacks_body(link) {
+                        self.without_body(link);
+                        unreadable = true;
+                    }
+                }
             }
             let beside: Vec<usize> = tree.links[link].below.iter().rev().copied().filter(|j| !self.on_path.contains(j)).collect();
             for below in beside {
                 let joint = &tree.joints[below];
                 let mut poses = poses.clone();
-                poses.extend(self.values.origin(joint.node, "the origin of a joint"));
+                poses.extend(self.format.origin(below, &mut self.values));
                 let locked = self.standing(below, false);
                 poses.extend(locked);
                 poses.retain(|pose| !pose.is_nothing());
@@ -456,61 +386,56 @@ impl Builder<'_, '_, '_> {
         Some((body, attached, unreadable))
     }
 
+    /// Warns of a joint that stands where its own limits do not allow it.
+    fn warn_outside(&mut self, index: usize, lock: &Lock) {
+        let joint = &self.tree.joints[index];
+        let Some([lower, upper]) = self.format.range(index, &mut self.values) else { return };
+        if lower < upper && (lock.value < lower || lock.value > upper) {
+            let message =
+                format!("the joint `{}` stands at {}, outside its limits {lower} to {upper}", shown(&joint.name), lock.text);
+            let help = format!("say where it is to stand: `--lock {}=VALUE`", shown(&joint.name));
+            self.values.report(Code::LockOutside, joint.span, message, "", help);
+        }
+    }
+
     /// A moving link has a mass distribution.
-    fn complete(&mut self, row: &mut Row) {
-        if row.body.is_some() || !row.attached.is_empty() || row.unreadable {
+    fn complete(&mut self, link: usize, row: &mut Row) {
+        if row.body.is_some() || !row.attached.is_empty() || row.unreadable || self.format.may_be_massless(link) {
             return;
         }
+        self.without_body(link);
+    }
+
+    /// A link that moves and should have a mass distribution has none.
+    fn without_body(&mut self, link: usize) {
+        let (span, name) = (self.tree.links[link].span, &self.tree.links[link].name);
         if self.options.massless {
-            let span = place(self.tree.links[self.tree.link(&row.link).expect("it is one of the tree")].node);
-            let message = format!("the moving link `{}` is taken to have no mass", shown(&row.link));
+            let message = format!("the moving link `{}` is taken to have no mass", shown(name));
             self.values.report(Code::NoMass, span, message, "", "give its mass, centre and inertia where forces matter");
-            self.massless.push(row.link.clone());
+            self.massless.push(name.clone());
             return;
         }
-        let link = self.tree.link(&row.link).expect("it is one of the tree");
-        let message = format!("the moving link `{}` has no `inertial`, and nothing that is fixed to it has", shown(&row.link));
+        let message = match self.format.lacks_body(link) {
+            true => format!("the moving body `{}` has no `inertial`; inertias are not computed from geometries", shown(name)),
+            false => format!("the moving link `{}` has no `inertial`, and nothing that is fixed to it has", shown(name)),
+        };
         let help = "give its mass, centre and inertia; with `--massless` its mass is 0, which is enough for kinematics";
-        self.values.report(Code::MissingInertial, place(self.tree.links[link].node), message, "moves", help);
+        self.values.report(Code::MissingInertial, span, message, "moves", help);
     }
 }
 
-/// Warns of what a simulator would take into account, and robot.yaml does not.
-fn warn_of_simulation(tree: &Tree<'_, '_>, diagnostics: &mut Diagnostics) {
-    const FELT: [&str; 6] = [
-        "springStiffness",
-        "springReference",
-        "implicitSpringDamper",
-        "disableFixedJointLumping",
-        "preserveFixedJoint",
-        "gravity",
-    ];
-    for node in tree.root.children().filter(|n| n.is_element() && n.tag_name().name() == "gazebo") {
-        for felt in node.descendants().filter(|n| n.is_element() && FELT.contains(&n.tag_name().name())) {
-            let message = format!("`{}` may change how a simulator moves the arm; it is left out", felt.tag_name().name());
-            let help = "springs and the like are no part of a description of a rigid arm: add their torques yourself";
-            diagnostics.push(Diagnostic::new(Code::ChangesMotion, place(felt), message, "left out", help));
-        }
-    }
-}
-
-/// Elements and attributes that are left out, by name.
-pub(crate) fn left_out(tree: &Tree<'_, '_>) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
-    let mut count = |name: &str| *counts.entry(name.to_owned()).or_default() += 1;
-    for node in tree.root.children().filter(roxmltree::Node::is_element) {
-        match node.tag_name().name() {
-            "link" => node
-                .children()
-                .filter(|n| n.is_element() && n.tag_name().name() != "inertial")
-                .for_each(|n| count(n.tag_name().name())),
-            "joint" => {
-                const TAKEN: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
-                let others = node.children().filter(|n| n.is_element() && !TAKEN.contains(&n.tag_name().name()));
-                others.for_each(|n| count(n.tag_name().name()));
+/// The links that move, those of the chain and all that hangs on them, each with the last joint of the chain above it that moves.
+fn moved(tree: &Tree, path: &[usize], moving: &[usize]) -> BTreeMap<usize, usize> {
+    let mut moved = BTreeMap::new();
+    // From the tip upwards: what hangs on a joint further down is taken already.
+    for &joint in moving.iter().rev().filter(|joint| path.contains(joint)) {
+        let mut open = vec![tree.joints[joint].child];
+        while let Some(link) = open.pop() {
+            if let Entry::Vacant(free) = moved.entry(link) {
+                free.insert(joint);
+                open.extend(tree.links[link].below.iter().map(|&joint| tree.joints[joint].child));
             }
-            other => count(other),
         }
     }
-    counts
+    moved
 }

@@ -11,7 +11,7 @@ codes! {
         TooLarge Error "too-large",
         /// A macro of xacro that was not written out.
         Xacro Error "xacro",
-        /// A MuJoCo model.
+        /// A part of MJCF that a description of a serial arm does not hold.
         MjcfFeature Error "mjcf-feature",
         /// An attribute that must be there is not.
         MissingAttribute Error "missing-attribute",
@@ -61,6 +61,8 @@ codes! {
         ImpossibleInertia Error "impossible-inertia",
         /// A friction coefficient below 0.
         NegativeFriction Error "negative-friction",
+        /// An inertia of a joint below 0.
+        NegativeArmature Error "negative-armature",
         /// Position limits that hold no interval.
         EmptyLimits Error "empty-limits",
         /// A value of `--lock` that is no expression.

@@ -1,29 +1,41 @@
-//! A serial chain of a URDF as a `robot.yaml`: exact wherever it can be, and where not, that is said and bounded.
+//! A serial chain of a URDF or of a MuJoCo model as a `robot.yaml`: exact wherever it can be, and where not, that is said and bounded.
 //!
 //! ```text
 //! xml.rs     text -> XML tree with places, bounded
 //! number.rs  digits as they stand
-//! tree.rs    links and joints
-//! chain.rs   from base to tip: rows, poses, bodies; locked branches lumped; every fault with its place
 //! snap.rs    1.5708 is pi/2
-//! bound.rs   how far that can move the flange and the torques
+//! pose.rs body.rs   frames and mass distributions, as robot.yaml writes them
+//! values.rs  attributes as numbers, with what must hold for them
+//! tree.rs    links and joints
+//! format.rs  what the formats have in common
+//! urdf.rs    URDF
+//! mjcf.rs    MJCF
+//! chain.rs   from base to tip: rows, poses, bodies; locked branches lumped; every fault with its place
+//! bound.rs   how far snapping can move the flange and the torques
 //! yaml.rs    the text of robot.yaml
 //! report.rs  what became of everything, as JSON and in words
 //! build_script.rs  the face for a build.rs, which alone touches files
 //! ```
 //!
 //! Poses stay lists and bodies stay apart (`attached`): robot.yaml multiplies and adds them exactly, so that no product of rotations is ever
-//! written as digits. Formats: URDF as in <https://wiki.ros.org/urdf/XML>.
+//! written as digits. Formats: URDF as in <https://wiki.ros.org/urdf/XML>, MJCF as in
+//! <https://mujoco.readthedocs.io/en/stable/XMLreference.html>.
 
+mod body;
 mod bound;
 pub mod build_script;
 mod chain;
 mod code;
+mod format;
+mod mjcf;
 mod number;
 mod options;
+mod pose;
 mod report;
 mod snap;
 mod tree;
+mod urdf;
+mod values;
 mod xml;
 mod yaml;
 
@@ -43,7 +55,7 @@ pub struct Imported {
     pub report: Report,
 }
 
-/// The arm of a file: URDF. All faults of the file with their places; there is an arm if and only if none of them is an error.
+/// The arm of a URDF or a MuJoCo model. All faults of the file with their places; there is an arm if and only if none of them is an error.
 pub fn import(source: &Source, options: &Options) -> (Option<Imported>, Diagnostics) {
     let mut diagnostics = Diagnostics::new();
     let imported = read(source, options, &mut diagnostics);
@@ -55,26 +67,36 @@ fn read(source: &Source, options: &Options, diagnostics: &mut Diagnostics) -> Op
     let document = xml::parse(source, diagnostics)?;
     let root = document.root_element();
     match root.tag_name().name() {
-        "robot" => {}
+        "robot" => {
+            let (tree, urdf) = urdf::read(root, diagnostics)?;
+            taken(source, &tree, &urdf, options, diagnostics)
+        }
         "mujoco" => {
-            let message = "this is a MuJoCo model, which is not read yet";
-            let help = "give the URDF of the robot";
-            diagnostics.push(Diagnostic::new(Code::MjcfFeature, xml::place(root), message, "", help));
-            return None;
+            let (tree, mjcf) = mjcf::read(root, diagnostics)?;
+            taken(source, &tree, &mjcf, options, diagnostics)
         }
         other => {
             let message = format!("the file holds `{}`, not a robot", xml::shown(other));
-            let help = "a URDF begins with `<robot name=\"...\">`";
-            diagnostics.push(Diagnostic::new(Code::XmlSyntax, xml::place(root), message, "not `robot`", help));
-            return None;
+            let help = "a URDF begins with `<robot name=\"...\">`, a MuJoCo model with `<mujoco>`";
+            diagnostics.push(Diagnostic::new(Code::XmlSyntax, xml::place(root), message, "neither `robot` nor `mujoco`", help));
+            None
         }
     }
-    let tree = tree::Tree::read(root, diagnostics)?;
-    let arm = chain::arm(source, &tree, options, diagnostics)?;
+}
+
+/// The arm of a file that was read.
+fn taken(
+    source: &Source,
+    tree: &tree::Tree,
+    format: &dyn format::Format,
+    options: &Options,
+    diagnostics: &mut Diagnostics,
+) -> Option<Imported> {
+    let arm = chain::arm(source, tree, format, options, diagnostics)?;
     if diagnostics.has_errors() {
         return None;
     }
     let bound = bound::of(&arm);
-    let report = report::of(source, &tree, &arm, bound);
+    let report = report::of(source, format, &arm, bound);
     Some(Imported { yaml: yaml::text(source, &arm, &report), report })
 }

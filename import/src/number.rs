@@ -34,6 +34,14 @@ impl Decimal {
         self.value == 0.0
     }
 
+    /// Whether its digits are those of a whole number.
+    pub(crate) fn is_integer(&self) -> bool {
+        let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+        let (whole, fraction) =
+            self.text.trim_start_matches('-').split_once('.').unwrap_or((self.text.trim_start_matches('-'), ""));
+        digits(whole) && fraction.bytes().all(|b| b == b'0')
+    }
+
     /// Its exact value.
     pub(crate) fn exact(&self) -> Number {
         let (mantissa, power) = self.text.split_once('e').unwrap_or((&self.text, "0"));

@@ -6,9 +6,9 @@ use armgen_codegen::source::{Source, Span};
 use serde_json::{json, Map, Value};
 
 use crate::bound::Bound;
-use crate::chain::{left_out, Arm};
+use crate::chain::{Arm, Attached, Row};
+use crate::format::Format;
 use crate::snap::Snapped;
-use crate::tree::Tree;
 
 /// What was taken, changed and left out.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl Report {
 }
 
 /// The report of an arm.
-pub(crate) fn of(source: &Source, tree: &Tree<'_, '_>, arm: &Arm, bound: Bound) -> Report {
+pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) -> Report {
     let at = |span: Span| {
         let place = source.place(span.start);
         (place.line, place.column)
@@ -47,9 +47,9 @@ pub(crate) fn of(source: &Source, tree: &Tree<'_, '_>, arm: &Arm, bound: Bound) 
     };
     let snapped =
         |s: &Snapped| placed(s.span, vec![("written", json!(s.written)), ("taken", json!(s.taken)), ("offset", json!(s.offset))]);
-    let lumped = arm.rows.iter().flat_map(|row| row.attached.iter().map(move |other| (row, other)));
+    let bodies = arm.rows.iter().flat_map(|row| lumped(row).map(move |other| (row, other)));
     let lumped: Vec<Value> =
-        lumped.map(|(row, other)| placed(other.span, vec![("link", json!(other.link)), ("into", json!(row.name))])).collect();
+        bodies.map(|(row, other)| placed(other.span, vec![("link", json!(other.link)), ("into", json!(row.name))])).collect();
     let locked: Vec<Value> = arm
         .locked
         .iter()
@@ -58,10 +58,10 @@ pub(crate) fn of(source: &Source, tree: &Tree<'_, '_>, arm: &Arm, bound: Bound) 
     let joints: Vec<Value> =
         arm.rows.iter().map(|row| placed(row.span, vec![("name", json!(row.name)), ("source", json!(row.joint))])).collect();
     let rounded: Vec<Value> = if arm.gravity_rounded { vec![json!({"what": "gravity", "digits": 17})] } else { Vec::new() };
-    let left_out = left_out(tree);
+    let left_out = format.left_out();
     let json = json!({
         "robot": arm.name,
-        "format": "urdf",
+        "format": format.name(),
         "base": arm.base,
         "tip": arm.tip,
         "joints": joints,
@@ -86,11 +86,11 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     }
     if !arm.snap.snapped.is_empty() {
         lines.push(format!(
-            "{} taken for what they mean: the end effector moves by at most {:.1e} m and {:.1e} rad, a torque by {:.1e} N m (or N)",
+            "{} taken for what they mean: the end effector moves by at most {} m and {} rad, a torque by {} N m (or N)",
             counted(arm.snap.snapped.len(), "number"),
-            bound.flange,
-            bound.orientation,
-            bound.torque
+            rounded_up(bound.flange),
+            rounded_up(bound.orientation),
+            rounded_up(bound.torque)
         ));
     }
     if let Some((span, text)) = arm.snap.near.first() {
@@ -101,7 +101,7 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
             place.line
         ));
     }
-    let lumped: Vec<&str> = arm.rows.iter().flat_map(|row| &row.attached).map(|other| other.link.as_str()).collect();
+    let lumped: Vec<&str> = arm.rows.iter().flat_map(lumped).map(|other| other.link.as_str()).collect();
     if !lumped.is_empty() {
         lines.push(format!("fixed to the links that carry them: {}", names(lumped)));
     }
@@ -125,11 +125,42 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     lines
 }
 
+/// The bodies of a link that are not its own.
+fn lumped(row: &Row) -> impl Iterator<Item = &Attached> {
+    row.attached.iter().filter(|other| other.link != row.link)
+}
+
+/// A bound in two digits, not below it.
+fn rounded_up(bound: f64) -> String {
+    let nearest = format!("{bound:.1e}");
+    if nearest.parse::<f64>().is_ok_and(|rounded| rounded >= bound) {
+        return nearest;
+    }
+    // Half a unit of the last digit more.
+    let power = nearest.split_once('e').map_or("0", |(_, power)| power);
+    let half: f64 = format!("0.05e{power}").parse().unwrap_or_default();
+    format!("{:.1e}", bound + half)
+}
+
 /// `1 number`, `2 numbers`.
 fn counted(count: usize, word: &str) -> String {
     match (count, word.strip_suffix("ch")) {
         (1, _) => format!("1 {word}"),
         (_, Some(start)) => format!("{count} {start}ches"),
         _ => format!("{count} {word}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bound_is_never_rounded_below_itself() {
+        for (bound, text) in
+            [(0.0, "0.0e0"), (4.1e-6, "4.1e-6"), (4.1001e-6, "4.2e-6"), (9.96e-3, "1.0e-2"), (9.91e2, "1.0e3"), (1.04, "1.1e0")]
+        {
+            assert_eq!(rounded_up(bound), text, "{bound}");
+        }
     }
 }

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use armgen_codegen::source::Span;
 
 use crate::number::Decimal;
+use crate::pose::Turn;
 
 /// Lengths up to this, m, and products of inertia up to this part of the largest moment are rounding.
 const DUST: f64 = 1e-14;
@@ -54,6 +55,11 @@ impl Written {
         Written::as_is(&Decimal::zero())
     }
 
+    /// As a number that is not known to be a multiple of pi/12.
+    pub(crate) fn inexact(self) -> Written {
+        Written { twelfths: None, ..self }
+    }
+
     pub(crate) fn is_zero(&self) -> bool {
         self.text == "0"
     }
@@ -81,22 +87,119 @@ impl Snap {
         Written { text, value, offset, twelfths: None, span: from.span }
     }
 
-    /// An angle.
+    /// An angle in radians.
     pub(crate) fn angle(&mut self, angle: &Decimal) -> Written {
-        let step = PI / 12.0;
-        let count = (angle.value / step).round();
-        let off = (angle.value - count * step).abs();
-        if angle.is_zero() || count.abs() > 1e6 {
+        if angle.is_zero() {
             return Written::as_is(angle);
+        }
+        self.radians(angle, angle.value, Written::as_is(angle))
+    }
+
+    /// An angle in degrees.
+    pub(crate) fn degrees(&mut self, angle: &Decimal) -> Written {
+        if angle.is_zero() {
+            return Written::as_is(angle);
+        }
+        let written =
+            Written { text: format!("deg({})", angle.text), value: angle.value.to_radians(), ..Written::as_is(angle).inexact() };
+        // A multiple of 15 degrees is one of pi/12: nothing is taken for something else.
+        let multiple = (angle.value / 15.0).round();
+        if multiple * 15.0 == angle.value && multiple.abs() < 1e6 && angle.is_integer() {
+            return Written { twelfths: Some(multiple as i64), ..written };
+        }
+        self.radians(angle, written.value, written)
+    }
+
+    /// An angle of so many radians, written as it is if it means nothing else.
+    fn radians(&mut self, angle: &Decimal, value: f64, as_is: Written) -> Written {
+        let step = PI / 12.0;
+        let count = (value / step).round();
+        let off = (value - count * step).abs();
+        if count.abs() > 1e6 {
+            return as_is;
         }
         if self.tolerance > 0.0 && off <= self.tolerance {
             let count = count as i64;
+            // The float of an angle in degrees is rounded once more.
+            let off = off + 4e-16 * value.abs();
             return Written { twelfths: Some(count), ..self.take(angle, multiple_of_pi(count), count as f64 * step, off) };
         }
         if count != 0.0 && off <= NEAR {
             self.near.push((angle.span, angle.text.clone()));
         }
-        Written::as_is(angle)
+        as_is
+    }
+
+    /// A quaternion w, x, y, z other than 0: a turn about a coordinate axis by a multiple of pi/12, one of the 24 turns of the cube, or as
+    /// written.
+    pub(crate) fn quaternion(&mut self, quat: &[Decimal; 4], span: Span) -> Turn {
+        let as_is = Turn::Quat(quat.each_ref().map(Written::as_is), 0.0);
+        let length = quat.iter().map(|x| x.value * x.value).sum::<f64>().sqrt();
+        if quat[1..].iter().all(Decimal::is_zero) {
+            return Turn::none();
+        }
+        if self.tolerance == 0.0 || !length.is_finite() || length == 0.0 {
+            return as_is;
+        }
+        let q = [0, 1, 2, 3].map(|k| quat[k].value / length);
+        // All components that are not 0 have the same digits: what is meant is what is written.
+        let sizes: Vec<&str> = quat.iter().filter(|x| !x.is_zero()).map(|x| x.text.trim_start_matches('-')).collect();
+        let equal = sizes.windows(2).all(|two| two[0] == two[1]);
+        let turning: Vec<usize> = (1..4).filter(|&k| q[k].abs() > DUST).collect();
+        let (angles, twelfths, off) = if let [only] = turning[..] {
+            let angle = 2.0 * q[only].atan2(q[0]);
+            let count = (angle / (PI / 12.0)).round();
+            let mut twelfths = [0; 3];
+            twelfths[only - 1] = count as i64;
+            ("angle", twelfths, (angle - count * PI / 12.0).abs() + 4.0 * DUST)
+        } else {
+            let near = q.map(|x| if x.abs() < 0.35 { 0.0 } else { x.signum() });
+            let size = near.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if ![1.0, 2f64.sqrt(), 2.0].contains(&size) {
+                return as_is;
+            }
+            let apart = (0..4).map(|k| (q[k] - near[k] / size).powi(2)).sum::<f64>().sqrt();
+            // Half the angle is twice the arc sine of half the chord.
+            ("turn", cube_turn(near), 4.0 * (apart / 2.0).min(1.0).asin())
+        };
+        if off > self.tolerance {
+            if angles == "angle" && off <= NEAR {
+                self.near.push((span, quat.each_ref().map(|x| x.text.clone()).join(" ")));
+            }
+            return as_is;
+        }
+        let off = if equal { 0.0 } else { off * (1.0 + 1e-9) + 4e-15 };
+        let mut rpy = twelfths.map(|n| Written {
+            text: multiple_of_pi(n),
+            value: n as f64 * PI / 12.0,
+            offset: 0.0,
+            twelfths: Some(n),
+            span,
+        });
+        rpy[0].offset = off;
+        if !equal {
+            let written = quat.each_ref().map(|x| x.text.clone()).join(" ");
+            let taken = format!("rpy {}", rpy.each_ref().map(|x| x.text.clone()).join(" "));
+            self.snapped.push(Snapped { span, written, taken, offset: off });
+        }
+        Turn::Rpy(rpy)
+    }
+
+    /// The directions of x and y: both taken for vectors of -1, 0, 1 that are perpendicular, or both as written.
+    pub(crate) fn axes(&mut self, x: &[Decimal; 3], y: &[Decimal; 3], span: Span) -> Turn {
+        let before = self.snapped.len();
+        let ((first, one), (second, other)) = (self.direction(x, span), self.direction(y, span));
+        let product: f64 = (0..3).map(|k| first[k].value * second[k].value).sum();
+        let plain = |v: &[Written; 3]| v.iter().all(|x| matches!(x.text.as_str(), "0" | "1" | "-1"));
+        let [a, b, c] = first;
+        let [d, e, f] = second;
+        if plain(&[a.clone(), b.clone(), c.clone()]) && plain(&[d.clone(), e.clone(), f.clone()]) && product == 0.0 {
+            return Turn::XyAxes([a, b, c, d, e, f], 2.0 * (one + other));
+        }
+        self.snapped.truncate(before);
+        let [a, b, c] = x.each_ref().map(Written::as_is);
+        let [d, e, f] = y.each_ref().map(Written::as_is);
+        Turn::XyAxes([a, b, c, d, e, f], 0.0)
     }
 
     /// A length.
@@ -161,6 +264,24 @@ impl Snap {
         self.snapped.push(Snapped { span, written, taken: texts.join(" "), offset });
         (taken, offset)
     }
+}
+
+/// Roll, pitch and yaw, in twelfths of pi, of a quaternion of -1, 0 and 1 that is a turn of the cube.
+fn cube_turn([w, x, y, z]: [f64; 4]) -> [i64; 3] {
+    let square = w * w + x * x + y * y + z * z;
+    let entry = |value: f64| (value / square).round() as i64;
+    let right = |sine: i64, cosine: i64| match (sine, cosine) {
+        (0, -1) => 12,
+        (sine, _) => 6 * sine,
+    };
+    let down = entry(2.0 * (x * z - w * y));
+    if down == 0 {
+        let roll = right(entry(2.0 * (y * z + w * x)), entry(w * w - x * x - y * y + z * z));
+        return [roll, 0, right(entry(2.0 * (x * y + w * z)), entry(w * w + x * x - y * y - z * z))];
+    }
+    // Only the sum or difference of roll and yaw counts.
+    let yaw = right(-entry(2.0 * (x * y - w * z)), entry(w * w - x * x + y * y - z * z));
+    [0, -6 * down, yaw]
 }
 
 /// `n` twelfths of pi as an expression.

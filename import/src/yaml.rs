@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use armgen_codegen::source::{Source, Span};
 
-use crate::chain::{Arm, Body, Pose, Row, Turn, ELEMENTS};
+use crate::body::{Body, ELEMENTS};
+use crate::chain::{Arm, Row};
+use crate::pose::{Pose, Turn};
 use crate::report::Report;
 use crate::snap::Written;
 
@@ -50,13 +52,13 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
     if !is_identity(&row.origin) {
         line(&format!("    origin: {}{}", poses(&row.origin), snapped(source, arm, &spans_of(&row.origin))));
     }
-    line(&format!("    axis: {}{}", vector(&row.axis), note_of_axis(source, arm, row)));
+    line(&format!("    axis: {}{}", vector(&row.motion.axis), note_of_axis(source, arm, row)));
     let mut limits = Vec::new();
-    if let Some([low, high]) = &row.position {
+    if let Some([low, high]) = &row.motion.position {
         limits.push(format!("position: [{}, {}]", low.text, high.text));
     }
-    limits.extend(row.velocity.iter().map(|v| format!("velocity: {}", v.text)));
-    limits.extend(row.effort.iter().map(|e| format!("effort: {}", e.text)));
+    limits.extend(row.motion.velocity.iter().map(|v| format!("velocity: {}", v.text)));
+    limits.extend(row.motion.effort.iter().map(|e| format!("effort: {}", e.text)));
     if !limits.is_empty() {
         line(&format!("    limits: {{{}}}", limits.join(", ")));
     }
@@ -77,10 +79,13 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
         mass_distribution(line, "          ", &other.body);
     }
     let mut friction = Vec::new();
-    friction.extend(row.viscous.iter().map(|v| format!("viscous: {}", v.text)));
-    friction.extend(row.coulomb.iter().map(|c| format!("coulomb: {}", c.text)));
+    friction.extend(row.motion.viscous.iter().map(|v| format!("viscous: {}", v.text)));
+    friction.extend(row.motion.coulomb.iter().map(|c| format!("coulomb: {}", c.text)));
     if !friction.is_empty() {
         line(&format!("    friction: {{{}}}", friction.join(", ")));
+    }
+    if let Some(armature) = &row.motion.armature {
+        line(&format!("    armature: {}", armature.text));
     }
 }
 
@@ -93,19 +98,28 @@ fn mass_distribution(line: &mut impl FnMut(&str), indent: &str, body: &Body) {
         .iter()
         .zip(&body.inertia)
         .filter(|(_, element)| !element.is_zero())
-        .map(|((_, key), element)| format!("{key}: {}", element.text))
+        .map(|(key, element)| format!("{key}: {}", element.text))
         .collect();
     if elements.is_empty() {
         return;
     }
-    if body.rpy.iter().any(|x| !x.is_zero()) {
-        elements.push(format!("rpy: {}", vector(&body.rpy)));
-    }
+    elements.extend(rotation(&body.turn));
     line(&format!("{indent}inertia: {{{}}}", elements.join(", ")));
 }
 
-fn vector(three: &[Written; 3]) -> String {
-    format!("[{}]", three.each_ref().map(|x| x.text.as_str()).join(", "))
+fn vector(numbers: &[Written]) -> String {
+    format!("[{}]", numbers.iter().map(|x| x.text.as_str()).collect::<Vec<_>>().join(", "))
+}
+
+/// A rotation as keys of a mapping; `None` where there is none.
+fn rotation(turn: &Turn) -> Option<String> {
+    match turn {
+        turn if turn.is_none() => None,
+        Turn::Rpy(rpy) => Some(format!("rpy: {}", vector(rpy))),
+        Turn::AxisAngle(turn) => Some(format!("axis: {}, angle: {}", vector(&turn.axis), turn.angle.text)),
+        Turn::Quat(quat, _) => Some(format!("quat: {}", vector(quat))),
+        Turn::XyAxes(axes, _) => Some(format!("xyaxes: {}", vector(axes))),
+    }
 }
 
 /// Whether nothing of the poses is left to write.
@@ -120,11 +134,7 @@ fn poses(list: &[Pose]) -> String {
         if pose.xyz.iter().any(|x| !x.is_zero()) {
             parts.push(format!("xyz: {}", vector(&pose.xyz)));
         }
-        match &pose.turn {
-            Turn::Rpy(rpy) if rpy.iter().any(|x| !x.is_zero()) => parts.push(format!("rpy: {}", vector(rpy))),
-            Turn::Rpy(_) => {}
-            Turn::AxisAngle(turn) => parts.push(format!("axis: {}, angle: {}", vector(&turn.axis), turn.angle)),
-        }
+        parts.extend(rotation(&pose.turn));
         format!("{{{}}}", parts.join(", "))
     };
     let all: Vec<String> = list.iter().filter(|pose| !pose.is_identity()).map(one).collect();
@@ -149,10 +159,7 @@ fn quoted(name: &str) -> String {
 fn spans_of(list: &[Pose]) -> Vec<Span> {
     let mut spans = Vec::new();
     for pose in list {
-        spans.extend(pose.xyz.iter().map(|x| x.span));
-        if let Turn::Rpy(rpy) = &pose.turn {
-            spans.extend(rpy.iter().map(|x| x.span));
-        }
+        spans.extend(pose.xyz.iter().chain(pose.turn.numbers()).map(|x| x.span));
     }
     spans
 }
@@ -174,8 +181,8 @@ fn snapped(source: &Source, arm: &Arm, spans: &[Span]) -> String {
 }
 
 fn note_of_axis(source: &Source, arm: &Arm, row: &Row) -> String {
-    if row.axis_offset == 0.0 {
+    if row.motion.axis_offset == 0.0 {
         return String::new();
     }
-    snapped(source, arm, &row.axis.each_ref().map(|x| x.span))
+    snapped(source, arm, &row.motion.axis.each_ref().map(|x| x.span))
 }

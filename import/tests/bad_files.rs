@@ -14,7 +14,7 @@ const GENERATED: [Code; 1] = [Code::TooLarge];
 fn files() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad");
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder).expect("the folder").map(|e| e.expect("an entry").path()).collect();
-    files.retain(|path| path.extension().is_some_and(|e| e == "urdf"));
+    files.retain(|path| path.extension().is_some_and(|e| e == "urdf" || e == "xml"));
     files.sort();
     files
 }

@@ -35,6 +35,24 @@ fn spellings_of_the_text() {
     check(arm("").replace("robot name", "robot title"), None);
 }
 
+/// Every text that is cut off, or lacks a stretch, has a place for what is wrong with it, or is an arm.
+#[test]
+fn what_is_left_of_a_file() {
+    for text in [include_str!("urdf/everything.urdf"), include_str!("mjcf/everything.xml")] {
+        for at in (0..text.len()).step_by(3) {
+            for length in [1, 7, 40, text.len()] {
+                let rest = text.get(at + length..).unwrap_or_default();
+                let source = Source::new("robot", format!("{}{rest}", &text[..at]));
+                let (imported, diagnostics) = import(&source, &Options { tip: Some("tip".into()), ..Options::default() });
+                assert_eq!(imported.is_some(), !diagnostics.has_errors());
+                for label in diagnostics.iter().flat_map(|diagnostic| &diagnostic.labels) {
+                    assert!(source.text().get(label.span.range()).is_some(), "{label:?}");
+                }
+            }
+        }
+    }
+}
+
 /// Found by fuzzing.
 #[test]
 fn places_hold_whole_characters() {
@@ -56,6 +74,7 @@ fn what_is_no_arm() {
         "<?xml?>",
         "<!-- ",
         "<a:b/>",
+        "<mujocoo/>",
         "&amp;",
     ] {
         check(text, Some(Code::XmlSyntax));
@@ -95,4 +114,27 @@ fn a_long_line_of_joints_is_walked_without_recursion() {
         );
     }
     check(format!("{text}</robot>"), Some(Code::MissingInertial));
+}
+
+#[test]
+fn many_bodies_within_frames_are_read_in_bounded_time() {
+    let around = |inside: &str, depth: usize| {
+        format!(
+            "<mujoco><worldbody>{}{inside}{}</worldbody></mujoco>",
+            "<frame pos='0 0 1' euler='1 2 3'>".repeat(depth),
+            "</frame>".repeat(depth)
+        )
+    };
+    let inertial = "<inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/>";
+    let arm = format!("<body>{inertial}<joint/>{}</body>", "<body/>".repeat(90_000));
+    check(around(&arm, 10), None);
+    check(around(&arm, 200), Some(Code::TooLarge));
+    check(around(&format!("<body>{inertial}{}</body>", "<joint/>".repeat(90_000)), 1), Some(Code::TooManyJoints));
+    let classes: String = (0..5000).map(|k| format!("<default class='c{k}'/>")).collect();
+    check(
+        format!("<mujoco><default>{classes}</default><worldbody><body>{inertial}<joint class='c1'/></body></worldbody></mujoco>"),
+        None,
+    );
+    let loop_of_classes = "<default class='a'><default class='b'><default class='a'><joint/></default></default></default>";
+    check(format!("<mujoco>{loop_of_classes}<worldbody><body>{inertial}<joint class='b'/></body></worldbody></mujoco>"), None);
 }

@@ -44,6 +44,58 @@ fn everything_becomes_a_description_that_a_person_can_read() {
     assert_eq!(arm.joints.iter().map(|joint| joint.link.len()).collect::<Vec<_>>(), [2, 1, 3]);
 }
 
+/// Positions of the parts of this file were compared with MuJoCo's own, as were its inertia matrix and bias forces.
+#[test]
+fn a_mujoco_model_becomes_one_too() {
+    let model = include_str!("mjcf/everything.xml");
+    let options = Options { tip: Some("tcp".into()), lock: vec![("finger".into(), "0.04".into())], ..Options::default() };
+    let source = Source::new("everything.xml", model);
+    let (imported, diagnostics) = import(&source, &options);
+    let Imported { yaml, report } = imported.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, Colour::Never)));
+    insta::with_settings!({prepend_module_to_snapshot => false, omit_expression => true}, {
+        insta::assert_snapshot!("everything-mjcf.yaml", yaml);
+        insta::assert_snapshot!("everything-mjcf.json", report.to_json());
+    });
+    let arm = valid(&yaml);
+    // Two joints of one body: the first link has nothing.
+    assert_eq!(arm.joints.iter().map(|joint| joint.link.len()).collect::<Vec<_>>(), [1, 2, 1, 2]);
+}
+
+/// One pose in all writings that MJCF has.
+#[test]
+fn one_rotation_in_every_writing() {
+    let model = |attributes: &str, compiler: &str| {
+        format!(
+            "<mujoco>{compiler}<worldbody><body name='b' {attributes}><inertial mass='1' pos='0.1 0.2 0.3' diaginertia='1 1 1'/><joint/></body></worldbody></mujoco>"
+        )
+    };
+    let radian = "<compiler angle='radian'/>";
+    let fixed = "<compiler eulerseq='XYZ'/>";
+    let rotation = |attributes: &str, compiler: &str| {
+        let yaml = imported(&model(attributes, compiler), &Options { snap: 0.0, ..Options::default() }).yaml;
+        valid(&yaml).joints[0].row.before.frame.rotation.clone()
+    };
+    // Turns by 90 degrees about x, then about the new y: x -> z', y -> ...
+    let expected = rotation("euler='90 90 0'", "");
+    assert_ne!(expected, rotation("euler='90 90 0'", fixed));
+    for (attributes, compiler) in [
+        ("euler='0 90 90'", "<compiler eulerseq='ZYX'/>"),
+        ("euler='90 0 90'", fixed),
+        ("quat='0.5 0.5 0.5 0.5'", ""),
+        ("quat='-2 -2 -2 -2'", ""),
+        ("axisangle='1 1 1 120'", ""),
+        ("xyaxes='0 1 0 0 0 1'", ""),
+        ("xyaxes='0 1 0 0 3 1'", radian),
+    ] {
+        assert_eq!(expected, rotation(attributes, compiler), "{attributes} {compiler}");
+    }
+    let up = |attributes: &str| rotation(attributes, "").map(|row| row[2].clone());
+    for (axis, quat) in [("1 0 0", "1 0 1 0"), ("0 -2 0", "1 1 0 0"), ("0 0 -1", "0 1 0 0"), ("0 0 3", "1 0 0 0")] {
+        assert_eq!(rotation(&format!("zaxis='{axis}'"), ""), rotation(&format!("quat='{quat}'"), ""), "{axis}");
+    }
+    assert_eq!(up("zaxis='3 0 4'").map(|x| x.to_string()), ["3/5", "0", "4/5"]);
+}
+
 #[test]
 fn every_digit_is_kept_where_nothing_is_snapped() {
     let every = imported(EVERYTHING, &Options { snap: 0.0, ..options() });

@@ -47,7 +47,7 @@ const EXAMPLES: &str = "Examples:
   armgen show robot.yaml inertia_matrix        B(q) with the numbers of the file
   armgen generate robot.yaml --out robot.rs    the equations as plain no_std Rust
   armgen verify robot.yaml robot.rs            whether that file equals the equations
-  armgen import robot.urdf --out robot.yaml    a URDF as a description
+  armgen import robot.urdf --out robot.yaml    a URDF or a MuJoCo model as a description
   armgen page robot.yaml --out robot.html      the arm, its equations and numbers, to look at
   armgen run                                   move the robot that this program was built with
 
@@ -139,7 +139,7 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         #[command(flatten)]
         beside: Beside,
     },
-    /// Turn a serial chain of a URDF into a description
+    /// Turn a serial chain of a URDF or a MuJoCo model into a description
     #[command(after_help = "Examples:
   armgen import robot.urdf --out robot.yaml
   armgen import robot.urdf --tip tool0 --lock finger_joint=0.04 --out robot.yaml
@@ -150,7 +150,7 @@ what hangs on a link beside the chain becomes part of it, exactly. 1.5708 is tak
 move the end effector and the torques stands in the head of the description. The format: docs/import.md.
 Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a file cannot be read or written.")]
     Import {
-        /// URDF of the robot
+        /// URDF or MuJoCo model of the robot
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
         file: PathBuf,
         #[command(flatten)]

@@ -7,10 +7,9 @@ use armgen_codegen::document::parse_expression;
 use armgen_codegen::document::yaml::Scalar;
 use armgen_codegen::source::Span;
 
-use super::{AxisAngle, Pose, Turn};
 use crate::number::Decimal;
-use crate::snap::Written;
-use crate::tree::{Kind, Tree};
+use crate::pose::factor;
+use crate::tree::Tree;
 use crate::xml::{beginning, shown};
 use crate::Code;
 
@@ -32,7 +31,7 @@ pub(crate) struct Locks<'r> {
 
 impl<'r> Locks<'r> {
     /// The locks of the options; faults are reported.
-    pub(crate) fn new(tree: &Tree<'_, '_>, options: &'r [(String, String)], diagnostics: &mut Diagnostics) -> Option<Locks<'r>> {
+    pub(crate) fn new(tree: &Tree, options: &'r [(String, String)], diagnostics: &mut Diagnostics) -> Option<Locks<'r>> {
         let mut by_joint = BTreeMap::new();
         let before = diagnostics.errors();
         for (name, text) in options {
@@ -72,36 +71,21 @@ impl<'r> Locks<'r> {
 }
 
 /// Where a joint stands that follows another one: factor · leader + offset.
-pub(crate) fn follow(zero: Lock, leader: Option<&Lock>, factor: Option<&Decimal>, offset: &Decimal) -> Lock {
-    let (factor_text, factor) = factor.map_or(("1", 1.0), |factor| (factor.text.as_str(), factor.value));
-    let (text, value) = match leader.filter(|leader| leader.value != 0.0 && factor != 0.0) {
-        Some(leader) => (format!("({factor_text})*({}) + ({})", leader.text, offset.text), factor * leader.value + offset.value),
+pub(crate) fn follow(zero: Lock, leader: Option<&Lock>, ratio: Option<&Decimal>, offset: &Decimal) -> Lock {
+    let (by, times) = ratio.map_or(("1", 1.0), |ratio| (ratio.text.as_str(), ratio.value));
+    let (text, value) = match leader.filter(|leader| leader.value != 0.0 && times != 0.0) {
+        Some(leader) => (follower(by, &leader.text, offset), times * leader.value + offset.value),
         None => (offset.text.clone(), offset.value),
     };
     Lock { text, value, ..zero }
 }
 
-/// The pose that a joint makes which stands elsewhere than at 0.
-pub(crate) fn pose(kind: Kind, axis: [Written; 3], offset: f64, lock: &Lock) -> Pose {
-    let zero = || std::array::from_fn(|_| Written::zero());
-    if kind != Kind::Prismatic {
-        return Pose {
-            xyz: zero(),
-            turn: Turn::AxisAngle(AxisAngle { axis, axis_offset: offset, angle: lock.text.clone(), value: lock.value }),
-        };
+/// factor · leader + offset as an expression.
+fn follower(by: &str, leader: &str, offset: &Decimal) -> String {
+    let turned = if by == "1" { leader.to_owned() } else { format!("{}*{}", factor(by), factor(leader)) };
+    if offset.is_zero() {
+        turned
+    } else {
+        format!("{turned} + {}", factor(&offset.text))
     }
-    let length = axis.iter().map(|x| x.value * x.value).sum::<f64>().sqrt();
-    let given = axis.iter().filter(|x| !x.is_zero()).count();
-    let squares: Vec<String> = axis.iter().filter(|x| !x.is_zero()).map(|x| format!("({0})*({0})", x.text)).collect();
-    let xyz = axis.map(|x| {
-        let text = match (given, x.value) {
-            (_, 0.0) => "0".to_owned(),
-            (1, v) if v > 0.0 => lock.text.clone(),
-            (1, _) => format!("-({})", lock.text),
-            _ => format!("({})*({})/sqrt({})", lock.text, x.text, squares.join(" + ")),
-        };
-        let value = if x.is_zero() { 0.0 } else { lock.value * x.value / length };
-        Written { text, value, offset: offset * lock.value.abs(), twelfths: None, span: lock.span }
-    });
-    Pose { xyz, turn: Turn::Rpy(zero()) }
 }

@@ -5,37 +5,35 @@ use std::collections::BTreeMap;
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 
 use super::locks::Locks;
-use crate::tree::Tree;
-use crate::xml::{place, shown};
+use crate::tree::{Role, Tree};
+use crate::xml::shown;
 use crate::Code;
 
 /// So many names in a message.
 const NAMED: usize = 12;
 
 /// The only leaf with a moving joint above it, with notes; where several differ by fixed joints alone, the link of the last joint that moves.
-pub(super) fn only(
-    tree: &Tree<'_, '_>,
-    base: usize,
-    locks: &Locks<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<(usize, Vec<String>)> {
+pub(super) fn only(tree: &Tree, base: usize, locks: &Locks<'_>, diagnostics: &mut Diagnostics) -> Option<(usize, Vec<String>)> {
     // Leaves by the last joint above them that moves, in the order of the file.
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut count: BTreeMap<usize, usize> = BTreeMap::new();
     let mut open: Vec<(usize, Option<usize>, usize)> = vec![(base, None, 0)];
     while let Some((link, last, moving)) = open.pop() {
-        for &below in &tree.links[link].below {
+        let bodies = tree.links[link].below.iter().filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame);
+        let mut leaf = true;
+        for &below in bodies {
+            leaf = false;
             let joint = &tree.joints[below];
             let moves = joint.kind.moves() && locks.of(below).is_none();
             open.push((joint.child, if moves { Some(below) } else { last }, moving + usize::from(moves)));
         }
-        if let (true, Some(last)) = (tree.links[link].below.is_empty(), last) {
+        if let (true, Some(last)) = (leaf, last) {
             groups.entry(last).or_default().push(link);
             count.insert(last, moving);
         }
     }
     let named = |links: &[usize]| {
-        let names: Vec<String> = links.iter().take(NAMED).map(|&link| format!("`{}`", shown(tree.links[link].name))).collect();
+        let names: Vec<String> = links.iter().take(NAMED).map(|&link| format!("`{}`", shown(&tree.links[link].name))).collect();
         format!("{}{}", names.join(", "), if links.len() > NAMED { ", ..." } else { "" })
     };
     if groups.len() > 1 {
@@ -46,45 +44,49 @@ pub(super) fn only(
             .take(NAMED)
             .map(|&(leaf, joints)| {
                 let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
-                format!("`{}` ({joints})", shown(tree.links[leaf].name))
+                format!("`{}` ({joints})", shown(&tree.links[leaf].name))
             })
             .collect();
         let more = if leaves.len() > NAMED { ", ..." } else { "" };
         let message = format!("several links may be the tip: {}{more}", all.join(", "));
         let first = leaves[0].0;
-        let help = format!("choose one: `--tip {}`", shown(tree.links[first].name));
-        let mut fault = Diagnostic::new(Code::SeveralTips, place(tree.links[first].node), message, "may be the tip", help);
+        let help = format!("choose one: `--tip {}`", shown(&tree.links[first].name));
+        let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[first].span, message, "may be the tip", help);
         for &(leaf, _) in leaves.iter().skip(1).take(3) {
-            fault = fault.also(place(tree.links[leaf].node), "may be the tip, too");
+            fault = fault.also(tree.links[leaf].span, "may be the tip, too");
         }
         diagnostics.push(fault);
         return None;
     }
     let Some((&last, leaves)) = groups.iter().next() else {
-        let message = format!("nothing moves below `{}`", shown(tree.links[base].name));
+        let message = format!("nothing moves below `{}`", shown(&tree.links[base].name));
         let help = "an arm has a joint that turns or slides; is the right `--base` given?";
-        diagnostics.push(Diagnostic::new(Code::NoJoints, place(tree.links[base].node), message, "", help));
+        diagnostics.push(Diagnostic::new(Code::NoJoints, tree.links[base].span, message, "", help));
         return None;
     };
     if let [only] = leaves[..] {
         return Some((only, Vec::new()));
     }
-    let tip = tree.joints[last].child;
+    let mut tip = tree.joints[last].child;
+    // The frame of the body, not the one that its joint turns about.
+    while let (Role::Between, Some(&below)) = (tree.links[tip].role, tree.links[tip].below.first()) {
+        tip = tree.joints[below].child;
+    }
     let note = format!(
         "the end effector is the link `{}`; frames that are fixed to it may be instead, by `--tip`: {}",
-        shown(tree.links[tip].name),
+        shown(&tree.links[tip].name),
         named(leaves)
     );
     Some((tip, vec![note]))
 }
 
 /// The links above one, as a list for a message, if there are some.
-pub(super) fn way_up(tree: &Tree<'_, '_>, link: usize) -> Option<String> {
+pub(super) fn way_up(tree: &Tree, link: usize) -> Option<String> {
     let mut names = Vec::new();
     let mut at = link;
     while let Some(above) = tree.links[at].above {
         at = tree.joints[above].parent;
-        names.push(format!("`{}`", shown(tree.links[at].name)));
+        names.push(format!("`{}`", shown(&tree.links[at].name)));
         if names.len() == NAMED {
             names.push("...".to_owned());
             break;

@@ -1,9 +1,11 @@
 //! What every fuzz target demands of a reader of text.
 
 use armgen_codegen::{
+    description::RobotDescription,
     diagnostic::{Colour, Diagnostics},
     source::Source,
 };
+use armgen_import::{import, Options};
 
 /// Checks that what is said about a source can be shown: places inside the text, help that is not empty, a rendering that is there exactly
 /// if there is something to say.
@@ -19,5 +21,22 @@ pub fn check_diagnostics(source: &Source, diagnostics: &Diagnostics) {
             let range = label.span.range();
             assert!(source.text().get(range).is_some(), "{diagnostic:?}");
         }
+    }
+}
+
+/// Imports a text, with every digit and with what the digits mean; what comes out is a description that reads without a fault.
+///
+/// # Panics
+/// If not.
+pub fn check_import(name: &str, data: &[u8]) {
+    let source = Source::new(name, String::from_utf8_lossy(data));
+    for snap in [0.0, Options::SNAP] {
+        let (imported, diagnostics) = import(&source, &Options { snap, massless: data.len() % 2 == 0, ..Options::default() });
+        assert_eq!(imported.is_some(), !diagnostics.has_errors());
+        check_diagnostics(&source, &diagnostics);
+        let Some(imported) = imported else { continue };
+        let yaml = Source::new("robot.yaml", imported.yaml);
+        let (description, faults) = RobotDescription::parse(&yaml);
+        assert!(description.is_some() && !faults.has_errors(), "{}", faults.render(&yaml, Colour::Never));
     }
 }

@@ -4,11 +4,9 @@ use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::{Source, Span};
 use roxmltree::Node;
 
-use super::{Lock, Pose, Turn};
 use crate::number::{decimal, Decimal};
 use crate::snap::{Snap, Written};
-use crate::tree::{Joint, Kind};
-use crate::xml::{attribute, child, place, shown};
+use crate::xml::{attribute, shown};
 use crate::Code;
 
 /// Reads numbers, reports faults, snaps.
@@ -24,19 +22,34 @@ impl Values<'_> {
     }
 
     /// Exactly N numbers of an attribute, if it is there; `Some(None)` with a reported fault.
-    fn vector<const N: usize>(&mut self, node: Node<'_, '_>, name: &str, what: &str) -> Option<Option<([Decimal; N], Span)>> {
+    pub(crate) fn vector<const N: usize>(
+        &mut self,
+        node: Node<'_, '_>,
+        name: &str,
+        what: &str,
+    ) -> Option<Option<([Decimal; N], Span)>> {
         let (text, span) = attribute(node, name)?;
-        // Places of words are known where the text stands as it is, without entities.
-        let verbatim = self.source.slice(span) == text;
-        let mut numbers = Vec::new();
+        Some(self.list(text, span, name, what).map(|numbers| (numbers, span)))
+    }
+
+    /// Exactly N numbers of a text; `None` with a reported fault.
+    pub(crate) fn list<const N: usize>(&mut self, text: &str, span: Span, name: &str, what: &str) -> Option<[Decimal; N]> {
         let words: Vec<&str> = text.split_ascii_whitespace().collect();
         if words.len() != N && !text.contains("${") && !text.contains("$(") {
             let message = format!("{what} has {} of {N} {}", words.len(), if N == 1 { "number" } else { "numbers" });
             let help = format!("write {N}, with blanks between them: `{name}=\"{}\"`", ["0"; N].join(" "));
             self.report(Code::WrongLength, span, message, "", help);
-            return Some(None);
+            return None;
         }
-        for word in words {
+        <[Decimal; N]>::try_from(self.words(text, span, what)).ok()
+    }
+
+    /// The numbers of a text; those that are none are reported.
+    pub(crate) fn words(&mut self, text: &str, span: Span, what: &str) -> Vec<Decimal> {
+        // Places of words are known where the text stands as it is, without entities.
+        let verbatim = self.source.slice(span) == text;
+        let mut numbers = Vec::new();
+        for word in text.split_ascii_whitespace() {
             let at = match verbatim {
                 true => {
                     let start = span.start + (word.as_ptr() as usize - text.as_ptr() as usize);
@@ -46,7 +59,7 @@ impl Values<'_> {
             };
             numbers.extend(decimal(word, at, what, self.diagnostics));
         }
-        Some(<[Decimal; N]>::try_from(numbers).ok().map(|numbers| (numbers, span)))
+        numbers
     }
 
     /// One number; `None` if it is not there, or faulty and reported.
@@ -61,48 +74,20 @@ impl Values<'_> {
         found.map_or_else(|| std::array::from_fn(|_| Decimal::zero()), |(three, _)| three)
     }
 
-    /// `origin` in an element: translation, and angles about x, y, z.
-    pub(crate) fn origin_of(&mut self, node: Node<'_, '_>, what: &str) -> ([Written; 3], [Written; 3]) {
-        let Some(origin) = child(node, "origin") else {
-            return (std::array::from_fn(|_| Written::zero()), std::array::from_fn(|_| Written::zero()));
-        };
-        let xyz = self.three(origin, "xyz", what);
-        let rpy = self.three(origin, "rpy", what);
-        (xyz.each_ref().map(|x| self.snap.length(x)), rpy.each_ref().map(|x| self.snap.angle(x)))
-    }
-
-    /// The origin of a joint.
-    pub(crate) fn origin(&mut self, node: Node<'_, '_>, what: &str) -> Option<Pose> {
-        let (xyz, rpy) = self.origin_of(node, what);
-        Some(Pose { xyz, turn: Turn::Rpy(rpy) })
-    }
-
-    /// The axis of a joint, (1, 0, 0) where none is given, and by how much it was turned; `None` if it is 0, which is reported.
-    pub(crate) fn axis(&mut self, node: Node<'_, '_>, joint: &str) -> Option<([Written; 3], f64)> {
-        let x = || {
-            ["1", "0", "0"].map(|text| Decimal {
-                text: text.into(),
-                value: if text == "1" { 1.0 } else { 0.0 },
-                span: Span::default(),
-            })
-        };
-        let Some(element) = child(node, "axis") else { return Some((x().each_ref().map(Written::as_is), 0.0)) };
-        let Some(found) = self.vector::<3>(element, "xyz", &format!("the axis of joint `{}`", shown(joint))) else {
-            return Some((x().each_ref().map(Written::as_is), 0.0));
-        };
-        let (axis, span) = found?;
+    /// The direction of an axis and by how much it was turned; `None` if it is 0, which is reported.
+    pub(crate) fn direction(&mut self, axis: &[Decimal; 3], span: Span, what: &str) -> Option<([Written; 3], f64)> {
         if axis.iter().all(Decimal::is_zero) {
-            let message = format!("the axis of joint `{}` has no direction", shown(joint));
-            self.report(Code::ZeroAxis, span, message, "all three are 0", "give the direction as a vector other than 0: `0 0 1`");
+            let help = "give the direction as a vector other than 0: `0 0 1`";
+            self.report(Code::ZeroAxis, span, format!("{what} has no direction"), "all three are 0", help);
             return None;
         }
-        Some(self.snap.direction(&axis, span))
+        Some(self.snap.direction(axis, span))
     }
 
     /// Position limits; `None` where there are none, or faulty and reported.
     pub(crate) fn position(
         &mut self,
-        limit: Node<'_, '_>,
+        limit: Span,
         lower: Option<Decimal>,
         upper: Option<Decimal>,
         joint: &str,
@@ -115,20 +100,14 @@ impl Values<'_> {
         if lower.is_zero() && upper.is_zero() {
             if given {
                 let message = format!("the position limits of joint `{}` are 0 to 0, which is taken as unknown", shown(joint));
-                self.report(
-                    Code::ZeroLimit,
-                    place(limit),
-                    message,
-                    "left out",
-                    "write the limits, or lock a joint that does not move",
-                );
+                self.report(Code::ZeroLimit, limit, message, "left out", "write the limits, or lock a joint that does not move");
             }
             return None;
         }
         let what = if lower.value > upper.value { "reversed" } else { "empty" };
         let message = format!("the position limits of joint `{}` are {what}: {} to {}", shown(joint), lower.text, upper.text);
         let help = format!("write the lower one below the upper one, or hold the joint: `--lock {}=VALUE`", shown(joint));
-        self.report(Code::EmptyLimits, place(limit), message, "", help);
+        self.report(Code::EmptyLimits, limit, message, "", help);
         None
     }
 
@@ -155,6 +134,17 @@ impl Values<'_> {
         None
     }
 
+    /// An inertia that a joint alone feels; 0 is none.
+    pub(crate) fn armature(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
+        let value = value.filter(|value| !value.is_zero())?;
+        if value.value > 0.0 {
+            return Some(value);
+        }
+        let message = format!("the armature of joint `{}` is negative: {}", shown(joint), value.text);
+        self.report(Code::NegativeArmature, value.span, message, "", "an inertia is at least 0");
+        None
+    }
+
     /// One warning for all angles that are nearly a multiple of pi/12, at the first of them.
     pub(crate) fn warn_of_near_angles(&mut self) {
         let Some((span, text)) = self.snap.near.first().cloned() else { return };
@@ -165,19 +155,5 @@ impl Values<'_> {
         let message = format!("the angle {text} is nearly, but not, a multiple of pi/12{more}");
         let help = "it is taken as written; `--snap TOL` takes what is within TOL rad of a multiple for that";
         self.report(Code::RoundedAngle, span, message, "taken as written", help);
-    }
-
-    /// Warns of a joint that stands where its own limits do not allow it.
-    pub(crate) fn warn_outside(&mut self, joint: &Joint<'_, '_>, lock: &Lock) {
-        let Some(limit) = child(joint.node, "limit").filter(|_| joint.kind != Kind::Continuous) else { return };
-        let mut bound = |name: &str| self.scalar(limit, name, &format!("`{name}` of joint `{}`", shown(joint.name)));
-        let (lower, upper) = (bound("lower"), bound("upper"));
-        let (lower, upper) = (lower.map_or(0.0, |x| x.value), upper.map_or(0.0, |x| x.value));
-        if lower < upper && (lock.value < lower || lock.value > upper) {
-            let message =
-                format!("the joint `{}` stands at {}, outside its limits {lower} to {upper}", shown(joint.name), lock.text);
-            let help = format!("say where it is to stand: `--lock {}=VALUE`", shown(joint.name));
-            self.report(Code::LockOutside, joint.span, message, "", help);
-        }
     }
 }

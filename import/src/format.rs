@@ -1,0 +1,93 @@
+//! What the formats have in common: a tree of links and joints, and how the numbers of each part are read when the chain needs them.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::source::Span;
+
+use crate::body::Body;
+use crate::number::Decimal;
+use crate::pose::Pose;
+use crate::snap::Written;
+use crate::tree::Tree;
+use crate::values::Values;
+
+/// How a joint of the chain moves.
+#[derive(Clone, Debug)]
+pub(crate) struct Motion {
+    pub(crate) axis: [Written; 3],
+    /// By how much snapping turned it, rad.
+    pub(crate) axis_offset: f64,
+    pub(crate) position: Option<[Decimal; 2]>,
+    pub(crate) velocity: Option<Decimal>,
+    pub(crate) effort: Option<Decimal>,
+    pub(crate) viscous: Option<Decimal>,
+    pub(crate) coulomb: Option<Decimal>,
+    pub(crate) armature: Option<Decimal>,
+}
+
+/// Which parts of the tree make up the arm.
+pub(crate) struct Extent<'r> {
+    /// Joints that move.
+    pub(crate) moving: &'r [usize],
+    /// Links that move, each with the last joint above it that does.
+    pub(crate) carriers: &'r BTreeMap<usize, usize>,
+    /// All of it.
+    pub(crate) tree: &'r Tree,
+}
+
+/// A file of a format; joints and links by their index in the tree. Whatever is read reports its faults.
+pub(crate) trait Format {
+    /// The format, as the report calls it.
+    fn name(&self) -> &'static str;
+
+    /// The frame of a joint in the frame of its parent link, the last element first reached by the child.
+    fn origin(&self, joint: usize, values: &mut Values<'_>) -> Vec<Pose>;
+
+    /// The axis of a joint, and by how much it was turned; `None` if faulty.
+    fn axis(&self, joint: usize, values: &mut Values<'_>) -> Option<([Written; 3], f64)>;
+
+    /// How a joint of the chain moves.
+    fn motion(&self, joint: usize, values: &mut Values<'_>) -> Motion;
+
+    /// Position limits of a joint beside the chain, if it has some.
+    fn range(&self, joint: usize, values: &mut Values<'_>) -> Option<[f64; 2]>;
+
+    /// What the file calls the kind of a joint.
+    fn kind_of(&self, joint: usize) -> String;
+
+    /// The joint that a joint follows.
+    fn leader(&self, _joint: usize) -> Option<(&str, Span)> {
+        None
+    }
+
+    /// Multiplier, if given, and offset of a joint that follows another one.
+    fn ratio(&self, _joint: usize, _values: &mut Values<'_>) -> (Option<Decimal>, Decimal) {
+        (None, Decimal::zero())
+    }
+
+    /// The mass distribution of a link with its frame in that of the link; `None` if it has none, or a faulty one.
+    fn body(&self, link: usize, values: &mut Values<'_>) -> Option<(Vec<Pose>, Body)>;
+
+    /// Whether the file gives a link a mass distribution.
+    fn has_body(&self, link: usize) -> bool;
+
+    /// Whether a link that moves may do without one.
+    fn may_be_massless(&self, _link: usize) -> bool {
+        false
+    }
+
+    /// Whether the file means a mass distribution of a link that it does not give in numbers.
+    fn lacks_body(&self, _link: usize) -> bool {
+        false
+    }
+
+    /// Gravity in the root link's frame.
+    fn gravity(&self, values: &mut Values<'_>) -> [Decimal; 3];
+
+    /// What concerns the arm as a whole.
+    fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics);
+
+    /// Elements that are left out, by name.
+    fn left_out(&self) -> BTreeMap<String, usize>;
+}

@@ -1,0 +1,306 @@
+//! URDF, as in <https://wiki.ros.org/urdf/XML>.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::source::Span;
+use roxmltree::Node;
+
+use crate::body::Body;
+use crate::format::{Extent, Format, Motion};
+use crate::number::Decimal;
+use crate::pose::{nothing, Pose, Turn};
+use crate::snap::Written;
+use crate::tree::{Joint, Kind, Role, Tree};
+use crate::values::Values;
+use crate::xml::{attribute, child, place, shown};
+use crate::Code;
+
+/// Attributes of `inertia`, in the order of [`Body::inertia`].
+const ELEMENTS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+
+/// A URDF.
+pub(crate) struct Urdf<'a, 'i> {
+    root: Node<'a, 'i>,
+    /// By index in the tree.
+    links: Vec<Node<'a, 'i>>,
+    joints: Vec<Node<'a, 'i>>,
+}
+
+/// The tree of a `robot`; `None` if it is none, which is reported.
+pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) -> Option<(Tree, Urdf<'a, 'i>)> {
+    let mut tree = Tree::new(root.attribute("name").unwrap_or("robot"));
+    let mut urdf = Urdf { root, links: Vec::new(), joints: Vec::new() };
+    let before = diagnostics.errors();
+    for node in root.children().filter(Node::is_element) {
+        if node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro")) {
+            diagnostics.push(crate::xml::xacro(place(node)));
+        }
+    }
+    let of = |tag: &'static str| root.children().filter(move |n| n.is_element() && n.tag_name().name() == tag);
+    for node in of("link") {
+        let Some((name, span)) = named(node, "a link", diagnostics) else { continue };
+        if let Some(first) = tree.link(name) {
+            duplicate("links", name, span, tree.links[first].span, diagnostics);
+            continue;
+        }
+        tree.add_link(name, place(node), Role::Body);
+        urdf.links.push(node);
+    }
+    let mut places: BTreeMap<&str, Span> = BTreeMap::new();
+    for node in of("joint") {
+        let name = named(node, "a joint", diagnostics);
+        let kind = kind(node, diagnostics);
+        let parent = end(&tree, node, "parent", diagnostics);
+        let child = end(&tree, node, "child", diagnostics);
+        let Some((name, span)) = name else { continue };
+        if let Some(&first) = places.get(name) {
+            duplicate("joints", name, span, first, diagnostics);
+            continue;
+        }
+        places.insert(name, span);
+        let (Some(kind), Some((parent, _)), Some((child, child_span))) = (kind, parent, child) else { continue };
+        if let Some(first) = tree.links[child].above {
+            let message = format!("the link `{}` hangs on two joints", shown(&tree.links[child].name));
+            let help = "an arm is a tree: take one of the joints out to open the loop";
+            let fault = Diagnostic::new(Code::TwoParents, child_span, message, "the second one", help);
+            diagnostics.push(fault.also(tree.joints[first].span, "the first one"));
+            continue;
+        }
+        tree.add_joint(Joint { name: name.to_owned(), span, kind, parent, child });
+        urdf.joints.push(node);
+    }
+    if tree.links.is_empty() {
+        let message = "the robot has no link";
+        let help = "write `<link name=\"base\"/>` and so on, and joints between them";
+        diagnostics.push(Diagnostic::new(Code::MissingElement, place(root), message, "no `link` in here", help));
+    }
+    (diagnostics.errors() == before).then_some((tree, urdf))
+}
+
+/// The link that `parent` or `child` of a joint names.
+fn end(tree: &Tree, joint: Node<'_, '_>, tag: &str, diagnostics: &mut Diagnostics) -> Option<(usize, Span)> {
+    let Some(node) = child(joint, tag) else {
+        let help = format!("write `<{tag} link=\"...\"/>` inside of it");
+        diagnostics.push(Diagnostic::new(Code::MissingElement, place(joint), format!("a joint has no `{tag}`"), "", help));
+        return None;
+    };
+    let Some((name, span)) = attribute(node, "link") else {
+        let help = format!("write `<{tag} link=\"...\"/>`");
+        diagnostics.push(Diagnostic::new(Code::MissingAttribute, place(node), format!("`{tag}` names no link"), "", help));
+        return None;
+    };
+    let found = tree.link(name);
+    if found.is_none() {
+        let message = format!("there is no link `{}`", shown(name));
+        diagnostics.push(Diagnostic::new(Code::UnknownLink, span, message, "unknown link", tree.meant_link(name)));
+    }
+    found.map(|link| (link, span))
+}
+
+fn named<'a>(node: Node<'a, '_>, what: &str, diagnostics: &mut Diagnostics) -> Option<(&'a str, Span)> {
+    let name = attribute(node, "name");
+    if name.is_none() {
+        let help = format!("write `<{} name=\"...\">`", node.tag_name().name());
+        diagnostics.push(Diagnostic::new(Code::MissingAttribute, place(node), format!("{what} has no name"), "", help));
+    }
+    name.inspect(|(name, span)| {
+        if name.contains("${") || name.contains("$(") {
+            diagnostics.push(crate::xml::xacro(*span));
+        }
+    })
+}
+
+fn duplicate(what: &str, name: &str, span: Span, first: Span, diagnostics: &mut Diagnostics) {
+    let message = format!("two {what} are called `{}`", shown(name));
+    let help = "give each a name of its own";
+    diagnostics.push(Diagnostic::new(Code::DuplicateName, span, message, "the second one", help).also(first, "the first one"));
+}
+
+fn kind(node: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Option<Kind> {
+    let Some((word, _)) = attribute(node, "type") else {
+        let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
+        diagnostics.push(Diagnostic::new(Code::MissingAttribute, place(node), "a joint has no type", "", help));
+        return None;
+    };
+    Some(match word {
+        "revolute" => Kind::Revolute,
+        "continuous" => Kind::Continuous,
+        "prismatic" => Kind::Prismatic,
+        "fixed" => Kind::Fixed,
+        _ => Kind::Other,
+    })
+}
+
+/// `origin` in an element: translation, and angles about x, y, z.
+fn origin_of(node: Node<'_, '_>, what: &str, values: &mut Values<'_>) -> ([Written; 3], [Written; 3]) {
+    let Some(origin) = child(node, "origin") else { return (nothing(), nothing()) };
+    let xyz = values.three(origin, "xyz", what);
+    let rpy = values.three(origin, "rpy", what);
+    (xyz.each_ref().map(|x| values.snap.length(x)), rpy.each_ref().map(|x| values.snap.angle(x)))
+}
+
+/// An element of `inertial`; one that is not there is reported.
+fn required<'a, 'i>(node: Node<'a, 'i>, name: &str, example: &str, values: &mut Values<'_>) -> Option<Node<'a, 'i>> {
+    let found = child(node, name);
+    if found.is_none() {
+        let message = format!("`inertial` has no `{name}`");
+        values.report(Code::MissingElement, place(node), message, "", format!("write `<{name} {example}/>` in it"));
+    }
+    found
+}
+
+impl Urdf<'_, '_> {
+    fn name_of(&self, joint: usize) -> String {
+        shown(self.joints[joint].attribute("name").unwrap_or_default())
+    }
+
+    /// A number of an element of a joint.
+    fn optional(&self, joint: usize, element: &str, name: &str, values: &mut Values<'_>) -> Option<Decimal> {
+        let node = child(self.joints[joint], element)?;
+        values.scalar(node, name, &format!("`{name}` of joint `{}`", self.name_of(joint)))
+    }
+}
+
+impl Format for Urdf<'_, '_> {
+    fn name(&self) -> &'static str {
+        "urdf"
+    }
+
+    fn origin(&self, joint: usize, values: &mut Values<'_>) -> Vec<Pose> {
+        let (xyz, rpy) = origin_of(self.joints[joint], "the origin of a joint", values);
+        vec![Pose { xyz, turn: Turn::Rpy(rpy) }]
+    }
+
+    fn axis(&self, joint: usize, values: &mut Values<'_>) -> Option<([Written; 3], f64)> {
+        let x = || {
+            ["1", "0", "0"].map(|text| {
+                let value = if text == "1" { 1.0 } else { 0.0 };
+                Written::as_is(&Decimal { text: text.into(), value, span: Span::default() })
+            })
+        };
+        let Some(element) = child(self.joints[joint], "axis") else { return Some((x(), 0.0)) };
+        let what = format!("the axis of joint `{}`", self.name_of(joint));
+        let Some(found) = values.vector::<3>(element, "xyz", &what) else { return Some((x(), 0.0)) };
+        let (axis, span) = found?;
+        values.direction(&axis, span, &what)
+    }
+
+    fn motion(&self, joint: usize, values: &mut Values<'_>) -> Motion {
+        let node = self.joints[joint];
+        let name = self.joints[joint].attribute("name").unwrap_or_default();
+        let (axis, axis_offset) = self.axis(joint, values).unwrap_or_else(|| (nothing(), 0.0));
+        let (lower, upper) = (self.optional(joint, "limit", "lower", values), self.optional(joint, "limit", "upper", values));
+        let velocity = self.optional(joint, "limit", "velocity", values);
+        let effort = self.optional(joint, "limit", "effort", values);
+        let viscous = self.optional(joint, "dynamics", "damping", values);
+        let coulomb = self.optional(joint, "dynamics", "friction", values);
+        let position = match child(node, "limit") {
+            Some(limit) if node.attribute("type") != Some("continuous") => values.position(place(limit), lower, upper, name),
+            _ => None,
+        };
+        Motion {
+            axis,
+            axis_offset,
+            position,
+            velocity: values.largest(velocity, "velocity", name),
+            effort: values.largest(effort, "effort", name),
+            viscous: values.coefficient(viscous, name),
+            coulomb: values.coefficient(coulomb, name),
+            armature: None,
+        }
+    }
+
+    fn range(&self, joint: usize, values: &mut Values<'_>) -> Option<[f64; 2]> {
+        child(self.joints[joint], "limit").filter(|_| self.joints[joint].attribute("type") != Some("continuous"))?;
+        let mut bound = |name: &str| self.optional(joint, "limit", name, values).map_or(0.0, |x| x.value);
+        Some([bound("lower"), bound("upper")])
+    }
+
+    fn kind_of(&self, joint: usize) -> String {
+        shown(self.joints[joint].attribute("type").unwrap_or_default())
+    }
+
+    fn leader(&self, joint: usize) -> Option<(&str, Span)> {
+        let mimic = child(self.joints[joint], "mimic")?;
+        Some((mimic.attribute("joint").unwrap_or_default(), place(mimic)))
+    }
+
+    fn ratio(&self, joint: usize, values: &mut Values<'_>) -> (Option<Decimal>, Decimal) {
+        let Some(mimic) = child(self.joints[joint], "mimic") else { return (None, Decimal::zero()) };
+        let factor = values.scalar(mimic, "multiplier", "the multiplier of `mimic`");
+        (factor, values.scalar(mimic, "offset", "the offset of `mimic`").unwrap_or_else(Decimal::zero))
+    }
+
+    fn body(&self, link: usize, values: &mut Values<'_>) -> Option<(Vec<Pose>, Body)> {
+        let inertial = child(self.links[link], "inertial")?;
+        let called = format!("the link `{}`", shown(self.links[link].attribute("name").unwrap_or_default()));
+        let (com, rpy) = origin_of(inertial, &format!("the centre of mass of {called}"), values);
+        let mass = required(inertial, "mass", "value=\"1\"", values)?;
+        if attribute(mass, "value").is_none() {
+            let help = "write `<mass value=\"1\"/>`";
+            values.report(Code::MissingAttribute, place(mass), format!("the mass of {called} has no value"), "", help);
+        }
+        let mass = values.scalar(mass, "value", &format!("the mass of {called}"));
+        let example = "ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"";
+        let tensor = required(inertial, "inertia", example, values)?;
+        let missing: Vec<&str> = ELEMENTS.into_iter().filter(|name| attribute(tensor, name).is_none()).collect();
+        if !missing.is_empty() {
+            let message = format!("the inertia of {called} lacks {}, taken as 0", missing.join(", "));
+            values.report(Code::MissingElementOfInertia, place(tensor), message, "", "write all six elements");
+        }
+        let before = values.diagnostics.errors();
+        let elements =
+            ELEMENTS.map(|name| values.scalar(tensor, name, &format!("`{name}` of {called}")).unwrap_or_else(Decimal::zero));
+        let readable = values.diagnostics.errors() == before;
+        Some((Vec::new(), values.body(&called, mass?, (com, Turn::Rpy(rpy)), &elements, readable, place(tensor))))
+    }
+
+    fn has_body(&self, link: usize) -> bool {
+        child(self.links[link], "inertial").is_some()
+    }
+
+    fn gravity(&self, _values: &mut Values<'_>) -> [Decimal; 3] {
+        let down = Decimal { text: "-9.81".into(), value: -9.81, span: Span::default() };
+        [Decimal::zero(), Decimal::zero(), down]
+    }
+
+    /// Warns of what a simulator would take into account, and robot.yaml does not.
+    fn check(&self, _extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
+        const FELT: [&str; 6] = [
+            "springStiffness",
+            "springReference",
+            "implicitSpringDamper",
+            "disableFixedJointLumping",
+            "preserveFixedJoint",
+            "gravity",
+        ];
+        for node in self.root.children().filter(|n| n.is_element() && n.tag_name().name() == "gazebo") {
+            for felt in node.descendants().filter(|n| n.is_element() && FELT.contains(&n.tag_name().name())) {
+                let message = format!("`{}` may change how a simulator moves the arm; it is left out", felt.tag_name().name());
+                let help = "springs and the like are no part of a description of a rigid arm: add their torques yourself";
+                diagnostics.push(Diagnostic::new(Code::ChangesMotion, place(felt), message, "left out", help));
+            }
+        }
+    }
+
+    fn left_out(&self) -> BTreeMap<String, usize> {
+        let mut counts = BTreeMap::new();
+        let mut count = |name: &str| *counts.entry(name.to_owned()).or_default() += 1;
+        for node in self.root.children().filter(Node::is_element) {
+            match node.tag_name().name() {
+                "link" => node
+                    .children()
+                    .filter(|n| n.is_element() && n.tag_name().name() != "inertial")
+                    .for_each(|n| count(n.tag_name().name())),
+                "joint" => {
+                    const TAKEN: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
+                    let others = node.children().filter(|n| n.is_element() && !TAKEN.contains(&n.tag_name().name()));
+                    others.for_each(|n| count(n.tag_name().name()));
+                }
+                other => count(other),
+            }
+        }
+        counts
+    }
+}
