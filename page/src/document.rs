@@ -7,7 +7,7 @@ use armgen_codegen::Model;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::html::{decimal, escape, json};
+use crate::html::{base64, decimal, escape, json};
 use crate::rows::{convention, Row};
 use crate::{bodies, sheet, warnings};
 
@@ -19,6 +19,8 @@ pub(crate) struct Parts<'p> {
     pub(crate) description: &'p RobotDescription,
     pub(crate) rows: &'p [Row],
     pub(crate) warnings: warnings::Warnings<'p>,
+    pub(crate) equations: &'p str,
+    pub(crate) cost: &'p str,
     /// What the script is given.
     pub(crate) data: &'p Value,
     /// The script.
@@ -71,7 +73,12 @@ fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
     let table = sheet::table(parts.rows, convention(parts.description), &parts.warnings);
     let frames = "<details open><summary>Frames</summary><div id=\"frames\"></div></details>\n";
     let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
-    vec![("data-sheet", "Data sheet", table + frames + bodies), ("numbers", "Numbers", "<div id=\"quantities\"></div>\n".into())]
+    vec![
+        ("data-sheet", "Data sheet", table + frames + bodies),
+        ("numbers", "Numbers", "<div id=\"quantities\"></div>\n".into()),
+        ("equations", "Equations", parts.equations.into()),
+        ("cost", "Cost", parts.cost.into()),
+    ]
 }
 
 fn header(parts: &Parts<'_>) -> String {
@@ -131,28 +138,4 @@ fn sliders(rows: &[Row]) -> String {
 /// The source of a policy that is this very text.
 fn hash(text: &str) -> String {
     format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for chunk in bytes.chunks(3) {
-        let at = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
-        let bits = at(0) << 16 | at(1) << 8 | at(2);
-        for k in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * k)) as usize & 63];
-            text.push(if k <= chunk.len() { char::from(digit) } else { '=' });
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn base64_is_that_of_rfc_4648() {
-        for (plain, coded) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
-            assert_eq!(super::base64(plain.as_bytes()), coded);
-        }
-    }
 }

@@ -11,7 +11,9 @@
 //! document escaped, or as text nodes and attributes that the script sets.
 
 mod bodies;
+mod cost;
 mod document;
+mod equations;
 mod html;
 mod rows;
 mod script;
@@ -62,16 +64,20 @@ pub fn page(source: &Source) -> (Option<String>, Diagnostics) {
         diagnostics.push(validate::product_out_of_range(&places, Scalar::F64, value));
         return (None, diagnostics);
     }
+    let cost = cost::table(&module);
+    let equations = equations::Equations::new(&model);
     let left_out = keep_what_is_used(&mut module);
     let text = javascript::print(&module, &Origin::of(source), &Notes::default());
     let rows = rows::rows(source, &description, &model.manipulator);
-    let data = data(&model.manipulator, &description, &rows, &module, &left_out);
+    let data = data(&model.manipulator, &description, &rows, &module, &left_out, &equations);
     let script = script::script(&text);
     let page = document::document(&document::Parts {
         model: &model,
         description: &description,
         rows: &rows,
         warnings: warnings::Warnings::new(source, &description, &diagnostics),
+        equations: &equations.section(),
+        cost: &cost,
         data: &data,
         script: &script,
     });
@@ -103,6 +109,7 @@ fn data(
     rows: &[rows::Row],
     module: &Module,
     left_out: &[(String, usize)],
+    equations: &equations::Equations,
 ) -> Value {
     let row = |row: &rows::Row| {
         let values = row.denavit_hartenberg.as_ref();
@@ -131,5 +138,7 @@ fn data(
         "task": module.task,
         "functions": module.functions.iter().map(|function| function.name()).collect::<Vec<_>>(),
         "leftOut": left_out,
+        "equations": equations.data(),
+        "determinant": equations.factors,
     })
 }

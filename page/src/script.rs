@@ -15,6 +15,9 @@ const FILES: &[(&str, &str)] = &[
     ("vector", include_str!("../web/vector.mjs")),
     ("format", include_str!("../web/format.mjs")),
     ("dom", include_str!("../web/dom.mjs")),
+    ("formula", include_str!("../web/formula.mjs")),
+    ("mathml", include_str!("../web/mathml.mjs")),
+    ("equations", include_str!("../web/equations.mjs")),
     ("linear", include_str!("../web/linear.mjs")),
     ("kinematics", include_str!("../web/kinematics.mjs")),
     ("view", include_str!("../web/view.mjs")),
@@ -27,6 +30,7 @@ const FILES: &[(&str, &str)] = &[
     ("picture", include_str!("../web/picture.mjs")),
     ("sheet", include_str!("../web/sheet.mjs")),
     ("numbers", include_str!("../web/numbers.mjs")),
+    ("cost", include_str!("../web/cost.mjs")),
     ("settings", include_str!("../web/settings.mjs")),
     ("main", include_str!("../web/main.mjs")),
 ];

@@ -178,3 +178,51 @@ fn rows_are_drawn_and_limits_marked() {
     assert_eq!(tab.run("Object.isFrozen(globalThis.robot) && robot.NAME"), "scara");
     tab.close(&file);
 }
+
+/// Every section of equations opens, with numbers and with names, and never holds more nodes than a browser lays out at once.
+#[test]
+fn equations_are_set_when_they_are_opened() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("equations");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    for name in ["scara", "ur5", "everything"] {
+        let source = robot(name);
+        let file = written(&folder, &source);
+        let mut tab = browser.open(&file, 1600, "light");
+        let opened = tab.run(OPEN);
+        let opened = opened.as_array().expect("sections");
+        assert!(opened.len() > 25, "{name}");
+        for section in opened {
+            let nodes = section[1].as_u64().expect("a number");
+            assert!((1..20_000).contains(&nodes), "{name}: {section}");
+        }
+        if name == "scara" {
+            let entry = "document.querySelector('details[data-equation=\"inertia_matrix\"] [data-entry=\"1,2\"]')";
+            assert_eq!(tab.run(&format!("{entry}.textContent")), "5cosq2+8.766");
+            assert_eq!(tab.run(&choose("digits", "exact", &format!("{entry}.querySelectorAll('mfrac').length"))), 1);
+            assert_eq!(tab.run(&choose("form", "symbolic", &format!("{entry}.textContent.includes('ml2')"))), true);
+            let near = "[...document.querySelectorAll('.near')].map((e) => e.textContent).filter((text) => text).join()";
+            assert_eq!(tab.run(near), "near zero: zero at q2 = 0 mod π", "the arm is stretched at q = 0");
+        }
+        tab.close(&file);
+    }
+}
+
+const OPEN: &str = r#"(async () => {
+    const all = [];
+    for (const details of document.querySelectorAll("details[data-equation]")) {
+        details.open = true;
+        while (!details.querySelector("math")) await new Promise((done) => setTimeout(done, 1));
+        all.push([details.dataset.equation, details.querySelectorAll("math *").length]);
+        if (details.dataset.equation !== "inertia_matrix") details.open = false;
+    }
+    return all;
+})()"#;
+
+/// Chooses one of the forms of equations, waits, and evaluates.
+fn choose(name: &str, value: &str, then: &str) -> String {
+    format!(
+        "(async () => {{ document.querySelector('input[name=\"{name}\"][value=\"{value}\"]').click(); \
+         await new Promise((done) => setTimeout(done, 100)); return {then}; }})()"
+    )
+}

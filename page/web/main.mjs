@@ -1,6 +1,8 @@
 /** The page: reads its data, makes its parts, draws for the first time. */
 
+import { cost } from "./cost.mjs";
 import { byId } from "./dom.mjs";
+import { equations } from "./equations.mjs";
 import { numbers } from "./numbers.mjs";
 import { Picture } from "./picture.mjs";
 import { settings } from "./settings.mjs";
@@ -16,5 +18,7 @@ player(data, state);
 const picture = new Picture(data, state);
 sheet(data, state, picture);
 numbers(data, state);
+equations(data);
+cost();
 state.move(home(data));
 document.documentElement.dataset.ready = String(Math.round(performance.now()));

@@ -5,11 +5,15 @@
 
 import { byId, copy, html } from "./dom.mjs";
 import { exact, short } from "./format.mjs";
+import { bound, evaluate, parse } from "./formula.mjs";
 import { condition, determinant, manipulability } from "./linear.mjs";
+
+/** A factor is near zero below this part of what it can be. */
+const NEAR = 0.02;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     rowNames?: string[], columnNames?: string[]}} Quantity
+ *     rowNames?: string[], columnNames?: string[], near?: () => string}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
@@ -42,6 +46,15 @@ function quantities(data, state) {
     ];
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
     if (data.task.length === n) list.push(scalar("det", "det J", "Determinant of the Jacobian of the task", "", () => determinant(task())));
+    (data.determinant?.factors ?? []).forEach((text, k) => {
+        const factor = parse(text);
+        const lookup = (name) => state.q[Number(name.slice(1)) - 1];
+        const zero = data.determinant.singular[k];
+        const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : (zero ?? "zero where several joints together make it so");
+        const of = () => evaluate(factor, lookup);
+        const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? `near zero: ${where}` : "");
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J: ${text.length < 60 ? text : "see the equations"}; ${where}`, "", of), near });
+    });
     list.push(scalar("w", "w", "Manipulability of the task, sqrt(det(J J'))", "", () => manipulability(task())));
     list.push(scalar("condition", "σ₁/σₘ", "Condition number of the Jacobian of the task", "", () => condition(task())));
     list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m², kg m, kg", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
@@ -99,6 +112,7 @@ function skewSymmetry(state) {
 function table(quantity) {
     const { name, symbol, title, unit, rows, columns } = quantity;
     const cells = [];
+    const said = html("strong", { class: "near" });
     const cell = (row, column) => {
         const attributes = { "data-quantity": name, "data-row": row || undefined, "data-column": column || undefined };
         const td = html(rows === 0 ? "span" : "td", { class: "entry", ...attributes });
@@ -108,7 +122,7 @@ function table(quantity) {
     const head = html("summary", {}, html("b", {}, symbol), ` ${title}${unit ? `, ${unit}` : ""}`);
     const element = html("details", { open: true, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
-        head.append(" = ", cell(0, 0));
+        head.append(" = ", cell(0, 0), said);
     } else {
         const rowName = (i) => (quantity.rowNames ? `${i} ${quantity.rowNames[i - 1]}` : String(i));
         const body = html("tbody");
@@ -126,6 +140,7 @@ function table(quantity) {
         lightNames(table);
         const scroll = html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": `${symbol}: ${title}` }, table);
         element.append(scroll, copyButtons(quantity));
+        lightEquation(table, name);
     }
     const update = () => {
         const flat = [quantity.of()].flat(2);
@@ -136,6 +151,8 @@ function table(quantity) {
             cell.td.textContent = short(value);
             cell.td.setAttribute("data-value", exact(value));
         });
+        const near = quantity.near?.() ?? "";
+        if (said.textContent !== near) said.textContent = near;
     };
     return { element, update, quantity };
 }
@@ -151,6 +168,18 @@ function lightNames(table) {
     };
     table.addEventListener("pointerover", (event) => light(event.target, true));
     table.addEventListener("pointerout", (event) => light(event.target, false));
+}
+
+/** An entry under the pointer lights its equation, where that is open. @param {HTMLElement} table @param {string} name */
+function lightEquation(table, name) {
+    let lit = null;
+    table.addEventListener("pointerover", (event) => {
+        lit?.classList.remove("used");
+        const td = event.target instanceof Element ? event.target.closest("td.entry") : null;
+        const [row, column] = ["data-row", "data-column"].map((key) => td?.getAttribute(key) ?? "1");
+        lit = td && document.querySelector(`details[data-equation="${name}"][open] [data-entry="${row},${column}"]`);
+        lit?.classList.add("used");
+    });
 }
 
 /** The table as a text of another program, all digits. @param {any} value @param {string} form */
@@ -175,5 +204,7 @@ function copyButtons(quantity) {
         button.addEventListener("click", () => copy(tableText(quantity.of(), form), `${quantity.symbol} as ${form}`));
         return button;
     });
-    return html("div", { class: "controls copies" }, "copy as ", ...buttons);
+    const equation = document.getElementById(`equation-${quantity.name}`);
+    const link = equation ? [" ", html("a", { href: `#${equation.id}` }, "its equation")] : [];
+    return html("div", { class: "controls copies" }, "copy as ", ...buttons, ...link);
 }

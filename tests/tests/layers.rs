@@ -80,6 +80,8 @@ const PAGE: Layers = &[
     ("script", &[]),
     ("rows", &[]),
     ("bodies", &["rows"]),
+    ("cost", &["html"]),
+    ("equations", &["html"]),
     ("warnings", &["html"]),
     ("sheet", &["html", "rows", "warnings"]),
     ("document", &["bodies", "html", "rows", "sheet", "warnings"]),

@@ -1,0 +1,30 @@
+//! The table of `armgen count`: operations of every function, and how each was derived.
+
+use std::fmt::Write;
+
+use armgen_codegen::program::{Cost, Module};
+
+use crate::html::escape;
+
+/// The table, of all functions of a module.
+pub(crate) fn table(module: &Module) -> String {
+    let mut text = String::from("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\"><caption>Operations of the emitted functions; a column is sorted by a click</caption>\n<thead><tr>");
+    for column in ["function", "mul", "add", "div", "neg", "sincos", "derived by"] {
+        let _ = write!(text, "<th scope=\"col\"><button type=\"button\">{column}</button></th>");
+    }
+    text += "<th scope=\"col\">weight</th></tr></thead>\n<tbody>\n";
+    for function in &module.functions {
+        let cost = Cost::of(function);
+        let _ = write!(text, "<tr><th scope=\"row\">{}</th>", escape(&function.name()));
+        for count in [cost.mul, cost.add, cost.div, cost.neg, cost.sincos] {
+            let _ = write!(text, "<td class=\"count\">{count}</td>");
+        }
+        let _ = writeln!(
+            text,
+            "<td>{}</td><td class=\"weight\"><span class=\"bar\" data-bar=\"{}\"></span></td></tr>",
+            escape(function.method),
+            cost.weight()
+        );
+    }
+    text + "</tbody>\n</table></div>\n"
+}

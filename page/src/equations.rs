@@ -1,0 +1,120 @@
+//! The equations of a page: what `armgen show` prints, packed, quantity by quantity.
+//!
+//! The texts of an arm of seven joints are 2 MB with their LaTeX; packed they are a quarter of one. Each is unpacked when its section is opened.
+
+use std::fmt::Write;
+
+use armgen_codegen::catalogue::Absent;
+use armgen_codegen::show::{Item, Reading, Sheet, Shown};
+use armgen_codegen::Model;
+use miniz_oxide::deflate::compress_to_vec_zlib;
+use serde_json::{json, Map, Value};
+
+use crate::html::{base64, escape};
+
+/// A quantity whose text is longer than this is left out, with the command that prints it.
+const LONGEST: usize = 400_000;
+
+/// All quantities: those that the page holds, and those that it names only.
+pub(crate) struct Equations {
+    quantities: Vec<Quantity>,
+    absent: Vec<Absent>,
+    /// The determinant's factors with the numbers of the description, and where each is zero.
+    pub(crate) factors: Value,
+}
+
+struct Quantity {
+    name: String,
+    symbol: String,
+    size: String,
+    /// Packed; none of one that is too long.
+    text: Option<String>,
+    steps: usize,
+}
+
+impl Equations {
+    pub(crate) fn new(model: &Model) -> Equations {
+        let nominal = Sheet::new(model, &Item::all(), Reading::Nominal);
+        let symbolic = Sheet::new(model, &Item::all(), Reading::Symbolic);
+        let of = |shown: &Shown| {
+            let other = symbolic.quantities.iter().find(|other| other.name == shown.name);
+            quantity(&nominal.robot, shown, other)
+        };
+        let factors = nominal.quantities.iter().find(|shown| shown.factors.is_some());
+        Equations {
+            quantities: nominal.quantities.iter().map(of).collect(),
+            factors: factors.map_or(Value::Null, |shown| {
+                let value = serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
+                json!({"factors": value["factors"], "singular": value["singular"]})
+            }),
+            absent: nominal.absent,
+        }
+    }
+
+    /// What the script is given: the packed texts by name.
+    pub(crate) fn data(&self) -> Value {
+        let packed = self.quantities.iter().filter_map(|quantity| Some((quantity.name.clone(), json!(quantity.text.as_ref()?))));
+        Value::Object(packed.collect::<Map<_, _>>())
+    }
+
+    /// The section, to be filled as its parts are opened.
+    pub(crate) fn section(&self) -> String {
+        let mut text = String::from(CHOICES);
+        for quantity in &self.quantities {
+            let (name, symbol, size) = (escape(&quantity.name), escape(&quantity.symbol), &quantity.size);
+            let words = name.replace('_', " ");
+            let _ = match &quantity.text {
+                Some(_) => writeln!(
+                    text,
+                    "<details id=\"equation-{name}\" data-equation=\"{name}\"><summary><b>{symbol}</b> {words}, {size}</summary><div></div></details>"
+                ),
+                None => writeln!(
+                    text,
+                    "<p class=\"small\"><b>{symbol}</b> {words}, {size}: left out, {} steps. <code>armgen show ROBOT.yaml {name}</code> prints it.</p>",
+                    quantity.steps
+                ),
+            };
+        }
+        for Absent { function, reason } in &self.absent {
+            let _ = writeln!(text, "<p class=\"small\">{}: {}.</p>", escape(&function.replace('_', " ")), escape(reason));
+        }
+        text
+    }
+}
+
+const CHOICES: &str = "<div class=\"controls\"><fieldset><legend>Parameters</legend>\
+<label><input type=\"radio\" name=\"form\" value=\"nominal\" checked> numbers</label> \
+<label><input type=\"radio\" name=\"form\" value=\"symbolic\"> names</label></fieldset>\
+<fieldset><legend>Constants</legend>\
+<label><input type=\"radio\" name=\"digits\" value=\"decimal\" checked> six digits</label> \
+<label><input type=\"radio\" name=\"digits\" value=\"exact\"> exact</label></fieldset></div>
+";
+
+fn quantity(robot: &str, nominal: &Shown, symbolic: Option<&Shown>) -> Quantity {
+    let value = |shown: &Shown| serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
+    let latex = |shown: &Shown| {
+        let sheet = Sheet { robot: robot.to_owned(), quantities: vec![shown.clone()], absent: Vec::new() };
+        sheet.latex()
+    };
+    let form = value(nominal);
+    let steps = form["steps"].as_array().map_or(0, Vec::len);
+    let length = form.to_string().len();
+    let text = (length <= LONGEST).then(|| {
+        let other = symbolic.map(|shown| (value(shown), shown)).filter(|(other, _)| *other != form);
+        let texts: Vec<String> = std::iter::once(latex(nominal)).chain(other.iter().map(|(_, shown)| latex(shown))).collect();
+        let whole = json!({
+            "letter": nominal.letter[0],
+            "columnNames": nominal.column_names,
+            "nominal": form,
+            "symbolic": other.map(|(value, _)| value),
+            "latex": texts,
+        });
+        base64(&compress_to_vec_zlib(whole.to_string().as_bytes(), 9))
+    });
+    let size = match (nominal.rows, nominal.columns) {
+        (1, 1) => "a number".to_owned(),
+        (rows, 1) => format!("{rows} entries"),
+        (rows, columns) => format!("{rows} × {columns}"),
+    };
+    Quantity { name: nominal.name.clone(), symbol: nominal.symbol[0].clone(), size, text, steps }
+}

@@ -1,0 +1,32 @@
+/** The table of costs: sorted by a click, with bars. */
+
+/** Makes the table sortable. @param {HTMLTableElement} table */
+function sortable(table) {
+    const body = table.tBodies[0];
+    const heads = [...(table.tHead?.rows[0].cells ?? [])];
+    heads.forEach((head, column) => {
+        head.querySelector("button")?.addEventListener("click", () => {
+            const down = head.getAttribute("aria-sort") === "descending";
+            for (const other of heads) other.removeAttribute("aria-sort");
+            head.setAttribute("aria-sort", down ? "ascending" : "descending");
+            const key = (row) => row.cells[column].getAttribute("data-value") ?? row.cells[column].textContent;
+            const rows = [...body.rows].sort((a, b) => {
+                const [x, y] = [key(a), key(b)];
+                const order = Number.isNaN(Number(x)) ? String(x).localeCompare(String(y)) : Number(x) - Number(y);
+                return down ? order : -order;
+            });
+            body.replaceChildren(...rows);
+        });
+    });
+}
+
+export function cost() {
+    const table = /** @type {HTMLTableElement | null} */ (document.querySelector("#cost table"));
+    if (!table) return;
+    sortable(table);
+    const bars = [...table.querySelectorAll("[data-bar]")];
+    const largest = Math.max(...bars.map((bar) => Number(bar.getAttribute("data-bar"))));
+    for (const bar of bars) {
+        /** @type {HTMLElement} */ (bar).style.width = `${Math.max(1, (100 * Number(bar.getAttribute("data-bar"))) / (largest || 1))}%`;
+    }
+}

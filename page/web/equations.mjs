@@ -1,0 +1,213 @@
+/**
+ * Equations: each section is set when it is opened, from a text that is kept packed. Closed forms as a matrix, or one below another where
+ * they are long; others as numbered steps. Never more nodes at once than a browser lays out in a moment.
+ */
+
+import { copy, html, math } from "./dom.mjs";
+import { parse } from "./formula.mjs";
+import { mathml, nameElement } from "./mathml.mjs";
+
+/** Nodes that are set at once. */
+const NODES = 2500;
+/** Characters of an entry that stands in a matrix, and of all entries of a row. */
+const ENTRY = 44;
+const LINE = 110;
+/** Characters of a whole matrix. */
+const CHARACTERS = 4000;
+
+/**
+ * @typedef {{symbol: string, rows: number, columns: number, entries: string[][], form: string, steps?: [string, string][],
+ *     factors?: string[], singular?: (string | null)[]}} Form
+ * @typedef {{letter: string, columnNames: string[] | null, nominal: Form, symbolic: Form | null, latex: string[]}} Equation
+ */
+
+/** A packed text: base64 of the zlib format. @param {string} packed @returns {Promise<any>} */
+async function unpack(packed) {
+    const bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return JSON.parse(await new Response(stream).text());
+}
+
+/** @param {any} data */
+export function equations(data) {
+    const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`)?.getAttribute("value");
+    const sections = [...document.querySelectorAll("details[data-equation]")].map((details) => ({
+        details,
+        /** @type {Promise<Equation> | null} */
+        equation: null,
+    }));
+    const set = async (section) => {
+        const name = section.details.getAttribute("data-equation") ?? "";
+        section.equation ??= unpack(data.equations[name]);
+        const equation = await section.equation;
+        const symbolic = chosen("form") === "symbolic" && equation.symbolic !== null;
+        const form = symbolic ? /** @type {Form} */ (equation.symbolic) : equation.nominal;
+        const content = written(equation, form, chosen("digits") === "exact");
+        if (chosen("form") === "symbolic" && !symbolic) content.prepend(html("p", { class: "small" }, "No name of a parameter stands in it."));
+        const button = html("button", { type: "button", class: "copy" }, "copy as LaTeX");
+        button.addEventListener("click", () => copy(equation.latex[symbolic ? 1 : 0] ?? equation.latex[0], `${name} as LaTeX`));
+        const host = section.details.querySelector("div");
+        host?.replaceChildren(content, html("div", { class: "controls copies" }, button));
+    };
+    for (const section of sections) {
+        section.details.addEventListener("toggle", () => {
+            if (section.details.open && !section.details.querySelector("math")) set(section);
+        });
+        markUses(section.details);
+    }
+    for (const input of document.querySelectorAll('input[name="form"], input[name="digits"]')) {
+        input.addEventListener("input", () => {
+            for (const section of sections) {
+                if (section.details.open) set(section);
+                else section.details.querySelector("div")?.replaceChildren();
+            }
+        });
+    }
+    // A link to a section opens it.
+    const follow = () => {
+        const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+        if (target instanceof HTMLDetailsElement) target.open = true;
+    };
+    addEventListener("hashchange", follow);
+    follow();
+}
+
+/** A step under the pointer marks its uses. @param {Element} details */
+function markUses(details) {
+    let marked = [];
+    details.addEventListener("pointerover", (event) => {
+        for (const element of marked) element.classList.remove("used");
+        const step = event.target instanceof Element ? event.target.closest("[data-step]")?.getAttribute("data-step") : null;
+        marked = step ? [...details.querySelectorAll(`[data-step="${step}"]`)] : [];
+        for (const element of marked) element.classList.add("used");
+    });
+}
+
+/** @param {Equation} equation @param {Form} form @param {boolean} exact */
+function written(equation, form, exact) {
+    const host = html("div", { class: "formulas" });
+    const options = { exact, count: 0, steps: form.steps?.[0]?.[0].replace(/\d+$/, "") ?? "" };
+    if (fits(form)) {
+        host.append(matrix(equation, form, options));
+    } else {
+        host.append(html("p", {}, math("math", {}, symbolElement(form.symbol, options)), note(form)));
+        list(host, lines(equation, form), options);
+    }
+    if (form.factors) {
+        host.append(html("p", {}, "Factors:"));
+        const items = form.factors.map((factor, k) => {
+            const zero = form.singular?.[k];
+            const words = zero === null || zero === undefined ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : zero;
+            return html("li", {}, math("math", {}, mathml(parse(factor), options)), `, ${words}`);
+        });
+        host.append(html("ol", {}, ...items));
+    }
+    return host;
+}
+
+/** Whether a form is a matrix that fits a line. @param {Form} form */
+function fits(form) {
+    if (form.form !== "closed" || form.columns > 12 || form.entries.flat().join("").length > CHARACTERS) return false;
+    const width = (j) => Math.max(...form.entries.map((row) => shown(row[j])));
+    let total = 0;
+    for (let j = 0; j < form.columns; j++) {
+        if (width(j) > ENTRY && form.rows * form.columns > 1) return false;
+        total += width(j) + 3;
+    }
+    return total <= LINE;
+}
+
+/** About how wide a text is once its constants have six digits. @param {string} text */
+function shown(text) {
+    return text.replace(/\d{7,}\/\d+|\d+\/\d{4,}/g, "0.123456").length;
+}
+
+/** @param {Form} form */
+function isSymmetric(form) {
+    return form.rows > 1 && form.rows === form.columns && form.entries.every((row, i) => row.every((entry, j) => entry === form.entries[j][i]));
+}
+
+/** @param {Form} form */
+function note(form) {
+    const notes = [];
+    if (isSymmetric(form)) notes.push("symmetric");
+    if (form.entries.flat().includes("0")) notes.push("other entries 0");
+    return notes.length > 0 ? ` (${notes.join(", ")})` : "";
+}
+
+/** B(q) with its letters. @param {string} symbol @param {any} options */
+function symbolElement(symbol, options) {
+    const match = /^(.*?)(\(.*\))?$/.exec(symbol);
+    const letters = (match?.[1] ?? symbol).split("_");
+    const base = math("mi", {}, letters[0].replaceAll("tau", "τ").replaceAll("pi", "π"));
+    const named = letters.length > 1 ? math("msub", {}, base, math("mtext", {}, letters.slice(1).join(" "))) : base;
+    options.count += 4;
+    const argument = (match?.[2] ?? "").replaceAll("ddq", "q̈").replaceAll("dq", "q̇").replaceAll("tau", "τ").replaceAll("pi", "π");
+    return math("mrow", {}, named, math("mtext", {}, argument));
+}
+
+/** @param {Equation} equation @param {Form} form @param {any} options */
+function matrix(equation, form, options) {
+    const cell = (entry, i, j) => math("mtd", { "data-entry": `${i + 1},${j + 1}` }, mathml(parse(entry), options));
+    if (form.rows === 1 && form.columns === 1) {
+        const entry = mathml(parse(form.entries[0][0]), options);
+        return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Formula" }, math("math", { display: "block" }, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "="), entry)));
+    }
+    const rows = form.entries.map((row, i) => math("mtr", {}, ...row.map((entry, j) => cell(entry, i, j))));
+    if (equation.columnNames) {
+        rows.unshift(math("mtr", {}, ...equation.columnNames.map((name) => math("mtd", {}, nameElement(name, options)))));
+    }
+    const table = math("math", { display: "block" }, math("mtable", {}, ...rows));
+    const head = math("math", {}, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "=")));
+    return html("div", { class: "scroll equation", tabindex: 0, role: "region", "aria-label": "Matrix" }, head, html("div", { class: "brackets" }, table));
+}
+
+/** The name of an entry: b₁₂, g₃, y with the name of its column. @param {Equation} equation @param {Form} form @param {number} i @param {number} j @param {any} options */
+function entryName(equation, form, i, j, options) {
+    if (form.rows === 1 && form.columns === 1) return symbolElement(form.symbol, options);
+    const letter = equation.letter.split("_");
+    const own = letter.length > 1 ? `${letter[1]},` : "";
+    const large = form.rows > 9 || form.columns > 9;
+    const index = equation.columnNames ? `${i + 1},` : form.columns === 1 ? `${i + 1}` : `${i + 1}${large ? "," : ""}${j + 1}`;
+    const below = math("mrow", {}, math("mn", {}, own + index));
+    if (equation.columnNames) below.append(nameElement(equation.columnNames[j], options));
+    options.count += 4;
+    return math("msub", {}, math("mi", {}, letter[0]), below);
+}
+
+/** Steps and entries that are not zero; of a symmetric matrix the upper half. @param {Equation} equation @param {Form} form */
+function lines(equation, form) {
+    const symmetric = isSymmetric(form);
+    const all = (form.steps ?? []).map(([name, text]) => ({ name: (options) => nameElement(name, options), text, entry: "" }));
+    form.entries.forEach((row, i) =>
+        row.forEach((text, j) => {
+            if (text === "0" || (symmetric && j < i)) return;
+            all.push({ name: (options) => entryName(equation, form, i, j, options), text, entry: `${i + 1},${j + 1}` });
+        }),
+    );
+    return all;
+}
+
+/** Sets lines up to so many nodes, and the others when they are asked for. @param {HTMLElement} host @param {any[]} all @param {any} options */
+function list(host, all, options) {
+    let next = 0;
+    const table = html("div", { class: "lines scroll", tabindex: 0, role: "region", "aria-label": "Formulas" });
+    const more = html("button", { type: "button" });
+    host.append(table, more);
+    const some = () => {
+        const until = options.count + NODES;
+        while (next < all.length && options.count < until) {
+            const { name, text, entry } = all[next++];
+            const row = math("mrow", {}, name(options), math("mo", {}, "="), mathml(parse(text), options));
+            table.append(html("div", { "data-entry": entry || undefined }, math("math", {}, row)));
+        }
+        more.hidden = next === all.length;
+        more.textContent = `show ${Math.min(all.length - next, next)} more of ${all.length - next} lines`;
+    };
+    more.addEventListener("click", () => {
+        options.count = 0;
+        some();
+    });
+    some();
+}
+

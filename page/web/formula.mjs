@@ -1,0 +1,169 @@
+/**
+ * Formulas as `armgen show` prints them in plain text: read, evaluated, printed again.
+ *
+ * sum     = ["-"] product { ("+" | "-") product }
+ * product = power { ("*" | "/") power }
+ * power   = atom ["^" (digits | "(" "-" digits ")")]
+ * atom    = digits | "≈" decimal | name ["(" sum ")"] | "(" sum ")"
+ */
+
+/**
+ * @typedef {{kind: "sum", terms: {negative: boolean, node: Node}[]}
+ *     | {kind: "product", factors: {divided: boolean, node: Node}[]}
+ *     | {kind: "power", base: Node, exponent: number}
+ *     | {kind: "call", name: string, argument: Node}
+ *     | {kind: "number", text: string}
+ *     | {kind: "fraction", numerator: string, denominator: string}
+ *     | {kind: "approximate", text: string}
+ *     | {kind: "name", text: string}} Node
+ */
+
+const TOKEN = /\s*(≈-?[\d.]+(?:e-?\d+)?|\d+|[A-Za-z_]\w*|[-+*/^()])/y;
+
+/** @param {string} text @returns {Node} */
+export function parse(text) {
+    const tokens = [];
+    TOKEN.lastIndex = 0;
+    while (TOKEN.lastIndex < text.length) {
+        const at = TOKEN.lastIndex;
+        const match = TOKEN.exec(text);
+        if (!match) throw new Error(`no formula at ${at}: ${text.slice(at, at + 20)}`);
+        tokens.push(match[1]);
+    }
+    let next = 0;
+    const take = (token) => {
+        if (tokens[next] !== token) throw new Error(`${token} expected, not ${tokens[next]}`);
+        next++;
+    };
+    const sum = () => {
+        const terms = [];
+        let negative = tokens[next] === "-";
+        if (negative) next++;
+        for (;;) {
+            terms.push({ negative, node: product() });
+            if (tokens[next] !== "+" && tokens[next] !== "-") break;
+            negative = tokens[next++] === "-";
+        }
+        return terms.length === 1 && !terms[0].negative ? terms[0].node : { kind: "sum", terms };
+    };
+    const product = () => {
+        const factors = [{ divided: false, node: power() }];
+        while (tokens[next] === "*" || tokens[next] === "/") {
+            const divided = tokens[next++] === "/";
+            const node = power();
+            const before = factors[factors.length - 1];
+            // 10763/500 is one number.
+            if (divided && factors.length === 1 && before.node.kind === "number" && node.kind === "number") {
+                before.node = { kind: "fraction", numerator: before.node.text, denominator: node.text };
+            } else {
+                factors.push({ divided, node });
+            }
+        }
+        return factors.length === 1 ? factors[0].node : { kind: "product", factors };
+    };
+    const power = () => {
+        const base = atom();
+        if (tokens[next] !== "^") return base;
+        next++;
+        if (tokens[next] !== "(") return { kind: "power", base, exponent: Number(tokens[next++]) };
+        next++;
+        take("-");
+        const exponent = -Number(tokens[next++]);
+        take(")");
+        return { kind: "power", base, exponent };
+    };
+    const atom = () => {
+        const token = tokens[next++];
+        if (token === undefined) throw new Error("a formula ends too early");
+        if (token === "(") {
+            const inner = sum();
+            take(")");
+            return inner;
+        }
+        if (token.startsWith("≈")) return { kind: "approximate", text: token.slice(1) };
+        if (/^\d/.test(token)) return { kind: "number", text: token };
+        if (!/^[A-Za-z_]/.test(token)) throw new Error(`${token} is no operand`);
+        if (tokens[next] !== "(") return { kind: "name", text: token };
+        next++;
+        const argument = sum();
+        take(")");
+        return { kind: "call", name: token, argument };
+    };
+    const all = sum();
+    if (next !== tokens.length) throw new Error(`${tokens[next]} is left`);
+    return all;
+}
+
+/** The value of a fraction whose digits may be more than a float has. @param {string} numerator @param {string} denominator */
+export function quotient(numerator, denominator) {
+    if (numerator.length < 300 && denominator.length < 300) return Number(numerator) / Number(denominator);
+    const digits = 40;
+    const shift = denominator.length - numerator.length + digits;
+    const ten = (power) => 10n ** BigInt(Math.max(0, power));
+    const whole = (BigInt(numerator) * ten(shift)) / (BigInt(denominator) * ten(-shift));
+    return Number(`${whole}e${-shift}`);
+}
+
+const FUNCTIONS = { sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, sign: Math.sign };
+
+/** The value of a formula, its names looked up. @param {Node} node @param {(name: string) => number} lookup @returns {number} */
+export function evaluate(node, lookup) {
+    switch (node.kind) {
+        case "sum":
+            return node.terms.reduce((total, term) => total + (term.negative ? -1 : 1) * evaluate(term.node, lookup), 0);
+        case "product":
+            return node.factors.reduce((total, factor) => {
+                const value = evaluate(factor.node, lookup);
+                return factor.divided ? total / value : total * value;
+            }, 1);
+        case "power":
+            return evaluate(node.base, lookup) ** node.exponent;
+        case "call":
+            return FUNCTIONS[node.name](evaluate(node.argument, lookup));
+        case "number":
+            return Number(node.text);
+        case "fraction":
+            return quotient(node.numerator, node.denominator);
+        case "approximate":
+            return Number(node.text);
+        default:
+            return node.text === "pi" ? Math.PI : lookup(node.text);
+    }
+}
+
+/** How large a formula can become with sines and cosines of any angle: its terms' sizes added. @param {Node} node @param {(name: string) => number} lookup @returns {number} */
+export function bound(node, lookup) {
+    switch (node.kind) {
+        case "sum":
+            return node.terms.reduce((total, term) => total + bound(term.node, lookup), 0);
+        case "product":
+            return node.factors.reduce((total, { divided, node }) => (divided ? total / Math.abs(evaluate(node, lookup)) : total * bound(node, lookup)), 1);
+        case "power":
+            return bound(node.base, lookup) ** node.exponent;
+        case "call":
+            return node.name === "sqrt" ? evaluate(node, lookup) : 1;
+        default:
+            return Math.abs(evaluate(node, lookup));
+    }
+}
+
+/** A formula in plain text again. @param {Node} node @returns {string} */
+export function print(node) {
+    const inside = (inner) => (inner.kind === "sum" ? `(${print(inner)})` : print(inner));
+    switch (node.kind) {
+        case "sum":
+            return node.terms.map((term, i) => (i === 0 ? (term.negative ? "-" : "") : term.negative ? " - " : " + ") + inside(term.node)).join("");
+        case "product":
+            return node.factors.map((factor, i) => (i === 0 ? "" : factor.divided ? "/" : "*") + inside(factor.node)).join("");
+        case "power":
+            return `${inside(node.base)}^${node.exponent < 0 ? `(${node.exponent})` : node.exponent}`;
+        case "call":
+            return `${node.name}(${print(node.argument)})`;
+        case "fraction":
+            return `${node.numerator}/${node.denominator}`;
+        case "approximate":
+            return `(≈${node.text})`;
+        default:
+            return node.text;
+    }
+}

@@ -1,0 +1,44 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { bound, evaluate, parse, print, quotient } from "../formula.mjs";
+
+test("formulas are read and printed back", () => {
+    for (const text of [
+        "0",
+        "-1/4",
+        "10*cos(q2) + 10763/500",
+        "-sin(q1 + q2 - q4)",
+        "-5*(dq1 + dq2)*sin(q2)",
+        "t1*t2/t3/t4",
+        "1/(t1 - 2*t3)",
+        "m_l1*a^2 - 2*sqrt(3)*sign(dq1)",
+        "(1/2*sqrt(2) + 1)*q3^(-2)",
+        "sin(q1+q2-q3)*phi".replace("q1+q2-q3", "q1 + q2 - q3"),
+        "(≈-1.25e-7)*pi",
+    ]) {
+        assert.equal(print(parse(text)), text);
+    }
+});
+
+test("formulas have their values", () => {
+    const lookup = (name) => ({ q1: 0.3, q2: 1.1, t1: 2, t2: 3 })[name];
+    const check = (text, value) => assert.equal(evaluate(parse(text), lookup), value);
+    check("-1/4", -0.25);
+    check("10*cos(q2) + 3/2", 10 * Math.cos(1.1) + 1.5);
+    check("t1*t2/4/t1", 0.75);
+    check("t1^3 - t2^(-1)", 8 - 1 / 3);
+    check("2*(t1 - t2)", -2);
+    check("-(t1 + t2)*2 - 1", -11);
+    assert.equal(bound(parse("1/2*sin(q1) - 3*cos(q2)"), lookup), 3.5);
+});
+
+test("what is no formula is refused", () => {
+    for (const text of ["", "1 +", "sin(q1", "a b", "2**3", "<img>"]) assert.throws(() => parse(text), text);
+});
+
+test("fractions of more digits than a float holds have values", () => {
+    assert.equal(quotient(`1${"0".repeat(400)}`, `2${"0".repeat(400)}`), 0.5);
+    assert.equal(quotient("1", `4${"0".repeat(310)}`), 2.5e-311);
+    assert.equal(quotient(`3${"0".repeat(305)}`, "2"), 1.5e305);
+});

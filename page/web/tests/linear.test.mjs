@@ -1,0 +1,47 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { cuboid } from "../bodies.mjs";
+import { condition, determinant, eigen, manipulability, outline } from "../linear.mjs";
+
+const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12 * Math.max(1, Math.abs(b)), `${a} is not ${b}`);
+
+test("a symmetric matrix is its eigenvalues and eigenvectors", () => {
+    const a = [
+        [4, 1, -2],
+        [1, 2, 0.5],
+        [-2, 0.5, 3],
+    ];
+    const { values, vectors } = eigen(a);
+    assert.ok(values[0] >= values[1] && values[1] >= values[2]);
+    a.forEach((row, i) => row.forEach((x, j) => near(values.reduce((sum, value, k) => sum + value * vectors[i][k] * vectors[j][k], 0), x)));
+});
+
+test("w is the determinant's size, and a singular Jacobian has none", () => {
+    const j = [
+        [1, 2, 0.3],
+        [-0.5, 1, 4],
+        [2, 2, -1],
+    ];
+    near(manipulability(j), Math.abs(determinant(j)));
+    assert.ok(condition([[1, 2], [2, 4]]) > 1e15);
+    assert.equal(determinant([[1, 2], [2, 4]]), 0);
+});
+
+test("the outline of an ellipsoid is that of its widest points", () => {
+    // Semi-axes 3, 2, 1 along x, y, z, seen along y.
+    const { semi, angle } = outline([[9, 0, 0], [0, 4, 0], [0, 0, 1]], [1, 0, 0], [0, 0, 1]);
+    near(semi[0], 3);
+    near(semi[1], 1);
+    near(Math.sin(angle), 0);
+});
+
+test("a cuboid gives its own inertia back, and an impossible tensor says so", () => {
+    const [m, a, b, c] = [12, 0.4, 0.3, 0.2];
+    const body = (inertia) => ({ name: "", frame: 1, mass: m, com: [0, 0, 0], inertia });
+    const of = cuboid(body([(m * (b * b + c * c)) / 12, 0, (m * (a * a + c * c)) / 12, 0, 0, (m * (a * a + b * b)) / 12]));
+    assert.deepEqual(of.edges.map((edge) => edge.toFixed(9)).sort(), ["0.200000000", "0.300000000", "0.400000000"]);
+    near(of.density, m / (a * b * c));
+    assert.ok(of.possible);
+    assert.ok(!cuboid(body([1, 0, 1, 0, 0, 3])).possible);
+});
