@@ -484,7 +484,7 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in ["", "check", "show", "generate", "import", "verify", "count", "page", "run", "completions"] {
+    for command in ["", "check", "show", "generate", "import", "export", "verify", "count", "page", "run", "completions"] {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");
@@ -506,6 +506,11 @@ fn a_urdf_becomes_a_description_that_is_valid_and_verified() {
     assert_eq!(report["joints"].as_array().map(Vec::len), Some(3));
     check(&["check", &yaml], 0);
     check(&["generate", &yaml, "--out", &module, "--verify"], 0);
+    // And back to a URDF, which is the same arm.
+    let (back, again) = (path("back.urdf"), path("again.yaml"));
+    check(&["export", &yaml, "--format", "urdf", "--out", &back], 0);
+    check(&["import", &back, "--tip", "tool", "--out", &again], 0);
+    check(&["export", &yaml, "--format", "urdf", "--out", &yaml], 2);
     // Without --tip two fingers and the tip may be meant.
     let refused = check(&["import", &urdf, "--base", "base"], 1);
     assert!(err(&refused).contains("error[several-tips]"), "{}", err(&refused));

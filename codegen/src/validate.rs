@@ -4,6 +4,7 @@
 //! names.rs       identifiers, reserved words, names used twice
 //! parameters.rs  which names stay symbols, which are numbers, which abbreviate an expression
 //! number.rs      expression -> exact number
+//! nominal.rs     the same for who writes a description in another form
 //! evaluate.rs    expression -> polynomial in the symbols
 //! geometry.rs    angles, rows of joints, poses, rotations -> placements
 //! frames.rs      where joint frames lie
@@ -27,6 +28,7 @@ mod frames;
 mod geometry;
 mod joints;
 mod names;
+mod nominal;
 mod number;
 mod parameters;
 mod places;
@@ -45,6 +47,7 @@ pub use bodies::impossible_inertia;
 pub use equations::{product_out_of_range, values_leave_the_scalar};
 use evaluate::Evaluator;
 pub use names::{is_free_name, is_rust_name};
+pub use nominal::NominalValues;
 use parameters::Parameters;
 pub use places::{JointPlaces, Places, Role, Use};
 

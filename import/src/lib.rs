@@ -1,4 +1,5 @@
-//! A serial chain of a URDF or of a MuJoCo model as a `robot.yaml`: exact wherever it can be, and where not, that is said and bounded.
+//! A serial chain of a URDF or of a MuJoCo model as a `robot.yaml`: exact wherever it can be, and where not, that is said and bounded;
+//! and a `robot.yaml` as a URDF.
 //!
 //! ```text
 //! xml.rs     text -> XML tree with places, bounded
@@ -14,6 +15,7 @@
 //! bound.rs   how far snapping can move the flange and the torques
 //! yaml.rs    the text of robot.yaml
 //! report.rs  what became of everything, as JSON and in words
+//! export.rs  from a description to a URDF
 //! build_script.rs  the face for a build.rs, which alone touches files
 //! ```
 //!
@@ -26,6 +28,7 @@ mod bound;
 pub mod build_script;
 mod chain;
 mod code;
+mod export;
 mod format;
 mod mjcf;
 mod number;
@@ -43,6 +46,7 @@ use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::Source;
 
 pub use code::Code;
+pub use export::{export, Exported};
 pub use options::Options;
 pub use report::Report;
 

@@ -27,7 +27,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use commands::generate::{Beside, Choices};
-use commands::import;
+use commands::{export, import};
 
 /// Exit code: the file is valid, or the task was done.
 const DONE: u8 = 0;
@@ -157,6 +157,26 @@ Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a 
         choices: import::Choices,
         #[command(flatten)]
         results: import::Results,
+    },
+    /// Write a description as a URDF
+    #[command(after_help = "Examples:
+  armgen export robot.yaml --format urdf --out robot.urdf
+  armgen export robot.yaml --format urdf > robot.urdf
+
+Decimals are written digit by digit, multiples of pi/12 as the nearest float, which armgen import takes for what
+it means. What a URDF cannot hold is named, one line each: rotors, armatures, payload, gravity, ... `armgen import
+robot.urdf --tip tool` gives the arm back.
+Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
+    Export {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// What to write
+        #[arg(long, value_enum)]
+        format: export::Format,
+        /// File to write; standard output if not given
+        #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+        out: Option<PathBuf>,
     },
     /// Verify that a module equals the equations of its description, exactly
     #[command(after_help = "Examples:
@@ -302,6 +322,7 @@ pub fn run(built: &dyn Arm) -> ExitCode {
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
         Command::Import { file, choices, results } => import::run(&file, choices, &results),
+        Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
         Command::Page { file, out } => commands::page::run(&file, &out),

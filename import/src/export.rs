@@ -1,0 +1,377 @@
+//! A description as a URDF.
+//!
+//! Root link `base`; for each joint its link, `JOINT_link`, which turns about or slides along an axis through its origin; last link `tool`.
+//! A list of poses is a line of fixed joints. Rows of Denavit and Hartenberg become
+//!
+//! ```text
+//! standard: Rz(theta) Tz(d) | motion | Tx(a) Rx(alpha) and the body: a further link, JOINT_body
+//! modified: Rx(alpha) Tx(a), Rz(theta) Tz(d) | motion | body
+//! ```
+//!
+//! Decimals are written digit by digit, multiples of pi/12 as the nearest float, which import takes for what it means, and everything else with
+//! 17 digits, which is said.
+
+mod text;
+
+use std::collections::BTreeSet;
+
+use armgen_codegen::description::{
+    AttachedDescription, BodyDescription, Convention, JointDescription, PoseDescription, RegressorDescription, RobotDescription,
+    RotationDescription, Value,
+};
+use armgen_codegen::diagnostic::Diagnostics;
+use armgen_codegen::document::Expression;
+use armgen_codegen::exact::{Number, Rational};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::source::Source;
+use armgen_codegen::validate::{self, NominalValues};
+
+use crate::number::decimal;
+
+/// A URDF and what it does not hold.
+#[derive(Clone, Debug)]
+pub struct Exported {
+    /// The text of the URDF.
+    pub urdf: String,
+    /// What was rounded or left out, a line for each.
+    pub lines: Vec<String>,
+}
+
+/// A robot of a URDF.
+pub(crate) struct Urdf {
+    pub(crate) name: String,
+    pub(crate) parts: Vec<Part>,
+}
+
+/// A joint and the link that it carries.
+pub(crate) struct Part {
+    pub(crate) joint: String,
+    pub(crate) parent: String,
+    pub(crate) link: String,
+    pub(crate) origin: Pose,
+    pub(crate) motion: Option<Motion>,
+    pub(crate) body: Option<Body>,
+}
+
+/// Texts of a translation and of angles about x, y, z.
+#[derive(Clone, PartialEq)]
+pub(crate) struct Pose {
+    pub(crate) xyz: [String; 3],
+    pub(crate) rpy: [String; 3],
+}
+
+/// How a joint moves.
+pub(crate) struct Motion {
+    pub(crate) kind: &'static str,
+    pub(crate) axis: [String; 3],
+    pub(crate) position: Option<[String; 2]>,
+    pub(crate) velocity: Option<String>,
+    pub(crate) effort: Option<String>,
+    pub(crate) viscous: Option<String>,
+    pub(crate) coulomb: Option<String>,
+}
+
+/// A mass distribution.
+pub(crate) struct Body {
+    pub(crate) origin: Pose,
+    pub(crate) mass: String,
+    /// xx, xy, yy, xz, yz, zz.
+    pub(crate) inertia: [String; 6],
+}
+
+fn zeros<const N: usize>() -> [String; N] {
+    std::array::from_fn(|_| "0".to_owned())
+}
+
+impl Pose {
+    pub(crate) fn identity() -> Pose {
+        Pose { xyz: zeros(), rpy: zeros() }
+    }
+
+    pub(crate) fn is_identity(&self) -> bool {
+        *self == Pose::identity()
+    }
+}
+
+impl Body {
+    fn is_nothing(&self) -> bool {
+        self.mass == "0" && self.inertia.iter().all(|x| x == "0")
+    }
+}
+
+/// The URDF of a description. All faults of the description; there is a URDF if and only if none of them is an error.
+pub fn export(source: &Source) -> (Option<Exported>, Diagnostics) {
+    let (valid, diagnostics) = validate::read(source);
+    let description = RobotDescription::parse(source).0.filter(|_| valid.is_some());
+    let exported = description.map(|description| {
+        let values = NominalValues::new(&description);
+        let writer = Writer { source, values, rounded: 0, names: BTreeSet::new(), parts: Vec::new(), lines: Vec::new() };
+        writer.write(&description)
+    });
+    (exported, diagnostics)
+}
+
+struct Writer<'d> {
+    source: &'d Source,
+    values: NominalValues<'d>,
+    /// Numbers that are rounded.
+    rounded: usize,
+    /// Links.
+    names: BTreeSet<String>,
+    parts: Vec<Part>,
+    lines: Vec<String>,
+}
+
+impl Writer<'_> {
+    fn write(mut self, description: &RobotDescription) -> Exported {
+        let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
+        let convention = description.convention.as_ref().map_or(Convention::Urdf, |convention| convention.value);
+        self.names.extend(["base".to_owned(), "tool".to_owned()]);
+        let name = |joint: &JointDescription| joint.name.as_ref().map_or_else(String::new, |name| name.value.clone());
+        self.names.extend(joints.iter().map(|joint| format!("{}_link", name(joint))));
+        let mut link = "base".to_owned();
+        // What stands between the origin of the last link and the next row.
+        let mut before = self.poses(description.base.as_ref());
+        for (k, joint) in joints.iter().enumerate() {
+            let twist = [self.about_x(joint)];
+            let turn = self.about_z(joint);
+            match convention {
+                Convention::Urdf => before.extend(self.poses(joint.origin.as_ref())),
+                Convention::Standard => before.push(turn),
+                Convention::Modified => before.extend(twist.iter().cloned().chain([turn])),
+            }
+            let after: Vec<Pose> = if convention == Convention::Standard { twist.into() } else { Vec::new() };
+            let name = name(joint);
+            let origin = self.all_but_last(&mut link, before, if k == 0 { "base" } else { &name });
+            let moving = format!("{name}_link");
+            let motion = self.motion(joint, convention);
+            self.parts.push(Part {
+                joint: name.clone(),
+                parent: link,
+                link: moving.clone(),
+                origin,
+                motion: Some(motion),
+                body: None,
+            });
+            link = moving;
+            before = after.into_iter().filter(|pose| !pose.is_identity()).collect();
+            if let Some(body) = &joint.link {
+                self.bodies(&name, &link, &before, body);
+            }
+        }
+        before.extend(self.poses(description.tool.as_ref()));
+        self.fixed("tool", &link, before, None);
+        self.say_what_is_left_out(description, joints);
+        let urdf =
+            Urdf { name: description.name.as_ref().map_or_else(String::new, |name| name.value.clone()), parts: self.parts };
+        Exported { urdf: text::print(&urdf), lines: self.lines }
+    }
+
+    /// The body of a link and those that are attached to it, in a frame on the joint axis.
+    fn bodies(&mut self, joint: &str, link: &str, frame: &[Pose], description: &BodyDescription) {
+        let body = self.body(description);
+        // A link without mass of its own is one without `inertial`, where others give it mass.
+        if description.attached.is_empty() || !body.is_nothing() {
+            if frame.is_empty() {
+                self.parts.last_mut().expect("its joint").body = Some(body);
+            } else {
+                let name = self.free_name(&format!("{joint}_body"));
+                self.fixed(&name, link, frame.to_vec(), Some(body));
+            }
+        }
+        for (k, other) in description.attached.iter().enumerate() {
+            self.attached(joint, k, link, frame, other);
+        }
+    }
+
+    fn attached(&mut self, joint: &str, k: usize, link: &str, frame: &[Pose], other: &AttachedDescription) {
+        let given = other.name.as_ref().map(|name| name.value.clone());
+        let name = self.free_name(&given.unwrap_or_else(|| format!("{joint}_attached_{}", k + 1)));
+        let poses: Vec<Pose> = frame.iter().cloned().chain(self.poses(other.origin.as_ref())).collect();
+        let body = self.body(&other.body);
+        self.fixed(&name, link, poses, Some(body));
+    }
+
+    /// A link that is fixed to another one; poses but the last get links of their own.
+    fn fixed(&mut self, name: &str, link: &str, poses: Vec<Pose>, body: Option<Body>) {
+        let mut parent = link.to_owned();
+        let origin = self.all_but_last(&mut parent, poses, name);
+        self.parts.push(Part { joint: format!("{name}_joint"), parent, link: name.to_owned(), origin, motion: None, body });
+    }
+
+    /// Links without mass for all poses but the last one, which is given back.
+    fn all_but_last(&mut self, link: &mut String, poses: Vec<Pose>, name: &str) -> Pose {
+        let mut poses: Vec<Pose> = poses.into_iter().filter(|pose| !pose.is_identity()).collect();
+        let last = poses.pop().unwrap_or_else(Pose::identity);
+        for (k, origin) in poses.into_iter().enumerate() {
+            let next = self.free_name(&format!("{name}_{}", k + 1));
+            let joint = if (name, k) == ("base", 0) { "base_joint".to_owned() } else { format!("{next}_joint") };
+            let parent = std::mem::replace(link, next.clone());
+            self.parts.push(Part { joint, parent, link: next, origin, motion: None, body: None });
+        }
+        last
+    }
+
+    /// A name that no link has yet.
+    fn free_name(&mut self, wanted: &str) -> String {
+        let mut name = wanted.to_owned();
+        let mut count = 2;
+        while !self.names.insert(name.clone()) {
+            name = format!("{wanted}_{count}");
+            count += 1;
+        }
+        name
+    }
+
+    /// Tx(a) Rx(alpha).
+    fn about_x(&mut self, joint: &JointDescription) -> Pose {
+        let [a, alpha] = [self.value(&joint.a), self.angle(&joint.alpha)];
+        Pose { xyz: [a, "0".into(), "0".into()], rpy: [alpha, "0".into(), "0".into()] }
+    }
+
+    /// Rz(theta) Tz(d).
+    fn about_z(&mut self, joint: &JointDescription) -> Pose {
+        let [d, theta] = [self.value(&joint.d), self.angle(&joint.theta)];
+        Pose { xyz: ["0".into(), "0".into(), d], rpy: ["0".into(), "0".into(), theta] }
+    }
+
+    fn motion(&mut self, joint: &JointDescription, convention: Convention) -> Motion {
+        let prismatic = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);
+        let axis = match &joint.axis {
+            Some(axis) if convention == Convention::Urdf => axis.value.each_ref().map(|x| self.value(x)),
+            _ => ["0", "0", "1"].map(str::to_owned),
+        };
+        let mut optional = |value: &Value| value.as_ref().map(|expression| self.decimal(expression));
+        let (velocity, effort) = (optional(&joint.limits.velocity), optional(&joint.limits.effort));
+        let (viscous, coulomb) = (optional(&joint.friction.viscous), optional(&joint.friction.coulomb));
+        let position = joint.limits.position.as_ref().map(|limits| limits.value.each_ref().map(|x| self.value(x)));
+        let kind = match (prismatic, &position) {
+            (true, _) => "prismatic",
+            (false, Some(_)) => "revolute",
+            (false, None) => "continuous",
+        };
+        Motion { kind, axis, position, velocity, effort, viscous, coulomb }
+    }
+
+    fn body(&mut self, body: &BodyDescription) -> Body {
+        let mass = self.value(&body.mass);
+        let com = body.com.as_ref().map_or_else(zeros, |com| com.value.each_ref().map(|x| self.value(x)));
+        let elements = body.inertia.as_ref().map(|inertia| inertia.elements.each_ref().map(|x| self.value(x)));
+        let rotation = body.inertia.as_ref().and_then(|inertia| inertia.rotation.as_ref());
+        let rpy = rotation.map_or_else(zeros, |rotation| self.rotation(rotation));
+        Body { origin: Pose { xyz: com, rpy }, mass, inertia: elements.unwrap_or_else(zeros) }
+    }
+
+    fn poses(&mut self, pose: Option<&PoseDescription>) -> Vec<Pose> {
+        let elements = pose.map_or(&[][..], |pose| &pose.elements);
+        let mut poses = Vec::new();
+        for element in elements {
+            let xyz = element.xyz.as_ref().map_or_else(zeros, |xyz| xyz.value.each_ref().map(|x| self.value(x)));
+            let rpy = element.rotation.as_ref().map_or_else(zeros, |rotation| self.rotation(rotation));
+            poses.push(Pose { xyz, rpy });
+        }
+        poses
+    }
+
+    /// Angles about x, y, z.
+    fn rotation(&mut self, rotation: &RotationDescription) -> [String; 3] {
+        if let RotationDescription::Rpy(angles) = rotation {
+            return angles.value.each_ref().map(|angle| self.angle(angle));
+        }
+        self.rounded += 3;
+        let float = |value: &Value| value.as_ref().and_then(|e| self.values.of(e)).map_or(0.0, |number| number.to_f64());
+        let written = |value: &Value| crate::snap::Written { value: float(value), ..crate::snap::Written::zero() };
+        let turn = match rotation {
+            RotationDescription::Rpy(angles) => crate::pose::Turn::Rpy(angles.value.each_ref().map(written)),
+            RotationDescription::Quat(quat) => crate::pose::Turn::Quat(quat.value.each_ref().map(written), 0.0),
+            RotationDescription::XyAxes(axes) => crate::pose::Turn::XyAxes(axes.value.each_ref().map(written), 0.0),
+            RotationDescription::AxisAngle(axis, angle) => crate::pose::Turn::AxisAngle(crate::pose::AxisAngle {
+                axis: axis.value.each_ref().map(written),
+                axis_offset: 0.0,
+                angle: written(&Some(angle.clone())),
+            }),
+        };
+        let m = turn.matrix();
+        let level = m[0][0].hypot(m[1][0]);
+        let pitch = (-m[2][0]).atan2(level);
+        // Where x points up or down only the sum or difference of roll and yaw counts.
+        let (roll, yaw) = match level > 1e-9 {
+            true => (m[2][1].atan2(m[2][2]), m[1][0].atan2(m[0][0])),
+            false => (0.0, (-m[0][1]).atan2(m[1][1])),
+        };
+        [roll, pitch, yaw].map(|angle| if angle.abs() < 1e-15 { "0".to_owned() } else { format!("{angle:?}") })
+    }
+
+    /// A number, 0 where none is given.
+    fn value(&mut self, value: &Value) -> String {
+        value.as_ref().map_or_else(|| "0".to_owned(), |expression| self.decimal(expression))
+    }
+
+    fn angle(&mut self, value: &Value) -> String {
+        let Some(expression) = value else { return "0".to_owned() };
+        let twelfths = self.values.of(expression).and_then(|number| number.checked_div(&Number::pi()));
+        let twelfths = twelfths.and_then(|number| Some(number.as_rational()? * Rational::from(12)));
+        match twelfths.filter(|twelfths| twelfths.is_int() && !twelfths.is_zero()) {
+            // Import takes it for what it means.
+            Some(_) => format!("{:?}", self.float(expression)),
+            None => self.decimal(expression),
+        }
+    }
+
+    fn float(&self, expression: &Expression) -> f64 {
+        self.values.of(expression).map_or(0.0, |number| number.to_f64())
+    }
+
+    /// Its digits, those of its value where that ends, or the nearest float.
+    fn decimal(&mut self, expression: &Expression) -> String {
+        let word = self.source.slice(expression.span);
+        let digits = decimal(word, expression.span, "a number", &mut Diagnostics::new());
+        if let Some(digits) = digits.filter(|_| expression.is_decimal()) {
+            return digits.text;
+        }
+        let value = self.values.of(expression).unwrap_or_else(Number::zero);
+        if let Some(text) = value.as_rational().and_then(text::ending) {
+            return text;
+        }
+        self.rounded += 1;
+        format!("{:?}", value.to_f64())
+    }
+
+    fn say_what_is_left_out(&mut self, description: &RobotDescription, joints: &[JointDescription]) {
+        let names = |has: fn(&JointDescription) -> bool| -> Vec<&str> {
+            joints.iter().filter(|joint| has(joint)).filter_map(|joint| Some(joint.name.as_ref()?.value.as_str())).collect()
+        };
+        let mut lines = Vec::new();
+        let mut joints_with = |what: &str, has: fn(&JointDescription) -> bool| {
+            let names = names(has);
+            if !names.is_empty() {
+                lines.push(format!("{what}: {}", names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")));
+            }
+        };
+        joints_with("a URDF has no rotors; left out at", |joint| joint.motor.is_some());
+        joints_with("a URDF has no armature; left out at", |joint| joint.armature.is_some());
+        joints_with("a URDF demands `effort` and `velocity`; 0 stands for one that is not given at", |joint| {
+            let prismatic = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);
+            let any = joint.limits.position.is_some() || joint.limits.velocity.is_some() || joint.limits.effort.is_some();
+            (any || prismatic) && (joint.limits.velocity.is_none() || joint.limits.effort.is_none())
+        });
+        let gravity = description.gravity.as_ref().map(|gravity| gravity.value.each_ref().map(|x| self.value(x)));
+        if let Some(gravity) = gravity.filter(|gravity| *gravity != ["0", "0", "-9.81"].map(str::to_owned)) {
+            lines.push(format!("a URDF has no gravity; who reads it takes 0 0 -9.81, not {}", gravity.join(" ")));
+        }
+        for (what, given) in [
+            ("the payload", description.payload.is_some()),
+            ("`task`", description.task.is_some()),
+            ("`regressor`", description.regressor.as_ref().is_some_and(|r| !matches!(r.value, RegressorDescription::Standard))),
+            ("the names under `parameters`, whose values are written", !description.parameters.is_empty()),
+        ] {
+            if given {
+                lines.push(format!("left out: {what}"));
+            }
+        }
+        if self.rounded > 0 {
+            lines.push(format!("{} numbers are rounded to the nearest float: no decimals end with their value", self.rounded));
+        }
+        self.lines = lines;
+    }
+}

@@ -1,0 +1,111 @@
+//! The text of a URDF.
+
+use std::fmt::Write;
+
+use armgen_codegen::exact::Rational;
+
+use super::{Body, Motion, Pose, Urdf};
+
+/// Digits of a decimal that is written exactly.
+const MAX_DIGITS: usize = 30;
+
+/// The decimal of a fraction, if it ends soon.
+pub(super) fn ending(value: &Rational) -> Option<String> {
+    let ten = Rational::from(10u8);
+    let mut scaled = value.clone();
+    for digits in 0..=MAX_DIGITS {
+        if scaled.is_int() {
+            let text = scaled.numerator().to_string();
+            let (sign, whole) = text.strip_prefix('-').map_or(("", text.as_str()), |rest| ("-", rest));
+            if whole.len() > MAX_DIGITS {
+                return None;
+            }
+            let padded = format!("{whole:0>width$}", width = digits + 1);
+            let (before, after) = padded.split_at(padded.len() - digits);
+            return Some(if after.is_empty() { format!("{sign}{before}") } else { format!("{sign}{before}.{after}") });
+        }
+        scaled *= &ten;
+    }
+    None
+}
+
+/// The text of a URDF.
+pub(super) fn print(urdf: &Urdf) -> String {
+    let mut text = String::from("<?xml version=\"1.0\"?>\n");
+    let mut line = |words: String| writeln!(text, "{words}").expect("a text takes it");
+    line(format!("<robot name=\"{}\">", escaped(&urdf.name)));
+    line("  <link name=\"base\"/>".to_owned());
+    for part in &urdf.parts {
+        let kind = part.motion.as_ref().map_or("fixed", |motion| motion.kind);
+        line(format!("  <joint name=\"{}\" type=\"{kind}\">", escaped(&part.joint)));
+        if !part.origin.is_identity() {
+            line(format!("    {}", origin(&part.origin)));
+        }
+        line(format!("    <parent link=\"{}\"/>", escaped(&part.parent)));
+        line(format!("    <child link=\"{}\"/>", escaped(&part.link)));
+        if let Some(motion) = &part.motion {
+            motion_lines(motion).into_iter().for_each(|words| line(format!("    {words}")));
+        }
+        line("  </joint>".to_owned());
+        match &part.body {
+            None => line(format!("  <link name=\"{}\"/>", escaped(&part.link))),
+            Some(body) => {
+                line(format!("  <link name=\"{}\">", escaped(&part.link)));
+                line("    <inertial>".to_owned());
+                body_lines(body).into_iter().for_each(|words| line(format!("      {words}")));
+                line("    </inertial>".to_owned());
+                line("  </link>".to_owned());
+            }
+        }
+    }
+    line("</robot>".to_owned());
+    text
+}
+
+fn origin(pose: &Pose) -> String {
+    let given = |numbers: &[String; 3]| numbers.iter().any(|x| x != "0");
+    let mut text = String::from("<origin");
+    for (name, numbers) in [("xyz", &pose.xyz), ("rpy", &pose.rpy)] {
+        if given(numbers) {
+            text += &format!(" {name}=\"{}\"", numbers.join(" "));
+        }
+    }
+    text + "/>"
+}
+
+fn motion_lines(motion: &Motion) -> Vec<String> {
+    let mut lines = vec![format!("<axis xyz=\"{}\"/>", motion.axis.join(" "))];
+    let zero = || "0".to_owned();
+    let (velocity, effort) = (motion.velocity.clone(), motion.effort.clone());
+    if motion.kind != "continuous" || velocity.is_some() || effort.is_some() {
+        let position = match &motion.position {
+            Some([low, high]) => format!("lower=\"{low}\" upper=\"{high}\" "),
+            None => String::new(),
+        };
+        let (velocity, effort) = (velocity.unwrap_or_else(zero), effort.unwrap_or_else(zero));
+        lines.push(format!("<limit {position}effort=\"{effort}\" velocity=\"{velocity}\"/>"));
+    }
+    let friction = [("damping", &motion.viscous), ("friction", &motion.coulomb)];
+    let given: Vec<String> =
+        friction.iter().filter_map(|(name, value)| Some(format!("{name}=\"{}\"", value.as_ref()?))).collect();
+    if !given.is_empty() {
+        lines.push(format!("<dynamics {}/>", given.join(" ")));
+    }
+    lines
+}
+
+fn body_lines(body: &Body) -> Vec<String> {
+    let mut lines = Vec::new();
+    if !body.origin.is_identity() {
+        lines.push(origin(&body.origin));
+    }
+    lines.push(format!("<mass value=\"{}\"/>", body.mass));
+    let [xx, xy, yy, xz, yz, zz] = &body.inertia;
+    lines.push(format!("<inertia ixx=\"{xx}\" ixy=\"{xy}\" ixz=\"{xz}\" iyy=\"{yy}\" iyz=\"{yz}\" izz=\"{zz}\"/>"));
+    lines
+}
+
+/// A text within an attribute.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
