@@ -46,6 +46,18 @@ fn every_language_is_written_and_verified() {
 }
 
 #[test]
+fn a_library_stands_beside_python_and_batches_in_c() {
+    let folder = folder("native_and_batch");
+    check(&folder, &["generate", &scara(), "--language", "python", "--out", "arm.py", "--native", "--functions", "gravity"], 0);
+    assert!(["arm.py", "arm_native.py", "arm_native.c"].iter().all(|file| folder.join(file).is_file()));
+    check(&folder, &["generate", &scara(), "--language", "c", "--out", "scara.h", "--batch", "8"], 0);
+    let text = fs::read_to_string(folder.join("scara.h")).expect("the header");
+    assert!(
+        text.contains("static inline void scara_batch_gravity(\n    size_t states,") && text.contains("#define SCARA_LANES 8")
+    );
+}
+
+#[test]
 fn what_is_spoilt_in_a_package_is_found_in_its_file() {
     let folder = folder("spoilt_package");
     check(&folder, &["generate", &scara(), "--language", "matlab", "--out", "+scara"], 0);
@@ -87,6 +99,9 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
         (vec!["--language", "c", "--out", "robot.m"], "robot.m is a file of MATLAB, and the module is in C"),
         (vec!["--language", "python", "--out", "robot.mjs"], "write `--language javascript` or `--out robot.py`"),
         (vec!["--language", "c", "--trig", "libm"], "take `--trig fast` or `--trig std`"),
+        (vec!["--language", "javascript", "--batch", "8"], "--batch does not go with `--language javascript`"),
+        (vec!["--language", "c", "--native", "--out", "robot.h"], "--native goes with `--language python`"),
+        (vec!["--language", "python", "--native"], "say where that goes, with `--out robot.py`"),
         (vec!["--language", "javascript", "--ik"], "--ik does not go with `--language javascript`"),
     ] {
         let description = scara();

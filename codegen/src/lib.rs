@@ -107,6 +107,11 @@ impl Generated {
         emit::matlab::print(&self.program, &self.origin, &self.notes)
     }
 
+    /// The functions for many states as a library of C, and the module in Python that compiles and calls it.
+    pub fn native(&self) -> emit::python::Native {
+        emit::python::native(&self.program, &self.origin)
+    }
+
     /// The module in another language, with the same notes; the files of a package as one text.
     pub fn in_language(&self, language: Language) -> String {
         match language {

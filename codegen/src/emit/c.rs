@@ -3,13 +3,15 @@
 //! A C caller sees `ROBOT_function`, arrays by rows as in the module, constant where they are arguments, and the result as the last
 //! argument; a single number is returned. The same declarations stand in the header that holds the functions themselves (`standalone`).
 
+mod batch;
 mod bindings;
 mod header;
 mod standalone;
 
+use self::header::macro_of;
 use super::origin::{Notes, Origin};
-use crate::catalogue::{Length, Quantity};
-use crate::program::{Function, Module};
+use crate::catalogue::Quantity;
+use crate::program::Module;
 
 /// The two texts of the C face.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,10 +32,9 @@ pub fn standalone(module: &Module, origin: &Origin, notes: &Notes) -> String {
     standalone::print(module, origin, notes)
 }
 
-/// The functions that C can have: it has no arrays of length zero, as a robot without parameters would need.
-fn functions(module: &Module) -> impl Iterator<Item = &Function> {
-    let without = module.parameters.is_empty();
-    module.functions.iter().filter(move |f| !(without && (f.with_parameters || f.quantity.has_length(Length::Parameters))))
+/// The functions for many states as the source of a library, each exported as `armgen_` and its name.
+pub fn library(module: &Module, origin: &Origin, lanes: usize) -> String {
+    standalone::library(module, origin, lanes)
 }
 
 /// Whether a function returns its result, a single number, instead of writing it where its last arguments point.

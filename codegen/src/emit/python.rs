@@ -2,6 +2,8 @@
 //!
 //! Entries of an argument are taken along its first axis, so that a line is that of other languages; results are put together at the end.
 
+mod native;
+
 use std::fmt::Write;
 
 use super::documentation::{self, Block, Link};
@@ -13,6 +15,8 @@ use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{decimal, Line, Listing, Name, Part};
 use crate::program::{Function, Module, Trig};
+
+pub use native::{print as native, Native};
 
 const ARRAYS: &str = include_str!("python/arrays.py");
 const SIGN: &str = include_str!("python/sign.py");
@@ -73,16 +77,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     if asks_for_signs(module) {
         let _ = writeln!(text, "\n{SIGN}");
     }
-    let mut structures: Vec<String> = Vec::new();
+    let mut known: Vec<String> = Vec::new();
     for function in &module.functions {
-        if let Some(name) = structure(function.quantity).filter(|name| !structures.contains(name)) {
-            let _ = writeln!(text, "\nclass {name}(NamedTuple):\n    \"\"\"Results of `{}`.\"\"\"\n", function.quantity.name);
-            for part in function.quantity.result {
-                let _ = writeln!(text, "    {}: Any", part.name);
-            }
-            text += "\n";
-            structures.push(name);
-        }
+        result_type(&mut text, function.quantity, &mut known);
         python.function(&mut text, module, function, notes);
     }
     text.trim_end().to_string() + "\n"
@@ -95,6 +92,17 @@ fn structure(quantity: &Quantity) -> Option<String> {
         initial.to_uppercase() + rest
     };
     (quantity.result.len() > 1).then(|| quantity.name.split('_').map(capital).collect())
+}
+
+/// The type of several results, where it is not known yet.
+fn result_type(text: &mut String, quantity: &Quantity, known: &mut Vec<String>) {
+    let Some(name) = structure(quantity).filter(|name| !known.contains(name)) else { return };
+    let _ = writeln!(text, "\nclass {name}(NamedTuple):\n    \"\"\"Results of `{}`.\"\"\"\n", quantity.name);
+    for part in quantity.result {
+        let _ = writeln!(text, "    {}: Any", part.name);
+    }
+    *text += "\n";
+    known.push(name);
 }
 
 fn link(link: Link<'_>) -> String {

@@ -7,6 +7,7 @@ use std::process::Command;
 use armgen_codegen::emit::{camel, Language};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
 use armgen_verify::arithmetic::Stream;
 use armgen_verify::contract::{Array, Length, Promise, Sizes};
@@ -154,7 +155,7 @@ pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
     let generated = crate::generated(&source, scalar, Trig::Fast);
     let module = Module::read(&generated.module).expect("the module in Rust");
     let robot = Robot::of(&module, scalar);
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("languages_{name}_{scalar:?}"));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("languages_{effort:?}_{name}_{scalar:?}"));
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
     write(folder.join("states"), robot.states(states));
@@ -162,7 +163,13 @@ pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
     for language in crate::others().filter(|language| language.scalars().contains(&scalar)) {
         let runs = match language {
             Language::Rust => continue,
-            Language::C => c(&folder, &robot, &generated, effort),
+            Language::C => {
+                let batched =
+                    common::generate_with(&source, &Options { scalar, trig: Trig::Fast, batch: Some(8), ..Options::default() });
+                let mut runs = c(&folder, &robot, &generated, effort);
+                runs.extend(batch(&folder, &robot, &batched, effort));
+                runs
+            }
             Language::JavaScript => javascript(&folder, &robot, &generated),
             Language::Python => python(&folder, &robot, &generated),
             Language::Matlab => octave(&folder, &robot, &generated),
@@ -170,8 +177,10 @@ pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
         for run in runs {
             let results: usize = robot.functions.iter().map(|function| compare(&folder, &robot, function, &run)).sum();
             println!("{name} {scalar:?}: {run}: {results} numbers of {} functions have the bits of Rust", robot.functions.len());
+            let _ = std::fs::remove_dir_all(folder.join(&run));
         }
     }
+    let _ = std::fs::remove_dir_all(&folder);
 }
 
 /// Compares the results of a function; how many there are.
@@ -301,6 +310,69 @@ fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec
     runs
 }
 
+/// The functions of the header for many states at a time.
+fn batch(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec<String> {
+    let name: String = robot.name.clone();
+    let length = robot.parameters + 6 * robot.dof;
+    let mut main = String::from("#include <stdio.h>\n#include <stdlib.h>\n#include \"batch.h\"\n\n");
+    let _ = writeln!(main, "typedef {name}_real real;\n\nstatic real *all;\nstatic size_t states;\n\n");
+    main += "static real *some(size_t from, size_t count)\n{\n    real *part = (real *)malloc((states * count + 1) * sizeof(real));\n    size_t k, i;\n";
+    main += "    for (k = 0; k < states; ++k) {\n        for (i = 0; i < count; ++i) {\n";
+    let _ = writeln!(
+        main,
+        "            part[k * count + i] = all[k * {length} + from + i];\n        }}\n    }}\n    return part;\n}}\n"
+    );
+    main += "int main(int count, char **arguments)\n{\n    FILE *file = fopen(arguments[1], \"rb\");\n    long size;\n    char path[4096];\n";
+    main += "    size_t k;\n    if (count != 3 || !file) return 1;\n    fseek(file, 0, SEEK_END);\n    size = ftell(file);\n    rewind(file);\n";
+    main += "    all = (real *)malloc((size_t)size);\n    if (fread(all, 1, (size_t)size, file) != (size_t)size) return 1;\n    fclose(file);\n";
+    let _ = writeln!(main, "    states = (size_t)size / sizeof(real) / {length};");
+    for function in &robot.functions {
+        let mut arguments = vec!["states".to_string()];
+        main += "    {\n";
+        for (argument, start) in &function.arguments {
+            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
+            let _ = writeln!(main, "        real *in_{} = some({start}, {length});", argument.name());
+            arguments.push(format!("in_{}", argument.name()));
+        }
+        for (part, _, entries) in &function.results {
+            let _ = writeln!(main, "        real *out_{part} = (real *)malloc((states * {entries} + 1) * sizeof(real));");
+            arguments.push(format!("out_{part}"));
+        }
+        let _ = writeln!(main, "        {name}_batch_{}({});", function.name, arguments.join(", "));
+        let _ = writeln!(main, "        snprintf(path, sizeof path, \"%s/{}\", arguments[2]);", function.name);
+        main += "        file = fopen(path, \"wb\");\n        for (k = 0; k < states; ++k) {\n";
+        for (part, _, entries) in &function.results {
+            let _ = writeln!(main, "            fwrite(out_{part} + k * {entries}, sizeof(real), {entries}, file);");
+        }
+        main += "        }\n        fclose(file);\n";
+        arguments.iter().skip(1).for_each(|argument| main += &format!("        free({argument});\n"));
+        main += "    }\n";
+    }
+    main += "    return 0;\n}\n";
+    write(folder.join("batch.h"), generated.in_language(Language::C));
+    write(folder.join("batch.c"), main);
+    let strict = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror", "batch.c", "-lm"];
+    let short: &[(&str, &[&str])] =
+        &[("gcc", &["-std=c99", "-O3", "-march=native"]), ("clang++", &["-x", "c++", "-std=c++11", "-O2"])];
+    let full: &[(&str, &[&str])] = &[
+        ("gcc", &["-std=c99", "-O2"]),
+        ("gcc", &["-std=gnu11", "-O3", "-march=native"]),
+        ("clang", &["-std=c99", "-O3", "-march=native"]),
+    ];
+    let mut runs = Vec::new();
+    for (compiler, flags) in if effort == Effort::Full { full } else { short } {
+        if !there(compiler, compiler.trim_end_matches("++")) {
+            continue;
+        }
+        let run = format!("batch {compiler} {}", flags.join(" "));
+        succeed(Command::new(compiler).current_dir(folder).args(*flags).args(strict).args(["-o", "batch_main"]));
+        std::fs::create_dir_all(folder.join(&run)).expect("a folder");
+        succeed(Command::new(folder.join("batch_main")).current_dir(folder).args(["states", &run]));
+        runs.push(run);
+    }
+    runs
+}
+
 /// The module in JavaScript, by Node.
 fn javascript(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     if !there("node", "nodejs") {
@@ -365,7 +437,21 @@ fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     write(folder.join("main.py"), main);
     std::fs::create_dir_all(folder.join("numpy")).expect("a folder");
     succeed(Command::new(python).current_dir(folder).args(["main.py", "states", "numpy"]));
-    vec!["numpy".into()]
+    let mut runs = vec!["numpy".into()];
+    if there("cc", "gcc") {
+        let native = generated.native();
+        write(folder.join("robot_native.c"), native.c);
+        write(folder.join("robot_native.py"), native.python);
+        let main = std::fs::read_to_string(folder.join("main.py")).expect("it was just written");
+        let main = main.replace("robot.DTYPE", "robot_native._DTYPE").replace("import robot\n", "import robot_native\n");
+        let loaded = "warnings.simplefilter(\"ignore\")\nrobot = robot_native.load(folder=\"kept\")\nassert robot_native.load(folder=\"kept\")\n";
+        write(folder.join("native.py"), main.replace("warnings.simplefilter(\"ignore\")\n", loaded));
+        std::fs::create_dir_all(folder.join("native")).expect("a folder");
+        succeed(Command::new(python).current_dir(folder).args(["native.py", "states", "native"]));
+        assert_eq!(std::fs::read_dir(folder.join("kept")).expect("a folder").count(), 1, "compiled once, complete or not at all");
+        runs.push("native".into());
+    }
+    runs
 }
 
 /// Writes the files of the package.
@@ -452,6 +538,15 @@ pub(crate) fn check_page() {
         write(folder.join("scara.py"), generated.in_language(Language::Python));
         write(folder.join("caller.py"), block("Python", "python"));
         prints(Command::new(python).current_dir(&folder).arg("caller.py"), &block("Python", "text"));
+        if there("cc", "gcc") {
+            let native = generated.native();
+            write(folder.join("scara_native.c"), native.c);
+            write(folder.join("scara_native.py"), native.python);
+            write(folder.join("compiled.py"), block("Python, compiled", "python"));
+            let mut command = Command::new(python);
+            command.current_dir(&folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("compiled.py");
+            prints(&mut command, &block("Python, compiled", "text"));
+        }
     }
     if there("octave-cli", "octave") {
         write_package(&folder.join("+scara"), &generated);

@@ -59,6 +59,9 @@ pub(crate) struct Beside {
     /// Write the C interface beside it: robot.h, and robot_c.rs to be included where robot.rs is
     #[arg(long)]
     c_abi: bool,
+    /// Write a library of C and its module beside robot.py: robot_native.c and robot_native.py, for arrays of NumPy
+    #[arg(long)]
+    native: bool,
     /// Write inverse kinematics beside it, robot_ik.rs: all joint variables that reach a pose, in a module of its own
     #[arg(long)]
     ik: bool,
@@ -73,6 +76,7 @@ impl Beside {
             (self.bounds, "--bounds"),
             (self.runtime, "--runtime"),
             (self.c_abi, "--c-abi"),
+            (self.native, "--native"),
             (self.ik, "--ik"),
         ];
         all.iter().filter(|(wanted, _)| *wanted).map(|(_, flag)| *flag).collect()
@@ -213,6 +217,9 @@ fn unfit(
             other.title()
         ));
     }
+    if beside.native && language != Language::Python {
+        return Some("--native goes with `--language python`: it is a library that Python loads".into());
+    }
     if language == Language::Rust {
         return None;
     }
@@ -229,7 +236,11 @@ fn unfit(
         (beside.c_abi, "--c-abi", "it is the face for C of a module in Rust"),
         (beside.ik, "--ik", "inverse kinematics is written in Rust"),
         (beside.tests, "--tests", "test files are written for Rust"),
-        (choices.batch.is_some(), "--batch", "functions for many states are written for Rust"),
+        (
+            choices.batch.is_some() && language != Language::C,
+            "--batch",
+            "functions for many states are written for Rust and C; JavaScript calls one after the other, the others take arrays of states",
+        ),
         (trig == Trig::Libm, "--trig libm", "the crate libm is Rust's: take `--trig fast` or `--trig std`"),
     ];
     if let Some((_, flag, why)) = only_rust.iter().find(|(asked, ..)| *asked) {
@@ -320,6 +331,11 @@ fn files(
     if beside.c_abi {
         files.push((out.with_extension("h"), generated.c.header.clone()));
         files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers.clone()));
+    }
+    if beside.native {
+        let native = generated.native();
+        files.push((out.with_file_name(format!("{stem}_native.py")), native.python));
+        files.push((out.with_file_name(format!("{stem}_native.c")), native.c));
     }
     if beside.ik {
         files.push((out.with_file_name(format!("{stem}_ik.rs")), all_solutions));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use proc_macro2::TokenStream;
 
-use super::{functions, prefix, returns_a_number};
+use super::{prefix, returns_a_number};
 use crate::catalogue::{Length, Quantity};
 use crate::emit::origin::Origin;
 use crate::emit::rust;
@@ -31,7 +31,7 @@ fn outs(quantity: &Quantity) -> Vec<Out> {
 pub(super) fn wrappers(module: &Module, origin: &Origin) -> String {
     let mut text = rust::head(origin, &[]);
     text += "// For C. Each wrapper believes what its declaration in the header says: that its pointers lead to arrays of these lengths.\n";
-    for function in functions(module) {
+    for function in &module.functions {
         text += "\n";
         text += &wrapper(&prefix(module), function);
     }

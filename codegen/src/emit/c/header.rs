@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{functions, prefix, returns_a_number};
+use super::{prefix, returns_a_number};
 use crate::catalogue::{Absent, Length};
 use crate::emit::documentation::{self, Block, Link};
 use crate::emit::origin::Origin;
@@ -12,7 +12,7 @@ use crate::program::listing::decimal;
 use crate::program::{Function, Joint, Module};
 
 /// A dimension: the macro of the header that holds it, or the number.
-fn macro_of(prefix: &str, length: Length) -> String {
+pub(super) fn macro_of(prefix: &str, length: Length) -> String {
     match length {
         Length::Fixed(value) => value.to_string(),
         named => format!("{prefix}_{}", named.constant()),
@@ -51,7 +51,7 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &macros(module);
     text += POINTERS;
-    for function in functions(module) {
+    for function in &module.functions {
         text += "\n";
         text += &comment(&documentation::function(function, module, false), &link(&name, &upper));
         text += &format!("{};\n", signature(module, function));

@@ -6,7 +6,7 @@
 use std::fmt::Write;
 
 use super::header::{comment, constant, link, macros, macros_of, opening, signature, POINTERS};
-use super::{functions, prefix, returns_a_number};
+use super::{batch, prefix, returns_a_number};
 use crate::emit::documentation::{self, Block};
 use crate::emit::origin::{Notes, Origin};
 use crate::emit::plain::{asks_for_signs, expression, of_robot, places, reads_an_argument, waves, Syntax};
@@ -23,10 +23,10 @@ const STD: &str = include_str!("sines/std.h");
 const FAST_F64: &str = include_str!("sines/fast_f64.h");
 const FAST_F32: &str = include_str!("sines/fast_f32.h");
 
-struct C<'a> {
-    module: &'a Module,
-    name: String,
-    upper: String,
+pub(super) struct C<'a> {
+    pub(super) module: &'a Module,
+    pub(super) name: String,
+    pub(super) upper: String,
 }
 
 impl Syntax for C<'_> {
@@ -44,6 +44,9 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let upper = macros_of(&name);
     let c = C { module, name, upper };
     let mut text = opening(origin, &notes.head, &module.absent, &c.upper);
+    if module.batch.is_some() {
+        text += "#include <stddef.h>\n\n";
+    }
     text += &of_robot(&sine_of_library(module), &c.name, &c.upper);
     text += &of_robot(PROLOGUE, &c.name, &c.upper);
     let _ = writeln!(text, "/* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */");
@@ -66,11 +69,31 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
         text += "\n";
     }
     text += POINTERS.trim_start();
-    for function in functions(module) {
+    for function in &module.functions {
         c.function(&mut text, function, notes);
+    }
+    if let Some(lanes) = module.batch {
+        text += &batch::print(&c, lanes);
     }
     text += "\n";
     text + EPILOGUE
+}
+
+/// The header with functions for so many states at a time, and behind it those functions for a library that is loaded by name.
+pub(super) fn library(module: &Module, origin: &Origin, lanes: usize) -> String {
+    let module = Module { batch: Some(lanes), ..module.clone() };
+    let name = prefix(&module);
+    let c = C { module: &module, upper: macros_of(&name), name };
+    let mut text = print(&module, origin, &Notes::default());
+    text += "\n#if defined(_WIN32)\n#define EXPORTED __declspec(dllexport)\n#else\n#define EXPORTED __attribute__((visibility(\"default\")))\n#endif\n";
+    for function in &module.functions {
+        let own = function.name();
+        let exported = batch::signature(&c, function, &format!("armgen_{own}"));
+        let names = ["states"].into_iter().chain(function.arguments.iter().map(|a| a.name()));
+        let names: Vec<&str> = names.chain(function.quantity.result.iter().map(|part| part.name)).collect();
+        let _ = writeln!(text, "\nEXPORTED {exported};\n{exported}\n{{\n    {}_batch_{own}({});\n}}", c.name, names.join(", "));
+    }
+    text
 }
 
 /// Where the sines of the C library come from, if any are needed.
