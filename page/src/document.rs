@@ -75,8 +75,10 @@ fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
     let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
     vec![
         ("data-sheet", "Data sheet", table + frames + bodies),
+        ("check", "Check against the real arm", CHECK.into()),
         ("numbers", "Numbers", "<div id=\"quantities\"></div>\n".into()),
         ("equations", "Equations", parts.equations.into()),
+        ("workspace", "Workspace", WORKSPACE.into()),
         ("cost", "Cost", parts.cost.into()),
     ]
 }
@@ -113,8 +115,27 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <label><input type="checkbox" id="show-links" checked> links</label>
 <label><input type="checkbox" id="show-bodies"> bodies</label>
 <label><input type="checkbox" id="show-grid" checked> grid</label>
+<label><input type="checkbox" id="show-points"> workspace</label>
+<label><input type="checkbox" id="show-velocity"> velocity ellipsoid</label>
+<label><input type="checkbox" id="show-force"> force ellipsoid</label>
 </div>
+<p id="ellipsoid-axes" class="small"></p>
 "##;
+
+const CHECK: &str = r#"<p>Paste postures of the real arm and the poses that were measured there, one a line: <code>q1 … qn x y z</code> or <code>q1 … qn x y z roll pitch yaw</code>, in the units chosen above.
+The page shows how far it is from each, and looks for the one mistake in the rows that explains them all.</p>
+<label for="measured">Measured postures and poses</label>
+<textarea id="measured" rows="4" spellcheck="false"></textarea>
+<div class="controls"><button type="button" id="measured-add">add the pose that is shown</button></div>
+<div id="measured-said" role="status"></div>
+<ol id="suspects"></ol>
+"#;
+
+const WORKSPACE: &str = r#"<details id="reach"><summary>Where the end effector comes to</summary><div class="figures"></div></details>
+<details id="w-map"><summary>Manipulability over two joints</summary>
+<div class="controls"><label>across <select id="w-first"></select></label><label>up <select id="w-second"></select></label></div>
+<canvas id="w-canvas" width="384" height="384" role="img" aria-labelledby="w-said"></canvas><p id="w-said" class="small"></p></details>
+"#;
 
 fn sliders(rows: &[Row]) -> String {
     let mut text = String::from("<div id=\"sliders\">\n");

@@ -226,3 +226,39 @@ fn choose(name: &str, value: &str, then: &str) -> String {
          await new Promise((done) => setTimeout(done, 100)); return {then}; }})()"
     )
 }
+
+/// Poses of the true arm on the page of a description with one wrong value: the first suspect is the row, and a ghost can be drawn of it.
+#[test]
+fn a_planted_mistake_is_the_first_suspect() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("suspects");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let truth = robot("ur5");
+    let file = written(&folder, &truth);
+    let mut tab = browser.open(&file, 1600, "light");
+    let poses = tab.run(&format!(
+        "{MOVE}(1); document.getElementById('measured-add').click(); {MOVE}(2); document.getElementById('measured-add').click(); \
+         document.getElementById('measured').value"
+    ));
+    assert_eq!(tab.run("document.querySelectorAll('#suspects li').length"), 0, "the true arm agrees");
+    tab.close(&file);
+    let wrong = truth.text().replacen("alpha: pi/2", "alpha: -pi/2", 1);
+    assert_ne!(wrong, truth.text());
+    let file = written(&folder, &Source::new("wrong.yaml", wrong));
+    let mut tab = browser.open(&file, 1600, "light");
+    let first = tab.run(&format!(
+        "(() => {{ const field = document.getElementById('measured'); field.value = {poses}; field.dispatchEvent(new Event('input')); \
+         const first = document.querySelector('#suspects li'); first.querySelector('button').click(); \
+         return [first.dataset.row, first.dataset.fault, Number(first.dataset.difference) < 1e-6, \
+                 document.querySelectorAll('#arm .ghosts .solid').length > 10]; }})()"
+    ));
+    assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true]));
+    let drawn = tab.run(
+        "(async () => { for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
+         for (const id of ['reach', 'w-map']) document.getElementById(id).open = true; await new Promise((done) => setTimeout(done, 300)); \
+         return [document.querySelectorAll('#arm .ellipsoids ellipse').length, document.querySelectorAll('#reach svg').length, \
+                 document.getElementById('w-said').textContent.includes('det J changes its sign')]; })()",
+    );
+    assert_eq!(drawn, serde_json::json!([2, 2, true]));
+    tab.close(&file);
+}

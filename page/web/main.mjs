@@ -1,5 +1,6 @@
 /** The page: reads its data, makes its parts, draws for the first time. */
 
+import { check } from "./check.mjs";
 import { cost } from "./cost.mjs";
 import { byId } from "./dom.mjs";
 import { equations } from "./equations.mjs";
@@ -9,6 +10,7 @@ import { settings } from "./settings.mjs";
 import { sheet } from "./sheet.mjs";
 import { player, sliders } from "./sliders.mjs";
 import { home, State } from "./state.mjs";
+import { workspace } from "./workspace.mjs";
 
 const data = JSON.parse(byId("data").textContent);
 const state = new State(data.rows.length);
@@ -20,5 +22,7 @@ sheet(data, state, picture);
 numbers(data, state);
 equations(data);
 cost();
+check(data, state, picture);
+workspace(data, state, picture);
 state.move(home(data));
 document.documentElement.dataset.ready = String(Math.round(performance.now()));

@@ -34,7 +34,10 @@ export class Picture {
         this.row = null;
         /** What others draw in the picture, after the arm. @type {((picture: Picture) => void)[]} */
         this.extras = [];
-        this.fitted = false;
+        /** Whether the reader chose the scale. */
+        this.zoomed = false;
+        /** Points that were laid into the picture since a view was chosen. @type {number[][]} */
+        this.seen = [];
         this.listen();
         state.on("motion", () => this.draw());
         state.on("units", () => this.draw());
@@ -50,7 +53,16 @@ export class Picture {
     fit() {
         const { size } = this.arm;
         const around = this.arm.points.flatMap((p) => [-1, 1].flatMap((s) => [0, 1, 2].map((k) => p.map((x, i) => (i === k ? x + s * 0.12 * size : x)))));
-        this.view.fit([...around, [0, 0, 0]]);
+        this.seen = [...this.seen, ...around, [0, 0, 0]];
+        this.view.fit(this.seen);
+    }
+
+    /** Whether a part of the arm is outside of the picture. */
+    isOutside() {
+        return this.arm.points.some((point) => {
+            const [x, y] = this.view.project(point);
+            return x < 0 || x > WIDTH || y < 0 || y > HEIGHT;
+        });
     }
 
     /** Draws everything. */
@@ -59,10 +71,7 @@ export class Picture {
         this.links = links;
         this.end = end;
         this.arm.place(this.state.q, links, end);
-        if (!this.fitted) {
-            this.fitted = true;
-            this.fit();
-        }
+        if (this.seen.length === 0 || (!this.zoomed && this.isOutside())) this.fit();
         this.redraw();
         const at = ["x", "y", "z"].map((name, i) => `${name} = ${withUnit(end[i][3], "m")}`).join(", ");
         const posture = this.data.rows.map((row, i) => `q${i + 1} = ${withUnit(this.state.q[i], row.type === "revolute" ? "rad" : "m")}`);
@@ -187,7 +196,8 @@ export class Picture {
     /** @param {string} name */
     choose(name) {
         this.view.choose(name);
-        this.fit();
+        this.zoomed = false;
+        this.seen = [];
         this.draw();
         this.mark();
     }
@@ -205,6 +215,7 @@ export class Picture {
     }
 
     zoom(factor) {
+        this.zoomed = true;
         this.view.scale *= factor;
         this.redraw();
     }

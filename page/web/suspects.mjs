@@ -1,0 +1,159 @@
+/**
+ * The one mistake that explains measured poses: every row with one value changed as such values are mistaken, held against what was
+ * measured.
+ *
+ * The difference of a pose is |p - p'| and, where an orientation was measured, the angle between both times the size of the arm, added as
+ * squares; of several poses the root of their mean, in m.
+ */
+
+import { compose, identity, origin, rotation, subtract, norm } from "./vector.mjs";
+import { rowFrame, urdfFrame } from "./kinematics.mjs";
+
+/**
+ * @typedef {{q: number[], position: number[], frame: number[][] | null}} Measured
+ * @typedef {{row: number, fault: string, words: string, arm: Variant}} Suspect row 0: no single row
+ * @typedef {{convention: string, rows: any[], base: number[][], tool: number[][], signs: number[]}} Variant
+ */
+
+/** The arm of the page. @param {any} data @returns {Variant} */
+export function asWritten(data) {
+    return { convention: data.convention, rows: data.rows, base: data.base, tool: data.tool, signs: data.rows.map(() => 1) };
+}
+
+/** The frames of the links and of the end effector. @param {Variant} arm @param {number[]} q */
+export function frames(arm, q) {
+    let frame = arm.base;
+    const links = arm.rows.map((row, i) => {
+        const moved = arm.signs[i] * q[i];
+        const own = row.dh ? rowFrame(arm.convention, row.dh, row.type === "revolute", moved) : urdfFrame(row, moved);
+        frame = compose(frame, own);
+        return frame;
+    });
+    return { links, end: compose(frame, arm.tool) };
+}
+
+const RIGHT = Math.PI / 2;
+
+/** What can be mistaken in a row: the name, and the values a, alpha, d, theta instead. @param {number[]} dh */
+function mistaken([a, alpha, d, theta]) {
+    return [
+        ["a-sign", "a has the other sign", [-a, alpha, d, theta]],
+        ["alpha-sign", "alpha has the other sign", [a, -alpha, d, theta]],
+        ["d-sign", "d has the other sign", [a, alpha, -d, theta]],
+        ["theta-sign", "theta has the other sign", [a, alpha, d, -theta]],
+        ["alpha+90", "alpha is 90° more", [a, alpha + RIGHT, d, theta]],
+        ["alpha-90", "alpha is 90° less", [a, alpha - RIGHT, d, theta]],
+        ["alpha+180", "alpha is 180° more", [a, alpha + 2 * RIGHT, d, theta]],
+        ["theta+90", "theta is 90° more", [a, alpha, d, theta + RIGHT]],
+        ["theta-90", "theta is 90° less", [a, alpha, d, theta - RIGHT]],
+        ["theta+180", "theta is 180° more", [a, alpha, d, theta + 2 * RIGHT]],
+        ["exchanged", "a and d are exchanged", [d, alpha, a, theta]],
+        ["a*1000", "a is 1000 times as long", [a * 1000, alpha, d, theta]],
+        ["a/1000", "a is a thousandth", [a / 1000, alpha, d, theta]],
+        ["d*1000", "d is 1000 times as long", [a, alpha, d * 1000, theta]],
+        ["d/1000", "d is a thousandth", [a, alpha, d / 1000, theta]],
+    ];
+}
+
+/** Whether two rows are the same frames. @param {number[]} one @param {number[]} other */
+function same(one, other) {
+    const turn = (x) => Math.abs(Math.sin(x / 2)) < 1e-9;
+    return one[0] === other[0] && one[2] === other[2] && turn(one[1] - other[1]) && turn(one[3] - other[3]);
+}
+
+/** Every suspect. @param {any} data @returns {Suspect[]} */
+export function suspects(data) {
+    const arm = asWritten(data);
+    const all = [];
+    data.rows.forEach((row, i) => {
+        const name = `row ${i + 1} (${row.name})`;
+        if (row.dh) {
+            for (const [fault, words, dh] of mistaken(row.dh)) {
+                if (same(dh, row.dh)) continue;
+                const rows = arm.rows.map((other, k) => (k === i ? { ...row, dh } : other));
+                all.push({ row: i + 1, fault, words: `${name}: ${words}`, arm: { ...arm, rows } });
+            }
+        }
+        const signs = arm.signs.map((sign, k) => (k === i ? -sign : sign));
+        all.push({ row: i + 1, fault: "reversed", words: `${name}: the joint counts the other way`, arm: { ...arm, signs } });
+    });
+    if (data.convention !== "urdf") {
+        const convention = data.convention === "standard" ? "modified" : "standard";
+        all.push({ row: 0, fault: "convention", words: `the rows are of the ${convention} convention`, arm: { ...arm, convention } });
+    }
+    const moved = norm(origin(data.tool)) > 0 || data.tool.some((row, i) => row.slice(0, 3).some((x, j) => x !== (i === j ? 1 : 0)));
+    if (moved) all.push({ row: 0, fault: "tool", words: "the tool was left out of what was measured", arm: { ...arm, tool: identity() } });
+    return all;
+}
+
+/** The angle between two frames. @param {number[][]} a @param {number[][]} b */
+function angle(a, b) {
+    let square = 0;
+    for (let i = 0; i < 3; i++) for (let j = 0; j < 3; j++) square += (a[i][j] - b[i][j]) ** 2;
+    // |R - R'|² = 8 sin²(angle/2), which keeps its digits where angles are small.
+    return 2 * Math.asin(Math.min(1, Math.sqrt(square / 8)));
+}
+
+/** How far an arm is from a measured pose: position in m, orientation in rad (0 where none was measured). @param {Variant} arm @param {Measured} measured */
+export function apart(arm, measured) {
+    const { end } = frames(arm, measured.q);
+    return { position: norm(subtract(origin(end), measured.position)), angle: measured.frame ? angle(end, measured.frame) : 0 };
+}
+
+/** The difference of an arm from all that was measured, m. @param {Variant} arm @param {Measured[]} all @param {number} size */
+export function difference(arm, all, size) {
+    const squares = all.map((measured) => {
+        const { position, angle } = apart(arm, measured);
+        return position ** 2 + (size * angle) ** 2;
+    });
+    return Math.sqrt(squares.reduce((sum, square) => sum + square, 0) / all.length);
+}
+
+/**
+ * Suspects that leave less difference than the arm as it is written, smallest first; those that explain as much as the first are marked.
+ *
+ * @param {any} data @param {Measured[]} measured @param {number} size
+ */
+export function explain(data, measured, size) {
+    const before = difference(asWritten(data), measured, size);
+    const all = suspects(data).map((suspect) => ({ ...suspect, difference: difference(suspect.arm, measured, size) }));
+    all.sort((a, b) => a.difference - b.difference);
+    const best = all[0]?.difference ?? Infinity;
+    const equal = best * 1.02 + 1e-9 * size;
+    return {
+        before,
+        suspects: all.filter((suspect) => suspect.difference < 0.9 * before).map((suspect) => ({ ...suspect, equal: suspect.difference <= equal })),
+    };
+}
+
+/**
+ * Lines `q1 ... qn x y z` or `q1 ... qn x y z roll pitch yaw`, numbers separated by spaces, commas or semicolons.
+ *
+ * @param {string} text @param {number} joints @param {(value: number, unit: string) => number} convert @param {string[]} units of the joints
+ */
+export function read(text, joints, convert, units) {
+    const measured = [];
+    const faults = [];
+    text.split("\n").forEach((line, k) => {
+        const words = line.trim().split(/[\s,;]+/).filter((word) => word !== "");
+        if (words.length === 0) return;
+        const numbers = words.map(Number);
+        const wrong = words.find((_, i) => !Number.isFinite(numbers[i]));
+        if (wrong !== undefined) {
+            faults.push(`line ${k + 1}: “${wrong}” is no number`);
+        } else if (numbers.length !== joints + 3 && numbers.length !== joints + 6) {
+            faults.push(`line ${k + 1}: ${numbers.length} numbers; ${joints} joints and x y z are ${joints + 3}, with roll pitch yaw ${joints + 6}`);
+        } else {
+            const q = units.map((unit, i) => convert(numbers[i], unit));
+            const position = numbers.slice(joints, joints + 3).map((x) => convert(x, "m"));
+            const angles = numbers.slice(joints + 3).map((x) => convert(x, "rad"));
+            measured.push({ q, position, frame: angles.length === 3 ? fromRollPitchYaw(angles) : null });
+        }
+    });
+    return { measured, faults };
+}
+
+/** Rz(yaw) Ry(pitch) Rx(roll). @param {number[]} angles roll, pitch, yaw */
+export function fromRollPitchYaw([roll, pitch, yaw]) {
+    return [rotation([0, 0, 1], yaw), rotation([0, 1, 0], pitch), rotation([1, 0, 0], roll)].reduce(compose);
+}

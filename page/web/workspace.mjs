@@ -1,0 +1,183 @@
+/**
+ * Where the end effector comes to, how well it moves there, and ellipsoids at the tip.
+ *
+ * Points are those of a fixed sequence of low discrepancy over the limits (Roberts' additive recurrence: the k-th point has the fractional
+ * parts of k g^-i, g the root of g^(n+1) = g + 1).
+ */
+
+import { byId, html, svg } from "./dom.mjs";
+import { short, withUnit } from "./format.mjs";
+import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
+import { range } from "./state.mjs";
+import { origin } from "./vector.mjs";
+
+const POINTS = 2000;
+/** Cells of the map of w, along each joint. */
+const CELLS = 48;
+/** Side of the map, px. */
+const SIDE = 384;
+
+/** Points between 0 and 1 in so many dimensions. @param {number} dimensions @param {number} count */
+export function sequence(dimensions, count) {
+    let g = 1.5;
+    for (let i = 0; i < 60; i++) g = (1 + g) ** (1 / (dimensions + 1));
+    const steps = Array.from({ length: dimensions }, (_, i) => g ** -(i + 1));
+    return Array.from({ length: count }, (_, k) => steps.map((step) => (0.5 + (k + 1) * step) % 1));
+}
+
+/** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
+export function workspace(data, state, picture) {
+    let points = null;
+    const reach = () => {
+        points ??= sequence(data.rows.length, POINTS).map((part) => {
+            const q = data.rows.map((row, i) => {
+                const [low, high] = range(row);
+                return low + part[i] * (high - low);
+            });
+            return origin(robot.directKinematics(q));
+        });
+        return points;
+    };
+    const layer = picture.layers.points;
+    const path = svg("path");
+    picture.extras.push(() => {
+        if (!byId("show-points").checked) {
+            if (layer.firstChild) layer.replaceChildren();
+            return;
+        }
+        if (!layer.firstChild) layer.append(path);
+        path.setAttribute("d", reach().map((point) => `M${picture.view.project(point).map((x) => x.toFixed(1)).join(" ")}h0`).join(""));
+    });
+    ellipsoids(data, state, picture);
+    for (const name of ["points", "velocity", "force"]) byId(`show-${name}`).addEventListener("input", () => picture.redraw());
+    const details = byId("reach");
+    const draw = () => {
+        if (details.open) details.querySelector("div")?.replaceChildren(...views(reach()));
+    };
+    details.addEventListener("toggle", draw);
+    state.on("units", draw);
+    map(data, state);
+}
+
+/** The points from the side and from above. @param {number[][]} points */
+function views(points) {
+    const away = points.map(([x, y]) => Math.hypot(x, y));
+    const size = Math.max(...points.flat().map(Math.abs), ...away) || 1;
+    const picture = (title, all) => {
+        const at = (x) => ((x / size) * 110).toFixed(1);
+        const d = all.map(([x, y]) => `M${at(x)} ${at(-y)}h0`).join("");
+        const axes = svg("path", { class: "axes", d: "M-118 0H118M0 -118V118" });
+        return html("figure", {}, svg("svg", { viewBox: "-120 -120 240 240", class: "reach", role: "img", "aria-label": title }, axes, svg("path", { d })), html("figcaption", {}, title));
+    };
+    const extent = (values) => `${withUnit(Math.min(...values), "m")} to ${withUnit(Math.max(...values), "m")}`;
+    const heights = points.map((point) => point[2]);
+    const farthest = Math.max(...points.map((point) => Math.hypot(...point)));
+    return [
+        picture(`side: distance from the z axis ${extent(away)}, z ${extent(heights)}`, points.map((point, i) => [away[i], point[2]])),
+        picture(`top: x ${extent(points.map((p) => p[0]))}, y ${extent(points.map((p) => p[1]))}`, points),
+        html("p", {}, `Reach: ${withUnit(farthest, "m")} from the origin of the base, among ${points.length} postures within the limits.`),
+    ];
+}
+
+/** Velocity and force ellipsoids of the translation at the tip, for rates and torques of unit norm. */
+function ellipsoids(data, state, picture) {
+    const layer = picture.layers.ellipsoids;
+    const said = byId("ellipsoid-axes");
+    picture.extras.push(() => {
+        const elements = [];
+        const words = [];
+        const j = robot.geometricJacobian(state.q).slice(0, 3);
+        const a = gram(j);
+        const [x, y] = picture.view.project(origin(picture.end));
+        const draw = (matrix, kind, title) => {
+            const axes = eigen(matrix).values.map((value) => Math.sqrt(Math.max(0, value)));
+            words.push(`${title}: semi-axes ${axes.map(short).join(", ")}`);
+            const { semi, angle } = outline(matrix, picture.view.right, picture.view.up);
+            const scale = (0.2 * picture.arm.size * picture.view.scale) / (axes[0] || 1);
+            const turn = (-angle * 180) / Math.PI;
+            elements.push(svg("ellipse", { class: kind, rx: (semi[0] * scale).toFixed(1), ry: (semi[1] * scale).toFixed(1), transform: `translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${turn.toFixed(1)})` }));
+        };
+        if (byId("show-velocity").checked) draw(a, "velocity", "Velocity ellipsoid, m/s per unit of rates");
+        if (byId("show-force").checked) {
+            const { values, vectors } = eigen(a);
+            if (values[2] > 1e-12 * values[0]) {
+                const inverse = a.map((_, i) => a.map((_, k) => values.reduce((sum, value, m) => sum + (vectors[i][m] * vectors[k][m]) / value, 0)));
+                draw(inverse, "force", "Force ellipsoid, N per unit of torques");
+            } else {
+                words.push("Force ellipsoid: none at a singular posture, which bears any force along the lost direction");
+            }
+        }
+        if (elements.length > 0 || layer.firstChild) layer.replaceChildren(...elements);
+        const text = words.join(". ");
+        if (said.textContent !== text) said.textContent = text;
+    });
+}
+
+/** w of the task over two joints as brightness, where the determinant changes its sign as lines. */
+function map(data, state) {
+    const details = byId("w-map");
+    const [first, second] = [byId("w-first"), byId("w-second")];
+    if (data.rows.length < 2) {
+        details.remove();
+        return;
+    }
+    data.rows.forEach((row, i) => {
+        for (const select of [first, second]) select.append(html("option", { value: i }, `q${i + 1} ${row.name}`));
+    });
+    [first.value, second.value] = [data.rows.length > 2 ? "1" : "0", data.rows.length > 2 ? "2" : "1"];
+    const canvas = /** @type {HTMLCanvasElement} */ (byId("w-canvas"));
+    const square = data.task.length === data.rows.length;
+    const draw = () => {
+        if (!details.open) return;
+        const [i, j] = [Number(first.value), Number(second.value)];
+        const [[a, b], [c, d]] = [range(data.rows[i]), range(data.rows[j])];
+        const at = (k, low, high) => low + ((k + 0.5) / CELLS) * (high - low);
+        const values = [];
+        const signs = [];
+        for (let y = 0; y < CELLS; y++) {
+            for (let x = 0; x < CELLS; x++) {
+                const q = state.q.slice();
+                q[i] = at(x, a, b);
+                q[j] = at(y, c, d);
+                const jacobian = robot.geometricJacobian(q);
+                const task = data.task.map((row) => jacobian[row]);
+                const det = square ? determinant(task) : NaN;
+                values.push(square ? Math.abs(det) : manipulability(task));
+                signs.push(Math.sign(det));
+            }
+        }
+        const largest = Math.max(...values);
+        const context = canvas.getContext("2d");
+        if (!context) return;
+        const cell = SIDE / CELLS;
+        values.forEach((w, k) => {
+            const part = largest > 0 ? w / largest : 0;
+            const [x, y] = [k % CELLS, Math.floor(k / CELLS)];
+            context.fillStyle = `hsl(${230 - 180 * part} 75% ${22 + 58 * part}%)`;
+            context.fillRect(x * cell, SIDE - (y + 1) * cell, cell + 0.5, cell + 0.5);
+        });
+        context.fillStyle = "#ffffff";
+        signs.forEach((sign, k) => {
+            const [x, y] = [k % CELLS, Math.floor(k / CELLS)];
+            if (x + 1 < CELLS && sign * signs[k + 1] < 0) context.fillRect((x + 1) * cell - 1, SIDE - (y + 1) * cell, 2.5, cell);
+            if (y + 1 < CELLS && sign * signs[k + CELLS] < 0) context.fillRect(x * cell, SIDE - (y + 1) * cell - 1, cell, 2.5);
+        });
+        context.strokeStyle = "#ff3b30";
+        context.lineWidth = 2;
+        context.strokeRect(((state.q[i] - a) / (b - a)) * SIDE - 5, SIDE - ((state.q[j] - c) / (d - c)) * SIDE - 5, 10, 10);
+        const unit = (k) => (data.rows[k].type === "revolute" ? "rad" : "m");
+        byId("w-said").textContent =
+            `Across: q${i + 1} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: q${j + 1} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
+            `w from 0 (dark) to ${short(largest)} (bright)${square ? ", white lines where det J changes its sign" : ""}; the square is the posture that is shown.`;
+    };
+    details.addEventListener("toggle", draw);
+    let waiting = 0;
+    const later = () => {
+        if (!details.open) return;
+        clearTimeout(waiting);
+        waiting = window.setTimeout(draw, 150);
+    };
+    state.on("motion", later);
+    state.on("units", draw);
+    for (const select of [first, second]) select.addEventListener("input", draw);
+}
