@@ -26,6 +26,7 @@
 
 #[doc(hidden)]
 pub mod arithmetic;
+mod at_state;
 #[doc(hidden)]
 pub mod base;
 pub mod bounds;
@@ -243,6 +244,7 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     report.constants = constants::check(checker, module, &nominal);
     report.functions = checker.functions(module);
     report.domain = bounds::domain_of(checker.manipulator(), module);
+    at_state::say(&mut report.functions, module, checker, &nominal);
     // The box is of the module's constants, the residual of its equations of motion: what is wrong has no bounds.
     let right = report.constants.iter().all(|constant| constant.verdict == Verdict::Equal)
         && report.functions.iter().all(|function| function.verdict == Verdict::Equal);

@@ -1,5 +1,6 @@
 //! `armgen check`: what a description says, and what is wrong with it.
 
+mod bodies;
 mod identification;
 
 use std::path::{Path, PathBuf};
@@ -72,8 +73,8 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
         warnings => format!("valid, with {}", input::counted(warnings, "warning")),
     };
     let title = terminal::bold(&format!("{}: {verdict}", source.name()), &std::io::stdout());
-    [title + "\n", arm(description, manipulator), joints(source, description, manipulator), identification::report(model)]
-        .join("\n")
+    let parts = [arm(description, manipulator), joints(source, description, manipulator), bodies::table(manipulator)];
+    [title + "\n"].into_iter().chain(parts).chain([identification::report(model)]).collect::<Vec<_>>().join("\n")
 }
 
 /// The arm as a whole.
@@ -90,7 +91,8 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     row("convention", convention.into());
     let at_nominal = |p: &Polynomial| derive::parameters::nominal(manipulator, p);
     let gravity: Vec<String> = manipulator.gravity.iter().map(|g| decimal(&at_nominal(g))).collect();
-    row("gravity", format!("({}) m/s²", gravity.join(", ")));
+    let up = bodies::up(manipulator.gravity.each_ref().map(|g| at_nominal(g).to_f64()));
+    row("gravity", format!("({}) m/s²: {up}", gravity.join(", ")));
     let rotors = manipulator.joints.iter().filter_map(|j| j.motor.as_ref()).map(|m| &m.mass);
     let links = manipulator.joints.iter().flat_map(|j| &j.link).map(|part| &part.body.mass);
     let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));
@@ -124,7 +126,7 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     table.text()
 }
 
-/// One row per joint: the row as written, masses, motors and limits in numbers.
+/// One row per joint: the row as written, motors and limits in numbers.
 fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     use Align::{Left, Right};
     let mut table = Table::new([
@@ -136,7 +138,6 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
         ("theta", Right),
         ("origin", Left),
         ("axis", Left),
-        ("mass", Right),
         ("ratio", Right),
         ("position", Left),
         ("velocity", Right),
@@ -153,7 +154,6 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
         };
         let number = |p: &Polynomial| decimal(&derive::parameters::nominal(manipulator, p));
         let limit = |value: &Option<Number>| value.as_ref().map_or(String::new(), decimal);
-        let mass = joint.link.iter().fold(Polynomial::zero(), |sum, part| &sum + &part.body.mass);
         table.row([
             format!("{} {}", i + 1, joint.name),
             if revolute { "revolute" } else { "prismatic" }.into(),
@@ -163,7 +163,6 @@ fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipul
             theta,
             origin,
             axis,
-            number(&mass),
             joint.motor.as_ref().map_or(String::new(), |motor| number(&motor.ratio)),
             joint.limits.position.as_ref().map_or(String::new(), |[low, high]| format!("{} to {}", decimal(low), decimal(high))),
             limit(&joint.limits.velocity),

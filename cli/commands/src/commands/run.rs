@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use armgen_experiments::campaign::{self, in_parallel, Job};
 use armgen_experiments::draw;
-use armgen_experiments::model::{Channel, Experiment, JointQuantity, Quantity, Record, Robot};
+use armgen_experiments::model::{number, Channel, Experiment, JointQuantity, Quantity, Record, Robot, Unit};
 use armgen_experiments::read::{self, Parsed};
 use armgen_experiments::run::Arm;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -139,7 +139,7 @@ fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path) -> u8 {
         }
     }
     let (text, met) = report(&jobs);
-    code = code.max(terminal::print(&text));
+    code = code.max(terminal::print(&(peaks(&jobs, arm.robot()) + &text)));
     let (simulated, took) = jobs
         .iter()
         .map(|job| job.record().speed)
@@ -168,6 +168,47 @@ fn progress(steps: u64) -> ProgressBar {
         bar.set_style(style.progress_chars("=> "));
     }
     bar
+}
+
+/// How fast and how hard joints worked beside their limits, of those that have one; what is beyond is marked.
+fn peaks(jobs: &[Job<'_>], robot: &Robot) -> String {
+    use Align::{Left, Right};
+    let mut table = Table::new([
+        ("experiment", Left),
+        ("joint", Left),
+        ("largest rate", Right),
+        ("limit", Right),
+        ("", Left),
+        ("largest effort", Right),
+        ("limit", Right),
+        ("", Left),
+    ]);
+    let mut rows = 0;
+    for job in jobs {
+        let mut name = job.experiment().name.clone();
+        for (joint, peak) in robot.joints.iter().zip(&job.record().peaks) {
+            if joint.velocity.is_infinite() && joint.effort.is_infinite() {
+                continue;
+            }
+            let beside = |found: f64, limit: f64, unit: Unit| match limit.is_finite() {
+                true => [
+                    format!("{found:.3} {unit}"),
+                    format!("{} {unit}", number(limit)),
+                    if found > limit { "BEYOND".to_owned() } else { String::new() },
+                ],
+                false => [format!("{found:.3} {unit}"), String::new(), String::new()],
+            };
+            let [rate, most, fast] = beside(peak.rate, joint.velocity, joint.rate_unit());
+            let [effort, strongest, hard] = beside(peak.effort, joint.effort, joint.effort_unit());
+            table.row([std::mem::take(&mut name), joint.name.clone(), rate, most, fast, effort, strongest, hard]);
+            rows += 1;
+        }
+    }
+    if rows == 0 {
+        String::new()
+    } else {
+        table.text() + "\n"
+    }
 }
 
 /// The table of results, and whether all expectations are met.

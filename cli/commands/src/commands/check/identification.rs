@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use armgen_codegen::derive::base::{dependence, rank, regressor_of, Dependence};
+use armgen_codegen::derive::base::{base_parameters, dependence, rank, regressor_of, Dependence};
 use armgen_codegen::derive::parameters::ParameterKind;
 use armgen_codegen::exact::Number;
 use armgen_codegen::Model;
@@ -17,8 +17,27 @@ use crate::table::{Align, Table};
 /// A line of this length or less.
 const WIDTH: usize = 100;
 
-/// The report for the regressor that the description chooses.
+/// The report for the regressor that the description chooses, and for `base_regressor`, which every module has.
 pub(super) fn report(model: &Model) -> String {
+    of_regressor(model) + &of_base_regressor(model)
+}
+
+/// How many columns `base_regressor` has, where it has fewer than a motion can identify.
+fn of_base_regressor(model: &Model) -> String {
+    let (own, all) = (model.base_parameters().len(), base_parameters(&model.manipulator, &model.field).len());
+    if own >= all {
+        return String::new();
+    }
+    let (are, they) = if all - own == 1 { ("is", "it") } else { ("are", "them") };
+    format!(
+        "\n  The module's `base_regressor` has {} of these {all}: the other {} {are} 0 at the values of this file, and it leaves {they} out.\n  \
+         To identify an arm take `regressor: base`, whose `regressor` has all {all}.\n",
+        counted(own, "column"),
+        all - own
+    )
+}
+
+fn of_regressor(model: &Model) -> String {
     let vector = &model.parameters;
     if vector.is_empty() {
         return "  The regressor has no parameters: nothing of this arm acts on the torques.\n".into();

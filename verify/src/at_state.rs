@@ -1,0 +1,94 @@
+//! What a wrong function is off by: its value and that of the equations at one state in floats, for people. It proves nothing.
+
+use crate::arithmetic::Arithmetic;
+use crate::bounds;
+use crate::checker::Checker;
+use crate::contract::Promise;
+use crate::enclosure::Float;
+use crate::equations::state::State;
+use crate::float::Arguments;
+use crate::formula::Formula;
+use crate::program::Argument;
+use crate::reader::Module;
+use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::report::{FunctionReport, Verdict};
+
+/// Floats that are nearer than this part of the larger one are said to agree.
+const AGREE: f64 = 1e-6;
+
+/// Floats as an arithmetic; constants are rounded.
+struct Floats;
+
+impl Arithmetic for Floats {
+    type Element = f64;
+    fn integer(&self, value: i64) -> f64 {
+        value as f64
+    }
+    fn constant(&self, formula: &Formula) -> Option<f64> {
+        Float::F64.nearest(formula)
+    }
+    fn draw(&mut self) -> f64 {
+        1.0
+    }
+}
+
+/// Adds to what is said of functions that differ what they and the equations say at a state of the box.
+pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &Checker, nominal: &[Formula]) {
+    if functions.iter().all(|function| !matches!(function.verdict, Verdict::Different { .. })) {
+        return;
+    }
+    let mut domain = bounds::domain_of(checker.manipulator(), module);
+    let parameters: Option<Vec<f64>> = nominal.iter().map(|value| Float::F64.nearest(value)).collect();
+    domain.pi = parameters.unwrap_or_default().into_iter().map(|value| (value, value)).collect();
+    let drawn = bounds::draw(&domain, &mut checker.rest(), Float::F64);
+    // Few digits, so that a reader can type them.
+    let thousandths = |x: f64| (x * 1e3).round() / 1e3;
+    let arguments = Arguments { pi: drawn.pi.clone(), ..drawn.map(thousandths) };
+    let state = state(&arguments);
+    let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
+    let Ok(reference) = Reference::at(&mut Floats, checker.manipulator(), checker.vector(), state, wanted) else { return };
+    for function in functions {
+        let Verdict::Different { entry, why } = &mut function.verdict else { continue };
+        let (Some(program), Some(expected)) = (module.program(&function.name), reference.values.get(&function.name)) else {
+            continue;
+        };
+        let Some(index) = program.outputs.iter().position(|output| output.place == *entry) else { continue };
+        let values = program.run_float(&arguments, module.real);
+        let (Some(&found), Some(&right)) = (values.get(index), expected.get(index)) else { continue };
+        let place = place(&function.name, &arguments);
+        *why += &if (found - right).abs() <= AGREE * found.abs().max(right.abs()) {
+            format!("; at {place} both are {right:.6e} to 1e-6: it differs elsewhere, or by less")
+        } else {
+            format!("; at {place} the module says {found:.6e}, the equations {right:.6e}")
+        };
+    }
+}
+
+fn state(arguments: &Arguments<f64>) -> State<f64> {
+    State {
+        angles: arguments.q.iter().map(|q| q.sin_cos()).collect(),
+        q: arguments.q.clone(),
+        dq: arguments.dq.clone(),
+        ddq: arguments.ddq.clone(),
+        dqr: arguments.dqr.clone(),
+        ddqr: arguments.ddqr.clone(),
+        tau: arguments.tau.clone(),
+        signs: arguments.dq.iter().map(|rate| if *rate == 0.0 { 0.0 } else { rate.signum() }).collect(),
+        pi: arguments.pi.clone(),
+        zero: 0.0,
+        one: 1.0,
+    }
+}
+
+/// The arguments of a function, as a reader writes them; parameters are those of the description.
+fn place(name: &str, arguments: &Arguments<f64>) -> String {
+    let promise = Promise::of(name);
+    let of = |argument: &&str| {
+        let values = [Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
+        let found = values.into_iter().find(|value| value.name() == *argument)?;
+        let numbers: Vec<String> = arguments.of(found).iter().map(f64::to_string).collect();
+        Some(format!("{argument} = [{}]", numbers.join(", ")))
+    };
+    let all: Vec<String> = promise.iter().flat_map(|(promise, _)| promise.arguments).filter_map(of).collect();
+    all.join(", ")
+}
