@@ -12,10 +12,10 @@ mod unit;
 
 pub use channel::{Channel, JointQuantity, PostureQuantity, Quantity};
 pub use expectation::{Expectation, Take, Target};
-pub use experiment::{Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Postures, Sampling};
+pub use experiment::{Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Postures, Sampling, Start};
 pub use law::{Adaptation, Gain, Law, LawKind, Per};
 pub use motion::{Motion, Sheet, Trajectory};
 pub use number::{digits, number};
-pub use record::{Record, Shape, Shapes, Speed};
+pub use record::{Peak, Record, Shape, Shapes, Speed};
 pub use robot::{Joint, Parameter, Robot};
 pub use unit::Unit;

@@ -24,7 +24,7 @@ use armgen_codegen::document::reader::{self, first_key, optional, required, Fiel
 use armgen_codegen::document::yaml::{self, Kind, Node};
 use armgen_codegen::source::{Source, Span};
 
-use crate::model::{Body, Experiment, Robot, Sampling};
+use crate::model::{Body, Experiment, Robot, Sampling, Start};
 use values::{Allowed, Reader};
 
 pub use code::{Code, SHARED};
@@ -215,8 +215,18 @@ impl Reader<'_> {
         Some(Sampling { motion, period, duration })
     }
 
-    fn start(&mut self, fields: &Fields<'_>) -> Option<Vec<f64>> {
-        self.require(fields, "start", "the experiment", "start: [0, pi/2, ...]");
-        self.joints(fields, "start")
+    /// Joint variables, or `{from: path}`.
+    fn start(&mut self, fields: &Fields<'_>) -> Option<Start> {
+        self.require(fields, "start", "the experiment", "start: [0, pi/2, ...]` or `start: {from: path}");
+        let (at, node) = fields.get("start")?;
+        if !matches!(node.kind, Kind::Mapping(_)) {
+            return self.joints(fields, "start").map(Start::Joints);
+        }
+        let keys = self.mapping(node, "`start`", at, &[required("from", "from: path"), optional("near")])?;
+        self.choice(&keys, "from", &[("path", ())])?;
+        match keys.has("near") {
+            true => self.joints(&keys, "near").map(|near| Start::Path(Some(near))),
+            false => Some(Start::Path(None)),
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! instance.rs      one robot: its data, its functions, and the runs compiled for it
 //! look.rs          what can be seen before anything moves
+//! start.rs         where a run begins
 //! postures.rs clik.rs control.rs      one kind of run each; path.rs needs no robot
 //! demonstration.rs for a robot without experiments: from posture to posture within its limits
 //! ```
@@ -17,6 +18,7 @@ mod instance;
 mod look;
 mod path;
 mod postures;
+mod start;
 
 pub use instance::{Functions, Instance};
 

@@ -57,13 +57,22 @@ pub struct Sampling {
     pub duration: Duration,
 }
 
+/// Where a run begins.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Start {
+    /// At these joint variables.
+    Joints(Vec<f64>),
+    /// Where the path begins, at a posture that inverse kinematics finds, from these joint variables if they are given.
+    Path(Option<Vec<f64>>),
+}
+
 /// A run of inverse kinematics.
 #[derive(Clone, Debug)]
 pub struct ClikRun {
     /// The path.
     pub sampling: Sampling,
-    /// Joint variables at the start.
-    pub start: Vec<f64>,
+    /// Where it begins.
+    pub start: Start,
     /// The rows that are followed.
     pub rows: Vec<Row>,
     /// The algorithm.
@@ -154,8 +163,8 @@ pub enum Algorithm {
 pub struct ControlRun {
     /// The path.
     pub sampling: Sampling,
-    /// Joint variables at the start.
-    pub start: Vec<f64>,
+    /// Where it begins.
+    pub start: Start,
     /// Parameters of the plant.
     pub plant: Vec<f64>,
     /// K_P and K_D of the second-order inverse kinematics that makes the joint reference, one per row of the task.

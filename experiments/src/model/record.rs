@@ -19,10 +19,21 @@ pub struct Record {
     pub numbers: Vec<(Channel, f64)>,
     /// The arm at the postures of the experiment, for figures.
     pub shapes: Shapes,
+    /// How fast and how hard each joint worked, where a controller drove it.
+    pub peaks: Vec<Peak>,
     /// Why the run ended early, if it did.
     pub ended: Option<String>,
     /// How fast it was simulated, where something was.
     pub speed: Speed,
+}
+
+/// The largest sizes of a joint's rate and of its torque or force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Peak {
+    /// rad/s or m/s
+    pub rate: f64,
+    /// N m or N
+    pub effort: f64,
 }
 
 /// Simulated time and what it took.

@@ -18,7 +18,7 @@ impl Reader<'_> {
         let start = self.start(fields);
         let nominal = self.robot.nominal();
         let plant = self.parameters(fields, "load", nominal.clone()).unwrap_or(nominal);
-        let reference = self.reference(fields);
+        let reference = self.reference(fields, sampling.as_ref());
         let (delay, noise) = self.sensor(fields);
         let (substeps, continuous) = self.simulation(fields);
         if let Some(Sampling { period, duration, .. }) = &sampling {
@@ -48,9 +48,14 @@ impl Reader<'_> {
         })
     }
 
-    fn reference(&mut self, fields: &Fields<'_>) -> Option<(Vec<f64>, Vec<f64>)> {
-        self.require(fields, "reference", "the experiment", "reference: {k_p: [...], k_d: [...]}");
-        let (at, node) = fields.get("reference")?;
+    /// K_P and K_D of the inverse kinematics that makes the joint reference: w² and 2 w with w = 1/(20 T) where none are given, so that an
+    /// error is closed without overshoot within a hundred samples, and sampling does not disturb that.
+    fn reference(&mut self, fields: &Fields<'_>, sampling: Option<&Sampling>) -> Option<(Vec<f64>, Vec<f64>)> {
+        let Some((at, node)) = fields.get("reference") else {
+            let w = 1.0 / (20.0 * sampling?.period.as_secs_f64());
+            let rows = self.robot.task.len();
+            return Some((vec![w * w; rows], vec![2.0 * w; rows]));
+        };
         let keys = [required("k_p", "k_p: [1000, 1000, ...]"), required("k_d", "k_d: [50, 50, ...]")];
         let keys = self.mapping(node, "`reference`", at, &keys)?;
         let rows = self.robot.task.len();

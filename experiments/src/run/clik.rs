@@ -155,7 +155,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         };
         let limits = self.limits().map_err(refused)?;
         let clik = Clik::new(task, algorithm.as_ref(), period.as_secs_f64(), limits, [TOLERANCE; K]).map_err(refused)?;
-        let mut q = Self::joints(&run.start);
+        let mut q = self.start(&run.start, &run.sampling)?;
         let mut t = Duration::ZERO;
         let mut rate_limited_at = f64::INFINITY;
         while t <= run.sampling.duration {
@@ -191,7 +191,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     ) -> Result<(), String> {
         let period = run.sampling.period;
         let clik = self.second_order((&run.gains, k_d), period.as_secs_f64(), integration).map_err(refused)?;
-        let mut state = State::at_rest(Self::joints(&run.start));
+        let mut state = State::at_rest(self.start(&run.start, &run.sampling)?);
         let mut t = Duration::ZERO;
         while t <= run.sampling.duration {
             let reference = run.sampling.motion.trajectory.sample(t);

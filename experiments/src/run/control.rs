@@ -19,7 +19,7 @@ use armgen_runtime::stability::{
 
 use super::instance::{sized, Functions};
 use super::{Instance, Run};
-use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, LawKind, Quantity, Record, Robot, Speed};
+use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, LawKind, Peak, Quantity, Record, Robot, Speed};
 
 /// Distance between the postures at which the loop is linearised.
 const POSTURE_STEP: Duration = Duration::from_millis(250);
@@ -131,6 +131,8 @@ struct Prepared<'a, R, W, const N: usize, const M: usize, const P: usize> {
     arm: &'a Instance<R, W, N, M, P>,
     run: &'a ControlRun,
     body: &'a Body,
+    /// Where it begins.
+    start: SVector<f64, N>,
     drive: Drive<'a, R, W, N, P>,
     /// What is desired at each sample.
     joints: Vec<JointReference<f64, N>>,
@@ -164,7 +166,8 @@ where
         run: &'a ControlRun,
         experiment: &'a Experiment,
     ) -> Result<Box<dyn Run + 'a>, String> {
-        let (joints, tip, postures) = self.desired(run, run.sampling.period)?;
+        let begins = self.start(&run.start, &run.sampling)?;
+        let (joints, tip, postures) = self.desired(run, begins, run.sampling.period)?;
         let period = run.sampling.period.as_secs_f64();
         let refused = |error: ParameterError| format!("the controller is refused: {error}");
         let drive = match run.continuous {
@@ -190,27 +193,27 @@ where
         };
         let mut report = rest(run.delay)?;
         if let Drive::Sampled(law) = &drive {
-            let rehearsal = self.rehearsal(run, &plant, &joints, period);
+            let rehearsal = Self::rehearsal(run, begins, &plant, &joints, period);
             // An analysis in motion that fails is left out; the one at rest is still reported.
             report.motion = law.rehearse(&rehearsal, &self.nominal, &tip).ok();
         }
-        let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, &plant, &postures)) };
+        let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, begins, &plant, &postures)) };
         let analysis = Analysis { report, start, holds_at };
-        Ok(Box::new(Prepared { arm: self, run, body: &experiment.body, drive, joints, tip, analysis, delayed }))
+        Ok(Box::new(Prepared { arm: self, run, body: &experiment.body, start: begins, drive, joints, tip, analysis, delayed }))
     }
 
     fn rehearsal<'r>(
-        &self,
         run: &ControlRun,
+        begins: SVector<f64, N>,
         plant: &'r W,
         joints: &'r [JointReference<f64, N>],
         period: f64,
     ) -> Rehearsal<'r, W, f64, N> {
-        Rehearsal { plant, joints, start: State::at_rest(Self::joints(&run.start)), period, delay: Delay::samples(run.delay) }
+        Rehearsal { plant, joints, start: State::at_rest(begins), period, delay: Delay::samples(run.delay) }
     }
 
     /// The largest period of [`SHORTER`] at which the loop holds, s, and the shortest that was tried.
-    fn shorter(&self, run: &ControlRun, plant: &W, postures: &[SVector<f64, N>]) -> (Option<f64>, f64) {
+    fn shorter(&self, run: &ControlRun, begins: SVector<f64, N>, plant: &W, postures: &[SVector<f64, N>]) -> (Option<f64>, f64) {
         let mut shortest = run.sampling.period.as_secs_f64();
         for part in SHORTER {
             let period = run.sampling.period / part;
@@ -223,8 +226,8 @@ where
                 let law = self.sampled_law(&run.law, shortest).ok()?;
                 let mut report = analyse(plant, &self.nominal, law.at_rest(), postures, shortest, delay).ok()?;
                 if report.is_stable() {
-                    let (joints, tip, _) = self.desired(run, period).ok()?;
-                    let rehearsal = self.rehearsal(run, plant, &joints, shortest);
+                    let (joints, tip, _) = self.desired(run, begins, period).ok()?;
+                    let rehearsal = Self::rehearsal(run, begins, plant, &joints, shortest);
                     report.motion = Some(law.rehearse(&rehearsal, &self.nominal, &tip).ok()?);
                 }
                 Some(report.holds())
@@ -236,12 +239,12 @@ where
         (None, shortest)
     }
 
-    fn desired(&self, run: &ControlRun, period: Duration) -> Result<Desired<N>, String> {
+    fn desired(&self, run: &ControlRun, begins: SVector<f64, N>, period: Duration) -> Result<Desired<N>, String> {
         let trajectory = &run.sampling.motion.trajectory;
         let gains = (run.reference.0.as_slice(), run.reference.1.as_slice());
         let clik = self.second_order(gains, period.as_secs_f64(), Integration::HoldConsistent);
         let clik = clik.map_err(|error| format!("the gains of the reference are refused: {error}"))?;
-        let mut state = State::at_rest(Self::joints(&run.start));
+        let mut state = State::at_rest(begins);
         let (mut joints, mut tip, mut postures) = (Vec::new(), Vec::new(), Vec::new());
         let (mut t, mut next_posture) = (Duration::ZERO, Duration::ZERO);
         while t <= run.sampling.duration {
@@ -428,9 +431,17 @@ where
     }
 
     fn run(self: Box<Self>) -> Record {
-        let Prepared { arm, run, body, drive, joints, tip, analysis: Analysis { report, start, .. }, delayed } = *self;
-        let mut writer =
-            Writer { arm, joints: &joints, tip: &tip, record: Record::new(body.channels(&arm.robot)), lost_at: f64::INFINITY };
+        let Prepared { arm, run, body, start: begins, drive, joints, tip, analysis: Analysis { report, start, .. }, delayed } =
+            *self;
+        let mut writer = Writer {
+            arm,
+            begins,
+            joints: &joints,
+            tip: &tip,
+            record: Record::new(body.channels(&arm.robot)),
+            lost_at: f64::INFINITY,
+        };
+        writer.record.peaks = vec![Peak::default(); N];
         let begun = Instant::now();
         let is_sampled = matches!(drive, Drive::Sampled(_));
         let outcome = match drive {
@@ -467,6 +478,7 @@ where
 /// Drives the arm and writes the log.
 struct Writer<'a, R, W, const N: usize, const M: usize, const P: usize> {
     arm: &'a Instance<R, W, N, M, P>,
+    begins: SVector<f64, N>,
     joints: &'a [JointReference<f64, N>],
     tip: &'a [OperationalReference<f64>],
     record: Record,
@@ -479,7 +491,10 @@ where
     W: Functions<N, P>,
 {
     fn write(&mut self, index: usize, t: Duration, state: &State<f64, N>, tau: &SVector<f64, N>, watched: &[f64]) {
-        let Writer { arm, joints, tip, record, lost_at } = self;
+        let Writer { arm, joints, tip, record, lost_at, .. } = self;
+        for (i, peak) in record.peaks.iter_mut().enumerate() {
+            *peak = Peak { rate: peak.rate.max(state.dq[i].abs()), effort: peak.effort.max(tau[i].abs()) };
+        }
         let e = joints[index].q - state.q;
         if lost_at.is_infinite() && e.amax() > LOST {
             *lost_at = t.as_secs_f64();
@@ -513,10 +528,9 @@ where
             index += 1;
             law.borrow_mut().torque(model, joints, tip, measured).map_err(Stop::Control)
         };
-        let end =
-            simulate(&plant, State::at_rest(Instance::<R, W, N, M, P>::joints(&run.start)), options, controller, |sample| {
-                self.write(sample.index as usize, sample.time, &sample.state, &sample.tau, law.borrow().watched());
-            });
+        let end = simulate(&plant, State::at_rest(self.begins), options, controller, |sample| {
+            self.write(sample.index as usize, sample.time, &sample.state, &sample.tau, law.borrow().watched());
+        });
         end.map(|_| ())
     }
 
@@ -530,7 +544,7 @@ where
             let step = controller.law(model, &reference, state, estimate).map_err(Stop::Control);
             step.map(|(torque, rate)| (torque.tau, rate))
         };
-        let start = State::at_rest(Instance::<R, W, N, M, P>::joints(&run.start));
+        let start = State::at_rest(self.begins);
         let end = run_continuous(&plant, start, *controller.estimate(), options, law, |sample| {
             let tau = law(sample.index, 0.0, &sample.state, &sample.memory).map_or(SVector::zeros(), |(tau, _)| tau);
             self.write(sample.index as usize, sample.time, &sample.state, &tau, sample.memory.as_slice());

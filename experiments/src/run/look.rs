@@ -29,7 +29,11 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             Body::Control(run) => (&run.sampling, &run.start),
             Body::Postures(_) | Body::Path(_) => return Vec::new(),
         };
-        let q = Self::joints(start);
+        let q = match self.start(start, sampling) {
+            Ok(q) => q,
+            // The run itself says so.
+            Err(_) => return Vec::new(),
+        };
         let mut said = self.outside(&q);
         said.extend(self.beyond_reach(&q, sampling).or_else(|| self.off_the_path(&q, sampling)));
         said
