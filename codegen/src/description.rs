@@ -92,6 +92,8 @@ pub struct JointDescription {
     pub motor: Option<MotorDescription>,
     /// Friction at the joint.
     pub friction: FrictionDescription,
+    /// A spring at the joint.
+    pub spring: Option<SpringDescription>,
     /// What is added to the joint's own entry of the inertia matrix.
     pub armature: Value,
     /// Where the joint begins: its first key.
@@ -116,6 +118,21 @@ pub struct FrictionDescription {
     pub viscous: Value,
     /// Coulomb friction.
     pub coulomb: Value,
+    /// What is added to Coulomb friction forwards and taken off it backwards.
+    pub offset: Value,
+    /// Coefficient of the cube of the rate.
+    pub cubic: Value,
+}
+
+/// A spring at a joint.
+#[derive(Clone, Debug)]
+pub struct SpringDescription {
+    /// Place of the key that holds it.
+    pub key: Span,
+    /// Stiffness.
+    pub stiffness: Value,
+    /// Where it is at rest; 0 where it is not given.
+    pub rest: Value,
 }
 
 /// A rigid body.

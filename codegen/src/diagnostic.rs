@@ -181,6 +181,8 @@ codes! {
         ZeroRatio Error "zero-ratio",
         /// An armature below 0.
         NegativeArmature Error "negative-armature",
+        /// A stiffness below 0.
+        NegativeStiffness Error "negative-stiffness",
         /// An axis or a rotation without a direction.
         ZeroAxis Error "zero-axis",
         /// A position range that holds no interval.
@@ -242,6 +244,8 @@ codes! {
         ImplausibleGravity Warning "implausible-gravity",
         /// A velocity limit beyond what joints reach.
         ImplausibleVelocity Warning "implausible-velocity",
+        /// Friction that feeds energy in within the limits.
+        ActiveFriction Warning "active-friction",
         /// A length or an angle that is next to nothing.
         Dust Warning "dust",
     }

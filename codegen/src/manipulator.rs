@@ -79,8 +79,23 @@ pub struct Joint {
     pub viscous: Option<Polynomial>,
     /// Coulomb friction at the joint, N m or N; the torque is coulomb · sign(dq).
     pub coulomb: Option<Polynomial>,
+    /// What Coulomb friction has more forwards than backwards, halved, N m or N: the torque is offset, whatever the rate.
+    pub offset: Option<Polynomial>,
+    /// Cubic friction, N m s³ or N s³/m³: the torque is cubic · dq³.
+    pub cubic: Option<Polynomial>,
+    /// A spring between the joint and the link that carries it.
+    pub spring: Option<Spring>,
     /// Inertia that the joint alone feels, kg m² or kg: the torque is armature · ddq. `None` where the file does not give it.
     pub armature: Option<Polynomial>,
+}
+
+/// A spring at a joint: the torque on the left of the equation of motion is stiffness · (q - rest), part of g(q).
+#[derive(Clone, Debug)]
+pub struct Spring {
+    /// N m/rad or N/m; at least 0.
+    pub stiffness: Polynomial,
+    /// The joint variable at which it pulls neither way, rad or m.
+    pub rest: Polynomial,
 }
 
 /// A row of the file: link frame i in link frame i - 1 (the base frame) is `before * motion * after`, where motion is the rotation by q about

@@ -122,6 +122,10 @@ pub struct Module {
     pub joints: Vec<Joint>,
     /// Acceleration of free fall in the base frame, m/s².
     pub gravity: [Number; 3],
+    /// Whether springs are part of g and U.
+    pub has_springs: bool,
+    /// Whether friction has an offset or grows with the cube of a rate.
+    pub has_more_friction: bool,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
     /// Parameters.

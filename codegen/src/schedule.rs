@@ -59,6 +59,8 @@ pub fn module(model: &Model, options: &Options) -> Module {
         name: manipulator.name.clone(),
         joints: manipulator.joints.iter().map(joint).collect(),
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
+        has_springs: manipulator.joints.iter().any(|joint| joint.spring.is_some()),
+        has_more_friction: manipulator.joints.iter().any(|joint| joint.offset.is_some() || joint.cubic.is_some()),
         task: manipulator.task_rows(),
         parameters: model.parameters.entries.clone(),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),

@@ -311,20 +311,28 @@ impl Case<'_> {
         };
         let (b, c) = (call("inertia_matrix_with"), call("coriolis_matrix_with"));
         let still = tau(&rest, &rest, &rest);
-        self.check("g_with by Y", &call("gravity_with"), &still);
-        let coulomb = minus(&tau(&a.dq, &rest, &rest), &still);
         let friction = |dq: Vec<f64>| self.robot.call("friction_with", &Arguments { dq, ..a.clone() });
-        let mut viscous = vec![0.0; n];
+        let offset = friction(rest.clone());
+        self.check("g_with by Y", &call("gravity_with"), &minus(&still, &offset));
+        let coulomb = minus(&tau(&a.dq, &rest, &rest), &still);
+        let (mut viscous, mut cubic) = (vec![0.0; n], vec![0.0; n]);
         for j in 0..n {
             // Rounded to the scale of tau, whatever is subtracted.
             let with_gravity: Vec<f64> = column(&b, n, j).iter().zip(&still).map(|(b, g)| b + g).collect();
             self.check("B_with by Y", &tau(&rest, &rest, &unit(n, j, 1.0)), &with_gravity);
-            viscous[j] = minus(&friction(unit(n, j, 2.0)), &friction(unit(n, j, 1.0)))[j];
-            let sum: Vec<f64> =
-                (0..n).map(|i| c[i * n + j] + if i == j { viscous[j] } else { 0.0 } + coulomb[i] + still[i]).collect();
+            // F at rates 1, 2 and 3 is F_v x + F_3 x³ and what does not depend on x.
+            let [one, two, three] = [1.0, 2.0, 3.0].map(|rate| friction(unit(n, j, rate))[j]);
+            let second = (three - two) - (two - one);
+            (viscous[j], cubic[j]) = (two - one - second * 7.0 / 12.0, second / 12.0);
+            let sum: Vec<f64> = (0..n)
+                .map(|i| {
+                    c[i * n + j] + if i == j { viscous[j] + cubic[j] * a.dq[j] * a.dq[j] } else { 0.0 } + coulomb[i] + still[i]
+                })
+                .collect();
             self.check("C_with by Y", &tau(&a.dq, &unit(n, j, 1.0), &rest), &sum);
         }
-        let both: Vec<f64> = (0..n).map(|i| viscous[i] * a.dq[i] + coulomb[i]).collect();
+        let both: Vec<f64> =
+            (0..n).map(|i| (viscous[i] + cubic[i] * a.dq[i] * a.dq[i]) * a.dq[i] + coulomb[i] + offset[i]).collect();
         self.check("friction_with by Y", &call("friction_with"), &both);
         self.check("tau_with by Y", &call("inverse_dynamics_with"), &tau(&a.dq, &a.dq, &a.ddq));
         let rows: Matrix = b.chunks(n).map(<[f64]>::to_vec).collect();

@@ -76,6 +76,14 @@ pub struct Joint {
     pub viscous: Option<f64>,
     /// Coulomb friction at the joint, if given.
     pub coulomb: Option<f64>,
+    /// Friction at the joint whatever its rate, if given.
+    pub offset: Option<f64>,
+    /// Coefficient of the cube of the rate, if given.
+    pub cubic: Option<f64>,
+    /// Stiffness of the joint's spring, if given.
+    pub stiffness: Option<f64>,
+    /// Where that is at rest.
+    pub rest: f64,
     /// Inertia that the joint alone feels, if given.
     pub armature: Option<f64>,
 }

@@ -67,13 +67,14 @@ pub fn state(dof: usize, seed: u64) -> State {
 }
 
 /// Fixed arms that combine what is easily got wrong, by name: the files of `tests/robots/`.
-pub fn tricky() -> [(&'static str, &'static str); 5] {
+pub fn tricky() -> [(&'static str, &'static str); 6] {
     [
         ("everything", include_str!("../robots/everything.yaml")),
         ("modified_prismatic", include_str!("../robots/modified_prismatic.yaml")),
         ("general_angles", include_str!("../robots/general_angles.yaml")),
         ("single_joint", include_str!("../robots/single_joint.yaml")),
         ("base_set", include_str!("../robots/base_set.yaml")),
+        ("counterbalance", include_str!("../robots/counterbalance.yaml")),
     ]
 }
 
@@ -93,7 +94,7 @@ pub fn arm(seed: u64) -> String {
 }
 
 /// A random arm of what rows of Denavit and Hartenberg do not need: rows with origin and axis, poses in all writings, a base, tensors in turned
-/// axes, attached bodies, armatures.
+/// axes, attached bodies, armatures, springs, friction with an offset and a cubic part.
 pub fn posed_arm(seed: u64) -> String {
     let mut random = Random::new(seed ^ 0x7053_0000);
     let random = &mut random;
@@ -149,7 +150,12 @@ pub fn posed_arm(seed: u64) -> String {
                 .expect("text");
         }
         if random.chance(30) {
-            writeln!(text, "    friction: {{viscous: 0.2, coulomb: 3}}").expect("text");
+            let more = random.one_of(&["", "", ", offset: -0.75", ", cubic: 0.05", ", offset: 1/3, cubic: -0.002"]);
+            writeln!(text, "    friction: {{viscous: 0.2, coulomb: 3{more}}}").expect("text");
+        }
+        if random.chance(20) {
+            let rest = random.one_of(&["", ", rest: -0.3", ", rest: pi/3"]);
+            writeln!(text, "    spring: {{stiffness: {}{rest}}}", decimal(random.whole(1, 9000), 1)).expect("text");
         }
     }
     if random.chance(70) {

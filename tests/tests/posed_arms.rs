@@ -63,6 +63,10 @@ fn every_part_of_the_format_occurs() {
         "xyaxes",
         "attached",
         "armature",
+        "offset:",
+        "cubic:",
+        "spring:",
+        "rest:",
         "payload",
     ] {
         assert!(all.contains(part), "{part} never occurs");
@@ -111,7 +115,7 @@ fn attached_bodies_lump_to_the_whole() {
 /// The oracle reads the format by itself; the fields that only this format has are not ignored there.
 #[test]
 fn the_oracle_sees_each_part_of_the_format() {
-    let text = "name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\nbase: {rpy: [0, 0.3, 0]}\njoints:\n  - {name: a, type: revolute, origin: {xyz: [0, 0.2, 0]}, axis: [0, 1, 0], armature: 0.5, link: {mass: 2, com: [0.1, 0, 0.3], inertia: {xx: 1, yy: 2, zz: 2, rpy: [0, 0, 1]}, attached: [{origin: {xyz: [0, 0, 1]}, mass: 3}]}}\n  - {name: b, type: revolute, axis: [0, 0, 1], link: {mass: 2, com: [0.1, 0, 0.3], inertia: {xx: 1, yy: 2, zz: 2}}}\n";
+    let text = "name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\nbase: {rpy: [0, 0.3, 0]}\njoints:\n  - {name: a, type: revolute, origin: {xyz: [0, 0.2, 0]}, axis: [0, 1, 0], armature: 0.5, friction: {viscous: 0.3, offset: 0.2, cubic: 0.1}, spring: {stiffness: 30, rest: 0.7}, link: {mass: 2, com: [0.1, 0, 0.3], inertia: {xx: 1, yy: 2, zz: 2, rpy: [0, 0, 1]}, attached: [{origin: {xyz: [0, 0, 1]}, mass: 3}]}}\n  - {name: b, type: revolute, axis: [0, 0, 1], link: {mass: 2, com: [0.1, 0, 0.3], inertia: {xx: 1, yy: 2, zz: 2}}}\n";
     let torque = |text: &str| {
         let model = Description::read(text).and_then(|d| d.model()).expect("it is valid");
         model.inverse_dynamics(&[0.4, 0.3], &[1.0, 2.0], &[1.0, -1.0])
@@ -120,6 +124,10 @@ fn the_oracle_sees_each_part_of_the_format() {
     for (part, without) in [
         ("base: {rpy: [0, 0.3, 0]}\n", ""),
         ("armature: 0.5, ", ""),
+        (", offset: 0.2", ""),
+        (", cubic: 0.1", ""),
+        (", rest: 0.7", ""),
+        ("spring: {stiffness: 30, rest: 0.7}, ", ""),
         ("axis: [0, 1, 0]", "axis: [0, 1, 0.1]"),
         (", rpy: [0, 0, 1]", ""),
         ("origin: {xyz: [0, 0, 1]}, mass: 3", "mass: 3"),

@@ -28,7 +28,7 @@ use armgen_codegen::manipulator::Manipulator;
 use crate::arithmetic::degree::Degree;
 use crate::arithmetic::{Arithmetic, Element};
 use crate::equations::arm::Arm;
-use crate::equations::lagrange::friction;
+use crate::equations::lagrange::{friction, spring_torques};
 use crate::equations::newton_euler::{Carrier, Motion, Moving};
 use crate::equations::parameters::Standard;
 use crate::equations::pose::Pose;
@@ -107,6 +107,9 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
             }
             Standard::Viscous(i) => column[i].clone_from(&state.dq[i]),
             Standard::Coulomb(i) => column[i].clone_from(&state.signs[i]),
+            Standard::Offset(i) => column[i].clone_from(&arm.one),
+            Standard::Cubic(i) => column[i] = state.dq[i].times(&state.dq[i]).times(&state.dq[i]),
+            Standard::Stiffness(i) => column[i] = state.q[i].minus(&arm.joints[i].rest),
         }
         column
     };
@@ -114,8 +117,9 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
     for parameter in named.iter().flat_map(|(parameter, _)| kind(*parameter)) {
         columns.entry(parameter).or_insert_with(|| column(parameter));
     }
-    let friction = friction(arm, &state.dq, &state.signs);
-    let torques = whole.torques().iter().zip(friction).map(|(a, b)| a.plus(&b)).collect();
+    let friction = friction(arm, &state.dq, &state.dq, &state.signs);
+    let springs = spring_torques(arm, &state.q);
+    let torques = whole.torques().iter().zip(friction).zip(springs).map(|((a, b), c)| a.plus(&b).plus(&c)).collect();
     Sample { torques, columns, state }
 }
 

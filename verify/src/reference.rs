@@ -10,7 +10,8 @@ use crate::contract::{Array, Length, Promise, Returned};
 use crate::divisors::{Matrix, Pivots};
 use crate::equations::arm::{Arm, Frame};
 use crate::equations::lagrange::{
-    accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, times_vector,
+    accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, spring_torques,
+    times_vector,
 };
 use crate::equations::newton_euler::{Motion, Moving};
 use crate::equations::parameters::{
@@ -137,13 +138,15 @@ fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
         b: inertia_matrix(arm, state),
         c: coriolis_matrix(&inertia_derivatives(arm, state), &state.dq, &arm.half()),
         g: gravity(arm, state),
-        f: friction(arm, &state.dq, &state.signs),
+        f: friction(arm, &state.dq, &state.dq, &state.signs),
         u: potential_energy(arm, state),
     };
     let without_friction = of_parts(arm, state, parts, values, suffix)?;
     let pose = Pose::new(arm, state);
     let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
-    Some(Moving::new(arm, &pose, motion).torques() == without_friction)
+    let torques = Moving::new(arm, &pose, motion).torques();
+    let torques: Vec<E> = torques.iter().zip(spring_torques(arm, &state.q)).map(|(a, b)| a.plus(&b)).collect();
+    Some(torques == without_friction)
 }
 
 /// The quantities that follow from these parts; the torques without friction.
@@ -189,6 +192,7 @@ fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> 
     let total = mass(arm);
     let along = |axis: usize| {
         let mut falling = arm.clone();
+        falling.joints.iter_mut().for_each(|joint| joint.stiffness = arm.zero.clone());
         falling.gravity = [0, 1, 2].map(|i| if i == axis { arm.one.clone() } else { arm.zero.clone() });
         potential_energy(&falling, state).negated().over(&total)
     };
@@ -205,8 +209,9 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> (Vec<Vec<E>
         let pose = Pose::new(&moving_arm, &state);
         let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: moving_arm.gravity.clone() };
         let torques = Moving::new(&moving_arm, &pose, motion).torques();
-        let friction = friction(&moving_arm, &state.dq, &state.signs);
-        torques.iter().zip(friction).map(|(t, f)| t.plus(&f).rate).collect()
+        let friction = friction(&moving_arm, &state.dq, &state.dq, &state.signs);
+        let springs = spring_torques(&moving_arm, &state.q);
+        torques.iter().zip(friction).zip(springs).map(|((t, f), s)| t.plus(&f).plus(&s).rate).collect()
     };
     let unit = |k: usize| -> Vec<E> { (0..n).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
     let rows = |columns: Vec<Vec<E>>| -> Vec<Vec<E>> {

@@ -169,6 +169,16 @@ fn of_description(manipulator: &Manipulator) -> Hash {
             arm.word("armature");
             arm.optional(&joint.armature);
         }
+        for (word, value) in [("offset", &joint.offset), ("cubic", &joint.cubic)] {
+            if value.is_some() {
+                arm.word(word);
+                arm.optional(value);
+            }
+        }
+        if let Some(spring) = &joint.spring {
+            arm.word("spring");
+            arm.polynomials([&spring.stiffness, &spring.rest]);
+        }
     }
     arm.word(&format!("{tip:?} {task:?}"));
     match tool.frame.is_multiplied_out() {

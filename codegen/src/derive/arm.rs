@@ -77,6 +77,14 @@ pub struct Joint {
     pub viscous: ExprId,
     /// Coulomb friction.
     pub coulomb: ExprId,
+    /// Friction whatever the rate.
+    pub offset: ExprId,
+    /// Coefficient of the cube of the rate.
+    pub cubic: ExprId,
+    /// Stiffness of its spring.
+    pub stiffness: ExprId,
+    /// The joint variable at which its spring is at rest.
+    pub rest: ExprId,
 }
 
 /// The arm.
@@ -399,6 +407,10 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let mut viscous = given(pool, StandardParameter::Viscous(index));
     let coulomb = given(pool, StandardParameter::Coulomb(index));
     let armature = given(pool, StandardParameter::Armature(index));
+    let offset = given(pool, StandardParameter::Offset(index));
+    let cubic = given(pool, StandardParameter::Cubic(index));
+    let stiffness = given(pool, StandardParameter::Stiffness(index));
+    let rest = joint.spring.as_ref().map_or(ExprId::ZERO, |spring| view.polynomial(pool, manipulator, &spring.rest));
     if let Some(motor) = &joint.motor {
         let ratio = view.polynomial(pool, manipulator, &motor.ratio);
         let at_rotor = given(pool, StandardParameter::RotorViscous(index));
@@ -424,6 +436,10 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         armature,
         viscous,
         coulomb,
+        offset,
+        cubic,
+        stiffness,
+        rest,
     }
 }
 

@@ -37,7 +37,15 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
             numbers.extend(all.flat_map(|p| p.terms().map(|(_, c)| c.clone())));
         }
         numbers.extend(
-            joint.viscous.iter().chain(&joint.coulomb).chain(&joint.armature).flat_map(|p| p.terms().map(|(_, c)| c.clone())),
+            joint
+                .viscous
+                .iter()
+                .chain(&joint.coulomb)
+                .chain(&joint.armature)
+                .chain(&joint.offset)
+                .chain(&joint.cubic)
+                .chain(joint.spring.iter().flat_map(|spring| [&spring.stiffness, &spring.rest]))
+                .flat_map(|p| p.terms().map(|(_, c)| c.clone())),
         );
     }
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));

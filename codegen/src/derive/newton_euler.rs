@@ -151,7 +151,7 @@ fn along_z(x: ExprId) -> Vector {
     [ExprId::ZERO, ExprId::ZERO, x]
 }
 
-/// B ddqr + C(q, dq) dqr + g: the torques without friction.
+/// B ddqr + C(q, dq) dqr + g: the torques without friction and springs.
 pub fn newton_euler(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) -> Vec<ExprId> {
     let motions = link_motions(pool, arm, motion, gravity);
     wrenches(pool, arm, motion, &motions).0
@@ -207,21 +207,52 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
     (tau, wrench)
 }
 
-/// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42).
+/// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42), an offset, and F_3 dq² times `rates`: F_3 dq³ where
+/// these are dq, and linear in reference rates where they are not.
 pub fn friction(pool: &mut Pool, arm: &Arm, rates: &[ExprId]) -> Vec<ExprId> {
     (0..arm.dof())
         .map(|i| {
-            let viscous = pool.mul(arm.joints[i].viscous, rates[i]);
+            let joint = &arm.joints[i];
+            let mut coefficient = joint.viscous;
+            if joint.cubic != ExprId::ZERO {
+                let steep = cubic_coefficient(pool, arm, i);
+                coefficient = pool.add(coefficient, steep);
+            }
+            let viscous = pool.mul(coefficient, rates[i]);
             let sign = pool.symbol(Symbol::RateSign(i as u16));
-            let coulomb = pool.mul(arm.joints[i].coulomb, sign);
-            pool.add(viscous, coulomb)
+            let coulomb = pool.mul(joint.coulomb, sign);
+            let sum = pool.add(viscous, coulomb);
+            pool.add(sum, joint.offset)
         })
         .collect()
 }
 
-/// The torques with friction.
+/// F_3 dq².
+pub fn cubic_coefficient(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
+    let rate = pool.symbol(Symbol::Rate(i as u16));
+    let square = pool.mul(rate, rate);
+    pool.mul(arm.joints[i].cubic, square)
+}
+
+/// q - rest of the spring of joint `i`.
+pub fn deflection(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
+    let position = pool.symbol(Symbol::Position(i as u16));
+    pool.sub(position, arm.joints[i].rest)
+}
+
+/// Adds the torques of springs, k (q - rest), which are part of g(q).
+pub fn add_springs(pool: &mut Pool, arm: &Arm, torques: &mut [ExprId]) {
+    for i in (0..arm.dof()).filter(|&i| arm.joints[i].stiffness != ExprId::ZERO) {
+        let deflection = deflection(pool, arm, i);
+        let torque = pool.mul(arm.joints[i].stiffness, deflection);
+        torques[i] = pool.add(torques[i], torque);
+    }
+}
+
+/// The torques with friction and springs.
 pub fn inverse_dynamics(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Vec<ExprId> {
-    let tau = newton_euler(pool, arm, motion, true);
+    let mut tau = newton_euler(pool, arm, motion, true);
+    add_springs(pool, arm, &mut tau);
     let friction = friction(pool, arm, &motion.reference);
     (0..arm.dof()).map(|i| pool.add(tau[i], friction[i])).collect()
 }

@@ -22,6 +22,12 @@ pub enum StandardParameter {
     Viscous(u16),
     /// Coulomb friction at a joint.
     Coulomb(u16),
+    /// Friction at a joint whatever its rate.
+    Offset(u16),
+    /// Cubic friction at a joint.
+    Cubic(u16),
+    /// Stiffness of the spring of a joint.
+    Stiffness(u16),
     /// One of the payload, in the end-effector frame.
     Payload(Inertial),
 }
@@ -138,6 +144,15 @@ impl StandardParameter {
             if joint.coulomb.is_some() {
                 all.push(StandardParameter::Coulomb(i));
             }
+            if joint.offset.is_some() {
+                all.push(StandardParameter::Offset(i));
+            }
+            if joint.cubic.is_some() {
+                all.push(StandardParameter::Cubic(i));
+            }
+            if joint.spring.is_some() {
+                all.push(StandardParameter::Stiffness(i));
+            }
         }
         if manipulator.payload.is_some() {
             all.extend(Inertial::TEN.map(StandardParameter::Payload));
@@ -145,7 +160,7 @@ impl StandardParameter {
         all
     }
 
-    /// Its name: `m1`, `Ixx1`, `Im1`, `Ia1`, `Fm1`, `Fv1`, `Fc1`, `mp`.
+    /// Its name: `m1`, `Ixx1`, `Im1`, `Ia1`, `Fm1`, `Fv1`, `Fc1`, `F0_1`, `F3_1`, `ks1`, `mp`.
     pub fn name(self) -> String {
         match self {
             StandardParameter::Link(i, k) => format!("{}{}", k.name(), i + 1),
@@ -154,6 +169,9 @@ impl StandardParameter {
             StandardParameter::RotorViscous(i) => format!("Fm{}", i + 1),
             StandardParameter::Viscous(i) => format!("Fv{}", i + 1),
             StandardParameter::Coulomb(i) => format!("Fc{}", i + 1),
+            StandardParameter::Offset(i) => format!("F0_{}", i + 1),
+            StandardParameter::Cubic(i) => format!("F3_{}", i + 1),
+            StandardParameter::Stiffness(i) => format!("ks{}", i + 1),
             StandardParameter::Payload(k) => format!("{}p", k.name()),
         }
     }
@@ -169,6 +187,9 @@ impl StandardParameter {
             StandardParameter::RotorViscous(i) => Entry::Whole(motor(i).and_then(|m| m.viscous.as_ref())),
             StandardParameter::Viscous(i) => Entry::Whole(joint(i).viscous.as_ref()),
             StandardParameter::Coulomb(i) => Entry::Whole(joint(i).coulomb.as_ref()),
+            StandardParameter::Offset(i) => Entry::Whole(joint(i).offset.as_ref()),
+            StandardParameter::Cubic(i) => Entry::Whole(joint(i).cubic.as_ref()),
+            StandardParameter::Stiffness(i) => Entry::Whole(joint(i).spring.as_ref().map(|spring| &spring.stiffness)),
             StandardParameter::Payload(k) => Entry::OfBodies(manipulator.payload.as_slice(), k),
         }
     }
@@ -419,6 +440,9 @@ impl StandardParameter {
             }
             StandardParameter::Viscous(i) => format!("joint {} ({}): viscous friction, N m s or N s/m", i + 1, name(i)),
             StandardParameter::Coulomb(i) => format!("joint {} ({}): Coulomb friction, N m or N", i + 1, name(i)),
+            StandardParameter::Offset(i) => format!("joint {} ({}): friction whatever the rate, N m or N", i + 1, name(i)),
+            StandardParameter::Cubic(i) => format!("joint {} ({}): cubic friction, N m s³ or N s³/m³", i + 1, name(i)),
+            StandardParameter::Stiffness(i) => format!("joint {} ({}): stiffness of its spring, N m/rad or N/m", i + 1, name(i)),
             StandardParameter::Payload(k) => format!("payload, in the end-effector frame: {}", k.meaning()),
         }
     }

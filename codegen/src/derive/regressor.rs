@@ -14,7 +14,7 @@
 use std::collections::BTreeMap;
 
 use super::arm::Arm;
-use super::newton_euler::{inverse_dynamics, link_motions, LinkMotion, Motion};
+use super::newton_euler::{deflection, inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{Inertial, ParameterKind, ParameterVector, StandardParameter};
 use super::plan::{self, Place, Plan};
 use super::wrench::{along, wrench_outward};
@@ -116,6 +116,13 @@ fn columns_in(
             StandardParameter::Armature(i) => y[usize::from(i)][column] = motion.accelerations[usize::from(i)],
             StandardParameter::Viscous(i) => y[usize::from(i)][column] = motion.reference[usize::from(i)],
             StandardParameter::Coulomb(i) => y[usize::from(i)][column] = pool.symbol(Symbol::RateSign(i)),
+            StandardParameter::Offset(i) => y[usize::from(i)][column] = ExprId::ONE,
+            StandardParameter::Cubic(i) => {
+                let i = usize::from(i);
+                let square = pool.mul(motion.rates[i], motion.rates[i]);
+                y[i][column] = pool.mul(square, motion.reference[i]);
+            }
+            StandardParameter::Stiffness(i) => y[usize::from(i)][column] = deflection(pool, arm, usize::from(i)),
         }
     }
     y

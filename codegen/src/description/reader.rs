@@ -4,7 +4,7 @@ use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
     LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, RegressorDescription,
-    RobotDescription, RotationDescription, Value, INERTIA_ELEMENTS,
+    RobotDescription, RotationDescription, SpringDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, required, Fields, Key, Reader};
@@ -37,6 +37,7 @@ const JOINT: &[Key] = &[
     required("link", "link: {mass: 5}"),
     optional("motor"),
     optional("friction"),
+    optional("spring"),
     optional("armature"),
 ];
 /// The keys of a joint whose row is not one of Denavit and Hartenberg.
@@ -49,6 +50,7 @@ const URDF_JOINT: &[Key] = &[
     required("link", "link: {mass: 5}"),
     optional("motor"),
     optional("friction"),
+    optional("spring"),
     optional("armature"),
 ];
 const LIMITS: &[Key] = &[optional("position"), optional("velocity"), optional("effort")];
@@ -71,7 +73,8 @@ const INERTIA: &[Key] = &[
 ];
 const MOTOR: &[Key] =
     &[optional("ratio"), optional("inertia"), optional("mass"), optional("position"), optional("axis"), optional("viscous")];
-const FRICTION: &[Key] = &[optional("viscous"), optional("coulomb")];
+const FRICTION: &[Key] = &[optional("viscous"), optional("coulomb"), optional("offset"), optional("cubic")];
+const SPRING: &[Key] = &[required("stiffness", "stiffness: 200"), optional("rest")];
 const POSE: &[Key] =
     &[optional("xyz"), optional("rpy"), optional("quat"), optional("axis"), optional("angle"), optional("xyaxes")];
 
@@ -168,6 +171,12 @@ impl Reader<'_> {
             friction: friction.map_or_else(FrictionDescription::default, |fields| FrictionDescription {
                 viscous: self.field(&fields, "viscous"),
                 coulomb: self.field(&fields, "coulomb"),
+                offset: self.field(&fields, "offset"),
+                cubic: self.field(&fields, "cubic"),
+            }),
+            spring: fields.get("spring").and_then(|(key, node)| {
+                let fields = self.mapping(node, "`spring`", key, SPRING)?;
+                Some(SpringDescription { key, stiffness: self.field(&fields, "stiffness"), rest: self.field(&fields, "rest") })
             }),
             armature: self.field(&fields, "armature"),
             span,

@@ -83,6 +83,7 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
         let [x, y, z] = module.gravity.each_ref().map(Number::to_f64);
         blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
     }
+    blocks.extend(of_joints(function.quantity.name, module).map(Block::text));
     if function.with_parameters {
         blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
     }
@@ -100,6 +101,19 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
     let (first, rest) = failure.split_at(1);
     blocks.push(Block::text(format!("Cost: {cost}. Derived by {}. {}{rest}.", function.method, first.to_uppercase())));
     blocks
+}
+
+/// What springs and friction beyond the textbook's add to a function, where the arm has them.
+fn of_joints(name: &str, module: &Module) -> Option<&'static str> {
+    match name {
+        "gravity" | "equations_of_motion" if module.has_springs => {
+            Some("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
+        }
+        "potential_energy" if module.has_springs => Some("A spring of a joint adds 1/2 k_s (q_i - rest)²."),
+        "friction" if module.has_more_friction => Some("Where the description has them, F_0 + F_3 dq_i³ are added."),
+        "regressor" if module.has_more_friction => Some("In F cubic friction is F_3 dq² dqr."),
+        _ => None,
+    }
 }
 
 /// What a name of a base parameter means.

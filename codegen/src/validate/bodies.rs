@@ -73,6 +73,7 @@ pub(super) fn not_negative(value: &Expression, what: &str, code: Code, context: 
     if nominal.sign() == Ordering::Less {
         let why = match code {
             Code::NegativeFriction => "friction takes energy from the arm, so its coefficient is at least 0",
+            Code::NegativeStiffness => "a spring pulls back to its rest, so its stiffness is at least 0",
             Code::NegativeArmature => "an armature resists acceleration as a mass does, so it is at least 0",
             Code::NegativeRotorInertia => "a moment of inertia is an integral of squared distances, so it is at least 0",
             _ => "a mass is at least 0; write 0 for a body that has none",

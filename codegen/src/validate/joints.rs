@@ -1,16 +1,16 @@
-//! One joint: its frames, its link, limits, motor and friction.
+//! One joint: its frames, its link, limits, motor, friction and spring.
 
 use std::cmp::Ordering;
 
 use super::bodies::{self, optional_not_negative, warn_of_massless};
 use super::number::text_of;
 use super::{call, geometry, zeros, Context};
-use crate::description::{Convention, JointDescription, LimitsDescription, MotorDescription};
+use crate::description::{Convention, JointDescription, LimitsDescription, MotorDescription, SpringDescription};
 use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
-use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose};
+use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose, Spring};
 
 /// The joint; faults are reported. `base`: what stands before the first row.
 pub(super) fn joint(
@@ -36,6 +36,16 @@ pub(super) fn joint(
     let what = |coefficient: &str| format!("the {coefficient} friction of joint {called}");
     let viscous = optional_not_negative(&description.friction.viscous, &what("viscous"), Code::NegativeFriction, context);
     let coulomb = optional_not_negative(&description.friction.coulomb, &what("Coulomb"), Code::NegativeFriction, context);
+    let optional = |value: &Option<Expression>, context: &mut Context<'_>| match value {
+        Some(value) => context.polynomial(value).map(Some),
+        None => Some(None),
+    };
+    let offset = optional(&description.friction.offset, context);
+    let cubic = optional(&description.friction.cubic, context);
+    let spring = match &description.spring {
+        Some(spring) => self::spring(spring, &called, context).map(Some),
+        None => Some(None),
+    };
     let armature =
         optional_not_negative(&description.armature, &format!("the armature of joint {called}"), Code::NegativeArmature, context);
     let row = row?;
@@ -52,8 +62,21 @@ pub(super) fn joint(
         motor: motor?,
         viscous: viscous?,
         coulomb: coulomb?,
+        offset: offset?,
+        cubic: cubic?,
+        spring: spring?,
         armature: armature?,
     })
+}
+
+fn spring(description: &SpringDescription, called: &str, context: &mut Context<'_>) -> Option<Spring> {
+    let what = format!("the stiffness of the spring of joint {called}");
+    let stiffness = bodies::not_negative(description.stiffness.as_ref()?, &what, Code::NegativeStiffness, context);
+    let rest = match &description.rest {
+        Some(rest) => context.polynomial(rest),
+        None => Some(Polynomial::zero()),
+    };
+    Some(Spring { stiffness: stiffness?, rest: rest? })
 }
 
 fn limits(description: &LimitsDescription, kind: Option<JointKind>, called: &str, context: &mut Context<'_>) -> Option<Limits> {

@@ -80,6 +80,10 @@ pub enum Role {
     Axis,
     /// A friction coefficient.
     Friction,
+    /// The stiffness of a spring.
+    Stiffness,
+    /// Where a spring is at rest.
+    SpringRest,
     /// An armature.
     Armature,
 }
@@ -102,6 +106,8 @@ impl Role {
             Role::RotorPosition => "the position of a rotor",
             Role::Axis => "the direction of an axis",
             Role::Friction => "a friction coefficient",
+            Role::Stiffness => "the stiffness of a spring",
+            Role::SpringRest => "the rest of a spring",
             Role::Armature => "an armature",
         }
     }
@@ -133,6 +139,12 @@ pub(super) fn expressions(description: &RobotDescription) -> Vec<(Role, &Express
         }
         all.value(Role::Friction, &joint.friction.viscous);
         all.value(Role::Friction, &joint.friction.coulomb);
+        all.value(Role::Friction, &joint.friction.offset);
+        all.value(Role::Friction, &joint.friction.cubic);
+        if let Some(spring) = &joint.spring {
+            all.value(Role::Stiffness, &spring.stiffness);
+            all.value(Role::SpringRest, &spring.rest);
+        }
         all.value(Role::Armature, &joint.armature);
     }
     all.pose(description.tool.as_ref());

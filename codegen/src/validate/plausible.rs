@@ -15,6 +15,7 @@
 //! | `inverted-ratio` | a ratio below 1/5 | gears of arms slow down: rotor speed over joint speed is at least 1 |
 //! | `implausible-gravity` | a size that no planet or moon of a lander has, to 2 in 100 | tables of planets |
 //! | `implausible-velocity` | a limit beyond 40 rad/s or 20 m/s | the fastest wrists of packing robots turn at 35 |
+//! | `active-friction` | friction that drives the joint somewhere below its velocity limit | friction takes energy; fits to noisy measurements do not know that |
 //! | `dust` | a length or an angle that is not 0 but below 1e-9 | less than the size of an atom at any reach; exact equations carry it along |
 
 use super::{call, Context};
@@ -93,6 +94,7 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         }
         arm.check_motor(joint, &called, context);
         check_velocity(joint, &called, context);
+        check_friction(joint, &called, context);
     }
 }
 
@@ -344,6 +346,44 @@ fn check_velocity(joint: &JointDescription, called: &str, context: &mut Context<
             format!("the velocity limit of joint {called} is {} m/s: no joint of an arm slides as fast", short(velocity));
         let help = format!("rates are in m/s; if this is in mm/s, write {}", short(velocity / 1e3));
         context.report(Code::ImplausibleVelocity, span, message, "in mm/s?", help);
+    }
+}
+
+/// Friction against the motion at a rate v is F_c - |F_0| + F_v v + F_3 v³ on the side that has less: it must not be negative up to the limit.
+fn check_friction(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
+    let friction = &joint.friction;
+    let (coulomb, offset) = (number(&friction.coulomb, context), number(&friction.offset, context).abs());
+    if let (true, Some(expression)) = (offset > coulomb, &friction.offset) {
+        let span = written(expression, context);
+        let message = format!(
+            "the friction of joint {called} drives it at low rates: its offset of {} is more than its Coulomb friction of {}",
+            short(offset),
+            short(coulomb)
+        );
+        let help =
+            "Coulomb friction is coulomb + offset forwards and coulomb - offset backwards; see whether the two are exchanged";
+        context.report(Code::ActiveFriction, span, message, "more than `coulomb`", help);
+        return;
+    }
+    let cubic = number(&friction.cubic, context);
+    let Some(expression) = friction.cubic.as_ref().filter(|_| cubic < 0.0) else { return };
+    let ratio = joint.motor.as_ref().map_or(0.0, |motor| {
+        let ratio = motor.ratio.as_ref().and_then(|ratio| context.number(ratio)).map_or(1.0, |ratio| ratio.to_f64());
+        ratio * ratio * number(&motor.viscous, context)
+    });
+    let viscous = number(&friction.viscous, context) + ratio;
+    let limit = joint.limits.velocity.as_ref().map(|_| number(&joint.limits.velocity, context));
+    let at = |v: f64| coulomb - offset + viscous * v + cubic * v.powi(3);
+    // With F_3 < 0 it is concave in v, and least at an end.
+    let (driven, where_) = match limit {
+        Some(limit) => (at(limit) < 0.0, format!("at its velocity limit, {}", short(limit))),
+        None => (true, "at high rates, and it has no velocity limit".to_owned()),
+    };
+    if driven {
+        let span = written(expression, context);
+        let message = format!("the friction of joint {called} drives it {where_}: cubic friction below 0 outweighs the rest");
+        let help = "give the velocity limit up to which friction was measured, or leave `cubic` out";
+        context.report(Code::ActiveFriction, span, message, "drives the joint", help);
     }
 }
 

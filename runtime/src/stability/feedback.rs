@@ -78,13 +78,16 @@ pub(crate) fn derivative<T: RealField + Copy, const N: usize>(
     jacobian
 }
 
-/// Viscous friction F_v, column by column: F(2 e_i) - F(e_i), in which Coulomb friction cancels.
+/// Viscous friction F_v, column by column: F(2 e_i) - F(e_i), in which Coulomb friction cancels, less 7/12 of the second difference
+/// F(3 e_i) - 2 F(2 e_i) + F(e_i) = 12 F_3 e_i, which takes cubic friction out.
 pub(crate) fn viscous<R: Dynamics<N>, const N: usize>(robot: &R) -> SMatrix<R::Real, N, N> {
     let mut f = SMatrix::<R::Real, N, N>::zeros();
     for i in 0..N {
         let mut e = SVector::zeros();
         e[i] = nalgebra::one::<R::Real>();
-        f.set_column(i, &(robot.friction(&(e * lit::<R::Real>(2.0))) - robot.friction(&e)));
+        let [one, two, three] = [1.0, 2.0, 3.0].map(|rate| robot.friction(&(e * lit::<R::Real>(rate))));
+        let first = two - one;
+        f.set_column(i, &(first - (three - two - first) * lit::<R::Real>(7.0 / 12.0)));
     }
     f
 }

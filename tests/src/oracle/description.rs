@@ -90,6 +90,8 @@ struct JointText {
     motor: Option<MotorText>,
     #[serde(default)]
     friction: FrictionText,
+    #[serde(default)]
+    spring: SpringText,
     armature: Option<Text>,
 }
 
@@ -159,6 +161,15 @@ struct MotorText {
 struct FrictionText {
     viscous: Option<Text>,
     coulomb: Option<Text>,
+    offset: Option<Text>,
+    cubic: Option<Text>,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SpringText {
+    stiffness: Option<Text>,
+    rest: Option<Text>,
 }
 
 /// One pose, or several, each in the frame of the one before.
@@ -447,6 +458,10 @@ fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Num
         motor: text.motor.as_ref().map(motor).transpose()?,
         viscous: numbers.some(&text.friction.viscous)?,
         coulomb: numbers.some(&text.friction.coulomb)?,
+        offset: numbers.some(&text.friction.offset)?,
+        cubic: numbers.some(&text.friction.cubic)?,
+        stiffness: numbers.some(&text.spring.stiffness)?,
+        rest: numbers.some(&text.spring.rest)?.unwrap_or(0.0),
         armature: numbers.some(&text.armature)?,
     })
 }

@@ -190,7 +190,13 @@ impl Model {
     /// g(q).
     pub fn gravity(&self, q: &[f64]) -> Vec<f64> {
         let rest = vec![0.0; self.dof()];
-        self.newton_euler(q, &rest, &rest, self.gravity)
+        self.with_springs(q, self.newton_euler(q, &rest, &rest, self.gravity))
+    }
+
+    /// Torques with those of springs, k (q - rest).
+    fn with_springs<S: Scalar>(&self, q: &[S], torques: Vec<S>) -> Vec<S> {
+        let spring = |(joint, &q): (&super::Joint, &S)| S::from(joint.stiffness.unwrap_or(0.0)) * (q - S::from(joint.rest));
+        torques.into_iter().zip(self.joints.iter().zip(q).map(spring)).map(|(torque, spring)| torque + spring).collect()
     }
 
     /// Diagonal of F_v: k_r² F_m + the joint's own.
@@ -204,23 +210,24 @@ impl Model {
         self.friction_at(dq, dq)
     }
 
-    /// F_v dqr + F_c sign(dq).
+    /// F_v dqr + F_c sign(dq) + F_0 + F_3 dq² dqr.
     fn friction_at(&self, dq: &[f64], dqr: &[f64]) -> Vec<f64> {
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        let coulomb = self.joints.iter().zip(dq).map(|(j, &x)| j.coulomb.unwrap_or(0.0) * sign(x));
-        self.viscous().iter().zip(dqr).zip(coulomb).map(|((f, x), c)| f * x + c).collect()
+        let coulomb = self.joints.iter().zip(dq).map(|(j, &x)| j.coulomb.unwrap_or(0.0) * sign(x) + j.offset.unwrap_or(0.0));
+        let cubic = self.joints.iter().zip(dq).map(|(j, &x)| j.cubic.unwrap_or(0.0) * x * x);
+        self.viscous().iter().zip(cubic).zip(dqr).zip(coulomb).map(|(((f, s), x), c)| (f + s) * x + c).collect()
     }
 
     /// B ddq + C dq + friction + g.
     pub fn inverse_dynamics(&self, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<f64> {
-        let tau = self.newton_euler(q, dq, ddq, self.gravity);
+        let tau = self.with_springs(q, self.newton_euler(q, dq, ddq, self.gravity));
         tau.iter().zip(self.friction(dq)).map(|(a, b)| a + b).collect()
     }
 
     /// B ddqr + C(q, dq) dqr + F_v dqr + F_c sign(dq) + g: the four-argument form.
     pub fn inverse_dynamics_4(&self, q: &[f64], dq: &[f64], dqr: &[f64], ddqr: &[f64]) -> Vec<f64> {
         let rest = vec![0.0; self.dof()];
-        let mut tau = self.newton_euler(q, &rest, ddqr, self.gravity);
+        let mut tau = self.with_springs(q, self.newton_euler(q, &rest, ddqr, self.gravity));
         for (i, (c, f)) in self.coriolis_times(q, dq, dqr).iter().zip(self.friction_at(dq, dqr)).enumerate() {
             tau[i] += c + f;
         }
@@ -265,7 +272,7 @@ impl Model {
         S::from(0.5) * twice
     }
 
-    /// Potential energy -Σ m g0·p of links, rotors (the first one's, fixed in the base, included) and load; 0 at the base origin.
+    /// Potential energy -Σ m g0·p of links, rotors (the first one's, fixed in the base, included) and load, 0 at the base origin, and of springs.
     pub fn potential_energy(&self, q: &[f64]) -> f64 {
         self.potential(q)
     }
@@ -276,7 +283,11 @@ impl Model {
             let (m, mc, _) = in_base(&frame, &body);
             add(sum, add(scale(m, frame.p), mc))
         });
-        -dot(constant(self.gravity), moment)
+        let twice = self.joints.iter().zip(q).fold(S::from(0.0), |sum, (joint, &q)| {
+            let away = q - S::from(joint.rest);
+            sum + S::from(joint.stiffness.unwrap_or(0.0)) * away * away
+        });
+        S::from(0.5) * twice - dot(constant(self.gravity), moment)
     }
 
     /// Derivative of kinetic plus potential energy along a motion, by dual numbers.
@@ -297,16 +308,17 @@ impl Model {
         let rest = vec![0.0; n];
         let fixed = |v: &[f64]| Dual::along(v, &rest);
         let (mut by_q, mut by_dq) = (vec![vec![0.0; n]; n], vec![vec![0.0; n]; n]);
-        let viscous = self.viscous();
+        let cubic = self.joints.iter().zip(dq).map(|(joint, rate)| 3.0 * joint.cubic.unwrap_or(0.0) * rate * rate);
+        let slope: Vec<f64> = self.viscous().iter().zip(cubic).map(|(viscous, cubic)| viscous + cubic).collect();
         for k in 0..n {
             let mut unit = rest.clone();
             unit[k] = 1.0;
             let moved = |v: &[f64]| Dual::along(v, &unit);
-            let to_q = self.newton_euler(&moved(q), &fixed(dq), &fixed(ddq), self.gravity);
+            let to_q = self.with_springs(&moved(q), self.newton_euler(&moved(q), &fixed(dq), &fixed(ddq), self.gravity));
             let to_dq = self.newton_euler(&fixed(q), &moved(dq), &fixed(ddq), self.gravity);
             for i in 0..n {
                 by_q[i][k] = to_q[i].derivative;
-                by_dq[i][k] = to_dq[i].derivative + if i == k { viscous[k] } else { 0.0 };
+                by_dq[i][k] = to_dq[i].derivative + if i == k { slope[k] } else { 0.0 };
             }
         }
         (by_q, by_dq)

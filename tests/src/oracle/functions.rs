@@ -59,7 +59,8 @@ impl Model {
         let mass: f64 = self.joints.iter().map(|joint| joint.link[0]).chain(motors).chain(self.payload.map(|load| load[0])).sum();
         let moment = |axis: usize| {
             let gravity = [0, 1, 2].map(|i| f64::from(u8::from(i == axis)));
-            -Model { gravity, ..self.clone() }.potential_energy(q)
+            let joints = self.joints.iter().map(|joint| super::Joint { stiffness: None, ..joint.clone() }).collect();
+            -Model { gravity, joints, ..self.clone() }.potential_energy(q)
         };
         (0..3).map(|axis| moment(axis) / mass).collect()
     }

@@ -53,7 +53,7 @@ impl Regressor {
 
 impl Model {
     /// The places of the standard parameters: ten per link, then of each joint what is given of rotor inertia, rotor and joint
-    /// viscous friction, Coulomb friction, then the payload's ten.
+    /// viscous friction, Coulomb friction, offset, cubic friction, stiffness of a spring, then the payload's ten.
     fn standard_places(&mut self) -> Vec<&mut f64> {
         let (mut links, mut drives) = (Vec::new(), Vec::new());
         for joint in &mut self.joints {
@@ -62,7 +62,8 @@ impl Model {
             let (inertia, viscous) = motor.unwrap_or_default();
             drives.extend([inertia, joint.armature.as_mut(), viscous].into_iter().flatten());
             drives.extend(joint.viscous.as_mut());
-            drives.extend(joint.coulomb.as_mut());
+            drives.extend([joint.coulomb.as_mut(), joint.offset.as_mut(), joint.cubic.as_mut()].into_iter().flatten());
+            drives.extend(joint.stiffness.as_mut());
         }
         links.extend(drives);
         links.extend(self.payload.iter_mut().flatten());

@@ -68,6 +68,14 @@ pub struct Joint<E> {
     pub viscous: E,
     /// Coulomb friction at the joint.
     pub coulomb: E,
+    /// Friction at the joint whatever its rate.
+    pub offset: E,
+    /// Coefficient of the cube of the rate.
+    pub cubic: E,
+    /// Stiffness of the joint's spring.
+    pub stiffness: E,
+    /// The joint variable at which that is at rest.
+    pub rest: E,
     /// Inertia that the joint alone feels.
     pub armature: E,
 }
@@ -196,6 +204,10 @@ impl<K: Arithmetic> Builder<'_, K> {
             motor,
             viscous: self.optional(joint.viscous.as_ref())?,
             coulomb: self.optional(joint.coulomb.as_ref())?,
+            offset: self.optional(joint.offset.as_ref())?,
+            cubic: self.optional(joint.cubic.as_ref())?,
+            stiffness: self.optional(joint.spring.as_ref().map(|spring| &spring.stiffness))?,
+            rest: self.optional(joint.spring.as_ref().map(|spring| &spring.rest))?,
             armature: self.optional(joint.armature.as_ref())?,
         })
     }
@@ -282,6 +294,10 @@ impl<E: Element> Arm<E> {
             }),
             viscous: f(&joint.viscous),
             coulomb: f(&joint.coulomb),
+            offset: f(&joint.offset),
+            cubic: f(&joint.cubic),
+            stiffness: f(&joint.stiffness),
+            rest: f(&joint.rest),
             armature: f(&joint.armature),
         });
         Arm {

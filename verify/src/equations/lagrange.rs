@@ -1,6 +1,6 @@
 //! B, C, g and the energies after Lagrange: sums over the bodies, derivatives by dual numbers.
 
-use super::arm::Arm;
+use super::arm::{Arm, Joint};
 use super::pose::Pose;
 use super::state::State;
 use super::vector::{apply, dot, product, scale, solve, transpose, Vector};
@@ -109,10 +109,26 @@ pub fn coriolis_matrix<E: Element>(derivatives: &[Vec<Vec<E>>], dq: &[E], half: 
     (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
-/// U(q) = -Σ m g0'p, rotors on the base included.
+/// U(q) = -Σ m g0'p + Σ ½ k (q - rest)², rotors on the base included.
 pub fn potential_energy<E: Element>(arm: &Arm<E>, state: &State<E>) -> E {
     let pose = Pose::new(arm, state);
-    bodies(arm, &pose).iter().fold(arm.zero.clone(), |sum, body| sum.minus(&body.mass.times(&dot(&arm.gravity, &body.com))))
+    let of_masses =
+        bodies(arm, &pose).iter().fold(arm.zero.clone(), |sum, body| sum.minus(&body.mass.times(&dot(&arm.gravity, &body.com))));
+    of_masses.plus(&spring_energy(arm, state, |_, joint| joint.stiffness.clone()))
+}
+
+/// Σ ½ k (q - rest)² of springs of some stiffness.
+pub fn spring_energy<E: Element>(arm: &Arm<E>, state: &State<E>, stiffness: impl Fn(usize, &Joint<E>) -> E) -> E {
+    let twice = arm.joints.iter().enumerate().fold(arm.zero.clone(), |sum, (i, joint)| {
+        let away = state.q[i].minus(&joint.rest);
+        sum.plus(&stiffness(i, joint).times(&away).times(&away))
+    });
+    twice.times(&arm.half())
+}
+
+/// The torques of springs, k (q - rest).
+pub fn spring_torques<E: Element>(arm: &Arm<E>, q: &[E]) -> Vec<E> {
+    arm.joints.iter().zip(q).map(|(joint, q)| joint.stiffness.times(&q.minus(&joint.rest))).collect()
 }
 
 /// g(q) = ∂U/∂q.
@@ -128,8 +144,8 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
         .collect()
 }
 
-/// F_i = (k_r² F_m + F_v) rate_i + F_c sign_i.
-pub fn friction<E: Element>(arm: &Arm<E>, rates: &[E], signs: &[E]) -> Vec<E> {
+/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + F_c sign_i + F_0: the cube of dq_i is taken once by `rates`.
+pub fn friction<E: Element>(arm: &Arm<E>, dq: &[E], rates: &[E], signs: &[E]) -> Vec<E> {
     arm.joints
         .iter()
         .enumerate()
@@ -138,7 +154,8 @@ pub fn friction<E: Element>(arm: &Arm<E>, rates: &[E], signs: &[E]) -> Vec<E> {
             if let Some(motor) = &joint.motor {
                 viscous = viscous.plus(&motor.ratio.times(&motor.ratio).times(&motor.viscous));
             }
-            viscous.times(&rates[i]).plus(&joint.coulomb.times(&signs[i]))
+            let cubic = joint.cubic.times(&dq[i]).times(&dq[i]).times(&rates[i]);
+            viscous.times(&rates[i]).plus(&joint.coulomb.times(&signs[i])).plus(&joint.offset).plus(&cubic)
         })
         .collect()
 }

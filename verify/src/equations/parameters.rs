@@ -7,7 +7,7 @@
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 
 use super::arm::{Arm, Body, Joint};
-use super::lagrange::friction;
+use super::lagrange::{friction, spring_energy, spring_torques};
 use super::newton_euler::{body, ten, Carrier, Reference};
 use super::pose::Pose;
 use super::state::State;
@@ -30,6 +30,12 @@ pub enum Standard {
     Viscous(usize),
     /// Coulomb friction at a joint.
     Coulomb(usize),
+    /// Friction at a joint whatever its rate.
+    Offset(usize),
+    /// Cubic friction at a joint.
+    Cubic(usize),
+    /// Stiffness of a joint's spring.
+    Stiffness(usize),
     /// One of the ten of the payload.
     Payload(usize),
 }
@@ -49,6 +55,9 @@ impl Standard {
                 (motor.is_some_and(|m| m.viscous.is_some()), Standard::RotorViscous(i)),
                 (joint.viscous.is_some(), Standard::Viscous(i)),
                 (joint.coulomb.is_some(), Standard::Coulomb(i)),
+                (joint.offset.is_some(), Standard::Offset(i)),
+                (joint.cubic.is_some(), Standard::Cubic(i)),
+                (joint.spring.is_some(), Standard::Stiffness(i)),
             ];
             all.extend(given.iter().filter(|(given, _)| *given).map(|(_, parameter)| *parameter));
         }
@@ -67,6 +76,9 @@ impl Standard {
             Standard::RotorViscous(i) => format!("Fm{}", i + 1),
             Standard::Viscous(i) => format!("Fv{}", i + 1),
             Standard::Coulomb(i) => format!("Fc{}", i + 1),
+            Standard::Offset(i) => format!("F0_{}", i + 1),
+            Standard::Cubic(i) => format!("F3_{}", i + 1),
+            Standard::Stiffness(i) => format!("ks{}", i + 1),
             Standard::Payload(k) => format!("{}p", TEN[k]),
         }
     }
@@ -81,6 +93,9 @@ impl Standard {
             Standard::RotorViscous(i) => motor(i).map_or(arm.zero.clone(), |m| m.viscous.clone()),
             Standard::Viscous(i) => arm.joints[i].viscous.clone(),
             Standard::Coulomb(i) => arm.joints[i].coulomb.clone(),
+            Standard::Offset(i) => arm.joints[i].offset.clone(),
+            Standard::Cubic(i) => arm.joints[i].cubic.clone(),
+            Standard::Stiffness(i) => arm.joints[i].stiffness.clone(),
             Standard::Payload(k) => arm.payload.as_ref().map_or(arm.zero.clone(), |p| ten(p)[k].clone()),
         }
     }
@@ -100,6 +115,9 @@ pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E
             Standard::RotorViscous(i) => arm.joints[i].motor.as_mut()?.viscous = value.clone(),
             Standard::Viscous(i) => arm.joints[i].viscous = value.clone(),
             Standard::Coulomb(i) => arm.joints[i].coulomb = value.clone(),
+            Standard::Offset(i) => arm.joints[i].offset = value.clone(),
+            Standard::Cubic(i) => arm.joints[i].cubic = value.clone(),
+            Standard::Stiffness(i) => arm.joints[i].stiffness = value.clone(),
         }
     }
     let nothing = Body { mass: zero.clone(), com: arm.nothing(), inertia: [0; 3].map(|_| arm.nothing()) };
@@ -158,6 +176,9 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
             }
             Standard::Viscous(i) => single(i, state.dqr[i].clone()),
             Standard::Coulomb(i) => single(i, state.signs[i].clone()),
+            Standard::Offset(i) => single(i, arm.one.clone()),
+            Standard::Cubic(i) => single(i, state.dq[i].times(&state.dq[i]).times(&state.dqr[i])),
+            Standard::Stiffness(i) => single(i, state.q[i].minus(&arm.joints[i].rest)),
         })
         .collect()
 }
@@ -230,13 +251,19 @@ impl<E: Element> KeptAlone<'_, E> {
                 viscous = viscous.plus(&square.times(&self.of(Standard::RotorViscous(i), &motor.viscous)));
             }
             let coulomb = self.of(Standard::Coulomb(i), &joint.coulomb);
-            viscous.times(&state.dq[i]).plus(&coulomb.times(&state.signs[i]))
+            let (offset, cubic) = (self.of(Standard::Offset(i), &joint.offset), self.of(Standard::Cubic(i), &joint.cubic));
+            let rate = &state.dq[i];
+            let steep = cubic.times(rate).times(rate).times(rate);
+            viscous.times(rate).plus(&coulomb.times(&state.signs[i])).plus(&offset).plus(&steep)
         };
+        let stiffness = |i: usize, joint: &Joint<E>| self.of(Standard::Stiffness(i), &joint.stiffness);
+        let spring = |(i, joint): (usize, &Joint<E>)| stiffness(i, joint).times(&state.q[i].minus(&joint.rest));
+        let g = g.iter().zip(self.arm.joints.iter().enumerate().map(spring)).map(|(g, s)| g.plus(&s)).collect();
         let f = self.arm.joints.iter().enumerate().map(friction).collect();
         Parts { b, c, g, f, u: self.potential_energy(state) }
     }
 
-    /// U(q) = -Σ g0'(m p + R h), h the first moment in a frame at p.
+    /// U(q) = -Σ g0'(m p + R h) + Σ ½ k (q - rest)², h the first moment in a frame at p.
     pub fn potential_energy(&self, state: &State<E>) -> E {
         let described = Pose::new(self.arm, state);
         let links = (0..self.arm.dof()).map(|i| (&described.joints[i], self.ten(|k| Standard::Link(i, k))));
@@ -245,21 +272,25 @@ impl<E: Element> KeptAlone<'_, E> {
             let h = [1, 2, 3].map(|k| ten[k].clone());
             sum.minus(&dot(&self.arm.gravity, &add(&scale(&ten[0], &frame.origin), &frame.direction(&h))))
         });
-        self.arm.joints.iter().filter_map(|joint| Some((joint.parent, joint.motor.as_ref()?))).fold(
+        let of_masses = self.arm.joints.iter().filter_map(|joint| Some((joint.parent, joint.motor.as_ref()?))).fold(
             of_bodies,
             |sum, (parent, motor)| {
                 let place = parent.map_or_else(|| motor.position.clone(), |p| described.links[p].point(&motor.position));
                 sum.minus(&motor.mass.times(&dot(&self.arm.gravity, &place)))
             },
-        )
+        );
+        let springs = spring_energy(self.arm, state, |i, joint| self.of(Standard::Stiffness(i), &joint.stiffness));
+        of_masses.plus(&springs)
     }
 }
 
-/// B ddqr + C(q, dq) dqr + F + g of an arm, friction with dqr and the signs of dq.
+/// B ddqr + C(q, dq) dqr + F + g of an arm, friction with dqr, the squares and the signs of dq.
 pub fn reference_torques<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     let pose = Pose::new(arm, state);
     let torques = Reference::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr).whole();
-    torques.iter().zip(friction(arm, &state.dqr, &state.signs)).map(|(a, b)| a.plus(&b)).collect()
+    let friction = friction(arm, &state.dq, &state.dqr, &state.signs);
+    let springs = spring_torques(arm, &state.q);
+    torques.iter().zip(friction).zip(springs).map(|((a, b), c)| a.plus(&b).plus(&c)).collect()
 }
 
 /// What the entries of the parameter vector are.

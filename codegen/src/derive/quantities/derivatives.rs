@@ -37,7 +37,7 @@ use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::origin_rate;
 use crate::derive::factors::Factors;
-use crate::derive::newton_euler::{friction, link_motions, wrenches, LinkMotion, Motion};
+use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, wrenches, LinkMotion, Motion};
 use crate::derive::passes::Use;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -124,15 +124,24 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
 
 type Rows = Vec<Vec<ExprId>>;
 
-/// ∂tau/∂q and ∂tau/∂dq of the torques with friction; Coulomb friction counts as constant.
+/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, F_v + 3 F_3 dq² in the second, and springs, k in the first; Coulomb friction counts as constant.
 pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan, motion: &Motion) -> (Rows, Rows) {
     let c = coriolis::coriolis_matrix(pool, arm, plan);
     let two = pool.integer(2);
     let mut by_rates: Rows = c.iter().map(|row| row.iter().map(|&entry| pool.mul(two, entry)).collect()).collect();
     for (i, joint) in arm.joints.iter().enumerate() {
         by_rates[i][i] = pool.add(by_rates[i][i], joint.viscous);
+        if joint.cubic != ExprId::ZERO {
+            let (steep, three) = (cubic_coefficient(pool, arm, i), pool.integer(3));
+            let slope = pool.mul(three, steep);
+            by_rates[i][i] = pool.add(by_rates[i][i], slope);
+        }
     }
-    (by_positions(pool, arm, motion), by_rates)
+    let mut by_positions = by_positions(pool, arm, motion);
+    for (i, joint) in arm.joints.iter().enumerate() {
+        by_positions[i][i] = pool.add(by_positions[i][i], joint.stiffness);
+    }
+    (by_positions, by_rates)
 }
 
 /// ∂ddq/∂q, ∂ddq/∂dq and B^-1.

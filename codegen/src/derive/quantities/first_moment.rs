@@ -7,6 +7,7 @@
 use super::kinematics::frames;
 use crate::derive::arm::Arm;
 use crate::derive::model::Model;
+use crate::derive::newton_euler::deflection;
 use crate::derive::parameters::{ParameterKind, View};
 use crate::derive::passes::Use;
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -99,8 +100,16 @@ fn first_moment(pool: &mut Pool, arm: &Arm) -> Vector {
     total
 }
 
-/// U(q), J: zero where all masses, rotors included, lie at the origin of the base frame.
+/// U(q), J: of masses zero where all, rotors included, lie at the origin of the base frame; of a spring ½ k (q - rest)².
 pub fn potential_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
     let first = first_moment(pool, arm);
-    -pool.dot3(&arm.gravity, &first)
+    let mut energy = -pool.dot3(&arm.gravity, &first);
+    for i in (0..arm.dof()).filter(|&i| arm.joints[i].stiffness != ExprId::ZERO) {
+        let (deflection, half) = (deflection(pool, arm, i), pool.fraction(1, 2));
+        let square = pool.mul(deflection, deflection);
+        let twice = pool.mul(arm.joints[i].stiffness, square);
+        let stored = pool.mul(half, twice);
+        energy = pool.add(energy, stored);
+    }
+    energy
 }

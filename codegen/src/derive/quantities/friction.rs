@@ -3,6 +3,8 @@
 //! ```text
 //! F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i)                                       (the book, eq. 7.42)
 //! ```
+//!
+//! and F_0 + F_3 dq_i³ where the description has them.
 
 use crate::derive::newton_euler;
 use crate::derive::passes::Use;

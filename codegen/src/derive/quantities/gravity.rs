@@ -5,8 +5,10 @@
 //! ```
 //!
 //! Joint i carries the composite mass m and first moment h: g_i = -z·(h × g0) (revolute) or -m z·g0 (prismatic), in its own frame.
+//! A spring adds k (q_i - rest) at its joint.
 
 use crate::derive::arm::Arm;
+use crate::derive::newton_euler::add_springs;
 use crate::derive::passes::Use;
 use crate::derive::plan::{Place, Plan};
 use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
@@ -71,5 +73,6 @@ pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
         }
         g.push(if joint.is_revolute() { pool.dot(&[h[1], -h[0]], &[meets[0], meets[1]]) } else { -pool.mul(mass, meets[2]) });
     }
+    add_springs(pool, arm, &mut g);
     g
 }
