@@ -484,7 +484,9 @@ fn completions_for_every_shell() {
 
 #[test]
 fn help_has_examples() {
-    for command in ["", "check", "show", "generate", "import", "export", "verify", "count", "page", "run", "completions"] {
+    for command in
+        ["", "check", "show", "generate", "import", "convert", "export", "verify", "count", "page", "run", "completions"]
+    {
         let arguments: Vec<&str> = [command, "--help"].into_iter().filter(|a| !a.is_empty()).collect();
         let text = out(&check(&arguments, 0));
         assert!(text.contains("Examples:\n"), "armgen {arguments:?}");
@@ -511,9 +513,14 @@ fn a_urdf_becomes_a_description_that_is_valid_and_verified() {
     check(&["export", &yaml, "--format", "urdf", "--out", &back], 0);
     check(&["import", &back, "--tip", "tool", "--out", &again], 0);
     check(&["export", &yaml, "--format", "urdf", "--out", &yaml], 2);
+    // And in rows of Denavit and Hartenberg.
+    check(&["convert", &yaml, "--convention", "modified", "--out", &again], 0);
+    check(&["check", &again], 0);
     // Without --tip two fingers and the tip may be meant.
     let refused = check(&["import", &urdf, "--base", "base"], 1);
     assert!(err(&refused).contains("error[several-tips]"), "{}", err(&refused));
+    check(&[&chain[..], &["--lock", "finger=0.04", "--convention", "standard", "--out", &again]].concat(), 0);
+    check(&["check", &again], 0);
     check(&["import", &urdf, "--lock", "finger"], 2);
     check(&["import", &urdf, "--snap", "1"], 2);
 }

@@ -65,6 +65,8 @@ codes! {
         NegativeArmature Error "negative-armature",
         /// Position limits that hold no interval.
         EmptyLimits Error "empty-limits",
+        /// An arm that has no equations, or whose common normals are too complex: no rows of Denavit and Hartenberg.
+        NoRows Error "no-rows",
         /// A value of `--lock` that is no expression.
         BadLock Error "bad-lock",
 

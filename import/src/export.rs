@@ -26,7 +26,7 @@ use armgen_codegen::kinds::JointKind;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate::{self, NominalValues};
 
-use crate::number::decimal;
+use crate::number::{decimal, ending};
 
 /// A URDF and what it does not hold.
 #[derive(Clone, Debug)]
@@ -330,7 +330,7 @@ impl Writer<'_> {
             return digits.text;
         }
         let value = self.values.of(expression).unwrap_or_else(Number::zero);
-        if let Some(text) = value.as_rational().and_then(text::ending) {
+        if let Some(text) = value.as_rational().and_then(ending) {
             return text;
         }
         self.rounded += 1;

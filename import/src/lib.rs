@@ -15,6 +15,7 @@
 //! bound.rs   how far snapping can move the flange and the torques
 //! yaml.rs    the text of robot.yaml
 //! report.rs  what became of everything, as JSON and in words
+//! convert.rs from a description to one in rows of another convention
 //! export.rs  from a description to a URDF
 //! build_script.rs  the face for a build.rs, which alone touches files
 //! ```
@@ -28,6 +29,7 @@ mod bound;
 pub mod build_script;
 mod chain;
 mod code;
+mod convert;
 mod export;
 mod format;
 mod mjcf;
@@ -42,10 +44,12 @@ mod values;
 mod xml;
 mod yaml;
 
-use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::description::Convention;
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics, Severity};
 use armgen_codegen::source::Source;
 
 pub use code::Code;
+pub use convert::{convert, Converted};
 pub use export::{export, Exported};
 pub use options::Options;
 pub use report::Report;
@@ -102,5 +106,21 @@ fn taken(
     }
     let bound = bound::of(&arm);
     let report = report::of(source, format, &arm, bound);
-    Some(Imported { yaml: yaml::text(source, &arm, &report), report })
+    let yaml = yaml::text(source, &arm, &report);
+    let yaml = if options.convention == Convention::Urdf { yaml } else { in_rows(yaml, options.convention, diagnostics)? };
+    Some(Imported { yaml, report })
+}
+
+/// A description in rows of Denavit and Hartenberg, under the same head; faults are reported.
+fn in_rows(yaml: String, to: Convention, diagnostics: &mut Diagnostics) -> Option<String> {
+    let head: String = yaml.split_inclusive('\n').take_while(|line| line.starts_with('#')).collect();
+    let (converted, faults) = convert(&Source::new("robot.yaml", yaml), to);
+    if converted.is_none() {
+        let faults: Vec<&str> =
+            faults.iter().filter(|fault| fault.code.severity() == Severity::Error).map(|fault| fault.message.as_str()).collect();
+        let message = format!("this arm has no rows of Denavit and Hartenberg: {}", faults.join("; "));
+        let help = "import it with `--convention urdf`, and see what `armgen check` says of that";
+        diagnostics.push(Diagnostic::new(Code::NoRows, xml::beginning(), message, "", help));
+    }
+    Some(head + &converted?.yaml)
 }

@@ -12,6 +12,9 @@ const MAX_DIGITS: usize = 200;
 /// Powers of ten, either way.
 const MAX_POWER: i32 = 1000;
 
+/// Digits of a decimal that is written exactly.
+const LONGEST: usize = 30;
+
 /// A number of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Decimal {
@@ -44,14 +47,19 @@ impl Decimal {
 
     /// Its exact value.
     pub(crate) fn exact(&self) -> Number {
-        let (mantissa, power) = self.text.split_once('e').unwrap_or((&self.text, "0"));
-        let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-        let digits: Rational = format!("{whole}{fraction}").parse().unwrap_or(Rational::ZERO);
-        let power = power.parse::<i32>().unwrap_or(0) - fraction.len() as i32;
-        let ten = Rational::from(10u8);
-        let scale = ten.pow(power.unsigned_abs() as isize);
-        Number::from(if power < 0 { digits / scale } else { digits * scale })
+        exact(&self.text)
     }
+}
+
+/// The exact value of a decimal.
+pub(crate) fn exact(text: &str) -> Number {
+    let (mantissa, power) = text.split_once('e').unwrap_or((text, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits: Rational = format!("{whole}{fraction}").parse().unwrap_or(Rational::ZERO);
+    let power = power.parse::<i32>().unwrap_or(0) - fraction.len() as i32;
+    let ten = Rational::from(10u8);
+    let scale = ten.pow(power.unsigned_abs() as isize);
+    Number::from(if power < 0 { digits / scale } else { digits * scale })
 }
 
 /// The number that a word is; faults are reported.
@@ -119,6 +127,26 @@ fn split(word: &str) -> Option<(bool, &str, &str, &str)> {
         && digits(power_digits)
         && !power_digits.is_empty();
     valid.then_some((negative, whole, fraction, power))
+}
+
+/// The decimal of a fraction, if it ends soon.
+pub(crate) fn ending(value: &Rational) -> Option<String> {
+    let ten = Rational::from(10u8);
+    let mut scaled = value.clone();
+    for digits in 0..=LONGEST {
+        if scaled.is_int() {
+            let text = scaled.numerator().to_string();
+            let (sign, whole) = text.strip_prefix('-').map_or(("", text.as_str()), |rest| ("-", rest));
+            if whole.len() > LONGEST {
+                return None;
+            }
+            let padded = format!("{whole:0>width$}", width = digits + 1);
+            let (before, after) = padded.split_at(padded.len() - digits);
+            return Some(if after.is_empty() { format!("{sign}{before}") } else { format!("{sign}{before}.{after}") });
+        }
+        scaled *= &ten;
+    }
+    None
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! What to make of a file.
 
+use armgen_codegen::description::Convention;
+
 /// What to make of a file.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -15,6 +17,8 @@ pub struct Options {
     pub snap: f64,
     /// Links without a mass distribution have mass 0.
     pub massless: bool,
+    /// What the rows of the description are; those of a file are `Urdf`, others are computed from them.
+    pub convention: Convention,
 }
 
 impl Options {
@@ -26,6 +30,14 @@ impl Options {
 
 impl Default for Options {
     fn default() -> Options {
-        Options { base: None, tip: None, lock: Vec::new(), name: None, snap: Options::SNAP, massless: false }
+        Options {
+            base: None,
+            tip: None,
+            lock: Vec::new(),
+            name: None,
+            snap: Options::SNAP,
+            massless: false,
+            convention: Convention::Urdf,
+        }
     }
 }

@@ -145,7 +145,7 @@ fn poses(list: &[Pose]) -> String {
 }
 
 /// A name of the file as a scalar of YAML.
-fn quoted(name: &str) -> String {
+pub(crate) fn quoted(name: &str) -> String {
     let simple = name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
         && !matches!(name.to_ascii_lowercase().as_str(), "null" | "true" | "false" | "yes" | "no" | "on" | "off" | "y" | "n");

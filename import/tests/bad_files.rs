@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use armgen_codegen::description::Convention;
 use armgen_codegen::diagnostic::{Colour, Diagnostics, Severity};
 use armgen_codegen::source::Source;
 use armgen_import::{import, Code, Options};
@@ -27,6 +28,7 @@ fn options(text: &str) -> Options {
             Some(("base", link)) => options.base = Some(link.into()),
             Some(("tip", link)) => options.tip = Some(link.into()),
             Some(("lock", lock)) => options.lock.extend(lock.split_once('=').map(|(joint, value)| (joint.into(), value.into()))),
+            Some(("convention", "standard")) => options.convention = Convention::Standard,
             None if option == "massless" => options.massless = true,
             other => panic!("{other:?}"),
         }

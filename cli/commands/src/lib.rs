@@ -27,7 +27,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum, ValueHint};
 
 use commands::generate::{Beside, Choices};
-use commands::{export, import};
+use commands::{convert, export, import};
 
 /// Exit code: the file is valid, or the task was done.
 const DONE: u8 = 0;
@@ -157,6 +157,27 @@ Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a 
         choices: import::Choices,
         #[command(flatten)]
         results: import::Results,
+    },
+    /// Write a description in rows of another convention
+    #[command(after_help = "Examples:
+  armgen convert robot.yaml --convention urdf --out frames.yaml
+  armgen convert robot.yaml --convention standard --out rows.yaml
+  armgen import robot.urdf | tee robot.yaml && armgen convert robot.yaml --convention modified > rows.yaml
+
+Joint axes are lines, exactly; rows of Denavit and Hartenberg are what their common normals say, and bodies are
+attached where their frames were. What does not end as a decimal, a fraction or a root is rounded to 17 digits,
+which is said. To urdf nothing is rounded.
+Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
+    Convert {
+        /// Description of the robot arm
+        #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
+        file: PathBuf,
+        /// The convention of the result
+        #[arg(long, value_enum)]
+        convention: convert::To,
+        /// File to write; standard output if not given
+        #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
+        out: Option<PathBuf>,
     },
     /// Write a description as a URDF
     #[command(after_help = "Examples:
@@ -322,6 +343,7 @@ pub fn run(built: &dyn Arm) -> ExitCode {
         Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
         Command::Import { file, choices, results } => import::run(&file, choices, &results),
+        Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),

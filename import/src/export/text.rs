@@ -2,32 +2,7 @@
 
 use std::fmt::Write;
 
-use armgen_codegen::exact::Rational;
-
 use super::{Body, Motion, Pose, Urdf};
-
-/// Digits of a decimal that is written exactly.
-const MAX_DIGITS: usize = 30;
-
-/// The decimal of a fraction, if it ends soon.
-pub(super) fn ending(value: &Rational) -> Option<String> {
-    let ten = Rational::from(10u8);
-    let mut scaled = value.clone();
-    for digits in 0..=MAX_DIGITS {
-        if scaled.is_int() {
-            let text = scaled.numerator().to_string();
-            let (sign, whole) = text.strip_prefix('-').map_or(("", text.as_str()), |rest| ("-", rest));
-            if whole.len() > MAX_DIGITS {
-                return None;
-            }
-            let padded = format!("{whole:0>width$}", width = digits + 1);
-            let (before, after) = padded.split_at(padded.len() - digits);
-            return Some(if after.is_empty() { format!("{sign}{before}") } else { format!("{sign}{before}.{after}") });
-        }
-        scaled *= &ten;
-    }
-    None
-}
 
 /// The text of a URDF.
 pub(super) fn print(urdf: &Urdf) -> String {

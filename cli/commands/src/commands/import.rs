@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use armgen_import::Options;
 use clap::{Args, ValueHint};
 
+use super::convert::To;
 use super::generate::{same_file, write};
 use crate::{input, terminal, DONE, UNREADABLE};
 
@@ -29,6 +30,9 @@ pub(crate) struct Choices {
     /// Links without a mass distribution have mass 0
     #[arg(long)]
     massless: bool,
+    /// What the rows of the description are
+    #[arg(long, value_enum, default_value = "urdf")]
+    convention: To,
 }
 
 fn lock(text: &str) -> Result<(String, String), String> {
@@ -64,8 +68,8 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
         terminal::error("--name takes letters, digits and `_`, a letter first");
         return UNREADABLE;
     }
-    let Choices { base, tip, lock, name, snap, massless } = choices;
-    let options = Options { base, tip, lock, name, snap, massless };
+    let Choices { base, tip, lock, name, snap, massless, convention } = choices;
+    let options = Options { base, tip, lock, name, snap, massless, convention: convention.into() };
     let (imported, diagnostics) = armgen_import::import(&source, &options);
     let imported = match input::report_or_exit_code(&source, imported, &diagnostics, input::Warnings::Shown) {
         Ok(imported) => imported,

@@ -1,0 +1,54 @@
+//! `armgen convert`: a description in rows of another convention.
+
+use std::path::{Path, PathBuf};
+
+use armgen_codegen::description::Convention;
+
+use super::generate::{same_file, write};
+use crate::{input, terminal, DONE, UNREADABLE};
+
+/// A convention.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum To {
+    /// Denavit-Hartenberg as in Siciliano: A = Rz(theta) Tz(d) Tx(a) Rx(alpha)
+    Standard,
+    /// Denavit-Hartenberg as in Craig: A = Rx(alpha) Tx(a) Rz(theta) Tz(d)
+    Modified,
+    /// Frames and axes, as in a URDF
+    Urdf,
+}
+
+impl From<To> for Convention {
+    fn from(to: To) -> Convention {
+        match to {
+            To::Standard => Convention::Standard,
+            To::Modified => Convention::Modified,
+            To::Urdf => Convention::Urdf,
+        }
+    }
+}
+
+pub(crate) fn run(file: &Path, to: To, out: Option<&PathBuf>) -> u8 {
+    let source = match input::source(file) {
+        Ok(source) => source,
+        Err(code) => return code,
+    };
+    let (converted, diagnostics) = armgen_import::convert(&source, to.into());
+    let converted = match input::report_or_exit_code(&source, converted, &diagnostics, input::Warnings::Counted) {
+        Ok(converted) => converted,
+        Err(code) => return code,
+    };
+    for line in &converted.lines {
+        terminal::note(line);
+    }
+    let Some(out) = out else { return terminal::print(&converted.yaml) };
+    if same_file(file, out) {
+        terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
+        return UNREADABLE;
+    }
+    if let Err(error) = write(out, &converted.yaml) {
+        terminal::error(&format!("cannot write {}: {error}", out.display()));
+        return UNREADABLE;
+    }
+    DONE
+}

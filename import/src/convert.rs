@@ -1,0 +1,442 @@
+//! A description in rows of another convention, exactly where numbers end.
+//!
+//! ```text
+//! lines.rs   joint axes as lines, their common normals: a, alpha, d, theta
+//! write.rs   exact numbers, angles and poses as expressions
+//! ```
+//!
+//! To urdf: link frames become those on the joint axes, rows and bodies keep their expressions. To rows of Denavit and Hartenberg: joint axes are
+//! lines at q = 0, and rows are what their common normals say; bodies are attached where their frames were.
+
+mod lines;
+mod write;
+
+use armgen_codegen::description::{
+    BodyDescription, Convention, JointDescription, PoseDescription, PoseElement, RegressorDescription, RobotDescription,
+    RotationDescription, Value, INERTIA_ELEMENTS,
+};
+use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
+use armgen_codegen::document::Expression;
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::kinds::{JointKind, TaskRow};
+use armgen_codegen::manipulator::{Manipulator, Placement};
+use armgen_codegen::source::Source;
+use armgen_codegen::validate;
+
+use self::write::Writer;
+
+/// A description in another convention.
+#[derive(Clone, Debug)]
+pub struct Converted {
+    /// The text of robot.yaml.
+    pub yaml: String,
+    /// What was rounded, and what means something else now, a line for each.
+    pub lines: Vec<String>,
+}
+
+/// The description in rows of a convention. All faults of the description; there is a text if and only if none of them is an error.
+pub fn convert(source: &Source, to: Convention) -> (Option<Converted>, Diagnostics) {
+    let (valid, mut diagnostics) = validate::read(source);
+    let Some((arm, places)) = valid else { return (None, diagnostics) };
+    let Some(description) = RobotDescription::parse(source).0 else { return (None, diagnostics) };
+    let converter = Converter { source, description: &description, arm: &arm, writer: Writer::default(), lines: Vec::new() };
+    let converted = converter.convert(to);
+    if converted.is_none() {
+        let message = "the common normals of the joint axes are too complex to be kept exactly";
+        let help = "stay with the convention urdf, which any arm can be written in";
+        diagnostics.push(Diagnostic::new(Code::TooComplex, places.name, message, "the rows of this arm", help));
+    }
+    (converted, diagnostics)
+}
+
+struct Converter<'d> {
+    source: &'d Source,
+    description: &'d RobotDescription,
+    arm: &'d Manipulator,
+    writer: Writer,
+    lines: Vec<String>,
+}
+
+/// What stands in a joint: its row, and where its old link frame is in the new one.
+struct Row {
+    /// Lines of the row.
+    keys: Vec<String>,
+    /// Poses of the old link frame in the new one, as they are written.
+    poses: Vec<String>,
+    /// The same.
+    frame: Placement,
+}
+
+/// Rows, with `base` and `tool`.
+struct Rows {
+    base: Vec<String>,
+    rows: Vec<Row>,
+    tool: Vec<String>,
+}
+
+impl Converter<'_> {
+    fn convert(mut self, to: Convention) -> Option<Converted> {
+        let description = self.description;
+        let from = description.convention.as_ref()?.value;
+        let rows = if from == to {
+            self.same()
+        } else if to == Convention::Urdf {
+            self.on_axes(from)
+        } else {
+            self.normals(to)?
+        };
+        let word = |convention| match convention {
+            Convention::Standard => "standard",
+            Convention::Modified => "modified",
+            Convention::Urdf => "urdf",
+        };
+        let mut text = vec![format!("name: {}", description.name.as_ref()?.value), format!("convention: {}", word(to))];
+        text.extend(description.gravity.as_ref().map(|gravity| format!("gravity: {}", self.vector(&gravity.value))));
+        if !description.parameters.is_empty() {
+            text.push("parameters:".into());
+        }
+        for parameter in &description.parameters {
+            text.push(format!("  {}: {}", parameter.name.value, self.value(&parameter.value)));
+        }
+        text.extend(poses("base", &rows.base));
+        text.push("joints:".into());
+        let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
+        let mut before: Option<&Row> = None;
+        for (k, (joint, row)) in joints.iter().zip(&rows.rows).enumerate() {
+            self.joint(joint, k, row, before, &mut text);
+            before = Some(row);
+        }
+        text.extend(poses("tool", &rows.tool));
+        if let Some(payload) = &description.payload {
+            text.push("payload:".into());
+            self.body(payload, "  ", &mut text);
+            if payload.mass.is_none() && payload.com.is_none() && payload.inertia.is_none() {
+                *text.last_mut()? = "payload: {}".into();
+            }
+        }
+        self.rest(&mut text);
+        let moved = rows.rows.iter().any(|row| row.frame != Placement::identity());
+        let named = matches!(description.regressor.as_ref().map(|r| &r.value), Some(RegressorDescription::Names(_)));
+        if moved && !named {
+            self.lines.push("link frames are others: so are link_frames and the columns of the regressor".into());
+        }
+        if self.writer.rounded > 0 {
+            self.lines
+                .push(format!("{} numbers are rounded to 17 digits: no short expression is equal to them", self.writer.rounded));
+        }
+        let head = self.lines.iter().map(|line| format!("# {line}\n")).collect::<String>();
+        Some(Converted { yaml: head + &text.join("\n") + "\n", lines: self.lines })
+    }
+
+    /// The rows as they are.
+    fn same(&mut self) -> Rows {
+        let joints = self.description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
+        let rows = joints
+            .iter()
+            .map(|joint| {
+                let mut keys = Vec::new();
+                for (name, value) in [("a", &joint.a), ("alpha", &joint.alpha), ("d", &joint.d), ("theta", &joint.theta)] {
+                    keys.extend(value.as_ref().map(|expression| format!("{name}: {}", self.text(expression))));
+                }
+                keys.extend(joint.origin.as_ref().and_then(|origin| poses("origin", &self.elements(Some(origin)))));
+                keys.extend(joint.axis.as_ref().map(|axis| format!("axis: {}", self.vector(&axis.value))));
+                Row { keys, poses: Vec::new(), frame: Placement::identity() }
+            })
+            .collect();
+        Rows { base: self.elements(self.description.base.as_ref()), rows, tool: self.elements(self.description.tool.as_ref()) }
+    }
+
+    /// Rows of Denavit and Hartenberg as poses and axes.
+    fn on_axes(&mut self, from: Convention) -> Rows {
+        let joints = self.description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
+        let mut before = Vec::new();
+        let mut rows = Vec::new();
+        for (joint, valid) in joints.iter().zip(&self.arm.joints) {
+            let twist = self.two(["xyz: [", &self.value(&joint.a), ", 0, 0]"], ["rpy: [", &self.value(&joint.alpha), ", 0, 0]"]);
+            let turn = self.two(["xyz: [0, 0, ", &self.value(&joint.d), "]"], ["rpy: [0, 0, ", &self.value(&joint.theta), "]"]);
+            let standard = from == Convention::Standard;
+            before.extend(twist.clone().filter(|_| !standard).into_iter().chain(turn));
+            let mut keys: Vec<String> = poses("origin", &before).into_iter().collect();
+            keys.push("axis: [0, 0, 1]".into());
+            before = twist.filter(|_| standard).into_iter().collect();
+            rows.push(Row { keys, poses: before.clone(), frame: self.nominal(&valid.row.after.frame) });
+        }
+        before.extend(self.elements(self.description.tool.as_ref()));
+        Rows { base: self.elements(self.description.base.as_ref()), rows, tool: before }
+    }
+
+    /// A pose of a translation and a rotation, those that are not 0.
+    fn two(&self, xyz: [&str; 3], rpy: [&str; 3]) -> Option<String> {
+        let parts: Vec<String> = [xyz, rpy].into_iter().filter(|part| part[1] != "0").map(|part| part.concat()).collect();
+        (!parts.is_empty()).then(|| format!("{{{}}}", parts.join(", ")))
+    }
+
+    /// Rows by common normals.
+    fn normals(&mut self, to: Convention) -> Option<Rows> {
+        let joints: Vec<lines::Axis> = self
+            .arm
+            .joints
+            .iter()
+            .map(|joint| lines::Axis {
+                before: self.nominal(&joint.row.before.frame),
+                direction: joint.row.axis.clone(),
+                after: self.nominal(&joint.row.after.frame),
+                prismatic: joint.kind == JointKind::Prismatic,
+            })
+            .collect();
+        let names: Vec<&str> = self.arm.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let normals = lines::normals(&joints, &self.nominal(&self.arm.tool.frame))?;
+        for (k, normal) in normals.iter().enumerate() {
+            let turned = normal.twist.0.to_f64().hypot(0.0).abs();
+            if turned > 0.0 && turned < 1e-3 && normal.twist.0.sign() != std::cmp::Ordering::Equal {
+                let axis = |k: usize| match (k, names.get(k.wrapping_sub(1))) {
+                    (0, _) => "the z axis of the base".to_owned(),
+                    (_, Some(name)) => format!("the axis of `{name}`"),
+                    _ => "the z axis of the end effector".to_owned(),
+                };
+                self.lines.push(format!(
+                    "nearly-parallel: {} and {} are nearly, but not, parallel; their rows have huge lengths: stay with the convention urdf",
+                    axis(k),
+                    axis(k + 1)
+                ));
+            }
+        }
+        let standard = to == Convention::Standard;
+        let n = joints.len();
+        let writer = &mut self.writer;
+        let mut rows = Vec::new();
+        for i in 1..=n {
+            let of_row = &normals[if standard { i } else { i - 1 }];
+            let keys = vec![
+                format!("a: {}", writer.number(&of_row.length)),
+                format!("alpha: {}", writer.angle(&of_row.twist)),
+                format!("d: {}", writer.number(&normals[i].offset)),
+                format!("theta: {}", writer.angle(&normals[i].turn)),
+            ];
+            let link = if standard { &normals[i].far } else { &normals[i].near };
+            let frame = link.inverse().then(&joints[i - 1].after);
+            rows.push(Row { keys, poses: writer.pose(&frame).into_iter().collect(), frame });
+        }
+        // Rz and Tz about the z axes of base and end effector, and the twists that no row holds.
+        let about_z = |writer: &mut Writer, h: &Number, turn: &(Number, Number)| {
+            let (h, angle) = (writer.number(h), writer.angle(turn));
+            let parts = [("xyz", &h), ("rpy", &angle)].into_iter().filter(|(_, text)| *text != "0");
+            let parts: Vec<String> = parts.map(|(key, text)| format!("{key}: [0, 0, {text}]")).collect();
+            (!parts.is_empty()).then(|| format!("{{{}}}", parts.join(", ")))
+        };
+        let about_x = |writer: &mut Writer, normal: &lines::Normal| {
+            let (a, angle) = (writer.number(&normal.length), writer.angle(&normal.twist));
+            let parts = [("xyz", &a), ("rpy", &angle)].into_iter().filter(|(_, text)| *text != "0");
+            let parts: Vec<String> = parts.map(|(key, text)| format!("{key}: [{text}, 0, 0]")).collect();
+            (!parts.is_empty()).then(|| format!("{{{}}}", parts.join(", ")))
+        };
+        let mut base: Vec<String> = about_z(writer, &normals[0].offset, &normals[0].turn).into_iter().collect();
+        let mut tool = Vec::new();
+        if standard {
+            base.extend(about_x(writer, &normals[0]));
+        } else {
+            tool.extend(about_x(writer, &normals[n]));
+        }
+        tool.extend(about_z(writer, &normals[n + 1].offset, &normals[n + 1].turn));
+        Some(Rows { base, rows, tool })
+    }
+
+    fn joint(&mut self, joint: &JointDescription, k: usize, row: &Row, before: Option<&Row>, text: &mut Vec<String>) {
+        let kind = if self.arm.joints[k].kind == JointKind::Prismatic { "prismatic" } else { "revolute" };
+        text.push(format!("  - name: {}", self.arm.joints[k].name));
+        text.push(format!("    type: {kind}"));
+        text.extend(row.keys.iter().map(|key| format!("    {key}")));
+        let mut limits = Vec::new();
+        limits.extend(joint.limits.position.as_ref().map(|limits| format!("position: {}", self.vector(&limits.value))));
+        for (name, value) in [("velocity", &joint.limits.velocity), ("effort", &joint.limits.effort)] {
+            limits.extend(value.as_ref().map(|expression| format!("{name}: {}", self.text(expression))));
+        }
+        if !limits.is_empty() {
+            text.push(format!("    limits: {{{}}}", limits.join(", ")));
+        }
+        text.push("    link:".into());
+        self.link(joint, k, row, text);
+        self.motor(joint, k, before, text);
+        let friction = [("viscous", &joint.friction.viscous), ("coulomb", &joint.friction.coulomb)];
+        let given: Vec<String> =
+            friction.iter().filter_map(|(name, value)| Some(format!("{name}: {}", self.text(value.as_ref()?)))).collect();
+        if !given.is_empty() {
+            text.push(format!("    friction: {{{}}}", given.join(", ")));
+        }
+        text.extend(joint.armature.as_ref().map(|armature| format!("    armature: {}", self.text(armature))));
+    }
+
+    /// The bodies of a link, in its new frame.
+    fn link(&mut self, joint: &JointDescription, k: usize, row: &Row, text: &mut Vec<String>) {
+        let Some(link) = &joint.link else { return };
+        let parts = &self.arm.joints[k].link;
+        let own = [(None, None, link)].into_iter();
+        let others = link.attached.iter().map(|other| (other.name.as_ref(), other.origin.as_ref(), &other.body));
+        let mut bodies = Vec::new();
+        for ((name, origin, body), part) in own.chain(others).zip(parts) {
+            let frame = row.frame.then(&self.nominal(&part.frame.frame));
+            let written = if frame == Placement::identity() {
+                Vec::new()
+            } else if row.poses.is_empty() || origin.is_none() {
+                row.poses.iter().cloned().chain(self.elements(origin)).collect()
+            } else {
+                // One pose where it is exact, else the steps.
+                let before = self.writer.rounded;
+                match self.writer.pose(&frame) {
+                    one if self.writer.rounded == before => one.into_iter().collect(),
+                    _ => {
+                        self.writer.rounded = before;
+                        row.poses.iter().cloned().chain(self.elements(origin)).collect()
+                    }
+                }
+            };
+            bodies.push((name.map(|name| &name.value), written, body));
+        }
+        // The link's own body: the first one in the link's frame that has no name.
+        let own = bodies.iter().position(|(name, written, _)| name.is_none() && written.is_empty());
+        match own {
+            Some(own) => self.body(bodies.remove(own).2, "      ", text),
+            None => text.push("      mass: 0".into()),
+        }
+        let nothing = |body: &BodyDescription| self.value(&body.mass) == "0" && body.inertia.is_none();
+        bodies.retain(|(name, _, body)| name.is_some() || !nothing(body));
+        if !bodies.is_empty() {
+            text.push("      attached:".into());
+        }
+        for (name, written, body) in bodies {
+            let mut lines = Vec::new();
+            lines.extend(name.map(|name| format!("          name: {}", crate::yaml::quoted(name))));
+            lines.extend(poses("          origin", &written));
+            self.body(body, "          ", &mut lines);
+            if let Some(first) = lines.first_mut() {
+                first.replace_range(8..10, "- ");
+            }
+            text.extend(lines);
+        }
+    }
+
+    /// A rotor, whose place is given in the frame of the link before.
+    fn motor(&mut self, joint: &JointDescription, k: usize, before: Option<&Row>, text: &mut Vec<String>) {
+        let (Some(motor), Some(valid)) = (&joint.motor, &self.arm.joints[k].motor) else { return };
+        text.push("    motor:".into());
+        let mut line = |name: &str, words: String| text.push(format!("      {name}: {words}"));
+        for (name, value) in
+            [("ratio", &motor.ratio), ("inertia", &motor.inertia), ("mass", &motor.mass), ("viscous", &motor.viscous)]
+        {
+            if let Some(expression) = value {
+                line(name, self.text(expression));
+            }
+        }
+        let moved = before.filter(|row| row.frame != Placement::identity());
+        // Where none is given the mass sits at the origin of the old frame.
+        let place = match (&motor.position, moved) {
+            (Some(position), None) => Some(self.vector(&position.value)),
+            (None, None) => None,
+            (_, Some(row)) if motor.mass.is_some() || motor.position.is_some() => {
+                let point = row.frame.point(&valid.position.each_ref().map(|x| Polynomial::from(self.evaluated(x))));
+                let texts = point.each_ref().map(|x| self.evaluated(x)).map(|x| self.writer.number(&x));
+                Some(format!("[{}]", texts.join(", ")))
+            }
+            (_, Some(_)) => None,
+        };
+        if let Some(place) = place {
+            line("position", place);
+        }
+        // The spin axis is the joint axis where none is given.
+        if let Some(axis) = &motor.axis {
+            line(
+                "axis",
+                match moved {
+                    None => self.vector(&axis.value),
+                    Some(row) => {
+                        let texts = row.frame.direction(&valid.axis).each_ref().map(|x| self.writer.number(x));
+                        format!("[{}]", texts.join(", "))
+                    }
+                },
+            );
+        }
+    }
+
+    fn body(&self, body: &BodyDescription, indent: &str, text: &mut Vec<String>) {
+        text.extend(body.mass.as_ref().map(|mass| format!("{indent}mass: {}", self.text(mass))));
+        text.extend(body.com.as_ref().map(|com| format!("{indent}com: {}", self.vector(&com.value))));
+        let Some(inertia) = &body.inertia else { return };
+        let elements = INERTIA_ELEMENTS.iter().zip(&inertia.elements);
+        let mut parts: Vec<String> =
+            elements.filter_map(|(name, value)| Some(format!("{name}: {}", self.text(value.as_ref()?)))).collect();
+        parts.extend(inertia.rotation.as_ref().map(|rotation| self.rotation(rotation)));
+        text.push(format!("{indent}inertia: {{{}}}", parts.join(", ")));
+    }
+
+    /// What does not depend on frames.
+    fn rest(&self, text: &mut Vec<String>) {
+        if let Some(task) = &self.description.task {
+            let rows: Vec<&str> = task.value.iter().map(|row| TaskRow::name(row.value)).collect();
+            text.push(format!("task: [{}]", rows.join(", ")));
+        }
+        text.extend(self.description.regressor.as_ref().map(|regressor| match &regressor.value {
+            RegressorDescription::Standard => "regressor: standard".to_owned(),
+            RegressorDescription::Base => "regressor: base".to_owned(),
+            RegressorDescription::Names(names) => {
+                format!("regressor: [{}]", names.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(", "))
+            }
+        }));
+        if !self.description.allow.is_empty() {
+            let kinds: Vec<&str> = self.description.allow.iter().map(|kind| kind.value.as_str()).collect();
+            text.push(format!("allow: [{}]", kinds.join(", ")));
+        }
+    }
+
+    /// The expression as it is written.
+    fn text(&self, expression: &Expression) -> String {
+        self.source.slice(expression.span).trim_matches(['"', '\'']).split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    fn value(&self, value: &Value) -> String {
+        value.as_ref().map_or_else(|| "0".to_owned(), |expression| self.text(expression))
+    }
+
+    fn vector(&self, values: &[Value]) -> String {
+        format!("[{}]", values.iter().map(|value| self.value(value)).collect::<Vec<_>>().join(", "))
+    }
+
+    fn rotation(&self, rotation: &RotationDescription) -> String {
+        match rotation {
+            RotationDescription::Rpy(rpy) => format!("rpy: {}", self.vector(&rpy.value)),
+            RotationDescription::Quat(quat) => format!("quat: {}", self.vector(&quat.value)),
+            RotationDescription::AxisAngle(axis, angle) => {
+                format!("axis: {}, angle: {}", self.vector(&axis.value), self.text(angle))
+            }
+            RotationDescription::XyAxes(axes) => format!("xyaxes: {}", self.vector(&axes.value)),
+        }
+    }
+
+    fn elements(&self, pose: Option<&PoseDescription>) -> Vec<String> {
+        let one = |element: &PoseElement| {
+            let mut parts = Vec::new();
+            parts.extend(element.xyz.as_ref().map(|xyz| format!("xyz: {}", self.vector(&xyz.value))));
+            parts.extend(element.rotation.as_ref().map(|rotation| self.rotation(rotation)));
+            format!("{{{}}}", parts.join(", "))
+        };
+        pose.map_or(&[][..], |pose| &pose.elements).iter().map(one).collect()
+    }
+
+    fn evaluated(&self, length: &Polynomial) -> Number {
+        length.evaluate(&|id| self.arm.parameters[id.0 as usize].nominal.clone())
+    }
+
+    /// With the values of the file for names.
+    fn nominal(&self, frame: &Placement) -> Placement {
+        let translation = frame.translation.each_ref().map(|x| Polynomial::from(self.evaluated(x)));
+        Placement { rotation: frame.rotation.clone(), translation }
+    }
+}
+
+/// Poses under a key; `None` where there are none.
+fn poses(key: &str, list: &[String]) -> Option<String> {
+    match list {
+        [] => None,
+        [one] => Some(format!("{key}: {one}")),
+        all => Some(format!("{key}: [{}]", all.join(", "))),
+    }
+}

@@ -1,0 +1,119 @@
+//! An arm is the same in rows of every convention.
+
+mod common;
+
+use armgen_codegen::description::Convention::{self, Modified, Standard, Urdf};
+use armgen_codegen::diagnostic::Colour;
+use armgen_codegen::source::Source;
+use armgen_codegen::{schedule, Model};
+use armgen_import::{convert, Converted};
+use common::{arms, assert_same, assert_same_rotors, valid};
+
+#[track_caller]
+fn converted(yaml: &str, to: Convention) -> Converted {
+    let source = Source::new("robot.yaml", yaml);
+    let (converted, diagnostics) = convert(&source, to);
+    converted.unwrap_or_else(|| panic!("{}\n{yaml}", diagnostics.render(&source, Colour::Never)))
+}
+
+#[test]
+fn every_arm_in_every_convention() {
+    for (name, yaml) in arms() {
+        let arm = valid(&yaml);
+        for to in [Standard, Modified, Urdf] {
+            let once = converted(&yaml, to);
+            assert_same(&format!("{name} {to:?}"), &arm, &valid(&once.yaml));
+            assert_same_rotors(&format!("{name} {to:?}"), &arm, &valid(&once.yaml));
+            if name.contains("robots/") && !name.contains("general") {
+                for back in [Standard, Modified, Urdf] {
+                    let twice = converted(&once.yaml, back);
+                    assert_same(&format!("{name} {to:?} {back:?}"), &arm, &valid(&twice.yaml));
+                }
+            }
+        }
+    }
+}
+
+/// Lines of a joint that hold its row.
+fn rows(yaml: &str) -> Vec<&str> {
+    let keys = ["a:", "alpha:", "d:", "theta:"];
+    yaml.lines().map(str::trim).filter(|line| keys.iter().any(|key| line.starts_with(key))).collect()
+}
+
+#[test]
+fn rows_of_known_arms_are_decimals_and_right_angles() {
+    for (name, yaml) in arms().iter().filter(|(name, _)| ["panda7", "ur5", "puma560"].iter().any(|known| name.contains(known))) {
+        for to in [Standard, Modified] {
+            let Converted { yaml, lines } = converted(&converted(yaml, Urdf).yaml, to);
+            assert!(!lines.iter().any(|line| line.contains("rounded")), "{name}: {lines:?}");
+            let plain = |line: &&str| !line.contains("sqrt") && line.split(": ").nth(1).is_some_and(|x| x.len() < 10);
+            assert!(rows(&yaml).iter().all(plain), "{name}\n{yaml}");
+        }
+    }
+}
+
+/// Operations of the functions whose cost must not depend on the convention.
+fn operations(yaml: &str) -> Vec<(String, usize)> {
+    const FUNCTIONS: [&str; 5] = ["inverse_dynamics", "inertia_matrix", "gravity", "geometric_jacobian", "direct_kinematics"];
+    let module = schedule::module(&Model::new(valid(yaml)), &schedule::Options::default());
+    let cost = |name: &&str| module.functions.iter().find(|f| f.name() == *name).map(|f| ((*name).to_owned(), f.steps.len()));
+    FUNCTIONS.iter().filter_map(cost).collect()
+}
+
+#[test]
+fn there_and_back_costs_the_same() {
+    let arms = arms();
+    let (_, puma) = arms.iter().find(|(name, _)| name.contains("puma560")).expect("it is there");
+    let there = converted(puma, Urdf);
+    let back = converted(&there.yaml, Standard);
+    assert_eq!(operations(puma), operations(&back.yaml), "{}", back.yaml);
+}
+
+/// An arm of two joints, the second one at a pose, with the tip at another.
+fn two(second: &str, kind: &str, tool: &str) -> String {
+    let link = "{mass: 1, com: [0.1, 0.2, 0.3], inertia: {xx: 1, yy: 2, zz: 2.5}}";
+    format!(
+        "name: two\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {{name: one, type: revolute, origin: {{xyz: [0.1, 0.2, 0.3]}}, axis: [0, 0, 1], link: {link}}}\n  - {{name: two, type: {kind}, origin: {second}, axis: [0, 0, 1], link: {link}}}\ntool: {tool}\n"
+    )
+}
+
+/// Skew, meeting, parallel, antiparallel and coincident lines, and slides in all these places.
+#[test]
+fn every_place_of_two_lines() {
+    let places = [
+        "{xyz: [0.3, 0.1, 0.2], rpy: [pi/2, 0, 0]}",
+        "{xyz: [0.3, 0.1, 0.2], rpy: [0.4, pi/3, 0]}",
+        "{xyz: [0, 0, 0.2], rpy: [pi/2, 0, pi/3]}",
+        "{xyz: [0, 0, 0.2], rpy: [-pi/2, 0, pi]}",
+        "{rpy: [0, 0.3, 0]}",
+        "{xyz: [0.3, 0.1, 0.2]}",
+        "{xyz: [0.3, 0.4, 0.2], rpy: [pi, 0, 0.1]}",
+        "{xyz: [0, 0, 0.2], rpy: [0, 0, pi/3]}",
+        "{xyz: [0, 0, 0.2], rpy: [0, pi, 0]}",
+        "{}",
+    ];
+    for second in places {
+        for kind in ["revolute", "prismatic"] {
+            for tool in places {
+                let yaml = two(second, kind, tool);
+                for to in [Standard, Modified] {
+                    assert_same(&format!("{second} {kind} {tool} {to:?}"), &valid(&yaml), &valid(&converted(&yaml, to).yaml));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_are_those_of_the_rules() {
+    let of = |second: &str, to| rows(&converted(&two(second, "revolute", "{}"), to).yaml).join(" ");
+    // The base's z axis is not the first one: `base` and row 1 share what lies between. Coincident lines: everything is 0.
+    assert!(of("{}", Modified).ends_with("a: 0 alpha: 0 d: 0 theta: 0"));
+    // Parallel at (0.3, 0.4): 0.5 apart.
+    assert!(of("{xyz: [0.3, 0.4, 0.2]}", Standard).starts_with("a: 0.5 alpha: 0 "));
+    assert!(of("{xyz: [0.3, 0.4, 0.2], rpy: [pi, 0, 0]}", Standard).starts_with("a: 0.5 alpha: pi "));
+    // Meeting 0.2 above the joint, which is 0.3 above the base: no length, the angle of the row within a quarter turn.
+    assert!(of("{xyz: [0, 0, 0.2], rpy: [pi/2, 0, 0]}", Standard).starts_with("a: 0 alpha: pi/2 d: 0.5 "));
+    let nearly = converted(&two("{xyz: [0.3, 0, 0], rpy: [0.0005, 0, 0]}", "revolute", "{}"), Standard);
+    assert!(nearly.lines.iter().any(|line| line.starts_with("nearly-parallel")), "{:?}", nearly.lines);
+}
