@@ -1,6 +1,7 @@
 //! The catalogue: every function that can be emitted, in the order of the module. What each is stands beside its derivation, in
 //! [`mod@quantities`].
 
+pub use crate::derive::derivation::METHODS;
 pub use crate::derive::model::Sizes;
 pub use crate::derive::parameters::Parameter;
 pub use crate::derive::quantities;

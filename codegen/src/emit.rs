@@ -11,6 +11,7 @@ mod language;
 mod origin;
 mod plain;
 
+pub use documentation::Described;
 pub use language::Language;
 pub use origin::{Notes, Origin};
 pub use plain::camel;

@@ -18,6 +18,8 @@ pub(crate) enum Check {
     Fences,
     /// Text: what documentation `cargo test` would run, by indentation or HTML.
     Indentation,
+    /// Items: documentation of constants and types.
+    Documentation,
     /// Items: tokens as armgen writes them.
     Tokens,
     /// Items: signatures of functions.
@@ -92,6 +94,10 @@ pub(crate) enum Check {
     BaseValues,
     /// Comments: the head of the file.
     Head,
+    /// Comments: documentation of functions, but for bounds.
+    Prose,
+    /// Comments: documentation of names of parameters.
+    Meanings,
     /// Comments: operations of a function.
     Cost,
     /// Comments: rounding errors of a function.

@@ -260,6 +260,6 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         function.bound = Some(bound);
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
-    report.faults.extend(stated::faults(module, report));
+    report.faults.extend(stated::faults(checker.manipulator(), module, report));
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
 }

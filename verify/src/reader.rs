@@ -63,6 +63,8 @@ pub struct Module {
     pub trig: Option<&'static str>,
     /// Comments in front of all items, without the slashes.
     pub head: Vec<String>,
+    /// The documentation of constants that name parameters, line by line, where all documentation is judged: in Rust.
+    pub documentation: Option<BTreeMap<String, Vec<String>>>,
     /// Constants by name.
     pub constants: BTreeMap<String, Constant>,
     /// Public functions in the order of the text, or what is wrong with each.
@@ -137,7 +139,9 @@ impl Module {
             }
         }
         let head = items.head.iter().map(ToString::to_string).collect();
-        Ok(Module { real, trig, head, constants, functions })
+        let lines = |lines: &Vec<&str>| lines.iter().map(ToString::to_string).collect();
+        let documentation = items.documentation.iter().map(|(name, found)| ((*name).to_string(), lines(found))).collect();
+        Ok(Module { real, trig, head, documentation: Some(documentation), constants, functions })
     }
 
     /// The programs of all functions that could be read, by name.

@@ -1,12 +1,19 @@
 //! What a module says of itself in comments, against what was found: the description it was made from, the functions that it lacks, the box
-//! and the size of rounding errors, the operations of each function.
+//! and the size of rounding errors, the operations of each function. All other documentation must be that of the catalogue, word for word.
 //!
-//! Not judged is prose: what a quantity is, its formula and its source, frames and units, the meanings of parameters, how a function was derived.
+//! Not judged: the file name and the version in the first line, why a function is not there, which of the ways to derive a function was taken, and
+//! which combination of standard parameters a grouped base parameter is said to be.
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::catalogue::{self, METHODS};
+use armgen_codegen::derive::parameters::{nominal, ParameterVector};
+use armgen_codegen::emit::{rust, Described};
+use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
+
 use crate::bounds::{self, Bound};
 use crate::check::Check;
+use crate::constants;
 use crate::contract::Promise;
 use crate::program::{Program, Step};
 use crate::reader::{Function, Module};
@@ -23,7 +30,7 @@ const CONVENTIONS: [&str; 3] = [
 const DIGITS: usize = 16;
 
 /// All that is said and is not so. Bounds are judged where the checker has them.
-pub fn faults(module: &Module, report: &Report) -> Vec<String> {
+pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Vec<String> {
     let known: BTreeMap<String, Bound> =
         report.functions.iter().filter_map(|f| Some((f.name.clone(), f.bound.clone()?))).collect();
     let notes = bounds::notes(&known);
@@ -43,12 +50,102 @@ pub fn faults(module: &Module, report: &Report) -> Vec<String> {
                 faults.push(format!("{name}: {fault}"));
             }
         };
-        check(Check::Cost, "Cost: ", Some(&cost(&function.program)));
+        check(Check::Cost, "Cost: ", Some(&format!("Cost: {}. Derived by ", operations(&function.program))));
         if let Some(expected) = rounding {
             check(Check::Rounding, "Rounding error: ", expected);
         }
+        if module.documentation.is_some() && Check::Prose.is_made() {
+            faults.extend(prose(manipulator, name, function, bounded && rounding.is_some()).map(|fault| format!("{name}: {fault}")));
+        }
+    }
+    if Check::Meanings.is_made() {
+        faults.extend(meanings(manipulator, module));
     }
     faults
+}
+
+/// The first line of a function's documentation that is not the one of the catalogue; the line of its bound is not looked at.
+fn prose(manipulator: &Manipulator, name: &str, function: &Function, bounded: bool) -> Option<String> {
+    let (quantity, with_parameters) = catalogue::named(name)?;
+    let mut found: Vec<&str> = function.documentation.iter().map(String::as_str).collect();
+    if bounded {
+        found.pop();
+        if found.pop() != Some("") {
+            return Some("the documentation does not end in an empty line and the rounding error".into());
+        }
+    }
+    let turned = function.program.steps.iter().find_map(|step| match step {
+        Step::Sine(angle) | Step::Cosine(angle) if angle.turn.is_some() => angle.terms.last().map(|(joint, _)| joint + 1),
+        _ => None,
+    });
+    let said = found.last().copied().unwrap_or("");
+    let method = METHODS.into_iter().find(|method| said.contains(&format!("Derived by {method}."))).unwrap_or("a way of its own");
+    let gravity = manipulator.gravity.each_ref().map(|component| nominal(manipulator, component));
+    let described = Described {
+        quantity,
+        with_parameters,
+        gravity: &gravity,
+        has_springs: manipulator.joints.iter().any(|joint| joint.spring.is_some()),
+        has_more_friction: manipulator.joints.iter().any(|joint| joint.offset.is_some() || joint.cubic.is_some()),
+        turned_joint: turned,
+        cost: operations(&function.program),
+        method,
+    };
+    different(&found, &rust::function_documentation(&described))
+}
+
+/// The first line that is not as expected.
+fn different(found: &[&str], expected: &[String]) -> Option<String> {
+    let at = |i: usize| (found.get(i).copied(), expected.get(i).map(String::as_str));
+    let (found, expected) = (0..found.len().max(expected.len())).map(at).find(|(found, expected)| found != expected)?;
+    let shown = |line: Option<&str>| line.map_or("nothing".to_string(), |line| format!("`{}`", line.trim()));
+    Some(format!("the documentation says {}, not {}", shown(found), shown(expected)))
+}
+
+/// What the documentation says of parameters.
+fn meanings(manipulator: &Manipulator, module: &Module) -> Vec<String> {
+    let Some(documentation) = &module.documentation else { return Vec::new() };
+    let standard = ParameterVector::standard(manipulator).entries;
+    let (base, parameters) = match &manipulator.regressor {
+        RegressorChoice::Standard => (false, standard.clone()),
+        RegressorChoice::Base => (true, Vec::new()),
+        RegressorChoice::Names(names) => (false, ParameterVector::named(manipulator, names).entries),
+    };
+    let mut faults = Vec::new();
+    for (constant, found) in documentation {
+        let found: Vec<&str> = found.iter().map(String::as_str).collect();
+        let names = constants::names(module, constant).unwrap_or_default();
+        let grouped = base || constant == "BASE_PARAMETER_NAMES";
+        let meanings: Vec<(String, String)> = names
+            .into_iter()
+            .map(|name| {
+                let known = if grouped { &standard } else { &parameters };
+                let meaning = known.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.meaning.clone());
+                // The combination that a grouped parameter is: as it stands.
+                let meaning = meaning.unwrap_or_else(|| said_of(&found, &name).to_string());
+                (name, meaning)
+            })
+            .collect();
+        let expected = match constant.as_str() {
+            "BASE_PARAMETER_NAMES" => rust::base_parameters_documentation(turn(&found), &meanings),
+            _ => rust::parameters_documentation(base, &meanings),
+        };
+        faults.extend(different(&found, &expected).map(|fault| format!("{constant}: {fault}")));
+    }
+    faults
+}
+
+/// What stands behind a name in a table.
+fn said_of<'a>(lines: &[&'a str], name: &str) -> &'a str {
+    let row = |line: &&'a str| Some(line.strip_prefix(' ')?.strip_prefix(name)?.strip_prefix("  ")?.trim_start());
+    lines.iter().find_map(row).unwrap_or("")
+}
+
+/// The angle, a decimal, by which the frame of the last link is said to be turned.
+fn turn<'a>(lines: &[&'a str]) -> Option<&'a str> {
+    let (_, behind) = lines.iter().find_map(|line| line.split_once("The x axis of the last link stands "))?;
+    let (angle, _) = behind.split_once(" rad ")?;
+    Some(angle).filter(|angle| angle.parse::<f64>().is_ok_and(f64::is_finite))
 }
 
 /// The lines in front of all items; whether they have those on rounding errors.
@@ -99,7 +196,7 @@ fn sentence(function: &Function, prefix: &str, expected: Option<&str>) -> Result
 }
 
 /// The operations of a function in words.
-fn cost(program: &Program) -> String {
+fn operations(program: &Program) -> String {
     let count = |counted: fn(&Step) -> bool| program.steps.iter().filter(|step| counted(step)).count();
     let parts: Vec<String> = [
         (count(|step| matches!(step, Step::Multiply(..))), "multiplication"),
@@ -111,6 +208,9 @@ fn cost(program: &Program) -> String {
     .filter(|(count, _)| *count > 0)
     .map(|(count, what)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
     .collect();
-    let parts = if parts.is_empty() { "none, the result is constant".to_string() } else { parts.join(", ") };
-    format!("Cost: {parts}. Derived by ")
+    if parts.is_empty() {
+        "none, the result is constant".to_string()
+    } else {
+        parts.join(", ")
+    }
 }

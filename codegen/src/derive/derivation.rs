@@ -6,6 +6,16 @@
 use crate::ring::normal_form::{Arrangement, NormalForm};
 use crate::ring::{ExprId, Pool, Symbol};
 
+/// A derivation by writing out every entry.
+const CLOSED_FORM: &str = "closed form";
+/// A derivation by a recursion over the links.
+pub(crate) const OVER_THE_LINKS: &str = "recursion over the links";
+/// The same with bodies that move alike taken together.
+pub(crate) const OVER_GROUPED_BODIES: &str = "recursion over grouped bodies";
+
+/// The ways in which the functions of a module are derived, in a few words.
+pub const METHODS: [&str; 3] = [CLOSED_FORM, OVER_THE_LINKS, OVER_GROUPED_BODIES];
+
 /// One derivation of a quantity: its entries, row by row, in a pool.
 #[derive(Clone)]
 pub struct Derivation {
@@ -35,7 +45,7 @@ impl Derivation {
         let derivation = |forms: &[NormalForm], arrangement, meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId| {
             let mut pool = Pool::new(self.pool.field().clone());
             let entries = forms.iter().map(|form| pool.from_normal_form_in(form, arrangement, meaning)).collect();
-            Derivation { pool, entries, method: "closed form", parallel: self.parallel.clone() }
+            Derivation { pool, entries, method: CLOSED_FORM, parallel: self.parallel.clone() }
         };
         let mut all: Vec<Derivation> = Arrangement::ALL
             .iter()

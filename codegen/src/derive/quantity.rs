@@ -7,7 +7,7 @@
 //! each written as a language writes it. What stands between back quotes is code, the same everywhere.
 
 use super::arm::Arm;
-use super::derivation::Derivation;
+use super::derivation::{Derivation, OVER_GROUPED_BODIES, OVER_THE_LINKS};
 use super::model::{Model, Sizes};
 use super::parameters::View;
 use super::passes::{self, Use};
@@ -389,7 +389,7 @@ impl Quantity {
             pool,
             entries,
             parallel,
-            method: if grouped { "recursion over grouped bodies" } else { "recursion over the links" },
+            method: if grouped { OVER_GROUPED_BODIES } else { OVER_THE_LINKS },
         }
     }
 }

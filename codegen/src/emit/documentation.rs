@@ -71,48 +71,84 @@ fn argument(argument: &Argument) -> String {
     format!("{{{}}}: {}", argument.name(), argument.meaning())
 }
 
-/// The documentation of a function; `allocates`: whether its results take memory of their own in the language.
-pub(super) fn function(function: &Function, module: &Module, allocates: bool) -> Vec<Block> {
-    let Documentation { title, formula, result, result_with, failure, names_gravity } = function.quantity.documentation;
-    let (result, failure) = match function.with_parameters {
-        false => (result, failure[0]),
-        true => (result_with.unwrap_or(result), failure[1]),
-    };
-    let mut blocks = vec![Block::text(title)];
-    if names_gravity {
-        let [x, y, z] = module.gravity.each_ref().map(Number::to_f64);
-        blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
-    }
-    blocks.extend(of_joints(function.quantity.name, module).map(Block::text));
-    if function.with_parameters {
-        blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
-    }
-    blocks.push(Block::Formula(formula));
-    let arguments = function.arguments.iter().map(argument);
-    blocks.push(Block::List(arguments.chain([format!("Returns {result}")]).collect()));
-    if let Some(joint) = turned_joint(function) {
-        blocks.push(Block::text(format!(
-            "Inside, the last link has axes whose x axis points to its centre of mass, seen along the joint axis: q{joint} and a constant angle."
-        )));
-    }
-    let cost = cost(&Cost::of(function));
-    let nothing = if allocates { "" } else { "Allocates nothing, " };
-    let failure = format!("{nothing}{failure}");
-    let (first, rest) = failure.split_at(1);
-    blocks.push(Block::text(format!("Cost: {cost}. Derived by {}. {}{rest}.", function.method, first.to_uppercase())));
-    blocks
+/// What the documentation of a function says besides the words of the catalogue.
+#[derive(Clone, Debug)]
+pub struct Described<'a> {
+    /// What it computes.
+    pub quantity: &'a Quantity,
+    /// Whether it takes the parameters at run time.
+    pub with_parameters: bool,
+    /// Acceleration of free fall in the base frame, m/s².
+    pub gravity: &'a [Number; 3],
+    /// Whether joints have springs.
+    pub has_springs: bool,
+    /// Whether joints have friction that is neither viscous nor Coulomb's.
+    pub has_more_friction: bool,
+    /// The joint whose variable it turns by a constant angle, counted from 1.
+    pub turned_joint: Option<usize>,
+    /// Its operations in words.
+    pub cost: String,
+    /// How it was derived: one of [`METHODS`](crate::catalogue::METHODS).
+    pub method: &'a str,
 }
 
-/// What springs and friction beyond the textbook's add to a function, where the arm has them.
-fn of_joints(name: &str, module: &Module) -> Option<&'static str> {
-    match name {
-        "gravity" | "equations_of_motion" if module.has_springs => {
-            Some("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
+/// The documentation of a function; `allocates`: whether its results take memory of their own in the language.
+pub(super) fn function(function: &Function, module: &Module, allocates: bool) -> Vec<Block> {
+    let described = Described {
+        quantity: function.quantity,
+        with_parameters: function.with_parameters,
+        gravity: &module.gravity,
+        has_springs: module.has_springs,
+        has_more_friction: module.has_more_friction,
+        turned_joint: turned_joint(function),
+        cost: cost(&Cost::of(function)),
+        method: function.method,
+    };
+    described.blocks(allocates)
+}
+
+impl Described<'_> {
+    pub(super) fn blocks(&self, allocates: bool) -> Vec<Block> {
+        let Documentation { title, formula, result, result_with, failure, names_gravity } = self.quantity.documentation;
+        let (result, failure) = match self.with_parameters {
+            false => (result, failure[0]),
+            true => (result_with.unwrap_or(result), failure[1]),
+        };
+        let mut blocks = vec![Block::text(title)];
+        if names_gravity {
+            let [x, y, z] = self.gravity.each_ref().map(Number::to_f64);
+            blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
         }
-        "potential_energy" if module.has_springs => Some("A spring of a joint adds 1/2 k_s (q_i - rest)²."),
-        "friction" if module.has_more_friction => Some("Where the description has them, F_0 + F_3 dq_i³ are added."),
-        "regressor" if module.has_more_friction => Some("In F cubic friction is F_3 dq² dqr."),
-        _ => None,
+        blocks.extend(self.of_joints().map(Block::text));
+        if self.with_parameters {
+            blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
+        }
+        blocks.push(Block::Formula(formula));
+        let arguments = self.with_parameters.then_some(&Argument::Pi).into_iter().chain(self.quantity.arguments).map(argument);
+        blocks.push(Block::List(arguments.chain([format!("Returns {result}")]).collect()));
+        if let Some(joint) = self.turned_joint {
+            blocks.push(Block::text(format!(
+                "Inside, the last link has axes whose x axis points to its centre of mass, seen along the joint axis: q{joint} and a constant angle."
+            )));
+        }
+        let nothing = if allocates { "" } else { "Allocates nothing, " };
+        let failure = format!("{nothing}{failure}");
+        let (first, rest) = failure.split_at(1);
+        blocks.push(Block::text(format!("Cost: {}. Derived by {}. {}{rest}.", self.cost, self.method, first.to_uppercase())));
+        blocks
+    }
+
+    /// What springs and friction beyond the textbook's add to a function, where the arm has them.
+    fn of_joints(&self) -> Option<&'static str> {
+        match self.quantity.name {
+            "gravity" | "equations_of_motion" if self.has_springs => {
+                Some("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
+            }
+            "potential_energy" if self.has_springs => Some("A spring of a joint adds 1/2 k_s (q_i - rest)²."),
+            "friction" if self.has_more_friction => Some("Where the description has them, F_0 + F_3 dq_i³ are added."),
+            "regressor" if self.has_more_friction => Some("In F cubic friction is F_3 dq² dqr."),
+            _ => None,
+        }
     }
 }
 
@@ -129,8 +165,8 @@ pub(super) fn base_note() -> Block {
     )
 }
 
-/// What a name of a base parameter of `base_regressor` means.
-pub(super) fn own_base_note(module: &Module) -> Block {
+/// What a name of a base parameter of `base_regressor` means; `turn`: by how many rad the frame of the last link is turned, if it is.
+pub(super) fn own_base_note(turn: Option<&str>) -> Block {
     let first = [
         "A name that ends in R is a base parameter: a standard parameter in the joint frame, whose z axis is the joint's and whose origin is where",
         "that comes nearest to the axis before, grouped with all that cannot be told from it. Links of revolute joints have Izz = Ixx + Iyy there.",
@@ -138,8 +174,7 @@ pub(super) fn own_base_note(module: &Module) -> Block {
         "of more than 60 characters as the nearest float.",
         "Those that are 0 there, at the values of the description, have no column: for identification take `regressor: base`, which has all.",
     ];
-    let turned = module.turn.as_ref().map(|turn| {
-        let angle = decimal(turn, module.scalar);
+    let turned = turn.map(|angle| {
         [
             format!("The x axis of the last link stands {angle} rad after the joint variable, about the joint axis; seen along that, the centre"),
             "of mass of the link, payload included, lies on it: its mcy is 0.".to_string(),
@@ -148,9 +183,19 @@ pub(super) fn own_base_note(module: &Module) -> Block {
     Block::Text(first.into_iter().map(String::from).chain(turned.into_iter().flatten()).collect())
 }
 
+/// By how many rad the frame of the last link is turned, if it is, as it stands in documentation.
+pub(super) fn turn(module: &Module) -> Option<String> {
+    module.turn.as_ref().map(|turn| decimal(turn, module.scalar))
+}
+
 /// Parameters and what they mean.
 pub(super) fn meanings(parameters: &[Parameter]) -> Block {
-    Block::Table(parameters.iter().map(|parameter| (parameter.name.clone(), parameter.meaning.clone())).collect())
+    Block::Table(named(parameters))
+}
+
+/// Names of parameters and what they mean.
+pub(super) fn named(parameters: &[Parameter]) -> Vec<(String, String)> {
+    parameters.iter().map(|parameter| (parameter.name.clone(), parameter.meaning.clone())).collect()
 }
 
 /// The lines of a comment without marks of its own.
@@ -178,14 +223,14 @@ pub(super) fn rows(table: &[(String, String)]) -> impl Iterator<Item = String> +
 }
 
 /// The joint whose variable a function turns by a constant angle, counted from 1.
-fn turned_joint(function: &Function) -> Option<u16> {
+fn turned_joint(function: &Function) -> Option<usize> {
     let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);
     let angles = operands.filter_map(|operand| match operand {
         Operand::Input(symbol) => symbol.angle(),
         _ => None,
     });
     let turned = angles.filter(|angle| angle.turned).filter_map(|angle| angle.terms().last());
-    turned.map(|(joint, _)| joint + 1).next()
+    turned.map(|(joint, _)| usize::from(joint) + 1).next()
 }
 
 /// Operations in words.

@@ -220,7 +220,7 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
                 name: "BASE_PARAMETER_NAMES",
                 documentation: vec![
                     Block::text(title),
-                    documentation::own_base_note(module),
+                    documentation::own_base_note(documentation::turn(module).as_deref()),
                     documentation::meanings(&module.base_set),
                 ],
                 value: names(&module.base_set),

@@ -13,7 +13,7 @@ mod sincos;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::documentation::{self as common, Block};
+use super::documentation::{self as common, Block, Described};
 use super::origin::{Notes, Origin};
 use crate::catalogue::{Absent, Length, Part, Quantity, Sizes};
 use crate::exact::Number;
@@ -117,10 +117,7 @@ fn constants(module: &Module) -> TokenStream {
     let effort = module.joints.iter().map(|joint| number(&joint.effort, infinity()));
     let parameter_names = module.parameters.iter().map(|parameter| &parameter.name);
     let nominal = module.parameters.iter().map(|parameter| literal(&parameter.nominal, module.scalar));
-    let title = Block::text("Names of the parameters, in the order of the columns of {regressor}:");
-    let note = module.base_parameters.then(common::base_note);
-    let meanings: Vec<Block> = [title].into_iter().chain(note).chain([common::meanings(&module.parameters)]).collect();
-    let meanings = documentation::lines(&meanings);
+    let meanings = parameters_documentation(module.base_parameters, &common::named(&module.parameters));
     let base = base_constants(module);
     let structures = structures(module, false);
     quote! {
@@ -165,6 +162,28 @@ fn constants(module: &Module) -> TokenStream {
     }
 }
 
+/// The documentation of a function, as it stands in a module without bounds.
+#[doc(hidden)]
+pub fn function_documentation(described: &Described<'_>) -> Vec<String> {
+    documentation::lines(&described.blocks(false))
+}
+
+/// The documentation of `PARAMETER_NAMES`: names and what they mean, whether they are base parameters.
+#[doc(hidden)]
+pub fn parameters_documentation(base: bool, named: &[(String, String)]) -> Vec<String> {
+    let title = Block::text("Names of the parameters, in the order of the columns of {regressor}:");
+    let note = base.then(common::base_note);
+    let blocks: Vec<Block> = [title].into_iter().chain(note).chain([Block::Table(named.to_vec())]).collect();
+    documentation::lines(&blocks)
+}
+
+/// The documentation of `BASE_PARAMETER_NAMES`, and by how many rad the frame of the last link is turned, if it is.
+#[doc(hidden)]
+pub fn base_parameters_documentation(turn: Option<&str>, named: &[(String, String)]) -> Vec<String> {
+    let title = "Names of the base parameters, in the order of the columns of {base_regressor}, each a combination of standard parameters:";
+    documentation::lines(&[Block::text(title), common::own_base_note(turn), Block::Table(named.to_vec())])
+}
+
 /// The base parameters, for the function that has them.
 fn base_constants(module: &Module) -> Option<TokenStream> {
     if !module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters)) {
@@ -173,8 +192,7 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
     let count = usize_literal(module.base_set.len());
     let names = module.base_set.iter().map(|parameter| &parameter.name);
     let nominal = module.base_set.iter().map(|parameter| literal(&parameter.nominal, module.scalar));
-    let title = "Names of the base parameters, in the order of the columns of {base_regressor}, each a combination of standard parameters:";
-    let meanings = documentation::lines(&[Block::text(title), common::own_base_note(module), common::meanings(&module.base_set)]);
+    let meanings = base_parameters_documentation(common::turn(module).as_deref(), &common::named(&module.base_set));
     Some(quote! {
         /// Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.
         #[allow(dead_code)]

@@ -146,7 +146,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
     }
-    Ok(Module { real, trig, head, constants, functions })
+    Ok(Module { real, trig, head, documentation: None, constants, functions })
 }
 
 /// The macros of constants, and the scalar.

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::constant::integer;
-use super::lexer::{Fault, Kind, Lexer};
+use super::lexer::{Fault, Kind, Lexer, Token};
 use super::parser::Parser;
 use super::sines::{self, Private};
 use crate::check::Check;
@@ -16,28 +16,70 @@ const LINTS: &str = "#[allow(dead_code)]";
 /// On what holds numbers of a robot: clippy finds pi and e among them.
 const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 
-/// The constants that a module may have, with their types.
-const CONSTANTS: [(&str, &str); 15] = [
-    ("NAME", "&str"),
-    ("DOF", "usize"),
-    ("JOINT_NAMES", "[&str; DOF]"),
-    ("JOINT_IS_REVOLUTE", "[bool; DOF]"),
-    ("POSITION_LIMITS", "[[Real; 2]; DOF]"),
-    ("VELOCITY_LIMITS", "[Real; DOF]"),
-    ("EFFORT_LIMITS", "[Real; DOF]"),
-    ("TASK_ROWS", "usize"),
-    ("TASK", "[usize; TASK_ROWS]"),
-    ("PARAMETERS", "usize"),
-    ("PARAMETER_NAMES", "[&str; PARAMETERS]"),
-    ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]"),
-    ("BASE_PARAMETERS", "usize"),
-    ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]"),
-    ("NOMINAL_BASE_PARAMETERS", "[Real; BASE_PARAMETERS]"),
+/// The constants that a module may have, with their types and documentation.
+const CONSTANTS: [(&str, &str, &str); 15] = [
+    ("NAME", "&str", "Name of the robot."),
+    ("DOF", "usize", "Number of joints."),
+    ("JOINT_NAMES", "[&str; DOF]", "Names of the joints, base to tip."),
+    ("JOINT_IS_REVOLUTE", "[bool; DOF]", "Whether a joint turns (q in rad) or slides (q in m)."),
+    (
+        "POSITION_LIMITS",
+        "[[Real; 2]; DOF]",
+        "Lowest and highest joint variable, rad or m; infinite where the description gives none.",
+    ),
+    ("VELOCITY_LIMITS", "[Real; DOF]", "Highest joint rate, rad/s or m/s; infinite where the description gives none."),
+    (
+        "EFFORT_LIMITS",
+        "[Real; DOF]",
+        "Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.",
+    ),
+    ("TASK_ROWS", "usize", "Number of rows of the operational space."),
+    (
+        "TASK",
+        "[usize; TASK_ROWS]",
+        "Rows of the geometric Jacobian that make up the operational space: 0 1 2 along x y z, 3 4 5 about x y z, in the base frame.",
+    ),
+    ("PARAMETERS", "usize", "Number of parameters."),
+    ("PARAMETER_NAMES", "[&str; PARAMETERS]", IN_PARTS),
+    ("NOMINAL_PARAMETERS", "[Real; PARAMETERS]", "Values of the parameters in the description."),
+    (
+        "BASE_PARAMETERS",
+        "usize",
+        "Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.",
+    ),
+    ("BASE_PARAMETER_NAMES", "[&str; BASE_PARAMETERS]", IN_PARTS),
+    (
+        "NOMINAL_BASE_PARAMETERS",
+        "[Real; BASE_PARAMETERS]",
+        "Values of the base parameters in the description, the masses of rotors included.",
+    ),
 ];
 
-/// The struct, and its fields, each of which stands behind its documentation.
-const STRUCT: &str = "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {";
-const FIELDS: [&str; 3] = ["pub inertia: [[Real; DOF]; DOF],", "pub coriolis: [[Real; DOF]; DOF],", "pub gravity: [Real; DOF],"];
+/// Documentation of names and what they mean, which is judged where these are known.
+const IN_PARTS: &str = "";
+
+/// The documentation of the scalar.
+const SCALAR: &str = "The scalar of all functions.";
+
+/// The struct, and its fields, all behind their documentation.
+const STRUCT: [&str; 2] = [
+    "The terms of the equation of motion at one state.",
+    "#[allow(dead_code)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct EquationsOfMotion {",
+];
+const FIELDS: [[&str; 2]; 3] = [
+    ["Inertia matrix B(q): symmetric, positive definite.", "pub inertia: [[Real; DOF]; DOF],"],
+    ["Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.", "pub coriolis: [[Real; DOF]; DOF],"],
+    ["Gravity term g(q), on the left of the equation of motion.", "pub gravity: [Real; DOF],"],
+];
+
+/// Documentation of one line, as it must stand.
+fn documented(found: &[&str], text: &str, place: &Token<'_>) -> Result<(), Fault> {
+    match found {
+        [line] if line.strip_prefix(' ') == Some(text) => Ok(()),
+        _ if !Check::Documentation.is_made() => Ok(()),
+        _ => Err(place.fault(format!("documentation that is not `{text}`"))),
+    }
+}
 
 /// A public function.
 #[derive(Clone, Debug)]
@@ -68,6 +110,8 @@ pub(super) struct Items<'a> {
     /// The comments in front of all items.
     pub(super) head: Vec<&'a str>,
     pub(super) real: Option<Float>,
+    /// The documentation of constants that name parameters.
+    pub(super) documentation: BTreeMap<&'a str, Vec<&'a str>>,
     /// Each at its value.
     pub(super) constants: BTreeMap<&'a str, (&'static str, Parser<'a>)>,
     /// The struct, at its documentation.
@@ -142,7 +186,7 @@ impl<'a> Items<'a> {
     }
 
     fn item(&mut self, parser: &mut Parser<'a>) -> Result<(), Fault> {
-        let documented = *parser;
+        let beginning = *parser;
         while parser.peek().kind == Kind::Documentation {
             parser.take()?;
         }
@@ -161,11 +205,12 @@ impl<'a> Items<'a> {
         // All but private items, whose documentation is compared with the rest of them.
         let mut documentation = Vec::new();
         if !is_private {
-            *parser = documented;
+            *parser = beginning;
             documentation = parser.documentation()?;
         }
         match (public, keyword.text) {
             (true, "type") => {
+                documented(&documentation, SCALAR, &first)?;
                 parser.expect(&format!("{LINTS} pub type Real ="))?;
                 let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
                 let word = parser.take()?;
@@ -176,9 +221,14 @@ impl<'a> Items<'a> {
                 parser.expect(";")
             }
             (true, "const") => {
-                let known = CONSTANTS.into_iter().find(|(known, _)| name.is(known));
-                let (known, ty) =
+                let known = CONSTANTS.into_iter().find(|(known, ..)| name.is(known));
+                let (known, ty, text) =
                     known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
+                if text == IN_PARTS {
+                    self.documentation.insert(name.text, documentation);
+                } else {
+                    documented(&documentation, text, &first)?;
+                }
                 let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
                 parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
                 if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
@@ -191,13 +241,16 @@ impl<'a> Items<'a> {
                 parser.expect(";")
             }
             (true, "struct") => {
-                parser.expect(STRUCT)?;
-                for field in FIELDS {
-                    parser.documentation()?;
+                let [text, begin] = STRUCT;
+                documented(&documentation, text, &first)?;
+                parser.expect(begin)?;
+                for [text, field] in FIELDS {
+                    let place = parser.peek();
+                    documented(&parser.documentation()?, text, &place)?;
                     parser.expect(field)?;
                 }
                 parser.expect("}")?;
-                match self.structure.replace(documented) {
+                match self.structure.replace(beginning) {
                     Some(_) if Check::Once.is_made() => Err(name.fault("the struct stands twice")),
                     _ => Ok(()),
                 }
@@ -230,7 +283,7 @@ impl<'a> Items<'a> {
                 if !sines::NAMES.contains(&name.text) && Check::PrivateNames.is_made() {
                     return Err(name.fault(format!("{} is not a private item of an emitted module", name.shown())));
                 }
-                if self.private.insert(name.text, documented).is_some() && Check::Once.is_made() {
+                if self.private.insert(name.text, beginning).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("`{}` stands twice", name.text)));
                 }
                 // Its tokens are compared as a whole where `Real` is known.

@@ -80,7 +80,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     };
     let mut reader = Reader { syntax: &syntax, sizes, parts: Parts::default(), steps: 0, asks: [false; 2] };
     let functions = reader.all(&mut lines, "", [trig.is_some(), sign])?;
-    Ok(Module { real: Float::F64, trig, head, constants, functions })
+    Ok(Module { real: Float::F64, trig, head, documentation: None, constants, functions })
 }
 
 struct Reader<'a, 'r> {

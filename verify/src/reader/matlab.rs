@@ -116,7 +116,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     }
     let order: Vec<String> = names_of().collect();
     functions.sort_by_key(|(name, _)| order.iter().position(|other| other == name));
-    Ok(Module { real: Float::F64, trig: reader.trig, head, constants, functions })
+    Ok(Module { real: Float::F64, trig: reader.trig, head, documentation: None, constants, functions })
 }
 
 /// The fields of the model.

@@ -123,7 +123,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
             format!("`__all__` does not list the {named} constants, the types of results and the functions of the module");
         return Err(Fault { line: 1, reason });
     }
-    Ok(Module { real, trig, head, constants, functions })
+    Ok(Module { real, trig, head, documentation: None, constants, functions })
 }
 
 struct Reader<'a, 'r> {
