@@ -90,6 +90,144 @@ const PAGE: Layers = &[
 const COMMANDS: Layers =
     &[("table", &[]), ("terminal", &[]), ("input", &["terminal"]), ("commands", &["input", "table", "terminal"])];
 
+/// From a text and a description to a verdict; `docs/certificate.md` says what each step is for.
+const VERIFY: Layers = &[
+    ("check", &[]),
+    ("element", &[]),
+    ("interval", &[]),
+    ("stream", &[]),
+    ("formula", &["check", "element", "interval"]),
+    ("enclosure", &["formula", "interval"]),
+    ("program", &["element", "formula"]),
+    ("contract", &["program"]),
+    ("divisors", &["element", "program"]),
+    ("float", &["enclosure", "program"]),
+    ("arithmetic", &["element", "enclosure", "float", "formula", "program", "stream"]),
+    ("ranges", &["enclosure", "float", "formula", "program"]),
+    ("equations", &["arithmetic", "element", "formula", "program"]),
+    ("reference", &["arithmetic", "contract", "divisors", "element", "equations"]),
+    ("base", &["arithmetic", "element", "equations", "formula", "program", "reference"]),
+    ("reader", &["check", "contract", "enclosure", "program", "reference"]),
+    ("claims", &["element", "enclosure", "formula", "program", "reader"]),
+    ("companion", &["claims", "contract", "enclosure", "float", "program", "ranges", "reader"]),
+    ("residual", &["arithmetic", "claims", "element", "enclosure", "float", "program", "ranges", "reader"]),
+    ("seed", &["claims", "enclosure", "equations", "formula", "program", "reader", "stream"]),
+    (
+        "bounds",
+        &[
+            "arithmetic",
+            "claims",
+            "divisors",
+            "enclosure",
+            "equations",
+            "float",
+            "formula",
+            "program",
+            "ranges",
+            "reader",
+            "residual",
+            "stream",
+        ],
+    ),
+    (
+        "errors",
+        &[
+            "arithmetic",
+            "bounds",
+            "claims",
+            "companion",
+            "element",
+            "enclosure",
+            "float",
+            "program",
+            "ranges",
+            "reader",
+            "residual",
+            "stream",
+        ],
+    ),
+    ("report", &["bounds", "check", "formula", "ranges"]),
+    ("certificate", &["bounds", "check", "claims", "formula", "reader", "report"]),
+    (
+        "checker",
+        &[
+            "arithmetic",
+            "base",
+            "check",
+            "claims",
+            "contract",
+            "divisors",
+            "element",
+            "enclosure",
+            "equations",
+            "formula",
+            "program",
+            "reader",
+            "reference",
+            "report",
+            "seed",
+            "stream",
+        ],
+    ),
+    (
+        "constants",
+        &[
+            "arithmetic",
+            "base",
+            "check",
+            "checker",
+            "claims",
+            "element",
+            "enclosure",
+            "equations",
+            "formula",
+            "program",
+            "reader",
+            "report",
+        ],
+    ),
+    ("identities", &["arithmetic", "checker", "element", "equations", "formula", "program", "reader", "reference", "report"]),
+    ("influence", &["arithmetic", "checker", "element", "formula", "program"]),
+    (
+        "stability",
+        &[
+            "arithmetic",
+            "bounds",
+            "check",
+            "checker",
+            "companion",
+            "divisors",
+            "enclosure",
+            "equations",
+            "float",
+            "formula",
+            "program",
+            "ranges",
+            "reader",
+            "reference",
+            "report",
+        ],
+    ),
+    ("stated", &["bounds", "check", "constants", "contract", "program", "reader", "report"]),
+    (
+        "test_kit",
+        &[
+            "arithmetic",
+            "constants",
+            "contract",
+            "element",
+            "enclosure",
+            "equations",
+            "float",
+            "formula",
+            "program",
+            "reader",
+            "reference",
+            "stream",
+        ],
+    ),
+];
+
 /// What a file says: modules that it declares, names that it brings into scope, paths that it uses.
 #[derive(Default)]
 struct File {
@@ -348,8 +486,14 @@ fn read(name: &str) -> Crate {
 
 #[test]
 fn modules_name_those_of_lower_layers_alone() {
-    let crates =
-        [("codegen", CODEGEN), ("runtime", RUNTIME), ("experiments", EXPERIMENTS), ("page", PAGE), ("cli/commands", COMMANDS)];
+    let crates = [
+        ("codegen", CODEGEN),
+        ("runtime", RUNTIME),
+        ("experiments", EXPERIMENTS),
+        ("page", PAGE),
+        ("cli/commands", COMMANDS),
+        ("verify", VERIFY),
+    ];
     for (name, layers) in crates {
         assert_eq!(faults(&read(name), Some(layers)), Vec::<String>::new(), "{name}");
     }

@@ -9,8 +9,8 @@ use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_verify::bounds::two_digits;
 use armgen_verify::claims::Claims;
-use armgen_verify::companion::LANES;
 use armgen_verify::errors::{Run, Seen, Subject};
+use armgen_verify::float::LANES;
 use armgen_verify::reader::Module;
 
 /// Batches after which the log tells how far it is.

@@ -26,7 +26,8 @@ use std::collections::BTreeMap;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::degree::Degree;
-use crate::arithmetic::{Arithmetic, Element};
+use crate::arithmetic::Arithmetic;
+use crate::element::Element;
 use crate::equations::arm::Arm;
 use crate::equations::lagrange::{friction, spring_torques};
 use crate::equations::newton_euler::{Carrier, Motion, Moving};

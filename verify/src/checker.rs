@@ -6,25 +6,28 @@ use std::collections::BTreeMap;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
+use crate::arithmetic::growth::{Growth, Growths, COUNTED};
 use crate::arithmetic::prime::Prime;
-use crate::arithmetic::roots::{dependent, Dependent};
+use crate::arithmetic::roots::dependent;
 use crate::arithmetic::tower::Tower;
-use crate::arithmetic::{Arithmetic, Element, Stream};
+use crate::arithmetic::Arithmetic;
 use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::check::Check;
 use crate::claims::{Claims, Resolved};
 use crate::contract::{Promise, Sizes};
-use crate::divisors::{divisors, is_needed, needed};
+use crate::divisors::{divisors, is_needed, needed, undivided_operands};
+use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
-use crate::formula::{Atoms, Formula};
-use crate::program::Program;
+use crate::formula::{Atoms, Dependent, Formula};
+use crate::program::{Argument, Inputs, Program};
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
 use crate::seed;
+use crate::stream::Stream;
 
 /// The function that is not compared entry by entry.
 const BASE_REGRESSOR: &str = "base_regressor";
@@ -162,6 +165,8 @@ pub struct Checker {
     exact: Vec<Point<Tower>>,
     /// log2 of the odds of a miss by function, for all points in prime fields together.
     log2_odds: BTreeMap<String, f64>,
+    /// How fast each function grows by the equations.
+    growth: BTreeMap<String, Growth>,
     base: Option<OwnParameters>,
     sizes: Sizes,
     /// Random bits that nothing has been drawn from.
@@ -261,7 +266,8 @@ impl Checker {
             exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
         let sizes = sizes(&manipulator, &vector, base.as_ref());
-        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, base, sizes, rest: stream })
+        let growth = growth(&manipulator, &vector)?;
+        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, growth, base, sizes, rest: stream })
     }
 
     /// The arm.
@@ -348,7 +354,9 @@ impl Checker {
         let resolved = self.claims.resolve(&program.name, &program.literals, real);
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
-            None => self.foreign_divisor(program, &chosen).unwrap_or(Verdict::Equal),
+            None => (self.foreign_divisor(program, &chosen))
+                .or_else(|| self.foreign_growth(program, &chosen))
+                .unwrap_or(Verdict::Equal),
             Some((entry, why)) => {
                 let suspect = self.claims.suspect(program, &entry, real);
                 Verdict::Different { entry, why: why + &suspect.map_or_else(String::new, |suspect| format!("; {suspect}")) }
@@ -420,6 +428,33 @@ impl Checker {
         modular.or_else(exact).or_else(dependent)
     }
 
+    /// A power of an argument that the equations do not have: it would be added and taken away again.
+    fn foreign_growth(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
+        let literals: Vec<Growth> =
+            program.exact_literals(chosen).iter().map(|value| Growths.constant(value)).collect::<Option<_>>()?;
+        let most =
+            |program: &Program| program.run(&Growths, &literals).into_iter().flatten().fold(Growths.integer(0), Growth::most);
+        let own = *self.growth.get(&program.name)?;
+        let operands = undivided_operands(program);
+        // A quotient of polynomials in the joint variables has no degree that the text shows; what it is made of are parts of torques.
+        let parts = (!operands.is_empty()).then(|| most(&program.part(&operands)));
+        let (found, torques) = (most(program), self.growth["inverse_dynamics"]);
+        let compared = COUNTED.into_iter().map(|argument| match parts {
+            Some(parts) if argument == Argument::Q => (argument, parts.of(argument), torques.of(argument)),
+            _ => (argument, found.of(argument), own.of(argument)),
+        });
+        let (argument, found, own) = compared.into_iter().find(|(_, found, own)| found > own)?;
+        let degree = |degree: Option<i64>| degree.unwrap_or(0);
+        Check::Growth.is_made().then(|| {
+            Verdict::Refused(format!(
+                "it takes `{}` to the power {} where its equations have {}",
+                argument.name(),
+                degree(found),
+                degree(own)
+            ))
+        })
+    }
+
     /// A divisor that the equations do not ask for.
     fn foreign_divisor(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
         let divisors = divisors(program);
@@ -436,6 +471,34 @@ impl Checker {
             "it divides by what is no pivot of a matrix that its equations invert".into()
         }))
     }
+}
+
+/// How fast the functions of an arm grow with their arguments, by the equations.
+fn growth(manipulator: &Manipulator, vector: &Vector) -> Result<BTreeMap<String, Growth>, String> {
+    let joints = manipulator.joints.len();
+    let of = |argument| vec![Growths.entry(argument, 0); joints];
+    let one = Growths.integer(1);
+    let state = State {
+        angles: vec![(one, one); joints],
+        signs: vec![one; joints],
+        q: of(Argument::Q),
+        dq: of(Argument::Dq),
+        ddq: of(Argument::Ddq),
+        dqr: of(Argument::Dqr),
+        ddqr: of(Argument::Ddqr),
+        tau: of(Argument::Tau),
+        pi: Vec::new(),
+        zero: Growths.integer(0),
+        one,
+    };
+    let wanted = Wanted { base: BaseParameters::Free, pivots: false };
+    let reference = Reference::at(&mut Growths, manipulator, vector, state, wanted)?;
+    let most = |entries: Vec<Growth>| entries.into_iter().fold(Growths.integer(0), Growth::most);
+    let mut growth: BTreeMap<String, Growth> =
+        reference.values.into_iter().map(|(name, entries)| (name, most(entries))).collect();
+    let torques = growth["inverse_dynamics"];
+    growth.insert(BASE_REGRESSOR.into(), torques);
+    Ok(growth)
 }
 
 /// Degrees and heights of what the equations say, for the odds of a miss.

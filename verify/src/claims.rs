@@ -8,10 +8,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::exact::{self, Number};
 
-use crate::arithmetic::Element;
+use crate::element::Element;
 use crate::enclosure::Float;
 use crate::formula::definitions::Definitions;
-use crate::formula::{decimal, Formula, Rational};
+use crate::formula::parse::decimal;
+use crate::formula::{Formula, Rational};
 use crate::program::{Literal, Program, Step};
 use crate::reader::Module;
 

@@ -17,12 +17,12 @@
 
 use std::fmt::Write;
 
-use crate::bounds::{is_power_of_two, literal_errors};
 use crate::claims::Claims;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
-use crate::float::Arguments;
+use crate::float::{Arguments, LANES};
 use crate::program::{Angle, Argument, Program, Step};
+use crate::ranges::{is_power_of_two, literal_errors};
 use crate::reader::{Constant, Module};
 
 /// The text taken in, as a module of this crate in each scalar: the same lines that companions have.
@@ -37,8 +37,7 @@ macro_rules! face {
             include!("companion/template.rs");
             include!("companion/lanes.rs");
 
-            use super::LANES;
-            use crate::float::Arguments;
+            use crate::float::{Arguments, LANES};
 
             /// A program as a table of any length.
             pub(super) fn run(
@@ -112,9 +111,6 @@ macro_rules! face {
 
 face!(double, f64, libm::sincos);
 face!(single, f32, libm::sincosf);
-
-/// States that run side by side where many are measured.
-pub const LANES: usize = 8;
 
 /// A step of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]

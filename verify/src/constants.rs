@@ -3,16 +3,17 @@
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
 
+use crate::arithmetic::plain::Plain;
 use crate::arithmetic::prime::{Prime, Residue};
-use crate::arithmetic::Element;
 use crate::base::OwnParameters;
 use crate::check::Check;
 use crate::checker::{Checker, Point};
 use crate::claims::Claims;
+use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::{self, Standard, Vector};
-use crate::formula::{Formula, Plain};
+use crate::formula::Formula;
 use crate::program::Literal;
 use crate::reader::{Constant, Module};
 use crate::report::{ConstantReport, Exact, Verdict};
@@ -106,7 +107,7 @@ fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> O
     let Constant::Array(entries) = module.constants.get(constant)? else { return None };
     let literal = |entry: &Constant| match entry {
         Constant::Number(negative, Literal { text, .. }) => {
-            let size = crate::formula::decimal(text).ok()?;
+            let size = crate::formula::parse::decimal(text).ok()?;
             Some(if *negative { size.negated() } else { size })
         }
         _ => None,

@@ -11,9 +11,11 @@
 //! that no motion leaves at rest all minors are positive, for every q. Those of J B^-1 J' are, but at singular configurations, where the function has no value. So
 //! every other divisor is one that the equations do not ask for, and that may be 0 where they have a value.
 //!
-//! A divisor d is a pivot p but for a constant factor (of units) if and only if d(x) p(x') = p(x) d(x') for all x, x': tested at two states in each prime field.
+//! A divisor d is a pivot p but for a constant factor (of units) if and only if d(x) p(x') = p(x) d(x') for all x, x': tested at two states in each prime field, with two vectors of parameters.
 
-use crate::arithmetic::Element;
+use std::collections::BTreeSet;
+
+use crate::element::Element;
 use crate::program::{Program, Step};
 
 /// Matrices whose pivots are divisors.
@@ -98,4 +100,29 @@ pub fn divisors(program: &Program) -> Vec<usize> {
 pub fn is_needed<E: Element>(function: &str, values: [&E; 2], pivots: [&Pivots<E>; 2]) -> bool {
     let [here, there] = pivots.map(|pivots| pivots.of_function(function));
     here.zip(there).any(|(p, q)| values[0].times(q) == values[1].times(p))
+}
+
+/// Of a function that divides: the steps that no quotient takes part in and that are divisors, or operands of those that a quotient takes part in, or entries.
+pub fn undivided_operands(program: &Program) -> Vec<usize> {
+    let mut divided: Vec<bool> = Vec::with_capacity(program.steps.len());
+    let mut operands = BTreeSet::new();
+    for step in &program.steps {
+        let (of, quotient): (&[usize], bool) = match step {
+            Step::Divide(a, b) => (&[*a, *b], true),
+            Step::Negate(a) => (&[*a], false),
+            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) => (&[*a, *b], false),
+            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => (&[], false),
+        };
+        let takes_part = quotient || of.iter().any(|&operand| divided[operand]);
+        if takes_part {
+            operands.extend(of.iter().copied().filter(|&operand| !divided[operand]));
+        }
+        divided.push(takes_part);
+    }
+    if operands.is_empty() {
+        return Vec::new();
+    }
+    let entries = program.outputs.iter().map(|output| output.step).filter(|&step| !divided[step]);
+    operands.extend(entries);
+    operands.into_iter().collect()
 }

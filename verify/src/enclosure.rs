@@ -12,16 +12,10 @@ use dashu_base::{Abs, BitTest, Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use crate::formula::{Formula, Rational, Root};
+use crate::interval::{ceil_shift, floor_div, floor_shift, invert, multiply, Interval};
 
 /// Numbers of bits tried in turn.
 const PRECISIONS: [usize; 5] = [128, 256, 1024, 4096, 12_288];
-
-/// Two integers a, b for the numbers between a/2^bits and b/2^bits.
-#[derive(Clone, Debug)]
-pub(crate) struct Interval {
-    low: IBig,
-    high: IBig,
-}
 
 /// More bits are worked with than are asked for: deep graphs of definitions lose many.
 const GUARDS: [usize; 3] = [64, 512, 4096];
@@ -45,38 +39,6 @@ pub fn sine_cosine_of(angle: &Rational, fine: usize) -> Option<(IBig, IBig, usiz
     let scaled = (angle * Rational::from(UBig::ONE << bits)).floor();
     let angle = Interval { high: &scaled + IBig::ONE, low: scaled };
     Some((series(&angle, 1, bits)?.low, series(&angle, 0, bits)?.low, bits))
-}
-
-fn floor_shift(n: IBig, bits: usize) -> IBig {
-    n >> bits
-}
-
-fn ceil_shift(n: IBig, bits: usize) -> IBig {
-    -((-n) >> bits)
-}
-
-fn floor_div(a: &IBig, b: &IBig) -> IBig {
-    let quotient = a / b;
-    if &quotient * b != *a && (a.is_negative() != b.is_negative()) {
-        quotient - IBig::ONE
-    } else {
-        quotient
-    }
-}
-
-fn multiply(a: &Interval, b: &Interval, bits: usize) -> Interval {
-    let products = [&a.low * &b.low, &a.low * &b.high, &a.high * &b.low, &a.high * &b.high];
-    let low = products.iter().min().expect("four products").clone();
-    let high = products.iter().max().expect("four products").clone();
-    Interval { low: floor_shift(low, bits), high: ceil_shift(high, bits) }
-}
-
-fn invert(a: &Interval, bits: usize) -> Option<Interval> {
-    if a.low.is_zero() || a.high.is_zero() || a.low.is_negative() != a.high.is_negative() {
-        return None;
-    }
-    let one = IBig::ONE << (2 * bits);
-    Some(Interval { low: floor_div(&one, &a.high), high: -floor_div(&-one, &a.low) })
 }
 
 fn interval(formula: &Formula, bits: usize) -> Option<Interval> {

@@ -12,15 +12,17 @@ use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::twofold::{self, Circle, Pair, Twofold, TwofoldArguments};
 use crate::arithmetic::wide::{Wide, WideArguments};
-use crate::arithmetic::{Element, Stream};
-use crate::bounds::{corner, domain_of, draw, literal_errors, of_function, Bound, Domain};
+use crate::bounds::{corner, domain_of, draw, of_function, Bound};
 use crate::claims::Claims;
-use crate::companion::{LaneArguments, LaneTable, Table, LANES};
+use crate::companion::{LaneArguments, LaneTable, Table};
+use crate::element::Element;
 use crate::enclosure::Float;
-use crate::float::Arguments;
+use crate::float::{Arguments, LANES};
 use crate::program::{Program, Step};
+use crate::ranges::{literal_errors, Domain};
 use crate::reader::{Function, Module};
 use crate::residual::{Equations, Residual};
+use crate::stream::Stream;
 
 /// What was seen of a function; sizes are those of the largest entry.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,6 +3,9 @@
 use crate::enclosure::Float;
 use crate::program::{Argument, Inputs, Program, Turn};
 
+/// States that run side by side where many are measured.
+pub const LANES: usize = 8;
+
 /// Arguments of emitted functions.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Arguments<T> {

@@ -3,8 +3,8 @@
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::prime::{Prime, Residue};
-use crate::arithmetic::Element;
 use crate::checker::{with_parameters, Checker, Point};
+use crate::element::Element;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::Formula;

@@ -4,8 +4,9 @@
 //! by running the function backwards: the derivative of a random combination of the entries by each step, at a random point of a prime field.
 
 use crate::arithmetic::prime::Prime;
-use crate::arithmetic::{Arithmetic, Element};
+use crate::arithmetic::Arithmetic;
 use crate::checker::Point;
+use crate::element::Element;
 use crate::formula::Formula;
 use crate::program::{Program, Step};
 

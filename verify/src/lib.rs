@@ -44,6 +44,8 @@ pub mod contract;
 #[doc(hidden)]
 pub mod divisors;
 #[doc(hidden)]
+pub mod element;
+#[doc(hidden)]
 pub mod enclosure;
 #[doc(hidden)]
 pub mod equations;
@@ -56,8 +58,11 @@ pub mod formula;
 pub mod identities;
 #[doc(hidden)]
 pub mod influence;
+mod interval;
 #[doc(hidden)]
 pub mod program;
+#[doc(hidden)]
+pub mod ranges;
 #[doc(hidden)]
 pub mod reader;
 #[doc(hidden)]
@@ -71,6 +76,8 @@ pub mod seed;
 pub mod stability;
 #[doc(hidden)]
 pub mod stated;
+#[doc(hidden)]
+pub mod stream;
 pub mod test_kit;
 
 use armgen_codegen::diagnostic::Diagnostics;
@@ -248,10 +255,7 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     // The box is of the module's constants, the residual of its equations of motion: what is wrong has no bounds.
     let right = report.constants.iter().all(|constant| constant.verdict == Verdict::Equal)
         && report.functions.iter().all(|function| function.verdict == Verdict::Equal);
-    let trial = right.then(|| {
-        let task = checker.manipulator().task_rows();
-        Trial::new(module, &report.domain, task, &mut checker.rest())
-    });
+    let trial = right.then(|| Trial::new(module, &report.domain, checker));
     for (function, trial) in report.functions.iter_mut().zip(trial.iter().cycle()) {
         let Some(program) = module.program(&function.name) else { continue };
         let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();

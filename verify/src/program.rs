@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::arithmetic::Element;
+use crate::element::Element;
 use crate::formula::Formula;
 
 /// Arguments of emitted functions.

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::dual::Dual;
-use crate::arithmetic::{Arithmetic, Element};
+use crate::arithmetic::Arithmetic;
 use crate::contract::{Array, Length, Promise, Returned};
 use crate::divisors::{Matrix, Pivots};
+use crate::element::Element;
 use crate::equations::arm::{Arm, Frame};
 use crate::equations::lagrange::{
     accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, spring_torques,
-    times_vector,
+    times_vector, Parts,
 };
 use crate::equations::newton_euler::{Motion, Moving};
 use crate::equations::parameters::{
@@ -114,22 +115,8 @@ pub struct Reference<E> {
     pub nominal_base: Option<Vec<E>>,
     /// Whether Lagrange's and Newton and Euler's torques agree.
     pub two_derivations_agree: bool,
-    /// What may be divided by, if that is wanted: at the state, and at another one with the same parameters.
+    /// What may be divided by, if that is wanted: at the state, and at another one with other parameters.
     pub pivots: Option<(Pivots<E>, State<E>, Pivots<E>)>,
-}
-
-/// What the equations of motion are made of: B and C row by row, g, F and U.
-pub struct Parts<E> {
-    /// B(q).
-    pub b: Vec<Vec<E>>,
-    /// C(q, dq).
-    pub c: Vec<Vec<E>>,
-    /// g(q).
-    pub g: Vec<E>,
-    /// F(dq).
-    pub f: Vec<E>,
-    /// U(q).
-    pub u: E,
 }
 
 /// The quantities of an arm; whether its torques after Newton and Euler are the same.
@@ -354,11 +341,13 @@ impl<E: Element> Reference<E> {
         derivatives_and_task(&arm, &state, &task, &mut values).ok_or_else(singular)?;
 
         let (mut elsewhere, mut nominal_base) = (None, None);
+        let mut other_parameters = None;
         let (columns, known, run_time) = match vector {
             Vector::Names(ids) => {
                 if state.pi.is_empty() {
                     state.pi = ids.iter().map(|_| arithmetic.draw()).collect();
                 }
+                let other = wanted.pivots.then(|| ids.iter().map(|_| arithmetic.draw()).collect::<Vec<E>>());
                 let at = |pi: &[E]| {
                     let mut names = names.clone();
                     ids.iter().zip(pi).for_each(|(&id, value)| names[id] = value.clone());
@@ -373,6 +362,9 @@ impl<E: Element> Reference<E> {
                     let torques = reference_torques(&at(&unit)?, &state);
                     columns.push(torques.iter().zip(&known).map(|(a, b)| a.minus(b)).collect::<Vec<E>>());
                 }
+                if let Some(pi) = other {
+                    other_parameters = Some((at(&pi)?, pi));
+                }
                 (columns, known, Some(at(&state.pi)?))
             }
             Vector::Standard(all) => {
@@ -380,6 +372,10 @@ impl<E: Element> Reference<E> {
                     state.pi = all.iter().map(|_| arithmetic.draw()).collect();
                 }
                 let columns = standard_columns(&arm, &state, all, LinkFrames::Described);
+                if wanted.pivots {
+                    let pi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
+                    other_parameters = Some((with_standard(&arm, all, &pi).ok_or_else(divided)?, pi));
+                }
                 (columns, known_torque(&arm, &state, all)?, Some(with_standard(&arm, all, &state.pi).ok_or_else(divided)?))
             }
             Vector::Base(base, all) => {
@@ -404,6 +400,11 @@ impl<E: Element> Reference<E> {
                         check_names(&map, base, all, &arm)?;
                         let nominal: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
                         nominal_base = Some(times_vector(&map, &nominal));
+                        if wanted.pivots {
+                            let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
+                            let other = with_standard(&arm, all, &phi).ok_or_else(divided)?;
+                            other_parameters = Some((other, times_vector(&map, &phi)));
+                        }
                         times_vector(&map, &phi)
                     } else {
                         base.iter().map(|_| arithmetic.draw()).collect()
@@ -428,9 +429,10 @@ impl<E: Element> Reference<E> {
             values.remove("center_of_mass_with");
         }
         let pivots = wanted.pivots.then(|| {
-            let there = State { pi: state.pi.clone(), ..State::draw(arithmetic, n) };
-            let at = |state: &State<E>| pivots(&arm, run_time.as_ref(), state, &task);
-            (at(&state), there.clone(), at(&there))
+            let (other, pi) = other_parameters.unzip();
+            let there = State { pi: pi.unwrap_or_default(), ..State::draw(arithmetic, n) };
+            let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state, &task);
+            (at(run_time.as_ref(), &state), there.clone(), at(other.as_ref(), &there))
         });
         Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree, pivots })
     }

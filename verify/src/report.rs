@@ -2,10 +2,26 @@
 
 use std::fmt;
 
-use crate::bounds::{Bound, Domain};
+use crate::bounds::Bound;
 use crate::check::Check;
 use crate::formula::Formula;
-use crate::stability::Unfit;
+use crate::ranges::Domain;
+
+/// Why a function is useless in floats.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unfit {
+    /// A value can leave the scalar: within the limits of the joints, or at one state of the box.
+    Leaves(String),
+    /// Rounding makes errors that the equations do not ask for.
+    Loses(String),
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Unfit::Leaves(why) | Unfit::Loses(why)) = self;
+        f.write_str(why)
+    }
+}
 
 /// What is not known by odds of a miss of at most 2^-168 is not verified: 2^40 tries of somebody who looks for a miss leave 2^-128.
 pub const MOST_LOG2_ODDS: f64 = -168.0;

@@ -21,12 +21,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::arithmetic::twofold::{self, Pair, Twofold, TwofoldArguments};
 use crate::arithmetic::wide::{Wide, WideArguments};
-use crate::arithmetic::Element;
-use crate::bounds::Range;
 use crate::claims::Claims;
+use crate::element::Element;
 use crate::enclosure::Float;
 use crate::float::Arguments;
 use crate::program::{Argument, Program, Step};
+use crate::ranges::Range;
 use crate::reader::Module;
 
 /// The accelerations x returned are those at torques off by at most `constant + factor max|x|`, where all divisors are positive.

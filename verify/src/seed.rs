@@ -12,13 +12,13 @@ use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::manipulator::{Body, Joint, Manipulator, Part, Placement, Pose, RegressorChoice};
 use sha2::{Digest, Sha256};
 
-use crate::arithmetic::Stream;
 use crate::claims::{Claims, Resolved};
 use crate::enclosure::Float;
 use crate::equations::arm::formula;
 use crate::formula::{definitions, Formula};
 use crate::program::{Angle, Program, Step};
 use crate::reader::Module;
+use crate::stream::Stream;
 
 /// A SHA-256 hash.
 type Hash = [u8; 32];

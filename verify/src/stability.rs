@@ -1,52 +1,53 @@
 //! Whether rounding leaves of a function what the equations say: a function can equal them over the real numbers and be useless in floats,
 //! as `x + 1e17 - 1e17` is.
 //!
-//! With S the largest size of an entry at some states of the box, u the unit roundoff of the scalar and n the number of joints:
+//! With u the unit roundoff of the scalar, n the number of joints, S the largest size of an entry at some states, e the bound of the function at a state
+//! (both computed in f64), and E the one of a plain program of the equations there ([`Running`]):
 //!
 //! ```text
-//! (a)  no value leaves the scalar anywhere in the box
-//! (b)  the bound over the box is at most 2^(12 + 5n/2) u S
-//! (c)  at each of 32 states the bound there is at most 2^(12 + n/2) u S, all computed in f64
+//! (a)  no value leaves the scalar anywhere in the wide box
+//! (b)  the bound over the wide box is at most 2^(12 + 5n/2) u S
+//! (c)  at each of 32 states e is at most 2^(12 + n/2) u S
+//! (d)  and at most 2^4 of the largest E; of functions that divide of E at that state, where E leaves 29 bits of the largest entry
+//! (e)  no argument has a higher degree than in the equations (growth.rs)
 //! ```
 //!
-//! (a) and (b) are of the whole box and follow from intervals, which widen by a factor with each joint; (c) is sharp, and of states alone: half of them
-//! random, half with arguments at the ends of the box, all drawn from the hash of the module. Emitted functions stay below 2^19 u S over the box and
-//! below 2^10 u S at states with seven joints, 2^39 and 2^16 with sixteen: each loss of four more digits than that is refused, in f32 and in f64.
+//! The wide box has all angles, prismatic joints as far to one side as to the other, and parameters that are 0 in the description as large as the largest.
+//! By (e) what is found in it holds outside, multiplied by at most the powers of the equations. (a) and (b) are of the whole box and follow from intervals,
+//! which widen by a factor with each joint; (c) and (d) are sharp, and of states alone: half of them random, half with arguments at the ends of the box, all
+//! drawn from the hash of the module. Emitted functions stay below 2^19 u S over the box and below 2^10 u S at states with seven joints, 2^39 and 2^16 with
+//! sixteen, and below 2 E: a loss of four more digits than that is refused over the box, of one at states, in f32 and in f64.
 //!
-//! Functions that divide are judged in two parts. What no quotient takes part in is held to (a), (b) and (c) where it meets the first one. The whole is held to (c)
-//! at each state by its own size there, with a factor κ² more: κ is the largest quotient of a diagonal entry, at any state, and its pivot at this one, for the matrices that are
-//! inverted: how much larger an error becomes that was made in them. Where 2^(12 + n/2) κ² u is more than 1, near singular configurations,
-//! nothing can be asked for. Intervals say nothing there in general; of `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
+//! Of functions that divide, what no quotient takes part in is held to (a), (b) and (c) where it meets the first one, the whole to (d). Divisors are
+//! positive. Intervals say nothing behind a quotient in general; for `forward_dynamics` there must be a bound of the torques ([`mod@crate::residual`]) or of the entries.
 
 use std::collections::BTreeMap;
-use std::fmt;
 
-use crate::arithmetic::Stream;
-use crate::bounds::{corner, draw, literal_errors, two_digits, undivided_operands, Bound, Domain};
+use crate::arithmetic::running::{Running, RunningNumbers};
+use crate::bounds::{corner, draw, two_digits, undivided_bound, widened, Bound};
 use crate::check::Check;
-use crate::companion::{LaneArguments, Table, LANES};
-use crate::divisors::{needed, Matrix};
+use crate::checker::Checker;
+use crate::companion::{LaneArguments, Table};
+use crate::divisors::{divisors, undivided_operands};
 use crate::enclosure::Float;
-use crate::float::Arguments;
+use crate::equations::parameters::Vector;
+use crate::equations::state::State;
+use crate::float::{Arguments, LANES};
 use crate::formula::Formula;
 use crate::program::Program;
+use crate::ranges::{literal_errors, Domain};
 use crate::reader::Module;
+use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::report::Unfit;
 
-/// Why a function is useless in floats.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unfit {
-    /// A value can leave the scalar: within the limits of the joints, or at one state of the box.
-    Leaves(String),
-    /// Rounding makes errors that the equations do not ask for.
-    Loses(String),
-}
+/// As many times the error that the equations themselves have.
+const FACTOR: f64 = 16.0;
 
-impl fmt::Display for Unfit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Unfit::Leaves(why) | Unfit::Loses(why)) = self;
-        f.write_str(why)
-    }
-}
+/// Where the equations themselves lose more units of the last place nothing is asked for.
+const LOST: f64 = (1 << 24) as f64;
+
+/// Parameters that are 0 in the description, as a part of the largest, where a function that divides is judged: B stays positive.
+const HARDLY: f64 = 1.0 / (1 << 30) as f64;
 
 /// Batches of states.
 const BATCHES: usize = 4;
@@ -55,101 +56,97 @@ const BATCHES: usize = 4;
 pub struct Trial<'a> {
     module: &'a Module,
     joints: usize,
-    task: Vec<usize>,
     batches: Vec<([Arguments<f64>; LANES], LaneArguments)>,
-    /// By state: κ of each matrix.
-    conditions: Vec<(Matrix, Vec<f64>)>,
+    /// By function, state by state: the largest error of an entry that the equations themselves have in f64, and the size of the largest.
+    plain: BTreeMap<String, Vec<(f64, f64)>>,
+    /// The box without limits of angles, parameters that are 0 as large as the others.
+    wide: Domain,
 }
 
-/// The largest quotient of a diagonal entry, anywhere, and its pivot here.
-fn condition(rows: &[Vec<f64>], diagonal: &[f64]) -> f64 {
-    let mut rows = rows.to_vec();
-    let mut largest = 1.0f64;
-    for k in 0..rows.len() {
-        let (pivot, upper) = (rows[k][k], rows[k].clone());
-        let quotient = diagonal[k] / pivot;
-        if !(quotient >= 0.0 && quotient.is_finite()) {
-            return f64::INFINITY;
-        }
-        largest = largest.max(quotient);
-        for row in &mut rows[k + 1..] {
-            let factor = row[k] / pivot;
-            row.iter_mut().zip(&upper).skip(k).for_each(|(x, u)| *x -= factor * u);
-        }
+/// The arm at some states, in numbers that know their errors.
+fn running(states: &[Arguments<f64>; LANES]) -> State<Running> {
+    let arguments = Arguments::gather(states, Running::exact);
+    let circle = |q: &Running| {
+        let both = q.value.map(libm::sincos);
+        // One unit in the last place each.
+        (Running::rounded(both.map(|(sine, _)| sine), 2.0), Running::rounded(both.map(|(_, cosine)| cosine), 2.0))
+    };
+    let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
+    State {
+        angles: arguments.q.iter().map(circle).collect(),
+        signs: arguments.dq.iter().map(sign).collect(),
+        q: arguments.q,
+        dq: arguments.dq,
+        ddq: arguments.ddq,
+        dqr: arguments.dqr,
+        ddqr: arguments.ddqr,
+        tau: arguments.tau,
+        pi: arguments.pi,
+        zero: Running::exact([0.0; LANES]),
+        one: Running::exact([1.0; LANES]),
     }
-    largest
+}
+
+/// Largest error and largest size of the entries of a function at each state.
+fn largest(entries: &[Running]) -> [(f64, f64); LANES] {
+    std::array::from_fn(|k| {
+        let worst = |worst: f64, x: f64| if exceeds(x, worst) { x } else { worst };
+        let error = entries.iter().fold(0.0, |most, entry| worst(most, entry.error[k]));
+        (error, entries.iter().fold(0.0, |most, entry| worst(most, entry.value[k].abs())))
+    })
 }
 
 impl<'a> Trial<'a> {
     /// States of a box, for the functions of a module that equal the equations.
-    pub fn new(module: &'a Module, domain: &Domain, task: Vec<usize>, stream: &mut Stream) -> Trial<'a> {
+    pub fn new(module: &'a Module, domain: &Domain, checker: &Checker) -> Trial<'a> {
+        let stream = &mut checker.rest();
+        let manipulator = checker.manipulator();
+        let wide = widened(manipulator, domain, 1.0);
+        let near = widened(manipulator, domain, HARDLY);
         let batch = |k: usize| {
             let states = std::array::from_fn(|_| match k % 2 {
-                0 => draw(domain, stream, module.real),
-                _ => corner(domain, stream, module.real),
+                0 => draw(&near, stream, module.real),
+                _ => corner(&wide, stream, module.real),
             });
             let lanes = LaneArguments::new(&states, Float::F64);
             (states, lanes)
         };
         let batches: Vec<_> = (0..BATCHES).map(batch).collect();
-        let mut trial = Trial { module, joints: domain.q.len(), task, batches, conditions: Vec::new() };
-        let matrices = [Matrix::Inertia, Matrix::InertiaWith, Matrix::Mobility];
-        trial.conditions = matrices.into_iter().map(|matrix| (matrix, trial.conditions_of(matrix))).collect();
-        trial
+        let mut plain: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
+        for (states, _) in &batches {
+            let mut state = running(states);
+            let mut numbers = RunningNumbers::default();
+            if matches!(checker.vector(), Vector::Base(..)) {
+                numbers.given = std::mem::take(&mut state.pi).into();
+            }
+            let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
+            let Ok(reference) = Reference::at(&mut numbers, manipulator, checker.vector(), state, wanted) else { continue };
+            for (name, entries) in &reference.values {
+                plain.entry(name.clone()).or_default().extend(largest(entries));
+            }
+        }
+        plain.retain(|_, states| states.len() == BATCHES * LANES);
+        Trial { module, joints: manipulator.joints.len(), batches, plain, wide }
     }
 
     fn states(&self) -> impl Iterator<Item = &Arguments<f64>> {
         self.batches.iter().flat_map(|(states, _)| states)
     }
 
-    fn values(&self, function: &str, state: &Arguments<f64>) -> Option<Vec<f64>> {
-        let program = self.module.program(function)?;
-        let literals: Vec<f64> = program.literals.iter().map(|literal| literal.value).collect();
-        program.run(state, &literals).into_iter().collect()
-    }
-
-    fn conditions_of(&self, matrix: Matrix) -> Vec<f64> {
-        let n = self.joints;
-        let rows = |function: &str, state: &Arguments<f64>| -> Option<Vec<Vec<f64>>> {
-            Some(self.values(function, state)?.chunks(n).map(<[f64]>::to_vec).collect())
-        };
-        let of = |state: &Arguments<f64>| match matrix {
-            Matrix::Inertia => rows("inertia_matrix", state),
-            Matrix::InertiaWith => rows("inertia_matrix_with", state),
-            Matrix::Mobility => {
-                let jacobian = rows("geometric_jacobian", state)?;
-                let task: Vec<Vec<f64>> = self.task.iter().map(|&row| jacobian[row].clone()).collect();
-                mobility(&rows("inertia_matrix", state)?, &task)
-            }
-            // A sum of masses: nothing cancels.
-            Matrix::Mass | Matrix::MassWith => Some(vec![vec![1.0]]),
-        };
-        let matrices: Vec<Option<Vec<Vec<f64>>>> = self.states().map(of).collect();
-        let size = |k: usize| matrices.iter().flatten().map(|rows| rows[k][k].abs()).fold(0.0, f64::max);
-        let diagonal: Vec<f64> = (0..matrices.iter().flatten().next().map_or(0, Vec::len)).map(size).collect();
-        matrices.iter().map(|rows| rows.as_ref().map_or(f64::INFINITY, |rows| condition(rows, &diagonal))).collect()
-    }
-
-    /// κ of what a function inverts, state by state.
-    fn conditions_for(&self, function: &str) -> Vec<f64> {
-        let needed = needed(function);
-        let mut product = vec![1.0; self.batches.len() * LANES];
-        for (_, of) in self.conditions.iter().filter(|(matrix, _)| needed.contains(matrix)) {
-            product.iter_mut().zip(of).for_each(|(x, k)| *x *= k);
-        }
-        product
-    }
-
-    /// What makes a function useless in floats, if it is.
+    /// What makes a function useless in floats, if it is; `bound` is its bound over the box of the description.
     pub fn fault(&self, program: &Program, values: &[Formula], bound: &Bound) -> Option<Unfit> {
         let operands = undivided_operands(program);
+        let undivided = if operands.is_empty() { program.clone() } else { program.part(&operands) };
+        let wide = undivided_bound(&undivided, values, &self.wide, self.module.real);
         if operands.is_empty() {
-            return self.undivided_fault(program, values, bound.largest());
+            return self.undivided_fault(program, values, wide, true);
         }
-        self.undivided_fault(&program.part(&operands), values, bound.undivided).or_else(|| self.divided_fault(program, values))
+        self.undivided_fault(&undivided, values, wide, false)
+            .or_else(|| self.divided_fault(program, values))
+            .or_else(|| self.no_bound(program, bound))
     }
 
-    fn undivided_fault(&self, program: &Program, values: &[Formula], bound: f64) -> Option<Unfit> {
+    fn undivided_fault(&self, program: &Program, values: &[Formula], bound: f64, whole: bool) -> Option<Unfit> {
         let real = self.module.real;
         if !bound.is_finite() && Check::Leaves.is_made() {
             return Some(Unfit::Leaves(format!("a value can leave {} inside the box", real.name())));
@@ -163,27 +160,48 @@ impl<'a> Trial<'a> {
             return Some(too_much("anywhere in the box", bound, allowed, size));
         }
         let worst = runs.iter().flatten().fold(0.0f64, |worst, (_, error)| if exceeds(*error, worst) { *error } else { worst });
-        let allowed = most(12.0 + 0.5 * n, Float::F64);
+        let mut allowed = most(12.0 + 0.5 * n, Float::F64);
+        if let Some(plain) = whole.then(|| self.plain.get(&program.name)).flatten().filter(|_| Check::Plain.is_made()) {
+            let errors = plain.iter().map(|(error, _)| *error);
+            allowed = allowed.min(FACTOR * (errors.fold(0.0, f64::max) + Float::F64.unit() * size + f64::MIN_POSITIVE));
+        }
         (exceeds(worst, allowed) && Check::States.is_made())
             .then(|| too_much("in f64, at a state of the box", worst, allowed, size))
     }
 
+    /// Of `forward_dynamics` errors are bounded over the box, of the torques or of the accelerations.
+    fn no_bound(&self, program: &Program, bound: &Bound) -> Option<Unfit> {
+        let bounded = bound.residual.is_some() || bound.largest().is_finite() || !program.name.starts_with("forward_dynamics");
+        (!bounded && !program.name.ends_with("_derivatives") && Check::Residual.is_made()).then(|| {
+            Unfit::Loses(
+                "it does not divide as the elimination of the equations of motion does, so that nothing bounds its error".into(),
+            )
+        })
+    }
+
     fn divided_fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
-        let factor = (12.0 + 0.5 * self.joints as f64).exp2();
         let (real, unit) = (self.module.real, Float::F64.unit());
         let runs = self.runs(program, values)?;
-        let states = runs.iter().zip(self.conditions_for(&program.name)).zip(self.states());
-        for ((run, condition), state) in states {
-            let factor = factor * condition * condition;
-            let size = run.iter().fold(0.0f64, |size, (value, _)| size.max(value.abs()));
+        let plain = self.plain.get(&program.name)?;
+        let divisors = program.part(&divisors(program));
+        let literals: Vec<f64> = divisors.literals.iter().map(|literal| literal.value).collect();
+        // The parameters of the description: beside them B need not be positive.
+        let described: Vec<f64> = self.wide.pi.iter().map(|(low, high)| (low + high) / 2.0).collect();
+        for ((run, (error, size)), state) in runs.iter().zip(plain).zip(self.states()) {
+            let lost = error / (unit * size);
             let worst = run.iter().fold(0.0f64, |worst, (_, error)| if exceeds(*error, worst) { *error } else { worst });
-            let allowed = factor * (unit * size + f64::MIN_POSITIVE);
-            if factor * unit < 1.0 && exceeds(worst, allowed) && Check::DividedStates.is_made() {
-                return Some(too_much("in f64, at a state of the box", worst, allowed, size));
+            let allowed = FACTOR * (error + unit * size + f64::MIN_POSITIVE);
+            let state_described = Arguments { pi: described.clone(), ..state.clone() };
+            let negative = |values: Vec<Option<f64>>| values.into_iter().flatten().any(|value| value < 0.0);
+            if lost < LOST && Check::Positive.is_made() && negative(divisors.run(&state_described, &literals)) {
+                return Some(Unfit::Loses("a divisor is negative: pivots are positive".into()));
+            }
+            if lost < LOST && exceeds(worst, allowed) && Check::DividedStates.is_made() {
+                return Some(too_much("in f64, at a state of the box", worst, allowed, *size));
             }
             // Of a single number the quotients alone are finite in f64.
             if Check::DividedLeaves.is_made()
-                && factor * real.unit() < 1.0
+                && FACTOR * lost * real.unit() < 1.0
                 && program.run_float(state, real).iter().any(|value| !value.is_finite())
             {
                 return Some(Unfit::Leaves(format!("a value leaves {} at a state of the box", real.name())));
@@ -210,14 +228,6 @@ impl<'a> Trial<'a> {
         }
         Some(runs)
     }
-}
-
-/// J B^-1 J'.
-fn mobility(b: &[Vec<f64>], task: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    let columns: Vec<Vec<f64>> = (0..b.len()).map(|i| task.iter().map(|row| row[i]).collect()).collect();
-    let solved = crate::equations::vector::solve(b, &columns)?;
-    let entry = |row: &[f64], j: usize| row.iter().zip(&solved).map(|(x, solved)| x * solved[j]).sum();
-    Some(task.iter().map(|row| (0..task.len()).map(|j| entry(row, j)).collect()).collect())
 }
 
 /// Whether a is larger than b, or one of the two is not a number.

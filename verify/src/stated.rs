@@ -55,7 +55,9 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
             check(Check::Rounding, "Rounding error: ", expected);
         }
         if module.documentation.is_some() && Check::Prose.is_made() {
-            faults.extend(prose(manipulator, name, function, bounded && rounding.is_some()).map(|fault| format!("{name}: {fault}")));
+            faults.extend(
+                prose(manipulator, name, function, bounded && rounding.is_some()).map(|fault| format!("{name}: {fault}")),
+            );
         }
     }
     if Check::Meanings.is_made() {

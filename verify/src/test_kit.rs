@@ -9,8 +9,9 @@ use std::fmt::Write;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::wide::{Wide, WideArguments};
-use crate::arithmetic::{Arithmetic, Element, Stream};
+use crate::arithmetic::Arithmetic;
 use crate::contract::Promise;
+use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
@@ -19,6 +20,7 @@ use crate::formula::Formula;
 use crate::program::Inputs;
 use crate::reader::Module;
 use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::stream::Stream;
 
 /// Floats of 256 bits as an arithmetic.
 struct Fine(Stream);

@@ -21,7 +21,10 @@ struct Given {
 
 impl Given {
     fn new(name: &str, trig: Trig) -> Given {
-        let source = common::source(name);
+        Given::of(common::source(name), trig)
+    }
+
+    fn of(source: Source, trig: Trig) -> Given {
         let mut generated = match trig {
             Trig::Libm => common::generate(&source, Scalar::F64),
             trig => common::generate_with(&source, &Options { trig, ..Options::default() }),
@@ -453,4 +456,19 @@ fn certificates_are_written_as_armgen_writes_them() {
     }
     assert!(Certificate::from_json(&format!("{text} ")).is_err());
     assert!(Certificate::from_json(&" ".repeat(40 << 20)).expect_err("too long").contains("32 MiB"));
+}
+
+#[test]
+fn run_time_parameters_may_be_anything() {
+    let scara = scara();
+    // 0/0 at a mass of 0, which is no pole of the equations.
+    scara.refused("let t2 = 1.0 / (t1 + pi[2]);", "let t2 = pi[0] / ((t1 + pi[2]) * pi[0]);", "it divides by what is no pivot");
+    let load = "[0.0, 0.0, -9.81 * pi[2], 0.0]";
+    // A parameter that is 0 in the description is 5 at run time.
+    let text = scara.source.text().replacen("m_l3: 10 ", "m_l3: 0  ", 1);
+    assert_ne!(text, scara.source.text());
+    let without = Given::of(Source::new("scara.yaml", text), Trig::Libm);
+    let digits = "1".to_string() + &"0".repeat(17) + ".0";
+    let lost = format!("[0.0, 0.0, -9.81 * pi[2] + {digits} * pi[2] - {digits} * pi[2], 0.0]");
+    without.refused(load, &lost, "gravity_with: rounding can make an error of");
 }

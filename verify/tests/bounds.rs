@@ -9,13 +9,16 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::Wide;
-use armgen_verify::arithmetic::{Element, Stream};
-use armgen_verify::bounds::{domain_of, draw, literal_errors, notes, of, of_function, two_digits};
+use armgen_verify::bounds::{domain_of, draw, notes, of, of_function, two_digits};
 use armgen_verify::claims::Claims;
-use armgen_verify::companion::{companion, LaneArguments, Table, LANES};
+use armgen_verify::companion::{companion, LaneArguments, Table};
+use armgen_verify::element::Element;
 use armgen_verify::errors::{Run, Seen, Subject};
+use armgen_verify::float::LANES;
 use armgen_verify::program::Step;
+use armgen_verify::ranges::literal_errors;
 use armgen_verify::reader::Module;
+use armgen_verify::stream::Stream;
 
 /// A robot of the project: its text, module, claims and description.
 fn robot(name: &str, scalar: Scalar) -> (String, Module, Claims, Manipulator) {

@@ -13,15 +13,16 @@ use std::collections::BTreeMap;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::{Wide, WideArguments};
-use armgen_verify::arithmetic::{Element, Stream};
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
 use armgen_verify::contract::Promise;
+use armgen_verify::element::Element;
 use armgen_verify::enclosure::Float;
 use armgen_verify::float::Arguments;
 use armgen_verify::program::Program;
 use armgen_verify::reader::{Constant, Module};
 use armgen_verify::report::Verdict;
+use armgen_verify::stream::Stream;
 use armgen_verify::{constants, prepare};
 
 use mutation::Mutable;

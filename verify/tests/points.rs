@@ -5,12 +5,12 @@ mod common;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
-use armgen_verify::arithmetic::Stream;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
 use armgen_verify::reader::Module;
 use armgen_verify::report::MOST_LOG2_ODDS;
+use armgen_verify::stream::Stream;
 use armgen_verify::{certify, seed, verify, verify_with};
 
 /// The first bits of the points for a text.

@@ -385,11 +385,6 @@ impl Quantity {
         let entries = derive(&mut pool, &mut plan);
         let grouped = rewriting == Use::Dynamics && plan.has(Pass::Grouping);
         let parallel = arm.parallel_axes();
-        Derivation {
-            pool,
-            entries,
-            parallel,
-            method: if grouped { OVER_GROUPED_BODIES } else { OVER_THE_LINKS },
-        }
+        Derivation { pool, entries, parallel, method: if grouped { OVER_GROUPED_BODIES } else { OVER_THE_LINKS } }
     }
 }

@@ -14,7 +14,8 @@ use std::rc::Rc;
 use dashu_base::{Abs, EstimatedLog2, UnsignedAbs};
 use dashu_int::UBig;
 
-use super::{Arithmetic, Element};
+use super::Arithmetic;
+use crate::element::Element;
 use crate::formula::definitions::{self, Defined};
 use crate::formula::{Formula, Rational, Root};
 

@@ -9,10 +9,11 @@ use std::collections::BTreeMap;
 use dashu_base::{Signed, UnsignedAbs};
 use dashu_int::UBig;
 
-use super::roots::Dependent;
-use super::{Arithmetic, Element, Stream};
+use super::Arithmetic;
+use crate::element::Element;
 use crate::formula::definitions::Defined;
-use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
+use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
+use crate::stream::Stream;
 
 /// An integer modulo a prime.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -17,19 +17,16 @@
 //! what is none becomes one with odds of ½. So what is called independent *is* independent; what seems to depend is proved by finding y, whose sign is that of
 //! an enclosure.
 
-use std::collections::BTreeMap;
-
 use dashu_base::{Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
 use super::prime::{Prime, Residue};
 use super::tower::{add, invert, is_zero, multiply, negate, Tower};
-use super::{Arithmetic, Element, Stream};
+use super::Arithmetic;
+use crate::element::Element;
 use crate::enclosure::enclose;
-use crate::formula::{Atoms, Formula, Rational, Root};
-
-/// Nested roots that follow from other roots: each as a formula of roots that stand before it.
-pub type Dependent = BTreeMap<Root, Formula>;
+use crate::formula::{Atoms, Dependent, Formula, Rational, Root};
+use crate::stream::Stream;
 
 /// As many roots of integers may occur under dependent nested roots: to find y costs up to 3^k operations.
 const MOST_INNER_ROOTS: usize = 8;

@@ -9,10 +9,11 @@ use std::sync::Arc;
 use dashu_base::BitTest;
 use dashu_int::IBig;
 
-use super::roots::Dependent;
-use super::{Arithmetic, Element, Stream};
+use super::Arithmetic;
+use crate::element::Element;
 use crate::formula::definitions::Defined;
-use crate::formula::{root_from_coprime, Atoms, Formula, Rational, Root};
+use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
+use crate::stream::Stream;
 
 /// The squares of the adjoined roots, each in the coordinates of the field below.
 #[derive(Debug, Default, PartialEq)]

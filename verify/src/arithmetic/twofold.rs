@@ -7,9 +7,8 @@
 //! needed only to show the worst cases.
 
 use super::wide::{Wide, WideArguments};
-use super::Element;
-use crate::companion::LANES;
-use crate::float::Arguments;
+use crate::element::Element;
+use crate::float::{Arguments, LANES};
 use crate::program::{Angle, Argument, Inputs, Program, Step};
 
 /// high + low.
@@ -309,7 +308,7 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::Stream;
+    use crate::stream::Stream;
 
     /// How far a pair is from a wide number, by the size of that.
     fn relative(found: Pair, exact: &Wide) -> f64 {

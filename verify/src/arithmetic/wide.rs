@@ -5,7 +5,7 @@
 use dashu_base::{BitTest, Signed, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 
-use super::Element;
+use crate::element::Element;
 use crate::enclosure::{enclose, sine_cosine_of};
 use crate::float::Arguments;
 use crate::formula::{Formula, Rational};
@@ -273,7 +273,7 @@ impl Inputs<Wide> for WideArguments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::Stream;
+    use crate::stream::Stream;
 
     fn exact(value: Wide) -> Rational {
         let bytes: Vec<u8> = value.words.iter().flat_map(|w| w.to_le_bytes()).collect();

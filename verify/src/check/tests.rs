@@ -179,13 +179,23 @@ fn texts_and_items(tally: &mut Tally, scara: &Given) {
         |tally: &mut Tally, text: &str, layers: &[Layer]| tally.text(scara, text, &format!("{module}\n{text}\n"), layers);
     appended(tally, &"\n".repeat(33 << 20), &[(Length, "the text is longer than 32 MiB")]);
     let documentation = |tally: &mut Tally, new: &str, layers: &[Layer]| tally.module(scara, "", NAMED, new, layers);
-    documentation(tally, "/// Name of the robot.\u{202e}", &[(Visible, "U+202E, which cannot be seen")]);
+    documentation(
+        tally,
+        "/// Name of the robot.\u{202e}",
+        &[(Visible, "U+202E, which cannot be seen"), (Documentation, "documentation that is not")],
+    );
     let runs = "/// Name.\n/// ```\n/// std::process::exit(1)\n/// ```";
-    documentation(tally, runs, &[(Fences, "can begin or end a block of code")]);
-    documentation(tally, "/// Name.\n///\n///     std::process::exit(1)", &[(Indentation, "two blanks in a row")]);
+    let not = (Documentation, "documentation that is not `Name of the robot.`");
+    documentation(tally, runs, &[(Fences, "can begin or end a block of code"), not]);
+    documentation(tally, "/// Name.\n///\n///     std::process::exit(1)", &[(Indentation, "two blanks in a row"), not]);
+    documentation(tally, "/// Name of the robot. Rounding error: none.", &[not]);
     tally.module(scara, "", "PartialEq)]", "PartialEq, evil::Evil)]", &[(Tokens, "`,` where an emitted module has `)`")]);
     tally.module(scara, "pub fn gravity(", "q: &[Real; DOF]", "q: &[Real; 4]", &[(Signatures, "`4` where the signature")]);
-    appended(tally, "/// Number.\n#[allow(dead_code)]\npub const DOF: usize = 4;", &[(Once, "constant `DOF` stands twice")]);
+    appended(
+        tally,
+        "/// Number of joints.\n#[allow(dead_code)]\npub const DOF: usize = 4;",
+        &[(Once, "constant `DOF` stands twice")],
+    );
     let without = |begins: &str| module.replace(item(module, begins), "");
     tally.text(scara, "no struct", &without("pub struct EquationsOfMotion"), &[(Companions, "come together")]);
     let names = [(PrivateNames, "is not a private item of an emitted module"), (PrivateNeeded, "is needed by no function")];
@@ -223,7 +233,12 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     line(tally, "let abc = c2;", &[(Names, "where the name of a value can stand")]);
     line(tally, "let t9 = c2; let t9 = t1;", &[(NamesOnce, "`t9` is given twice")]);
     let cost = (Cost, "the documentation says `Cost: ");
-    line(tally, "let (s9, c9) = sin_cos(q[1] + q[0]);", &[(Angles, "an angle is a sum of joint variables in their order"), cost]);
+    let prose = (Prose, "the documentation says `Cost: ");
+    line(
+        tally,
+        "let (s9, c9) = sin_cos(q[1] + q[0]);",
+        &[(Angles, "an angle is a sum of joint variables in their order"), cost, prose],
+    );
     let deep = format!("let t1 = {}5.0 * c2 + 8.766{};\n", "(".repeat(17), ")".repeat(17));
     tally.module(scara, B, T1, &deep, &[(Brackets, "brackets in more than 16 others")]);
     tally.module(scara, B, "5.0 * c2", "5.00 * c2", &[(Shortest, "is not the shortest decimal of a float")]);
@@ -263,22 +278,32 @@ fn functions(tally: &mut Tally, scara: &Given) {
     let squares: String = (0..200).map(|k| format!("let t{} = t{1} * t{1}; ", 901 + k, 900 + k)).collect();
     let high = edited(module, B, T1, &format!("{T1}    let t900 = 0.25 * c2 - 0.25 * c2; {squares}\n"));
     let high = edited(&high, B, "t1, -0.25", "t1, t1100 - 0.25");
-    let layers = [(Odds, "inertia_matrix: the odds of a miss are"), (Cost, "the documentation says `Cost: ")];
+    let said = "the documentation says `Cost: ";
+    let layers = [(Odds, "inertia_matrix: the odds of a miss are"), (Cost, said), (Prose, said)];
     tally.text(scara, "a high degree", &high, &layers);
 }
 
 fn floats(tally: &mut Tally, scara: &Given) {
-    let comments = [(Cost, "the documentation says `Cost: "), (Rounding, "the documentation says `Rounding error: ")];
+    let said = "the documentation says `Cost: ";
+    let comments = [(Cost, said), (Rounding, "the documentation says `Rounding error: "), (Prose, said)];
     let entry = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, B, B11, &text.replace("B11", B11), &[layers, &comments].concat());
     };
     let leaves = (Leaves, "inertia_matrix: a value can leave f64 inside the box");
     let (the_box, states) = ((Box, "anywhere in the box"), (States, "in f64, at a state of the box"));
-    entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &[(Divisors, "it divides, which its equations do not ask for")]);
+    let divides = [(Divisors, "it divides, which its equations do not ask for"), (Positive, "a divisor is negative")];
+    entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &divides);
     entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, the_box, states]);
     entry(tally, scara, "B11 + 1e300 - 1e300", &[the_box, states]);
     entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[the_box, states]);
     entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, states]);
+    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[(Plain, "in f64, at a state of the box")]);
+    // Finite in the box, and not a number where q[2] is 2.
+    let powers: String = (901..911).map(|k| format!("let t{k} = t{0} * t{0}; ", k - 1)).collect();
+    let grown = edited(&scara.module, B, T1, &format!("{T1}    let t900 = 0.9 * q[2]; {powers}\n"));
+    let grown = edited(&grown, B, B11, &format!("{B11} + t910 - t910"));
+    let layers = [(Growth, "inertia_matrix: it takes `q` to the power 1024 where its equations have 0")];
+    tally.text(scara, "a high power", &grown, &[&layers[..], &comments].concat());
     let shortest = (Shortest, "is not the shortest decimal of a float");
     let rounded = "B11 - 4.0 + (100000000000000004.0 - 100000000000000000.0)";
     entry(tally, scara, rounded, &[shortest, the_box, states]);
@@ -287,8 +312,23 @@ fn floats(tally: &mut Tally, scara: &Given) {
     };
     let divided = (DividedStates, "forward_dynamics: rounding can make an error of");
     forward(tally, scara, "t29 + 1e17 - 1e17", &[divided]);
+    let reciprocal = |tally: &mut Tally, text: &str, layers: &[Layer]| {
+        tally.module(scara, "pub fn forward_dynamics(", "(1.0 / t25)", text, layers);
+    };
+    reciprocal(tally, "(-(1.0 / (-t25)))", &[(Positive, "forward_dynamics: a divisor is negative")]);
+    let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
+    reciprocal(
+        tally,
+        scaled,
+        &[&[(Residual, "forward_dynamics: it does not divide as the elimination")], &comments[..]].concat(),
+    );
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[(DividedLeaves, "forward_dynamics: a value leaves f32")]);
+    forward(
+        tally,
+        &single,
+        "t29 * 1e25 * 1e25 * 1e-25 * 1e-25",
+        &[(DividedLeaves, "forward_dynamics: a value leaves f32"), (Residual, "it does not divide as the elimination")],
+    );
 }
 
 fn constants(tally: &mut Tally, scara: &Given) {
@@ -302,7 +342,11 @@ fn constants(tally: &mut Tally, scara: &Given) {
 
 /// Names and exact values of base parameters are the module's choice, within limits.
 fn base_parameters(tally: &mut Tally, scara: &Given) {
-    let twice = [(Modular, "column `Fm1` is no combination of the torques of"), (BaseNames, "`Fm1` stands there twice")];
+    let twice = [
+        (Modular, "column `Fm1` is no combination of the torques of"),
+        (BaseNames, "`Fm1` stands there twice"),
+        (Meanings, "BASE_PARAMETER_NAMES: the documentation says"),
+    ];
     tally.module(scara, "const BASE_PARAMETER_NAMES", "\"Fm2\"", "\"Fm1\"", &twice);
     // Nearer to the literal than any float, and not the value.
     let off = |given: &Given, constant: &str, entry: usize| {
@@ -356,14 +400,20 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
         (Columns, "its column depends on those before it"),
         (BaseNames, "`mcx2R` stands there twice"),
         (Cost, "base_regressor: the documentation says `Cost: "),
+        (Prose, "base_regressor: the documentation says `Cost: "),
+        (Meanings, "BASE_PARAMETER_NAMES: the documentation says"),
     ];
     tally.text(scara, "a column twice", &text, &layers);
 }
 
 fn comments(tally: &mut Tally, scara: &Given) {
     let rounding = |why: &'static str| (Rounding, why);
-    let head = [(Head, "the head of the file: `another description."), rounding("Rounding error: ")];
+    let head = [(Head, "the head of the file: `another description."), rounding("Rounding error: "), (Prose, "Derived by")];
     tally.module(scara, "", "// the description.", "// another description.", &head);
+    let gravity = [(Prose, "gravity: the documentation says `Gravity term g(q) on the right")];
+    tally.module(scara, "/// Gravity term g(q) on", "on the left", "on the right", &gravity);
+    let meaning = [(Meanings, "PARAMETER_NAMES: the documentation says `m_l3  parameter of the description, 15`")];
+    tally.module(scara, "", "parameter of the description, 10", "parameter of the description, 15", &meaning);
     let at = scara.module.find("pub fn gravity_with(").expect("a function");
     let bound = scara.module[..at].rfind("/// Rounding error: ").expect("its bound");
     let bound = scara.module[bound..].lines().next().expect("a line");

@@ -5,7 +5,8 @@ use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{self, Manipulator};
 
 use super::vector::{add, dot, product, scale, sub, transpose, Matrix, Vector};
-use crate::arithmetic::{Arithmetic, Element};
+use crate::arithmetic::Arithmetic;
+use crate::element::Element;
 use crate::formula::Formula;
 
 /// A frame in another.

@@ -5,7 +5,21 @@ use super::pose::Pose;
 use super::state::State;
 use super::vector::{apply, dot, product, scale, solve, transpose, Vector};
 use crate::arithmetic::dual::Dual;
-use crate::arithmetic::Element;
+use crate::element::Element;
+
+/// What the equations of motion are made of: B and C row by row, g, F and U.
+pub struct Parts<E> {
+    /// B(q).
+    pub b: Vec<Vec<E>>,
+    /// C(q, dq).
+    pub c: Vec<Vec<E>>,
+    /// g(q).
+    pub g: Vec<E>,
+    /// F(dq).
+    pub f: Vec<E>,
+    /// U(q).
+    pub u: E,
+}
 
 /// A body where it is: mass, centre of mass, the link it is part of, and its inertia about the centre of mass in the base frame.
 struct Placed<E> {

@@ -7,13 +7,13 @@
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 
 use super::arm::{Arm, Body, Joint};
-use super::lagrange::{friction, spring_energy, spring_torques};
+use super::lagrange::{friction, spring_energy, spring_torques, Parts};
 use super::newton_euler::{body, ten, Carrier, Reference};
 use super::pose::Pose;
 use super::state::State;
 use super::vector::{add, dot, scale, solve};
-use crate::arithmetic::{Arithmetic, Element};
-use crate::reference::Parts;
+use crate::arithmetic::Arithmetic;
+use crate::element::Element;
 
 /// A standard parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -3,7 +3,7 @@
 use super::arm::{Arm, Frame};
 use super::state::State;
 use super::vector::{add, apply, cross, product, scale, sub, transpose, Vector};
-use crate::arithmetic::Element;
+use crate::element::Element;
 
 /// Frames in the base frame at one state.
 #[derive(Clone, Debug)]

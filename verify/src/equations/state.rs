@@ -1,7 +1,8 @@
 //! A state: values of all inputs of the equations.
 
 use crate::arithmetic::dual::Dual;
-use crate::arithmetic::{Arithmetic, Element};
+use crate::arithmetic::Arithmetic;
+use crate::element::Element;
 use crate::program::{by_addition, Argument, Inputs, Turn};
 
 /// Values of joint variables, rates, accelerations, references, torques and parameters.

@@ -1,6 +1,6 @@
 //! Vectors and 3 x 3 matrices of exact numbers.
 
-use crate::arithmetic::Element;
+use crate::element::Element;
 
 /// x, y, z.
 pub type Vector<E> = [E; 3];

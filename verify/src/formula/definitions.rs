@@ -17,7 +17,7 @@ use dashu_base::BitTest;
 
 use super::{Formula, Root};
 use crate::check::Check;
-use crate::enclosure::Interval;
+use crate::interval::Interval;
 
 /// What a name begins with; its number follows.
 pub const PREFIX: &str = "k";
@@ -280,10 +280,10 @@ impl<E: Clone> Defined<E> {
 mod tests {
     use super::*;
     use crate::arithmetic::prime::Prime;
-    use crate::arithmetic::roots::Dependent;
-    use crate::arithmetic::{Arithmetic, Stream};
+    use crate::arithmetic::Arithmetic;
     use crate::enclosure::Float;
-    use crate::formula::Atoms;
+    use crate::formula::{Atoms, Dependent};
+    use crate::stream::Stream;
 
     fn list(texts: &[&str]) -> Result<Definitions, String> {
         let mut definitions = Definitions::default();

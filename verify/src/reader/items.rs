@@ -68,7 +68,10 @@ const STRUCT: [&str; 2] = [
 ];
 const FIELDS: [[&str; 2]; 3] = [
     ["Inertia matrix B(q): symmetric, positive definite.", "pub inertia: [[Real; DOF]; DOF],"],
-    ["Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.", "pub coriolis: [[Real; DOF]; DOF],"],
+    [
+        "Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.",
+        "pub coriolis: [[Real; DOF]; DOF],",
+    ],
     ["Gravity term g(q), on the left of the equation of motion.", "pub gravity: [Real; DOF],"],
 ];
 
@@ -210,8 +213,8 @@ impl<'a> Items<'a> {
         }
         match (public, keyword.text) {
             (true, "type") => {
-                documented(&documentation, SCALAR, &first)?;
                 parser.expect(&format!("{LINTS} pub type Real ="))?;
+                documented(&documentation, SCALAR, &first)?;
                 let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
                 let word = parser.take()?;
                 let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
@@ -224,13 +227,13 @@ impl<'a> Items<'a> {
                 let known = CONSTANTS.into_iter().find(|(known, ..)| name.is(known));
                 let (known, ty, text) =
                     known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
+                let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
+                parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
                 if text == IN_PARTS {
                     self.documentation.insert(name.text, documentation);
                 } else {
                     documented(&documentation, text, &first)?;
                 }
-                let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
-                parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
                 if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("constant `{known}` stands twice")));
                 }
@@ -242,8 +245,8 @@ impl<'a> Items<'a> {
             }
             (true, "struct") => {
                 let [text, begin] = STRUCT;
-                documented(&documentation, text, &first)?;
                 parser.expect(begin)?;
+                documented(&documentation, text, &first)?;
                 for [text, field] in FIELDS {
                     let place = parser.peek();
                     documented(&parser.documentation()?, text, &place)?;

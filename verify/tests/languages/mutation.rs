@@ -4,11 +4,11 @@ use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::validate;
-use armgen_verify::arithmetic::Stream;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
 use armgen_verify::program::{Program, Step};
 use armgen_verify::reader::{Module, ModuleText};
+use armgen_verify::stream::Stream;
 use armgen_verify::{prepare, verify_with};
 
 use crate::common;

@@ -9,10 +9,10 @@ use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
-use armgen_verify::arithmetic::Stream;
 use armgen_verify::contract::{Array, Length, Promise, Sizes};
 use armgen_verify::program::Argument;
 use armgen_verify::reader::{Constant, Module};
+use armgen_verify::stream::Stream;
 
 use crate::common;
 

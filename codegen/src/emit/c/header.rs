@@ -127,7 +127,11 @@ pub(super) fn macros(module: &Module) -> String {
         let _ = writeln!(text, "#define {upper}_NOMINAL_BASE_PARAMETERS {}", braces(nominal));
         text += "\n";
         let title = Block::text(format!("The base parameters, in the order of the columns of {name}_base_regressor:"));
-        let blocks = [title, documentation::own_base_note(documentation::turn(module).as_deref()), documentation::meanings(&module.base_set)];
+        let blocks = [
+            title,
+            documentation::own_base_note(documentation::turn(module).as_deref()),
+            documentation::meanings(&module.base_set),
+        ];
         text += &comment(&blocks, &link);
     }
     text

@@ -1,0 +1,75 @@
+//! Numbers that a program can be executed in.
+
+use std::fmt::Debug;
+
+/// An exact number with the operations of a field.
+pub trait Element: Clone + PartialEq + Debug {
+    /// a + b.
+    fn plus(&self, other: &Self) -> Self;
+    /// a - b.
+    fn minus(&self, other: &Self) -> Self;
+    /// a b.
+    fn times(&self, other: &Self) -> Self;
+    /// -a.
+    fn negated(&self) -> Self;
+    /// 1/a, if there is one.
+    fn inverse(&self) -> Option<Self>;
+    /// Whether this is 0.
+    fn is_zero(&self) -> bool;
+    /// How many bits it is written with, where that can grow.
+    fn bits(&self) -> usize {
+        0
+    }
+    /// The quotient, if there is one.
+    fn over(&self, other: &Self) -> Option<Self> {
+        Some(self.times(&other.inverse()?))
+    }
+}
+
+impl Element for f64 {
+    fn plus(&self, other: &f64) -> f64 {
+        self + other
+    }
+    fn minus(&self, other: &f64) -> f64 {
+        self - other
+    }
+    fn times(&self, other: &f64) -> f64 {
+        self * other
+    }
+    fn negated(&self) -> f64 {
+        -self
+    }
+    fn inverse(&self) -> Option<f64> {
+        Some(1.0 / self)
+    }
+    fn is_zero(&self) -> bool {
+        *self == 0.0
+    }
+    fn over(&self, other: &f64) -> Option<f64> {
+        Some(self / other)
+    }
+}
+
+impl Element for f32 {
+    fn plus(&self, other: &f32) -> f32 {
+        self + other
+    }
+    fn minus(&self, other: &f32) -> f32 {
+        self - other
+    }
+    fn times(&self, other: &f32) -> f32 {
+        self * other
+    }
+    fn negated(&self) -> f32 {
+        -self
+    }
+    fn inverse(&self) -> Option<f32> {
+        Some(1.0 / self)
+    }
+    fn is_zero(&self) -> bool {
+        *self == 0.0
+    }
+    fn over(&self, other: &f32) -> Option<f32> {
+        Some(self / other)
+    }
+}

@@ -1,0 +1,199 @@
+//! Intervals and errors of all steps of a program over a box of arguments.
+
+use crate::enclosure::Float;
+use crate::float::Arguments;
+use crate::formula::{Formula, Rational};
+use crate::program::{Angle, Argument, Literal, Program, Step};
+
+/// Whether a float is a power of two whose products neither round nor leave the normal range for values of any robot.
+pub fn is_power_of_two(value: f64) -> bool {
+    let mantissa = value.to_bits() & ((1 << 52) - 1);
+    value != 0.0 && mantissa == 0 && (1e-6..1e6).contains(&value.abs())
+}
+
+/// How far the literals of a program are from the exact values they stand for: 0 where the float is exact.
+pub fn literal_errors(program: &Program, values: &[Formula], real: Float) -> Vec<f64> {
+    let error = |(literal, exact): (&Literal, &Formula)| {
+        let same = exact.as_rational().is_some_and(|e| Rational::try_from(literal.value).is_ok_and(|f| f == *e));
+        if same {
+            0.0
+        } else if literal.value.abs() < real.smallest_normal() {
+            // Below the normal numbers a literal may have lost all its digits.
+            real.smallest()
+        } else {
+            real.unit() * literal.value.abs()
+        }
+    };
+    program.literals.iter().zip(values).map(error).collect()
+}
+
+/// Lowest and highest value of each argument's entries.
+pub type Domain = Arguments<(f64, f64)>;
+
+/// An interval around the exact value, and how far the computed one can be from it.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// The error.
+    pub error: f64,
+}
+
+/// A little more, for the roundings of the bounds themselves.
+const OUTWARD: f64 = 1.0 + 1e-14;
+
+impl Range {
+    fn exact(low: f64, high: f64) -> Range {
+        Range { low, high, error: 0.0 }
+    }
+
+    /// No bound at all.
+    const ANYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
+
+    /// The range, if no value of it and none that can be computed for it leaves the scalar.
+    fn within(self, real: Float) -> Range {
+        if self.size() + self.error <= real.largest() {
+            self
+        } else {
+            Range::ANYTHING
+        }
+    }
+
+    fn of(ends: &[f64], error: f64) -> Range {
+        if ends.iter().any(|end| end.is_nan()) {
+            return Range::ANYTHING;
+        }
+        let low = ends.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+        let high = ends.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+        let widen = |x: f64, sign: f64| x + sign * (x.abs() * 1e-15 + f64::MIN_POSITIVE);
+        Range { low: widen(low, -1.0), high: widen(high, 1.0), error: error * OUTWARD }
+    }
+
+    /// The largest size of a value.
+    pub fn size(&self) -> f64 {
+        self.low.abs().max(self.high.abs())
+    }
+}
+
+/// Angles beyond this may be any.
+const FARTHEST: f64 = 1e6;
+
+/// The range of sine (or cosine, a quarter turn on) over an interval.
+fn wave(low: f64, high: f64, shift: f64) -> (f64, f64) {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let (a, b) = (low + shift, high + shift);
+    // So far out additions round by more than the slack below.
+    if !(a.abs() <= FARTHEST && b.abs() <= FARTHEST) {
+        return (-1.0, 1.0);
+    }
+    // Whether a quarter turn plus k turns lies in the interval, with some slack.
+    let contains = |peak: f64| ((a - peak - 1e-9) / (2.0 * PI)).ceil() * 2.0 * PI + peak <= b + 1e-9;
+    let ends = [a.sin(), b.sin()];
+    let low = if contains(-FRAC_PI_2) { -1.0 } else { ends[0].min(ends[1]) - 1e-9 };
+    let high = if contains(FRAC_PI_2) { 1.0 } else { ends[0].max(ends[1]) + 1e-9 };
+    (low.max(-1.0), high.min(1.0))
+}
+
+/// Values and errors of all steps of a program over a domain; `errors` are those of its literals, no divisor is below `smallest`.
+pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f64>, real: Float) -> Vec<Range> {
+    let u = real.unit();
+    let tiny = real.smallest_normal();
+    let angle = |angle: &Angle, shift: f64| {
+        let terms = &angle.terms;
+        let (mut low, mut high) = (0.0, 0.0);
+        for &(joint, factor) in terms {
+            let (a, b) = (domain.q[joint].0 * factor as f64, domain.q[joint].1 * factor as f64);
+            (low, high) = (low + a.min(b), high + a.max(b));
+        }
+        let literal = angle.turn.map(|(k, minus)| (program.turns[k], minus));
+        let turn = literal.map_or(0.0, |(literal, minus)| program.literals[literal].value * if minus { -1.0 } else { 1.0 });
+        (low, high) = (low + turn, high + turn);
+        let parts = terms.len() + usize::from(literal.is_some());
+        let slack = if parts > 1 || terms.iter().any(|(_, k)| k.abs() != 1) {
+            let size =
+                |&(joint, factor): &(usize, i64)| domain.q[joint].0.abs().max(domain.q[joint].1.abs()) * factor.abs() as f64;
+            parts as f64 * u * (terms.iter().map(size).sum::<f64>() + turn.abs()) + literal.map_or(0.0, |(l, _)| errors[l])
+        } else {
+            0.0
+        };
+        let (low, high) = wave(low, high, shift);
+        Range::of(&[low, high], 2.0 * u * low.abs().max(high.abs()) + slack + tiny)
+    };
+    let mut ranges: Vec<Range> = Vec::with_capacity(program.steps.len());
+    for (i, step) in program.steps.iter().enumerate() {
+        let of = |i: &usize| ranges[*i];
+        let power_of_two = |i: &usize| matches!(program.steps[*i], Step::Literal(l) if errors[l] == 0.0 && is_power_of_two(program.literals[l].value));
+        // The rounding of this step, whose operands bring in `carried`.
+        let rounded = |ends: &[f64], carried: f64, times: f64| {
+            let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            Range::of(ends, carried + times * u * (size + carried))
+        };
+        let range = match step {
+            Step::Input(argument, index) => {
+                let (low, high) = domain.of(*argument)[*index];
+                Range::exact(low, high)
+            }
+            Step::Literal(index) => {
+                let value = program.literals[*index].value;
+                let error = errors[*index];
+                Range { low: value - error, high: value + error, error }
+            }
+            Step::Sine(combination) => angle(combination, 0.0),
+            Step::Cosine(combination) => angle(combination, std::f64::consts::FRAC_PI_2),
+            Step::Sign(joint) => {
+                let (low, high) = domain.of(Argument::Dq)[*joint];
+                Range::exact(low.signum().min(0.0), high.signum().max(0.0))
+            }
+            Step::Negate(a) => {
+                let a = of(a);
+                Range { low: -a.high, high: -a.low, ..a }
+            }
+            Step::Add(a, b) => {
+                let (a, b) = (of(a), of(b));
+                rounded(&[a.low + b.low, a.high + b.high], a.error + b.error, 1.0)
+            }
+            Step::Subtract(a, b) => {
+                let (a, b) = (of(a), of(b));
+                rounded(&[a.low - b.high, a.high - b.low], a.error + b.error, 1.0)
+            }
+            Step::Multiply(x, y) => {
+                let (a, b) = (of(x), of(y));
+                let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
+                let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
+                if x == y && a.low < 0.0 && a.high > 0.0 {
+                    ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
+                }
+                if power_of_two(x) || power_of_two(y) {
+                    // A product with ½ or less of what is hardly normal loses digits.
+                    let factor = if power_of_two(x) { a.size() } else { b.size() };
+                    Range::of(&ends, carried + if factor < 1.0 { real.smallest() } else { 0.0 })
+                } else {
+                    rounded(&ends, carried + tiny, 1.0)
+                }
+            }
+            Step::Divide(x, y) => {
+                let (a, mut b) = (of(x), of(y));
+                let least = smallest.unwrap_or(0.0);
+                // All divisors are positive or all negative: pivots of B keep their sign.
+                if b.high >= -b.low {
+                    b.low = b.low.max(least);
+                } else {
+                    b.high = b.high.min(-least);
+                }
+                let left = b.low.abs().min(b.high.abs()) - b.error;
+                if left > 0.0 && b.low.signum() == b.high.signum() {
+                    let ends = [a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high];
+                    let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+                    rounded(&ends, (a.error + size * b.error) / left + tiny, 1.0)
+                } else {
+                    Range::ANYTHING
+                }
+            }
+        };
+        debug_assert_eq!(ranges.len(), i);
+        ranges.push(range.within(real));
+    }
+    ranges
+}
