@@ -70,12 +70,8 @@ pub(crate) enum Check {
     Identities,
     /// Floats: divisors are those that the equations ask for.
     Divisors,
-    /// Floats: divisors are positive.
-    Positive,
     /// Floats: functions grow with their arguments as the equations do.
     Growth,
-    /// Floats: accelerations have a bound of torques.
-    Residual,
     /// Floats: values stay in the scalar.
     Leaves,
     /// Floats: error bounds over the box.

@@ -438,7 +438,8 @@ impl Checker {
         let operands = undivided_operands(program);
         // A quotient of polynomials in the joint variables has no degree that the text shows; what it is made of are parts of torques.
         let parts = (!operands.is_empty()).then(|| most(&program.part(&operands)));
-        let (found, torques) = (most(program), self.growth["inverse_dynamics"]);
+        let torques = ["inverse_dynamics", "inverse_dynamics_with"].into_iter().filter_map(|name| self.growth.get(name));
+        let (found, torques) = (most(program), torques.fold(own, |most, &growth| most.most(growth)));
         let compared = COUNTED.into_iter().map(|argument| match parts {
             Some(parts) if argument == Argument::Q => (argument, parts.of(argument), torques.of(argument)),
             _ => (argument, found.of(argument), own.of(argument)),

@@ -260,7 +260,7 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         let Some(program) = module.program(&function.name) else { continue };
         let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
         let bound = bounds::of_function(program, &values, &report.domain, module, checker.claims());
-        function.unfit = trial.fault(program, &values, &bound);
+        function.unfit = trial.fault(program, &values);
         function.bound = Some(bound);
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);

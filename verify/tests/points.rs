@@ -37,7 +37,7 @@ fn what_has_no_influence_gives_no_other_points() {
     };
     same("a comment", &source, &format!("// 7\n{text}"), &claims);
     same("blanks", &source, &text.replace("    let", "\n  let"), &claims);
-    same("documentation", &source, &replaced(text, "/// Name of the robot.", "/// The name."), &claims);
+    same("documentation", &source, &replaced(text, "/// Gravity term g(q) on", "/// The term g(q) on"), &claims);
     same("names", &source, &text.replace("t1", "t1_renamed"), &claims);
     same(
         "an unused step",

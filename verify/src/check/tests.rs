@@ -291,7 +291,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     };
     let leaves = (Leaves, "inertia_matrix: a value can leave f64 inside the box");
     let (the_box, states) = ((Box, "anywhere in the box"), (States, "in f64, at a state of the box"));
-    let divides = [(Divisors, "it divides, which its equations do not ask for"), (Positive, "a divisor is negative")];
+    let divides = [(Divisors, "it divides, which its equations do not ask for")];
     entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &divides);
     entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, the_box, states]);
     entry(tally, scara, "B11 + 1e300 - 1e300", &[the_box, states]);
@@ -315,20 +315,12 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let reciprocal = |tally: &mut Tally, text: &str, layers: &[Layer]| {
         tally.module(scara, "pub fn forward_dynamics(", "(1.0 / t25)", text, layers);
     };
-    reciprocal(tally, "(-(1.0 / (-t25)))", &[(Positive, "forward_dynamics: a divisor is negative")]);
+    let foreign = [(Divisors, "forward_dynamics: it divides by what is no pivot")];
+    reciprocal(tally, "(-(1.0 / (-t25)))", &foreign);
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
-    reciprocal(
-        tally,
-        scaled,
-        &[&[(Residual, "forward_dynamics: it does not divide as the elimination")], &comments[..]].concat(),
-    );
+    reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    forward(
-        tally,
-        &single,
-        "t29 * 1e25 * 1e25 * 1e-25 * 1e-25",
-        &[(DividedLeaves, "forward_dynamics: a value leaves f32"), (Residual, "it does not divide as the elimination")],
-    );
+    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[(DividedLeaves, "forward_dynamics: a value leaves f32")]);
 }
 
 fn constants(tally: &mut Tally, scara: &Given) {

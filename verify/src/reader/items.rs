@@ -75,15 +75,6 @@ const FIELDS: [[&str; 2]; 3] = [
     ["Gravity term g(q), on the left of the equation of motion.", "pub gravity: [Real; DOF],"],
 ];
 
-/// Documentation of one line, as it must stand.
-fn documented(found: &[&str], text: &str, place: &Token<'_>) -> Result<(), Fault> {
-    match found {
-        [line] if line.strip_prefix(' ') == Some(text) => Ok(()),
-        _ if !Check::Documentation.is_made() => Ok(()),
-        _ => Err(place.fault(format!("documentation that is not `{text}`"))),
-    }
-}
-
 /// A public function.
 #[derive(Clone, Debug)]
 pub(super) struct Public<'a> {
@@ -113,6 +104,8 @@ pub(super) struct Items<'a> {
     /// The comments in front of all items.
     pub(super) head: Vec<&'a str>,
     pub(super) real: Option<Float>,
+    /// The first documentation that is not as it must be.
+    undocumented: Option<Fault>,
     /// The documentation of constants that name parameters.
     pub(super) documentation: BTreeMap<&'a str, Vec<&'a str>>,
     /// Each at its value.
@@ -162,7 +155,10 @@ impl<'a> Items<'a> {
         while parser.peek().kind != Kind::End {
             items.item(&mut parser)?;
         }
-        Ok(items)
+        match items.undocumented.take() {
+            Some(fault) => Err(fault),
+            None => Ok(items),
+        }
     }
 
     /// The struct and the constants of base parameters come with the functions that need them, and with no others.
@@ -185,6 +181,13 @@ impl<'a> Items<'a> {
                 Err(Fault { line, reason: format!("`{name}` without the function `base_regressor`") })
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Documentation of one line, as it must stand; said only where nothing else is wrong.
+    fn documented(&mut self, found: &[&str], text: &str, place: &Token<'_>) {
+        if !matches!(found, [line] if line.strip_prefix(' ') == Some(text)) && Check::Documentation.is_made() {
+            self.undocumented.get_or_insert_with(|| place.fault(format!("documentation that is not `{text}`")));
         }
     }
 
@@ -214,7 +217,7 @@ impl<'a> Items<'a> {
         match (public, keyword.text) {
             (true, "type") => {
                 parser.expect(&format!("{LINTS} pub type Real ="))?;
-                documented(&documentation, SCALAR, &first)?;
+                self.documented(&documentation, SCALAR, &first);
                 let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
                 let word = parser.take()?;
                 let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
@@ -232,7 +235,7 @@ impl<'a> Items<'a> {
                 if text == IN_PARTS {
                     self.documentation.insert(name.text, documentation);
                 } else {
-                    documented(&documentation, text, &first)?;
+                    self.documented(&documentation, text, &first);
                 }
                 if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("constant `{known}` stands twice")));
@@ -246,10 +249,10 @@ impl<'a> Items<'a> {
             (true, "struct") => {
                 let [text, begin] = STRUCT;
                 parser.expect(begin)?;
-                documented(&documentation, text, &first)?;
+                self.documented(&documentation, text, &first);
                 for [text, field] in FIELDS {
                     let place = parser.peek();
-                    documented(&parser.documentation()?, text, &place)?;
+                    self.documented(&parser.documentation()?, text, &place);
                     parser.expect(field)?;
                 }
                 parser.expect("}")?;
