@@ -24,6 +24,8 @@ pub(crate) struct Motion {
     pub(crate) viscous: Option<Decimal>,
     pub(crate) coulomb: Option<Decimal>,
     pub(crate) armature: Option<Decimal>,
+    /// Stiffness and rest of a spring.
+    pub(crate) spring: Option<(Decimal, Option<Decimal>)>,
 }
 
 /// Which parts of the tree make up the arm.

@@ -432,6 +432,7 @@ impl Format for Mjcf<'_, '_> {
             viscous: None,
             coulomb: None,
             armature: None,
+            spring: None,
         };
         let Some(element) = self.joints[joint].joint else { return none };
         let name = attribute(element.node, "name").map_or("", |(name, _)| name);
@@ -451,12 +452,21 @@ impl Format for Mjcf<'_, '_> {
         let viscous = linear.then(|| self.number(element, "damping", "damping", values)).flatten();
         let coulomb = self.number(element, "frictionloss", "frictionloss", values);
         let armature = self.number(element, "armature", "an armature", values);
+        // Several numbers are a polynomial, which is refused as such.
+        let one =
+            self.classes.attribute(element, "stiffness").is_some_and(|(text, _)| text.split_ascii_whitespace().count() == 1);
+        let stiffness = one.then(|| self.number(element, "stiffness", "a stiffness", values)).flatten();
+        let rest = self.number(element, "springref", "springref", values);
+        let spring = values
+            .stiffness(stiffness, name)
+            .map(|stiffness| (stiffness, rest.filter(|rest| !rest.is_zero()).map(|rest| self.variable(rest, kind))));
         Motion {
             position,
             effort,
             viscous: values.coefficient(viscous, name),
             coulomb: values.coefficient(coulomb, name),
             armature: values.armature(armature, name),
+            spring,
             ..none
         }
     }

@@ -208,6 +208,7 @@ impl Format for Urdf<'_, '_> {
             viscous: values.coefficient(viscous, name),
             coulomb: values.coefficient(coulomb, name),
             armature: None,
+            spring: None,
         }
     }
 

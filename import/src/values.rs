@@ -145,6 +145,23 @@ impl Values<'_> {
         None
     }
 
+    /// The stiffness of a spring; 0 is none.
+    pub(crate) fn stiffness(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
+        let value = value.filter(|value| !value.is_zero())?;
+        if value.value > 0.0 {
+            return Some(value);
+        }
+        let message = format!("the stiffness of joint `{}` is negative: {}", shown(joint), value.text);
+        self.report(
+            Code::MjcfFeature,
+            value.span,
+            message,
+            "",
+            "a spring pulls back to its rest, so its stiffness is at least 0",
+        );
+        None
+    }
+
     /// One warning for all angles that are nearly a multiple of pi/12, at the first of them.
     pub(crate) fn warn_of_near_angles(&mut self) {
         let Some((span, text)) = self.snap.near.first().cloned() else { return };

@@ -84,6 +84,10 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
     if !friction.is_empty() {
         line(&format!("    friction: {{{}}}", friction.join(", ")));
     }
+    if let Some((stiffness, rest)) = &row.motion.spring {
+        let rest = rest.as_ref().map_or(String::new(), |rest| format!(", rest: {}", rest.text));
+        line(&format!("    spring: {{stiffness: {}{rest}}}", stiffness.text));
+    }
     if let Some(armature) = &row.motion.armature {
         line(&format!("    armature: {}", armature.text));
     }

@@ -48,13 +48,17 @@ pub(super) fn refuse_changed_inertias(compiler: Node<'_, '_>, diagnostics: &mut 
     }
 }
 
-/// Springs, and damping that is not linear.
+/// Springs and damping that are not linear.
 pub(super) fn refuse_springs<'a, 'i>(mjcf: &Mjcf<'a, 'i>, joint: Element<'a, 'i>, values: &mut Values<'_>) {
     for name in ["stiffness", "springdamper"] {
         let Some((text, span)) = mjcf.classes.attribute(joint, name) else { continue };
         let numbers = values.words(text, span, name);
+        // One stiffness is the description's.
+        if name == "stiffness" && numbers.len() == 1 {
+            continue;
+        }
         if numbers.iter().any(|number| !number.is_zero()) {
-            let help = "a description has no springs: set it to 0 and add the torque of the spring where you call the equations";
+            let help = "a spring of a description has one stiffness and a rest: write `stiffness` and `springref`";
             let message = format!("a joint of the chain has `{name}`");
             values.report(Code::MjcfFeature, span, message, "a spring", help);
         }
