@@ -14,6 +14,26 @@
 //! ([`JacobianTranspose::loop_gain`]).
 //!
 //! [`Clik`] runs a first-order algorithm: it bounds the rates, stops at joint limits and names what happened ([`Outcome`]).
+//!
+//! ```
+//! use armgen_runtime::clik::{Clik, ClikError, DampedLeastSquares, JointLimits, Outcome};
+//! use armgen_runtime::linalg::Damping;
+//! use armgen_runtime::nalgebra::SVector;
+//! use armgen_runtime::reference::Pose;
+//! use armgen_runtime::robot::Kinematics;
+//! use armgen_runtime::task::{Row, Task};
+//!
+//! /// Joint variables that bring the end effector to a position, if there are any near `from`.
+//! fn reach<R: Kinematics<6, Real = f64>>(robot: &R, goal: &Pose<f64>, from: &SVector<f64, 6>) -> Result<Option<SVector<f64, 6>>, ClikError> {
+//!     let task = Task::new([Row::X, Row::Y, Row::Z]).expect("no row stands twice");
+//!     let damping = Damping::new(0.02, 0.05).expect("positive numbers");
+//!     let law = DampedLeastSquares::new([150.0; 3], damping).expect("positive numbers");
+//!     let limits = JointLimits::rates([100.0; 6]).expect("positive numbers");
+//!     let clik = Clik::new(task, law, 1e-3, limits, [1e-5; 3]).expect("positive numbers");
+//!     let reached = clik.approach(robot, from, goal, 1000)?;
+//!     Ok((reached.outcome == Outcome::Converged).then_some(reached.q))
+//! }
+//! ```
 
 mod first_order;
 mod follow;

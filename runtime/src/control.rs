@@ -18,6 +18,33 @@
 //! Each has a method `torque`; the trait [`Controller`] is what they have in common, for a loop that runs any of them.
 //!
 //! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the memory as it was.
+//!
+//! The robot is whatever implements the traits: `Nominal` of an emitted module, say.
+//!
+//! ```
+//! use armgen_runtime::control::{ControlError, InverseDynamics, TorqueLimits};
+//! use armgen_runtime::reference::{JointReference, State};
+//! use armgen_runtime::robot::Dynamics;
+//!
+//! type Law = InverseDynamics<f64, 6>;
+//!
+//! /// Errors die away as exp(-20 t), without overshoot.
+//! fn law() -> Law {
+//!     let limits = TorqueLimits::new([330.0, 330.0, 150.0, 56.0, 56.0, 56.0]).expect("positive numbers");
+//!     Law::new([400.0; 6], [40.0; 6]).expect("positive numbers").with_torque_limits(limits)
+//! }
+//!
+//! /// One sample: the torques to hold until the next.
+//! fn sample<R: Dynamics<6, Real = f64>>(
+//!     robot: &R,
+//!     law: &Law,
+//!     desired: &JointReference<f64, 6>,
+//!     measured: &State<f64, 6>,
+//! ) -> Result<[f64; 6], ControlError> {
+//!     Ok(law.torque(robot, desired, measured)?.tau.into())
+//! }
+//! let _ = law();
+//! ```
 
 mod adaptive;
 mod inverse_dynamics;

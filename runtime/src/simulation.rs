@@ -9,6 +9,20 @@
 //!
 //! is integrated, by fixed Runge-Kutta steps or by adaptive ones. Sensors may delay and disturb what the controller sees, from a seed:
 //! equal inputs give equal bits. The energy audit compares the change of T + U with the work of the torques and of friction.
+//!
+//! ```
+//! use std::time::Duration;
+//! use armgen_runtime::nalgebra::SVector;
+//! use armgen_runtime::reference::State;
+//! use armgen_runtime::robot::Dynamics;
+//! use armgen_runtime::simulation::{run, RunError, RunOptions};
+//!
+//! /// Where an arm falls within a second without any torque.
+//! fn fall<R: Dynamics<6, Real = f64>>(robot: &R, from: SVector<f64, 6>) -> Result<State<f64, 6>, RunError<()>> {
+//!     let options = RunOptions::new(Duration::from_millis(1), Duration::from_secs(1));
+//!     run(robot, State::at_rest(from), options, |_, _| Ok(SVector::zeros()), |_| {})
+//! }
+//! ```
 
 mod continuous;
 mod integrator;

@@ -20,6 +20,23 @@
 //! Y(q, dq, dq_r, ddq_r) excites what rest does not, and nothing of a start far from the truth. That is what a [`Rehearsal`] looks at.
 //!
 //! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`Rehearsal::of`] is the motion. A run says all of it first.
+//!
+//! ```
+//! use armgen_runtime::control::PdGravity;
+//! use armgen_runtime::nalgebra::SVector;
+//! use armgen_runtime::robot::Dynamics;
+//! use armgen_runtime::stability::{analyse, Delay, StabilityError, StablePeriod};
+//!
+//! /// The longest sampling period, s, with which a loop with a sample of delay holds these postures; none where even short ones do not.
+//! fn longest<R: Dynamics<6, Real = f64>>(robot: &R, postures: &[SVector<f64, 6>]) -> Result<Option<f64>, StabilityError> {
+//!     let law = PdGravity::new([2000.0; 6], [200.0; 6]).expect("positive numbers");
+//!     let report = analyse(robot, robot, &law, postures, 1e-3, Delay::samples(1))?;
+//!     Ok(match report.period {
+//!         StablePeriod::UpTo(period) | StablePeriod::AtLeast(period) => Some(period),
+//!         StablePeriod::NotEvenAt(_) => None,
+//!     })
+//! }
+//! ```
 
 mod delay;
 mod eigenvalues;

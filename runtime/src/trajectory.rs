@@ -16,6 +16,19 @@
 //! Storage is the caller's: a chain owns anything that reads as a slice of segments, an array on a microcontroller, a `Vec` on a
 //! host. Times are integer nanoseconds: at a corner of a law the acceleration is that of the phase that begins, at exactly the
 //! sample that is meant. Requests that cannot be met are a [`PlanError`] with the number of the segment.
+//!
+//! ```
+//! use std::time::Duration;
+//! use armgen_runtime::trajectory::{JointSegment, JointTrajectory};
+//!
+//! // As fast as 2 rad/s and 5 rad/s² of the joint that moves farthest allow; both end together.
+//! let to = JointSegment::within_limits([1.0, -0.5], [2.0, 2.0], [5.0, 5.0]);
+//! let trajectory = JointTrajectory::plan([0.0_f64, 0.0], [to])?;
+//! let half = trajectory.sample(trajectory.duration() / 2);
+//! assert!((half.q[0] - 0.5).abs() < 1e-9 && (half.q[1] + 0.25).abs() < 1e-9);
+//! assert_eq!(trajectory.sample(trajectory.duration() + Duration::from_secs(1)).q[0], 1.0);
+//! # Ok::<(), armgen_runtime::trajectory::PlanError>(())
+//! ```
 
 mod chain;
 mod joint;
