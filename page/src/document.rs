@@ -12,6 +12,8 @@ use crate::rows::{convention, Row};
 use crate::{bodies, sheet, warnings};
 
 const STYLE: &str = include_str!("../web/page.css");
+/// Of what draws curves.
+const PLOTS: &str = include_str!("../vendor/uPlot-1.6.32/uPlot.min.css");
 
 /// What a page is made of.
 pub(crate) struct Parts<'p> {
@@ -21,6 +23,8 @@ pub(crate) struct Parts<'p> {
     pub(crate) warnings: warnings::Warnings<'p>,
     pub(crate) equations: &'p str,
     pub(crate) cost: &'p str,
+    /// The logs, or the experiments; none without any.
+    pub(crate) logs: Option<&'p str>,
     /// What the script is given.
     pub(crate) data: &'p Value,
     /// The script.
@@ -29,6 +33,7 @@ pub(crate) struct Parts<'p> {
 
 /// The whole page.
 pub(crate) fn document(parts: &Parts<'_>) -> String {
+    let style = if parts.logs.is_some() { format!("{PLOTS}\n{STYLE}") } else { STYLE.to_owned() };
     let name = escape(&parts.model.manipulator.name);
     let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     let _ = write!(
@@ -36,9 +41,9 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src '{}'; style-src '{}'; img-src data:\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"generator\" content=\"armgen {}\">\n\
-         <link rel=\"icon\" href=\"data:,\">\n<title>{name}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n",
+         <link rel=\"icon\" href=\"data:,\">\n<title>{name}</title>\n<style>{style}</style>\n</head>\n<body>\n",
         hash(parts.script),
-        hash(STYLE),
+        hash(&style),
         env!("CARGO_PKG_VERSION"),
     );
     text += &header(parts);
@@ -73,14 +78,16 @@ fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
     let table = sheet::table(parts.rows, convention(parts.description), &parts.warnings);
     let frames = "<details open><summary>Frames</summary><div id=\"frames\"></div></details>\n";
     let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
-    vec![
+    let mut all = vec![
         ("data-sheet", "Data sheet", table + frames + bodies),
         ("check", "Check against the real arm", CHECK.into()),
         ("numbers", "Numbers", "<div id=\"quantities\"></div>\n".into()),
         ("equations", "Equations", parts.equations.into()),
         ("workspace", "Workspace", WORKSPACE.into()),
-        ("cost", "Cost", parts.cost.into()),
-    ]
+    ];
+    all.extend(parts.logs.map(|logs| ("logs", "Logs", logs.to_owned())));
+    all.push(("cost", "Cost", parts.cost.into()));
+    all
 }
 
 fn header(parts: &Parts<'_>) -> String {
@@ -107,6 +114,7 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <title id="arm-title">The arm</title><desc id="arm-description"></desc>
 </svg>
 <p id="grid-step" class="small"></p>
+<p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted.</p>
 <div class="controls" role="group" aria-label="View">
 <button type="button" data-view="front">front</button><button type="button" data-view="side">side</button><button type="button" data-view="top">top</button><button type="button" data-view="oblique">oblique</button>
 </div>

@@ -7,13 +7,15 @@ use std::fmt::Write;
 use armgen_codegen::catalogue::Absent;
 use armgen_codegen::show::{Item, Reading, Sheet, Shown};
 use armgen_codegen::Model;
-use miniz_oxide::deflate::compress_to_vec_zlib;
 use serde_json::{json, Map, Value};
 
-use crate::html::{base64, escape};
+use crate::html::{escape, pack};
 
 /// A quantity whose text is longer than this is left out, with the command that prints it.
 const LONGEST: usize = 400_000;
+
+/// All packed texts of a page together, in bytes: where they are more, the longest are left out.
+const TOGETHER: usize = 800_000;
 
 /// All quantities: those that the page holds, and those that it names only.
 pub(crate) struct Equations {
@@ -40,9 +42,11 @@ impl Equations {
             let other = symbolic.quantities.iter().find(|other| other.name == shown.name);
             quantity(&nominal.robot, shown, other)
         };
+        let mut quantities: Vec<Quantity> = nominal.quantities.iter().map(of).collect();
+        leave_out(&mut quantities);
         let factors = nominal.quantities.iter().find(|shown| shown.factors.is_some());
         Equations {
-            quantities: nominal.quantities.iter().map(of).collect(),
+            quantities,
             factors: factors.map_or(Value::Null, |shown| {
                 let value = serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
                 json!({"factors": value["factors"], "singular": value["singular"]})
@@ -90,6 +94,20 @@ const CHOICES: &str = "<div class=\"controls\"><fieldset><legend>Parameters</leg
 <label><input type=\"radio\" name=\"digits\" value=\"exact\"> exact</label></fieldset></div>
 ";
 
+/// Leaves out the longest texts of those that are too much together.
+fn leave_out(quantities: &mut [Quantity]) {
+    let length = |quantity: &Quantity| quantity.text.as_ref().map_or(0, String::len);
+    let mut order: Vec<usize> = (0..quantities.len()).collect();
+    order.sort_by_key(|&k| length(&quantities[k]));
+    let mut together = 0;
+    for k in order {
+        together += length(&quantities[k]);
+        if together > TOGETHER {
+            quantities[k].text = None;
+        }
+    }
+}
+
 fn quantity(robot: &str, nominal: &Shown, symbolic: Option<&Shown>) -> Quantity {
     let value = |shown: &Shown| serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
     let latex = |shown: &Shown| {
@@ -109,7 +127,7 @@ fn quantity(robot: &str, nominal: &Shown, symbolic: Option<&Shown>) -> Quantity 
             "symbolic": other.map(|(value, _)| value),
             "latex": texts,
         });
-        base64(&compress_to_vec_zlib(whole.to_string().as_bytes(), 9))
+        pack(&whole.to_string())
     });
     let size = match (nominal.rows, nominal.columns) {
         (1, 1) => "a number".to_owned(),

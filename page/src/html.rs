@@ -1,5 +1,7 @@
 //! Text that becomes part of a page: escaped wherever it comes from.
 
+use miniz_oxide::deflate::compress_to_vec_zlib;
+
 /// As the content of an element or the value of an attribute in double quotes.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -24,6 +26,11 @@ pub(crate) fn escape(text: &str) -> String {
 /// JSON that can stand in a script element: `<` never stands as itself.
 pub(crate) fn json(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+/// A text packed: zlib, in base64.
+pub(crate) fn pack(text: &str) -> String {
+    base64(&compress_to_vec_zlib(text.as_bytes(), 9))
 }
 
 /// A number for people: six digits at most.

@@ -15,10 +15,13 @@ mod cost;
 mod document;
 mod equations;
 mod html;
+mod logs;
 mod rows;
 mod script;
 mod sheet;
 mod warnings;
+
+pub use logs::{Log, Run, Verdict};
 
 use armgen_codegen::description::{Convention, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
@@ -51,26 +54,43 @@ const OPERATIONS: usize = 6000;
 const ALWAYS: &[&str] =
     &["direct_kinematics", "link_frames", "geometric_jacobian", "inertia_matrix", "gravity", "inverse_dynamics"];
 
-/// The page of the arm that `source` describes, and all there is to say about the text. There is a page if and only if no diagnostic is an
-/// error.
-pub fn page(source: &Source) -> (Option<String>, Diagnostics) {
+/// Why there is no page of a valid description: a log does not go with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Misfit {
+    /// The name of the run.
+    pub run: String,
+    /// Why, in words.
+    pub reason: String,
+}
+
+/// The page of the arm that `source` describes, with runs that are played on it, and all there is to say about the text. There is a page if
+/// and only if no diagnostic is an error.
+///
+/// # Errors
+/// A log of other joints.
+pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostics), Misfit> {
     let (valid, mut diagnostics) = validate::read_for(source, Scalar::F64);
-    let Some((manipulator, places)) = valid else { return (None, diagnostics) };
+    let Some((manipulator, places)) = valid else { return Ok((None, diagnostics)) };
+    let joints: Vec<&str> = manipulator.joints.iter().map(|joint| joint.name.as_str()).collect();
+    for run in runs {
+        let fits = run.log.as_ref().map_or(Ok(()), |log| log.fits(&joints));
+        fits.map_err(|reason| Misfit { run: run.name.clone(), reason })?;
+    }
     let (description, _) = RobotDescription::parse(source);
     let description = description.unwrap_or_default();
     let model = Model::new(manipulator);
     let mut module = schedule::module(&model, &Options { trig: Trig::Fast, ..Options::default() });
     if let Some(value) = module.out_of_range() {
         diagnostics.push(validate::product_out_of_range(&places, Scalar::F64, value));
-        return (None, diagnostics);
+        return Ok((None, diagnostics));
     }
     let cost = cost::table(&module);
     let equations = equations::Equations::new(&model);
     let left_out = keep_what_is_used(&mut module);
     let text = javascript::print(&module, &Origin::of(source), &Notes::default());
     let rows = rows::rows(source, &description, &model.manipulator);
-    let data = data(&model.manipulator, &description, &rows, &module, &left_out, &equations);
-    let script = script::script(&text);
+    let data = data(&model.manipulator, &description, &rows, &module, &left_out, &equations, runs);
+    let script = script::script(&text, !runs.is_empty());
     let page = document::document(&document::Parts {
         model: &model,
         description: &description,
@@ -78,10 +98,11 @@ pub fn page(source: &Source) -> (Option<String>, Diagnostics) {
         warnings: warnings::Warnings::new(source, &description, &diagnostics),
         equations: &equations.section(),
         cost: &cost,
+        logs: (!runs.is_empty()).then(|| logs::section(runs)).as_deref(),
         data: &data,
         script: &script,
     });
-    (Some(page), diagnostics)
+    Ok((Some(page), diagnostics))
 }
 
 /// Leaves the functions that a page computes with; those that are too long for it are named with their operations.
@@ -110,6 +131,7 @@ fn data(
     module: &Module,
     left_out: &[(String, usize)],
     equations: &equations::Equations,
+    runs: &[Run],
 ) -> Value {
     let row = |row: &rows::Row| {
         let values = row.denavit_hartenberg.as_ref();
@@ -140,5 +162,6 @@ fn data(
         "leftOut": left_out,
         "equations": equations.data(),
         "determinant": equations.factors,
+        "runs": logs::data(runs),
     })
 }

@@ -17,6 +17,7 @@ const FILES: &[(&str, &str)] = &[
     ("dom", include_str!("../web/dom.mjs")),
     ("formula", include_str!("../web/formula.mjs")),
     ("mathml", include_str!("../web/mathml.mjs")),
+    ("pack", include_str!("../web/pack.mjs")),
     ("equations", include_str!("../web/equations.mjs")),
     ("linear", include_str!("../web/linear.mjs")),
     ("kinematics", include_str!("../web/kinematics.mjs")),
@@ -33,14 +34,23 @@ const FILES: &[(&str, &str)] = &[
     ("suspects", include_str!("../web/suspects.mjs")),
     ("check", include_str!("../web/check.mjs")),
     ("workspace", include_str!("../web/workspace.mjs")),
+    ("logs", include_str!("../web/logs.mjs")),
     ("cost", include_str!("../web/cost.mjs")),
     ("settings", include_str!("../web/settings.mjs")),
     ("main", include_str!("../web/main.mjs")),
 ];
 
+/// What draws curves, with its licence: only in pages with logs.
+const PLOTS: &str = include_str!("../vendor/uPlot-1.6.32/uPlot.iife.min.js");
+const PLOTS_LICENCE: &str = include_str!("../vendor/uPlot-1.6.32/LICENSE");
+
 /// The script of a page around an emitted module.
-pub(crate) fn script(module: &str) -> String {
-    let mut text = String::from("globalThis.robot = ");
+pub(crate) fn script(module: &str, with_plots: bool) -> String {
+    let mut text = String::new();
+    if with_plots {
+        let _ = writeln!(text, "/*\n{PLOTS_LICENCE}*/\n{PLOTS}");
+    }
+    text += "globalThis.robot = ";
     text += &closed(module);
     for (name, file) in FILES {
         let _ = write!(text, "const {} = ", variable(name));

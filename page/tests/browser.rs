@@ -10,6 +10,7 @@ mod rust;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::source::Source;
+use armgen_page::{Log, Run, Verdict};
 use driver::{Browser, Tab};
 use rust::State;
 use serde_json::Value;
@@ -36,7 +37,7 @@ fn robot(name: &str) -> Source {
 /// Writes the page of a robot.
 fn written(folder: &Path, source: &Source) -> PathBuf {
     let file = folder.join(Path::new(source.name()).with_extension("html"));
-    let (page, diagnostics) = armgen_page::page(source);
+    let (page, diagnostics) = armgen_page::page(source, &[]).expect("no logs");
     std::fs::write(&file, page.unwrap_or_else(|| panic!("{diagnostics:?}"))).expect("the page is written");
     file
 }
@@ -262,3 +263,169 @@ fn a_planted_mistake_is_the_first_suspect() {
     assert_eq!(drawn, serde_json::json!([2, 2, true]));
     tab.close(&file);
 }
+
+/// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
+#[test]
+fn a_log_is_played_on_the_arm() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("logs");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let rows: String = (0..=100)
+        .map(|k| {
+            let t = f64::from(k) / 10.0;
+            format!("{t},{},{},0.1,0,0.01,0,0\n", 0.05 * t, -0.1 * t)
+        })
+        .collect();
+    let csv = format!("t,q_shoulder,q_elbow,q_quill,q_wrist,e_x,e_y,e_z\n{rows}");
+    let log = Log::read(&csv, |name| if name == "t" { "s".into() } else { "m".into() }).expect("a log");
+    let run = Run { name: "small".into(), log: Some(log), ..Run::default() };
+    let source = robot("scara");
+    let file = folder.join("scara.html");
+    let (page, _) = armgen_page::page(&source, std::slice::from_ref(&run)).expect("the joints are those of the arm");
+    std::fs::write(&file, page.expect("a page")).expect("written");
+    let mut tab = browser.open(&file, 1600, "light");
+    let played = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'); log.open = true; \
+         while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
+         const time = document.getElementById('time'); time.value = '5'; time.dispatchEvent(new Event('input')); \
+         return [document.getElementById('q2-value').value, document.querySelectorAll('#arm .trail path').length, \
+                 log.querySelectorAll('.uplot').length, time.max]; })()",
+    );
+    assert_eq!(played, serde_json::json!(["-0.5", 2, 2, "10"]));
+    tab.close(&file);
+    let other = robot("ur5");
+    let misfit = armgen_page::page(&other, &[run]).expect_err("other joints");
+    assert!(misfit.reason.contains("shoulder, elbow") && misfit.reason.contains("the arm's are joint1"), "{misfit:?}");
+}
+
+/// Texts of files that would be markup are texts, and nothing of them runs, with the policy removed as well.
+#[test]
+fn hostile_texts_are_inert() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("hostile");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let hostile = "</script><script>hacked=1</script><img src=x onerror=hacked=1>\"'\u{2028}<!--<script>";
+    let csv = format!("t,x,{hostile}\n0,1,2\n1,2,3\n");
+    let log = Log::read(&csv, |_| hostile.to_owned()).expect("a log");
+    let figure =
+        String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"><script>hacked=1</script></svg>");
+    let verdict = Verdict { what: hostile.into(), found: hostile.into(), expected: hostile.into(), met: false };
+    let run = Run {
+        name: hostile.into(),
+        title: hostile.into(),
+        log: Some(log),
+        verdicts: vec![verdict],
+        figures: vec![(hostile.into(), figure)],
+    };
+    let source = Source::new(format!("{hostile}.yaml"), format!("# {hostile}\n{}", robot("scara").text()));
+    let (page, _) = armgen_page::page(&source, &[run]).expect("a log without joints goes with any arm");
+    let page = page.expect("a page");
+    let start = page.find("<meta http-equiv").expect("a policy");
+    let end = start + page[start..].find('>').expect("its end") + 1;
+    let without = format!("{}{}", &page[..start], &page[end..]);
+    for (name, text) in [("with", page), ("without", without)] {
+        let file = folder.join(format!("{name}.html"));
+        std::fs::write(&file, text).expect("written");
+        let mut tab = browser.open(&file, 1600, "light");
+        let found = tab.run(
+            "(async () => { const log = document.querySelector('[data-log]'); log.open = true; \
+             while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
+             await new Promise((done) => setTimeout(done, 100)); \
+             return [typeof globalThis.hacked, document.scripts.length, document.querySelectorAll('img:not(.figures img)').length, \
+                     log.dataset.log.startsWith('</script>'), log.querySelector('td').textContent.startsWith('</script>'), \
+                     [...log.querySelectorAll('.u-label')].some((label) => label.textContent.startsWith('</script>'))]; })()",
+        );
+        assert_eq!(found, serde_json::json!(["undefined", 2, 0, true, true, true]), "{name}");
+        tab.close(&file);
+    }
+}
+
+/// Arms of one, twelve and thirty-two joints, the first of them prismatic, in modified rows, with limits.
+#[test]
+fn short_and_long_arms_have_pages() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("sizes");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    for joints in [1, 12, 32] {
+        let mut text = String::from("name: long\nconvention: modified\ngravity: [0, 0, -9.81]\njoints:\n");
+        for i in 0..joints {
+            let kind = if i == 0 { "prismatic" } else { "revolute" };
+            let alpha = ["pi/2", "-pi/2"][i % 2];
+            text += &format!(
+                "  - {{name: j{i}, type: {kind}, a: 0.{}, alpha: {alpha}, d: 0.{}, theta: 0, limits: {{position: [0.2, 1]}}, \
+                 link: {{mass: {}, com: [0.1, 0.02, 0.03], inertia: {{xx: 0.3, yy: 0.35, zz: 0.32}}}}}}\n",
+                i + 11,
+                i + 21,
+                i + 2
+            );
+        }
+        let file = written(&folder, &Source::new(format!("long{joints}.yaml"), text));
+        let size = std::fs::metadata(&file).expect("a file").len();
+        assert!(size < 1_500_000, "{joints} joints: {size} bytes");
+        let mut tab = browser.open(&file, 1600, "dark");
+        let shown = tab.run(
+            "[document.querySelectorAll('#sliders input[type=range]').length, document.getElementById('q1-value').value, \
+              document.querySelectorAll('[data-quantity=inertia_matrix]').length, document.querySelectorAll('[data-quantity=inverse_dynamics]').length]",
+        );
+        assert_eq!(shown, serde_json::json!([joints, "0.6", joints * joints, joints]));
+        tab.close(&file);
+    }
+}
+
+/// The table of docs/page.md: `cargo test -p armgen-page --test browser -- --ignored --nocapture table_of_budgets`.
+#[test]
+#[ignore = "measures times: alone, on a machine that does nothing else"]
+fn table_of_budgets() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("budgets");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    println!("| robot | page, kB | drawn after, ms | slider, ms | slowest section of equations, ms |\n|---|---|---|---|---|");
+    for name in ["scara", "puma560", "ur5", "panda7", "everything"] {
+        let source = robot(name);
+        let file = written(&folder, &source);
+        let size = std::fs::metadata(&file).expect("a file").len() / 1000;
+        let mut ready: Vec<f64> = Vec::new();
+        let (mut slider, mut section) = (0.0, String::new());
+        for k in 0..5 {
+            let mut tab = browser.open(&file, 1600, "light");
+            let text = tab.run("document.documentElement.dataset.ready");
+            ready.push(text.as_str().expect("a text").parse().expect("ms"));
+            if k == 4 {
+                slider = tab.run(SLIDE).as_f64().expect("ms");
+                section = tab.run(SLOWEST).as_str().expect("a text").to_owned();
+            }
+            tab.close(&file);
+        }
+        ready.sort_by(f64::total_cmp);
+        println!("| {name} | {size} | {:.0} | {slider:.1} | {section} |", ready[2]);
+    }
+}
+
+/// The median time of the script for a movement of a slider.
+const SLIDE: &str = r#"(() => {
+    const times = [];
+    for (let k = 0; k < 41; k++) {
+        const q = document.getElementById("q1");
+        q.value = String(Number(q.min) + (k / 41) * (Number(q.max) - Number(q.min)));
+        const begin = performance.now();
+        q.dispatchEvent(new Event("input"));
+        times.push(performance.now() - begin);
+    }
+    return times.sort((a, b) => a - b)[20];
+})()"#;
+
+/// The section of equations that takes longest to open, laid out.
+const SLOWEST: &str = r#"(async () => {
+    let [slowest, name] = [0, ""];
+    for (const details of document.querySelectorAll("details[data-equation]")) {
+        const begin = performance.now();
+        details.open = true;
+        while (!details.querySelector("math")) await new Promise((done) => setTimeout(done, 0));
+        details.getBoundingClientRect();
+        const time = performance.now() - begin;
+        if (time > slowest) [slowest, name] = [time, details.dataset.equation];
+        details.open = false;
+        details.querySelector("div").replaceChildren();
+    }
+    return `${Math.round(slowest)} (${name})`;
+})()"#;

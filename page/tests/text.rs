@@ -10,7 +10,7 @@ joints:
 ";
 
 fn page(name: &str, text: &str) -> String {
-    armgen_page::page(&Source::new(name, text)).0.expect("a valid description")
+    armgen_page::page(&Source::new(name, text), &[]).expect("no logs").0.expect("a valid description")
 }
 
 #[test]
@@ -20,7 +20,8 @@ fn the_same_text_gives_the_same_bytes_wherever_it_lies() {
 
 #[test]
 fn a_faulty_description_gives_its_diagnostics_and_no_page() {
-    let (page, diagnostics) = armgen_page::page(&Source::new("arm.yaml", ARM.replace("mass: 1", "mass: -1")));
+    let (page, diagnostics) =
+        armgen_page::page(&Source::new("arm.yaml", ARM.replace("mass: 1", "mass: -1")), &[]).expect("no logs");
     assert!(page.is_none() && diagnostics.has_errors());
 }
 

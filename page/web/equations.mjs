@@ -6,6 +6,7 @@
 import { copy, html, math } from "./dom.mjs";
 import { parse } from "./formula.mjs";
 import { mathml, nameElement } from "./mathml.mjs";
+import { unpack } from "./pack.mjs";
 
 /** Nodes that are set at once. */
 const NODES = 2500;
@@ -21,13 +22,6 @@ const CHARACTERS = 4000;
  * @typedef {{letter: string, columnNames: string[] | null, nominal: Form, symbolic: Form | null, latex: string[]}} Equation
  */
 
-/** A packed text: base64 of the zlib format. @param {string} packed @returns {Promise<any>} */
-async function unpack(packed) {
-    const bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-    return JSON.parse(await new Response(stream).text());
-}
-
 /** @param {any} data */
 export function equations(data) {
     const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`)?.getAttribute("value");
@@ -38,7 +32,7 @@ export function equations(data) {
     }));
     const set = async (section) => {
         const name = section.details.getAttribute("data-equation") ?? "";
-        section.equation ??= unpack(data.equations[name]);
+        section.equation ??= unpack(data.equations[name]).then((text) => JSON.parse(text));
         const equation = await section.equation;
         const symbolic = chosen("form") === "symbolic" && equation.symbolic !== null;
         const form = symbolic ? /** @type {Form} */ (equation.symbolic) : equation.nominal;

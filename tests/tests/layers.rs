@@ -82,6 +82,7 @@ const PAGE: Layers = &[
     ("bodies", &["rows"]),
     ("cost", &["html"]),
     ("equations", &["html"]),
+    ("logs", &["html"]),
     ("warnings", &["html"]),
     ("sheet", &["html", "rows", "warnings"]),
     ("document", &["bodies", "html", "rows", "sheet", "warnings"]),

@@ -21,6 +21,7 @@ use std::process::ExitCode;
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::pass::Pass;
+use armgen_codegen::source::Source;
 use armgen_experiments::run::Arm;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -247,6 +248,7 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
     /// Write the page of an arm: one HTML file to look at, without network or server
     #[command(after_help = "Examples:
   armgen page robot.yaml --out robot.html                then open robot.html in a browser
+  armgen page robot.yaml --out robot.html --log out/adaptive_a.csv
 
 The page shows the arm with its frames, the rows of the description as a draughtsman would draw them,
 the bodies as cuboids of their inertia, and the numbers of the emitted functions at the posture of
@@ -259,6 +261,9 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
         /// File to write
         #[arg(long, value_name = "PATH", value_hint = ValueHint::FilePath)]
         out: PathBuf,
+        /// Log to be played on the arm, a CSV file of `armgen run`; may be given several times
+        #[arg(long = "log", value_name = "CSV", value_hint = ValueHint::FilePath)]
+        logs: Vec<PathBuf>,
     },
     /// Move the robot that this program was built with: run experiments, draw them, compare them with what is expected
     #[command(after_help = "Examples:
@@ -266,7 +271,8 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
   armgen run experiments/adaptive_a.yaml
   armgen run my_experiments/*.yaml --out results
 
-The table goes to standard output; DIR receives figures (SVG) and logs (CSV). The format: docs/experiments.md.
+The table goes to standard output; DIR receives figures (SVG), logs (CSV) and a page with
+them all, index.html. The format: docs/experiments.md.
 The robot is the one of robot.yaml at the time of building: edit it, and `cargo run --release -- run` builds and moves yours.
 An experiment for another robot is skipped; if none is left, the arm is moved along a demonstration.
 Exit codes: 0 all as expected, 1 a result is outside its expectation or a file is faulty, 2 a file cannot be opened.")]
@@ -335,8 +341,8 @@ fn pass_parser() -> impl TypedValueParser<Value = Pass> {
     PossibleValuesParser::new(Pass::ALL.map(Pass::name)).map(|name| Pass::named(&name).expect("one of the names of passes"))
 }
 
-/// Does what the arguments of the program say; `built` is the robot that it was built with.
-pub fn run(built: &dyn Arm) -> ExitCode {
+/// Does what the arguments of the program say; `built` is the robot that it was built with, `description` its text.
+pub fn run(built: &dyn Arm, description: &str) -> ExitCode {
     let arguments = Arguments::parse();
     let code = match arguments.command {
         Command::Check { files, strict, allow } => commands::check::run(&files, &commands::check::Doubts { strict, allow }),
@@ -347,8 +353,8 @@ pub fn run(built: &dyn Arm) -> ExitCode {
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
         Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
-        Command::Page { file, out } => commands::page::run(&file, &out),
-        Command::Run { files, out } => commands::run::run(&files, &out, built),
+        Command::Page { file, out, logs } => commands::page::run(&file, &out, &logs),
+        Command::Run { files, out } => commands::run::run(&files, &out, built, &Source::new("robot.yaml", description)),
         Command::Completions { shell } => commands::completions::run(shell),
     };
     ExitCode::from(code)

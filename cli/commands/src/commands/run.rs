@@ -2,10 +2,13 @@
 //!
 //! The order: read all files; linearise every sampled loop and say which are unstable; only then move; draw; judge.
 
+mod page;
+
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use armgen_codegen::source::Source;
 use armgen_experiments::campaign::{self, in_parallel, Job};
 use armgen_experiments::draw;
 use armgen_experiments::model::{number, Channel, Experiment, JointQuantity, Quantity, Record, Robot, Unit};
@@ -17,7 +20,7 @@ use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 
 /// Runs the experiments for this robot; where there are none, moves it along a demonstration.
-pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm) -> u8 {
+pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
     let Files { experiments, others, code } = read_all(&named(files), arm.robot());
     let built = &arm.robot().name;
     for (robot, count) in &others {
@@ -26,9 +29,9 @@ pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm) -> u8 {
     }
     match (experiments.as_slice(), code) {
         // A file that is faulty or absent is the answer; without any there is nothing to run.
-        ([], DONE) => demonstrate(arm, out),
+        ([], DONE) => demonstrate(arm, out, description),
         ([], code) => code,
-        (experiments, code) => code.max(run_all(experiments, arm, out)),
+        (experiments, code) => code.max(run_all(experiments, arm, out, description)),
     }
 }
 
@@ -104,7 +107,7 @@ fn text_of(path: &Path) -> std::io::Result<String> {
     Ok(text)
 }
 
-fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path) -> u8 {
+fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
     if let Err(error) = std::fs::create_dir_all(out) {
         terminal::error(&format!("cannot create {}: {error}", out.display()));
         return UNREADABLE;
@@ -154,6 +157,8 @@ fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path) -> u8 {
         let (figures, logs) = (input::counted(drawn, "figure"), input::counted(jobs.len(), "log"));
         terminal::note(&format!("{figures} and {logs} in {}; {seconds:.1} s{speed}", out.display()));
     }
+    let runs = page::of_jobs(&jobs);
+    code = code.max(page::write_index(out, description, &runs));
     if met {
         code
     } else {
@@ -235,7 +240,7 @@ fn report(jobs: &[Job<'_>]) -> (String, bool) {
     (format!("{}\n{met} of {total} results as expected\n", table.text()), met == total)
 }
 
-fn demonstrate(arm: &dyn Arm, out: &Path) -> u8 {
+fn demonstrate(arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
     let robot = arm.robot();
     let demonstration = match arm.demonstrate() {
         Ok(demonstration) => demonstration,
@@ -265,6 +270,7 @@ fn demonstrate(arm: &dyn Arm, out: &Path) -> u8 {
     }
     text += "\n";
     code = code.max(terminal::print(&text));
+    code = code.max(page::write_index(out, description, &[page::of_demonstration(&demonstration.record, robot)]));
     if let Some(fault) = demonstration.fault {
         terminal::error(&fault);
         code = code.max(FAULTY);

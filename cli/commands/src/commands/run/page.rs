@@ -1,0 +1,80 @@
+//! `index.html`: the page of the robot with its experiments, their verdicts and their figures.
+
+use std::path::Path;
+
+use armgen_codegen::source::Source;
+use armgen_experiments::campaign::{groups, Job};
+use armgen_experiments::draw;
+use armgen_experiments::model::{Record, Robot};
+use armgen_page::{Log, Run, Verdict};
+
+use super::super::generate::write;
+use crate::{terminal, DONE, UNREADABLE};
+
+/// The experiments, and the figures of their groups.
+pub(super) fn of_jobs(jobs: &[Job<'_>]) -> Vec<Run> {
+    let verdict = |line: armgen_experiments::judge::Line| Verdict {
+        what: line.what,
+        found: format!("{} {}", line.found, line.unit).trim_end().to_owned(),
+        expected: line.expected,
+        met: line.met,
+    };
+    let of = |job: &Job<'_>| Run {
+        name: job.experiment().name.clone(),
+        title: job.experiment().title.clone(),
+        log: log(job.record()),
+        verdicts: job.lines().into_iter().map(verdict).collect(),
+        figures: job.figures().to_vec(),
+    };
+    let group = |(name, text): (String, String)| Run {
+        name: name.trim_end_matches(".svg").to_owned(),
+        title: "the members of the group side by side".into(),
+        figures: vec![(name, text)],
+        ..Run::default()
+    };
+    jobs.iter().map(of).chain(groups(jobs).into_iter().map(group)).collect()
+}
+
+/// The motion of a robot without experiments.
+pub(super) fn of_demonstration(record: &Record, robot: &Robot) -> Run {
+    Run {
+        name: "demonstration".into(),
+        title: "from posture to posture within the limits".into(),
+        log: log(record),
+        figures: vec![("demonstration.svg".into(), draw::demonstration(record, robot))],
+        ..Run::default()
+    }
+}
+
+/// The log with the units of its channels; none of a record without samples.
+fn log(record: &Record) -> Option<Log> {
+    let unit = |name: &str| {
+        let channel = record.channels().iter().find(|channel| channel.name == name);
+        channel.map_or_else(String::new, |channel| channel.unit.symbol().to_owned())
+    };
+    Log::read(&record.csv(), unit).ok().filter(|_| !record.log().is_empty())
+}
+
+/// Writes the page, and says so.
+pub(super) fn write_index(out: &Path, description: &Source, runs: &[Run]) -> u8 {
+    let file = out.join("index.html");
+    let page = armgen_page::page(description, runs).ok().and_then(|(page, _)| page);
+    let Some(page) = page else {
+        terminal::error(&format!(
+            "cannot write {}: {} is not the description that was built",
+            file.display(),
+            description.name()
+        ));
+        return UNREADABLE;
+    };
+    match write(&file, &page) {
+        Ok(()) => {
+            terminal::note(&format!("look at it all in a browser: {}", file.display()));
+            DONE
+        }
+        Err(error) => {
+            terminal::error(&format!("cannot write {}: {error}", file.display()));
+            UNREADABLE
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Logs of motions, as the page plays them: columns over time, thinned and packed, with what was expected of the run and its figures.
+
+use std::fmt::Write;
+
+use serde_json::{json, Map, Value};
+
+use crate::html::{escape, pack};
+
+/// At most so many samples are kept of a log: more are not seen.
+const SAMPLES: usize = 2000;
+
+/// What begins the name of the column of a joint's position.
+const POSITION: &str = "q_";
+
+/// A run: a log, and what is known of it.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// Its name; no two runs of a page have the same.
+    pub name: String,
+    /// What it shows, in a line; may be empty.
+    pub title: String,
+    /// What was recorded; none of a run that left numbers alone.
+    pub log: Option<Log>,
+    /// What came out beside what was expected.
+    pub verdicts: Vec<Verdict>,
+    /// Titles and texts of figures, SVG.
+    pub figures: Vec<(String, String)>,
+}
+
+/// A line of the table of results.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// The quantity.
+    pub what: String,
+    /// The value found, with its unit.
+    pub found: String,
+    /// What was expected.
+    pub expected: String,
+    /// Whether it was met.
+    pub met: bool,
+}
+
+/// Columns over time.
+#[derive(Clone, Debug)]
+pub struct Log {
+    names: Vec<String>,
+    units: Vec<String>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Log {
+    /// Reads comma-separated values: a line of names, the first of them `t`, and a line for each sample. `unit` is asked for each name.
+    ///
+    /// # Errors
+    /// What is no such text, with its line.
+    pub fn read(text: &str, unit: impl Fn(&str) -> String) -> Result<Log, String> {
+        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+        let (_, head) = lines.next().ok_or("the log is empty; its first line names the columns")?;
+        let names: Vec<String> = head.split(',').map(|name| name.trim().to_owned()).collect();
+        if names[0] != "t" {
+            return Err(format!("the first column is `{}`; it must be `t`, the time in s", names[0]));
+        }
+        if let Some(name) = names.iter().enumerate().find_map(|(i, name)| names[..i].contains(name).then_some(name)) {
+            return Err(format!("two columns are called `{name}`"));
+        }
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for (k, line) in lines {
+            let row: Result<Vec<f64>, _> = line.split(',').map(|word| word.trim().parse::<f64>()).collect();
+            let row = row.map_err(|_| format!("line {}: an entry is no number", k + 1))?;
+            if row.len() != names.len() {
+                return Err(format!("line {}: {} entries, and {} columns have names", k + 1, row.len(), names.len()));
+            }
+            if rows.last().is_some_and(|before| before[0].partial_cmp(&row[0]) != Some(std::cmp::Ordering::Less)) {
+                return Err(format!("line {}: the time does not grow", k + 1));
+            }
+            rows.push(row);
+        }
+        let stride = rows.len().div_ceil(SAMPLES).max(1);
+        let last = rows.len().saturating_sub(1);
+        let kept: Vec<&Vec<f64>> =
+            rows.iter().enumerate().filter(|(k, _)| k % stride == 0 || *k == last).map(|(_, row)| row).collect();
+        let columns = (0..names.len()).map(|j| kept.iter().map(|row| row[j]).collect()).collect();
+        Ok(Log { units: names.iter().map(|name| unit(name)).collect(), names, columns })
+    }
+
+    /// The joints whose positions it holds.
+    fn joints(&self) -> Vec<&str> {
+        self.names.iter().filter_map(|name| name.strip_prefix(POSITION)).collect()
+    }
+
+    /// Whether its joints are those of an arm; a log without joints goes with any.
+    pub(crate) fn fits(&self, joints: &[&str]) -> Result<(), String> {
+        let own = self.joints();
+        if own.is_empty() || own == joints {
+            return Ok(());
+        }
+        Err(format!("its joints are {}, and the arm's are {}", own.join(", "), joints.join(", ")))
+    }
+
+    /// With seven digits, packed.
+    fn packed(&self) -> String {
+        let digits = |x: &f64| format!("{x:.6e}").parse::<f64>().ok().filter(|x| x.is_finite());
+        let columns: Vec<Vec<Option<f64>>> = self.columns.iter().map(|column| column.iter().map(digits).collect()).collect();
+        pack(&json!({"names": self.names, "units": self.units, "columns": columns}).to_string())
+    }
+}
+
+/// What the script is given, by the names of the runs.
+pub(crate) fn data(runs: &[Run]) -> Value {
+    let of = |run: &Run| {
+        let figures: Vec<Value> = run.figures.iter().map(|(title, text)| json!([title, pack(text)])).collect();
+        (run.name.clone(), json!({"log": run.log.as_ref().map(Log::packed), "figures": figures}))
+    };
+    Value::Object(runs.iter().map(of).collect::<Map<_, _>>())
+}
+
+/// The section.
+pub(crate) fn section(runs: &[Run]) -> String {
+    let mut text = String::from(CONTROLS);
+    for run in runs {
+        let name = escape(&run.name);
+        let met = run.verdicts.iter().filter(|verdict| verdict.met).count();
+        let verdict = match (run.verdicts.len(), met) {
+            (0, _) => String::new(),
+            (all, met) if all == met => format!(" <span class=\"met\">{met} of {all} as expected</span>"),
+            (all, met) => format!(" <strong class=\"unmet\">{met} of {all} as expected</strong>"),
+        };
+        let _ = writeln!(
+            text,
+            "<details class=\"run\" data-log=\"{name}\"><summary><b>{name}</b> {}{verdict}</summary>",
+            escape(&run.title)
+        );
+        if !run.verdicts.is_empty() {
+            text += "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Expectations\"><table><thead><tr>";
+            for column in ["quantity", "found", "expected", "verdict"] {
+                let _ = write!(text, "<th scope=\"col\">{column}</th>");
+            }
+            text += "</tr></thead><tbody>\n";
+            for Verdict { what, found, expected, met } in &run.verdicts {
+                let cells = [what, found, expected].map(|cell| format!("<td>{}</td>", escape(cell))).concat();
+                let (class, word) = if *met { ("met", "ok") } else { ("unmet", "OUTSIDE") };
+                let _ = writeln!(text, "<tr class=\"{class}\">{cells}<td>{word}</td></tr>");
+            }
+            text += "</tbody></table></div>\n";
+        }
+        text += "<div class=\"plots\"></div><div class=\"figures\"></div></details>\n";
+    }
+    text
+}
+
+const CONTROLS: &str = "<div class=\"controls\" id=\"playback\"><button type=\"button\" id=\"log-play\" aria-pressed=\"false\">play</button>\
+<label for=\"time\">time</label><input type=\"range\" id=\"time\" min=\"0\" max=\"1\" value=\"0\" step=\"any\"><output id=\"time-value\" for=\"time\"></output></div>
+<p class=\"small\" id=\"playback-said\">Open a run: the arm follows its log, and the plots have a common cursor.</p>
+";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Log, String> {
+        Log::read(text, |_| String::new())
+    }
+
+    #[test]
+    fn what_is_no_log_is_refused_with_its_line() {
+        let fault = |text: &str| read(text).unwrap_err();
+        assert_eq!(fault("quantity,value\nw,1\n"), "the first column is `quantity`; it must be `t`, the time in s");
+        assert_eq!(fault("t,x,x\n"), "two columns are called `x`");
+        assert_eq!(fault("t,x\n0,1\n1\n"), "line 3: 1 entries, and 2 columns have names");
+        assert_eq!(fault("t,x\n0,1\n0,2\n"), "line 3: the time does not grow");
+        assert_eq!(fault("t,x\n0,one\n"), "line 2: an entry is no number");
+        assert!(fault("").contains("empty"));
+    }
+
+    #[test]
+    fn joints_are_those_of_the_arm() {
+        let log = read("t,q_a,q_b,e_x\n0,1,2,3\n").unwrap();
+        assert_eq!(log.fits(&["a", "b"]), Ok(()));
+        assert_eq!(log.fits(&["a", "c"]), Err("its joints are a, b, and the arm's are a, c".into()));
+        assert_eq!(read("t,x\n0,1\n").unwrap().fits(&["a"]), Ok(()));
+    }
+
+    #[test]
+    fn long_logs_are_thinned_and_keep_their_last_sample() {
+        let rows: String = (0..10_001).map(|k| format!("{k},{}\n", k * k)).collect();
+        let log = read(&format!("t,x\n{rows}")).unwrap();
+        assert!(log.columns[0].len() <= SAMPLES && log.columns[0].last() == Some(&10_000.0));
+    }
+}

@@ -1,0 +1,215 @@
+/**
+ * Logs played on the arm, with their plots: a time line, the trail of the tip, the desired one beside it where the log has errors of the
+ * tip, curves over time with a common cursor.
+ */
+
+import { byId, html, svg } from "./dom.mjs";
+import { short } from "./format.mjs";
+import { unpack } from "./pack.mjs";
+import { origin } from "./vector.mjs";
+
+const COLOURS = ["#0b5cad", "#c05600", "#1b7a2f", "#8a1c7c", "#8c6d00", "#b3261e", "#00727a", "#5a5a5a"];
+const DARK = ["#7db9f5", "#ffb27a", "#63d47c", "#f2a1e6", "#e6c84f", "#ff8a80", "#5fd4dc", "#b8b8b8"];
+
+/**
+ * @typedef {{names: string[], units: string[], columns: (number | null)[][]}} Log
+ */
+
+/** The kinds of columns: what begins their names, and the title of their plot. */
+const KINDS = [
+    ["q_", "joint variables"],
+    ["dq_", "rates"],
+    ["eq_", "errors of the joints"],
+    ["tau_", "torques and forces"],
+    ["estimate_", "estimates of the parameters"],
+    ["e_", "errors of the end effector"],
+];
+
+/** Columns by plot: kind, title, unit, places. @param {Log} log */
+export function plots(log) {
+    const all = new Map();
+    log.names.forEach((name, i) => {
+        if (i === 0) return;
+        const kind = KINDS.find(([prefix]) => name.startsWith(prefix));
+        const title = kind ? kind[1] : ["x", "y", "z"].includes(name) ? "position of the end effector" : name.replaceAll("_", " ");
+        const key = `${title}|${log.units[i]}`;
+        if (!all.has(key)) all.set(key, { title, unit: log.units[i], columns: [] });
+        all.get(key).columns.push(i);
+    });
+    return [...all.values()];
+}
+
+/** The sample at or before a time. @param {(number | null)[]} times @param {number} t */
+export function sampleAt(times, t) {
+    let [low, high] = [0, times.length - 1];
+    while (low < high) {
+        const middle = Math.ceil((low + high) / 2);
+        if (Number(times[middle]) <= t) low = middle;
+        else high = middle - 1;
+    }
+    return low;
+}
+
+/** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
+export function logs(data, state, picture) {
+    const runs = [...document.querySelectorAll("details[data-log]")];
+    if (runs.length === 0) return;
+    const [time, value, play, said] = ["time", "time-value", "log-play", "playback-said"].map(byId);
+    /** @type {{log: Log, places: number[], trails: {path: number[][], kind: string}[], charts: any[]} | null} */
+    let active = null;
+    const opened = new Map();
+    let moving = 0;
+
+    const show = (t, fromChart) => {
+        if (!active) return;
+        const k = sampleAt(active.log.columns[0], t);
+        time.value = String(t);
+        value.textContent = `${short(Number(t.toPrecision(5)))} s`;
+        if (active.places.length > 0) {
+            const q = active.places.map((place) => active?.log.columns[place][k]);
+            if (q.every((x) => x !== null)) state.move(q);
+        }
+        if (fromChart) return;
+        for (const chart of active.charts) {
+            const left = chart.valToPos(active.log.columns[0][k], "x");
+            if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
+        }
+    };
+    const choose = (run) => {
+        active = run;
+        const times = run.log.columns[0];
+        time.min = String(times[0] ?? 0);
+        time.max = String(times[times.length - 1] ?? 1);
+        said.textContent = run.places.length > 0 ? `The arm follows ${run.name}.` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
+        show(Number(times[0] ?? 0), false);
+    };
+    const layer = picture.layers.trail;
+    picture.extras.push(() => {
+        if (!active) return;
+        const d = (path) => path.map((point, i) => `${i === 0 ? "M" : "L"}${picture.view.project(point).map((x) => x.toFixed(1)).join(" ")}`).join("");
+        layer.replaceChildren(...active.trails.map(({ path, kind }) => svg("path", { class: kind, d: d(path) })));
+    });
+    const pause = () => {
+        cancelAnimationFrame(moving);
+        moving = 0;
+        play.textContent = "play";
+        play.setAttribute("aria-pressed", "false");
+    };
+    play.addEventListener("click", () => {
+        if (moving) return pause();
+        if (!active) {
+            said.textContent = "Open a run first.";
+            return undefined;
+        }
+        const end = Number(time.max);
+        let t = Number(time.value) >= end ? Number(time.min) : Number(time.value);
+        let before = performance.now();
+        play.textContent = "pause";
+        play.setAttribute("aria-pressed", "true");
+        const tick = () => {
+            const now = performance.now();
+            t = Math.min(end, t + (now - before) / 1000);
+            before = now;
+            show(t, false);
+            if (t >= end) pause();
+            else moving = requestAnimationFrame(tick);
+        };
+        moving = requestAnimationFrame(tick);
+        return undefined;
+    });
+    time.addEventListener("input", () => {
+        pause();
+        show(time.valueAsNumber, false);
+    });
+
+    const open = async (details) => {
+        const name = details.getAttribute("data-log") ?? "";
+        if (opened.has(name)) {
+            if (opened.get(name)) choose(opened.get(name));
+            return;
+        }
+        opened.set(name, null);
+        const { log: packed, figures } = data.runs[name];
+        for (const [title, text] of figures) {
+            const source = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(await unpack(text))}`;
+            details.querySelector(".figures")?.append(html("figure", { class: "drawn-figure" }, html("img", { src: source, alt: title, loading: "lazy" }), html("figcaption", {}, title)));
+        }
+        if (packed === null) return;
+        const log = JSON.parse(await unpack(packed));
+        const places = data.rows.map((row) => log.names.indexOf(`q_${row.name}`)).filter((place) => place >= 0);
+        const run = { name, log, places, trails: trails(log, places), charts: [] };
+        opened.set(name, run);
+        const host = details.querySelector(".plots");
+        // The cursor of one plot is that of all, and the arm follows it.
+        const follow = (chart) => {
+            const { left, idx } = chart.cursor;
+            if (active === run && idx !== null && idx !== undefined && left >= 0 && !moving) show(Number(log.columns[0][idx]), true);
+        };
+        for (const plot of plots(log)) run.charts.push(chart(host, log, plot, name, follow));
+        choose(run);
+    };
+    for (const details of runs) details.addEventListener("toggle", () => details.open && open(details));
+    state.on("theme", () => {
+        for (const run of opened.values()) for (const chart of run?.charts ?? []) chart.redraw(false);
+    });
+    addEventListener("resize", () => {
+        for (const run of opened.values()) {
+            for (const chart of run?.charts ?? []) chart.setSize({ width: width(chart.root.parentElement), height: HEIGHT });
+        }
+    });
+}
+
+const HEIGHT = 190;
+
+/** @param {Element | null} host */
+function width(host) {
+    return Math.max(240, Math.min(760, (host?.clientWidth ?? 600) - 4));
+}
+
+/** The way of the tip, and the desired one: the tip and the error of it. @param {Log} log @param {number[]} places */
+function trails(log, places) {
+    if (places.length === 0) return [];
+    const errors = ["e_x", "e_y", "e_z"].map((name) => log.names.indexOf(name));
+    const [actual, desired] = [[], []];
+    for (let k = 0; k < log.columns[0].length; k++) {
+        const q = places.map((place) => log.columns[place][k]);
+        if (q.includes(null)) continue;
+        const tip = origin(robot.directKinematics(q));
+        actual.push(tip);
+        if (errors.every((place) => place >= 0)) desired.push(tip.map((x, i) => x + Number(log.columns[errors[i]][k])));
+    }
+    const all = [{ path: actual, kind: "actual" }];
+    if (desired.length > 0) all.unshift({ path: desired, kind: "desired" });
+    return all;
+}
+
+function isDark() {
+    const { theme } = document.documentElement.dataset;
+    return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
+/** @param {any} host @param {Log} log @param {any} plot @param {string} name @param {(chart: any) => void} follow */
+function chart(host, log, plot, name, follow) {
+    const ink = () => (isDark() ? "#a9b5c1" : "#525d69");
+    const grid = () => (isDark() ? "#2b343d" : "#dfe4e9");
+    const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "11px sans-serif", labelFont: "12px sans-serif", labelSize: 18, size: 46 });
+    const series = plot.columns.map((column, k) => ({
+        label: log.names[column],
+        stroke: () => (isDark() ? DARK : COLOURS)[k % COLOURS.length],
+        dash: k >= COLOURS.length ? [6, 3] : undefined,
+        width: 1.5,
+        points: { show: false },
+        value: (_, x) => (x === null ? "–" : short(Number(x.toPrecision(5)))),
+    }));
+    const options = {
+        title: plot.title,
+        width: width(host),
+        height: HEIGHT,
+        scales: { x: { time: false } },
+        cursor: { sync: { key: name } },
+        series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
+        axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
+        hooks: { setCursor: [follow] },
+    };
+    return new uPlot(options, [log.columns[0], ...plot.columns.map((column) => log.columns[column])], host);
+}

@@ -1,0 +1,30 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { plots, sampleAt } from "../logs.mjs";
+import { sequence } from "../workspace.mjs";
+
+test("columns of one kind and unit share a plot", () => {
+    const names = ["t", "q_a", "q_b", "e_x", "e_rz", "x", "z", "w"];
+    const units = ["s", "rad", "m", "m", "rad", "m", "m", ""];
+    const of = plots({ names, units, columns: [] }).map((plot) => [plot.title, plot.unit, plot.columns]);
+    assert.deepEqual(of, [
+        ["joint variables", "rad", [1]],
+        ["joint variables", "m", [2]],
+        ["errors of the end effector", "m", [3]],
+        ["errors of the end effector", "rad", [4]],
+        ["position of the end effector", "m", [5, 6]],
+        ["w", "", [7]],
+    ]);
+});
+
+test("the sample of a time is the last one before it", () => {
+    const times = [0, 0.5, 1, 4];
+    assert.deepEqual([-1, 0, 0.6, 1, 3.9, 4, 9].map((t) => sampleAt(times, t)), [0, 0, 1, 2, 2, 3, 3]);
+});
+
+test("the sequence fills every box of a grid", () => {
+    const points = sequence(2, 400);
+    const boxes = new Set(points.map(([x, y]) => Math.floor(x * 10) * 10 + Math.floor(y * 10)));
+    assert.equal(boxes.size, 100);
+});
