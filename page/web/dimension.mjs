@@ -29,15 +29,15 @@ function label(view, at, content) {
     return svg("text", { x: x.toFixed(1), y: (y - 5).toFixed(1), class: "dimension-text" }, content);
 }
 
-/** Lays texts inside of the picture, each below those that it would cover. @param {Element[]} elements */
-function lay(elements) {
+/** Lays texts inside of the picture, each below those that it would cover. @param {Element[]} elements @param {number} pixel how much larger texts are than 14 units */
+function lay(elements, pixel) {
     const taken = [];
     for (const text of elements.filter((element) => element.tagName === "text")) {
-        const width = 8.5 * (text.textContent ?? "").length;
+        const width = 8.9 * pixel * (text.textContent ?? "").length;
         const at = (name) => Number(text.getAttribute(name));
         const x = Math.max(4, Math.min(WIDTH - width - 4, at("x")));
         let y = at("y");
-        while (taken.some((other) => Math.abs(other.y - y) < 16 && x < other.x + other.width && other.x < x + width)) y += 4;
+        while (taken.some((other) => Math.abs(other.y - y) < 16 * pixel && x < other.x + other.width && other.x < x + width)) y += 4;
         taken.push({ x, y, width });
         set(text, { x: x.toFixed(1), y: y.toFixed(1) });
     }
@@ -104,7 +104,7 @@ export function dimensions(view, data, i, start, q, size) {
             }
             frame = next;
         }
-        return lay(elements);
+        return lay(elements, view.pixel);
     }
     let frame = start;
     for (const before of row.before) {
@@ -128,5 +128,5 @@ export function dimensions(view, data, i, start, q, size) {
         elements.push(...length(view, along(origin(frame), -2 * radius, axis), along(origin(frame), 2 * radius, axis), "axis"));
         elements.push(...arc(view, origin(frame), axis, unit, q, radius, `q = ${withUnit(q, "rad")}`));
     }
-    return lay(elements);
+    return lay(elements, view.pixel);
 }

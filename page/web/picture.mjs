@@ -264,7 +264,8 @@ export class Picture {
         });
         // Texts keep their size where the picture is narrow.
         new ResizeObserver(() => {
-            this.svg.style.setProperty("--pixel", String(Math.max(1, Math.min(2, WIDTH / this.svg.clientWidth))));
+            this.view.pixel = Math.max(1, Math.min(2, WIDTH / this.svg.clientWidth));
+            this.svg.style.setProperty("--pixel", String(this.view.pixel));
         }).observe(this.svg);
         this.mark();
     }

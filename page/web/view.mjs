@@ -24,6 +24,8 @@ export class View {
         [this.azimuth, this.elevation] = VIEWS.oblique;
         this.centre = [0, 0, 0];
         this.scale = 100;
+        /** A pixel of the window in units of the drawing, where the picture is narrow. */
+        this.pixel = 1;
         this.turn();
     }
 
