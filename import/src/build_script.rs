@@ -1,48 +1,106 @@
-//! The face for a build script: a URDF instead of a description.
+//! The face for a build script: a URDF or a MuJoCo model instead of a description.
 //!
 //! ```no_run
 //! // build.rs
-//! let description = armgen_import::build_script::description("robot.urdf", &armgen_import::Options::default());
-//! armgen_codegen::build_script::Robot::new(description).generate();
+//! use armgen_import::build_script::Robot;
+//!
+//! Robot::new("robot.urdf").tip("tool0").lock("finger_joint", "0.04").imported().generate();
 //! ```
 //!
-//! The script reruns when the URDF changes. A file that cannot be imported fails the build with every fault and its place; warnings become
+//! The script reruns when the file changes. A file that cannot be imported fails the build with every fault and its place; warnings become
 //! warnings of the build.
 
 use std::path::{Path, PathBuf};
 
+use armgen_codegen::build_script;
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::source::Source;
 
 use crate::{import, Options};
 
-/// Imports the URDF in `path`, relative to the folder of the crate that is built, and gives the path of the description, which is written into
-/// `OUT_DIR` under the URDF's name; or ends the build with the reason.
-pub fn description(path: impl AsRef<Path>, options: &Options) -> PathBuf {
-    try_description(path, options).unwrap_or_else(|error| {
-        eprintln!("{error}");
-        std::process::exit(1);
-    })
+/// The arm of a file, with the options of [`Options`].
+#[derive(Clone, Debug)]
+pub struct Robot {
+    path: PathBuf,
+    options: Options,
 }
 
-/// The same for a build script that goes on.
-///
-/// # Errors
-/// Why there is no description: every fault of the file with its place, or the file that cannot be read or written.
-pub fn try_description(path: impl AsRef<Path>, options: &Options) -> Result<PathBuf, String> {
-    let path = path.as_ref();
-    let name = path.display();
-    println!("cargo:rerun-if-changed={name}");
-    let text = std::fs::read_to_string(path).map_err(|e| format!("error: cannot read {name}: {e}"))?;
-    let source = Source::new(name.to_string(), text);
-    let (imported, diagnostics) = import(&source, options);
-    let imported = imported.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
-    for warning in diagnostics.iter() {
-        let place = source.place(warning.span().start);
-        println!("cargo:warning={name}:{}:{}: {}", place.line, place.column, warning.message);
+impl Robot {
+    /// The arm of the file in `path`, relative to the folder of the crate that is built.
+    pub fn new(path: impl AsRef<Path>) -> Robot {
+        Robot { path: path.as_ref().to_owned(), options: Options::default() }
     }
-    let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
-    let file = out.join(path.file_stem().unwrap_or("robot".as_ref())).with_extension("yaml");
-    std::fs::write(&file, imported.yaml).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;
-    Ok(file)
+
+    /// The link that does not move; the root of the file if not said.
+    #[must_use]
+    pub fn base(mut self, link: impl Into<String>) -> Robot {
+        self.options.base = Some(link.into());
+        self
+    }
+
+    /// The link whose frame is the end effector's; the only one that it can be if not said.
+    #[must_use]
+    pub fn tip(mut self, link: impl Into<String>) -> Robot {
+        self.options.tip = Some(link.into());
+        self
+    }
+
+    /// A joint that stands still, and where: an expression such as `0.04` or `pi/4`.
+    #[must_use]
+    pub fn lock(mut self, joint: impl Into<String>, value: impl Into<String>) -> Robot {
+        self.options.lock.push((joint.into(), value.into()));
+        self
+    }
+
+    /// The name of the robot; the file's if not said.
+    #[must_use]
+    pub fn name(mut self, name: impl Into<String>) -> Robot {
+        self.options.name = Some(name.into());
+        self
+    }
+
+    /// Angles within so many rad of a multiple of pi/12 are that multiple; 0 takes every digit.
+    #[must_use]
+    pub fn snap(mut self, tolerance: f64) -> Robot {
+        self.options.snap = tolerance.clamp(0.0, Options::LARGEST_SNAP);
+        self
+    }
+
+    /// Links without a mass distribution have mass 0.
+    #[must_use]
+    pub fn massless(mut self) -> Robot {
+        self.options.massless = true;
+        self
+    }
+
+    /// Imports the file and gives what generates its module: the description is written into `OUT_DIR` under the name of the file. Ends the
+    /// build with the reason if that cannot be.
+    pub fn imported(&self) -> build_script::Robot {
+        let description = self.try_description().unwrap_or_else(|error| {
+            eprintln!("{error}");
+            std::process::exit(1);
+        });
+        build_script::Robot::new(description)
+    }
+
+    /// Imports the file and gives the path of the description, which is written into `OUT_DIR`; for a build script that goes on.
+    ///
+    /// # Errors
+    /// Why there is no description: every fault of the file with its place, or the file that cannot be read or written.
+    pub fn try_description(&self) -> Result<PathBuf, String> {
+        let name = self.path.display();
+        println!("cargo:rerun-if-changed={name}");
+        let text = std::fs::read_to_string(&self.path).map_err(|e| format!("error: cannot read {name}: {e}"))?;
+        let source = Source::new(name.to_string(), text);
+        let (imported, diagnostics) = import(&source, &self.options);
+        let imported = imported.ok_or_else(|| diagnostics.render(&source, Colour::Never))?;
+        for warning in diagnostics.iter() {
+            let place = source.place(warning.span().start);
+            println!("cargo:warning={name}:{}:{}: {}", place.line, place.column, warning.message);
+        }
+        let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or("error: OUT_DIR is not set: this is for build scripts")?;
+        let file = out.join(self.path.file_stem().unwrap_or("robot".as_ref())).with_extension("yaml");
+        std::fs::write(&file, imported.yaml).map_err(|e| format!("error: cannot write {}: {e}", file.display()))?;
+        Ok(file)
+    }
 }
