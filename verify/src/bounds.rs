@@ -27,7 +27,7 @@ use crate::equations::arm::formula;
 use crate::float::Arguments;
 use crate::formula::Formula;
 use crate::program::{Program, Step};
-use crate::ranges::{literal_errors, ranges, Domain};
+use crate::ranges::{literal_errors, ranges, Domain, Range};
 use crate::reader::{Constant, Module};
 use crate::residual::{residual, Equations, Residual};
 use crate::stream::Stream;
@@ -112,11 +112,14 @@ pub fn widened(manipulator: &Manipulator, domain: &Domain, part: f64) -> Domain 
     wide
 }
 
-/// The largest error over a box of the results of a program that does not divide; infinite where a value can leave the scalar.
-pub fn undivided_bound(program: &Program, values: &[Formula], domain: &Domain, real: Float) -> f64 {
+/// The largest error over a box of the results of a program that does not divide, infinite where a value can leave the scalar; and the largest
+/// size of any value on the way to them.
+pub fn undivided_bound(program: &Program, values: &[Formula], domain: &Domain, real: Float) -> (f64, f64) {
     let ranges = ranges(program, &literal_errors(program, values, real), domain, None, real);
-    let errors = program.outputs.iter().map(|output| ranges[output.step].error);
-    errors.fold(0.0, |most, error| if error > most || error.is_nan() { error } else { most })
+    let largest =
+        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
+    let error = largest(&mut program.outputs.iter().map(|output| ranges[output.step].error));
+    (error, largest(&mut ranges.iter().map(Range::size)))
 }
 
 /// A random point of a domain, each entry rounded to the scalar.

@@ -72,6 +72,8 @@ pub(crate) enum Check {
     Divisors,
     /// Floats: functions grow with their arguments as the equations do.
     Growth,
+    /// Floats: values on the way are not far above entries and arguments.
+    Headroom,
     /// Floats: values stay in the scalar.
     Leaves,
     /// Floats: error bounds over the box.

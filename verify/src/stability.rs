@@ -5,7 +5,7 @@
 //! (both computed in f64), and E the one of a plain program of the equations there ([`Running`]):
 //!
 //! ```text
-//! (a)  no value leaves the scalar anywhere in the wide box
+//! (a)  no value leaves the scalar anywhere in the wide box, or is above 2^64 max(1, S, |x|)³ there, x the arguments
 //! (b)  the bound over the wide box is at most 2^(12 + 5n/2) u S
 //! (c)  at each of 32 states e is at most 2^(12 + n/2) u S
 //! (d)  and at most 2^4 of the largest E; of functions that divide of E at that state, at the random ones, where E leaves 29 bits of the largest entry
@@ -61,6 +61,8 @@ pub struct Trial<'a> {
     plain: BTreeMap<String, Vec<(f64, f64)>>,
     /// The box without limits of angles, parameters that are 0 as large as the others.
     wide: Domain,
+    /// The largest size of an argument there.
+    arguments: f64,
 }
 
 /// The arm at some states, in numbers that know their errors.
@@ -126,7 +128,10 @@ impl<'a> Trial<'a> {
             }
         }
         plain.retain(|_, states| states.len() == BATCHES * LANES);
-        Trial { module, joints: manipulator.joints.len(), batches, plain, wide }
+        let ends = wide.clone().map(|(low, high)| low.abs().max(high.abs()));
+        let all = [&ends.pi, &ends.q, &ends.dq, &ends.ddq, &ends.dqr, &ends.ddqr, &ends.tau];
+        let arguments = all.into_iter().flatten().fold(0.0f64, |most, &x| most.max(x));
+        Trial { module, joints: manipulator.joints.len(), batches, plain, wide, arguments }
     }
 
     fn states(&self) -> impl Iterator<Item = &Arguments<f64>> {
@@ -144,13 +149,20 @@ impl<'a> Trial<'a> {
         self.undivided_fault(&undivided, values, wide, false).or_else(|| self.divided_fault(program, values))
     }
 
-    fn undivided_fault(&self, program: &Program, values: &[Formula], bound: f64, whole: bool) -> Option<Unfit> {
+    fn undivided_fault(&self, program: &Program, values: &[Formula], (bound, largest): (f64, f64), whole: bool) -> Option<Unfit> {
         let real = self.module.real;
         if !bound.is_finite() && Check::Leaves.is_made() {
             return Some(Unfit::Leaves(format!("a value can leave {} inside the box", real.name())));
         }
         let runs = self.runs(program, values)?;
         let size = runs.iter().flatten().fold(0.0f64, |size, (value, _)| size.max(value.abs()));
+        let headroom = 2f64.powi(64) * size.max(self.arguments).max(1.0).powi(3);
+        if largest > headroom && Check::Headroom.is_made() {
+            let (largest, size) = (two_digits(largest), two_digits(size));
+            return Some(Unfit::Leaves(format!(
+                "values of up to {largest} on the way to entries of up to {size} can leave the scalar"
+            )));
+        }
         let most = |exponent: f64, real: Float| exponent.exp2() * (real.unit() * size + real.smallest_normal());
         let n = self.joints as f64;
         let allowed = most(12.0 + 2.5 * n, real);

@@ -289,12 +289,14 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let entry = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, B, B11, &text.replace("B11", B11), &[layers, &comments].concat());
     };
+    let headroom = (Headroom, "on the way to entries of up to");
     let leaves = (Leaves, "inertia_matrix: a value can leave f64 inside the box");
     let (the_box, states) = ((Box, "anywhere in the box"), (States, "in f64, at a state of the box"));
     let divides = [(Divisors, "it divides, which its equations do not ask for")];
     entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &divides);
-    entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, the_box, states]);
-    entry(tally, scara, "B11 + 1e300 - 1e300", &[the_box, states]);
+    entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, headroom, the_box, states]);
+    entry(tally, scara, "B11 + 1e300 - 1e300", &[headroom, the_box, states]);
+    entry(tally, scara, "(B11) * 1e300 * 1e-300", &[headroom]);
     entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[the_box, states]);
     entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, states]);
     entry(tally, scara, "B11 + 100000.0 - 100000.0", &[(Plain, "in f64, at a state of the box")]);
