@@ -7,6 +7,7 @@ mod batch;
 mod bindings;
 mod header;
 mod standalone;
+mod syntax;
 
 use self::header::macro_of;
 use super::origin::{Notes, Origin};

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::standalone::C;
+use super::syntax::C;
 use super::{macro_of, returns_a_number};
 use crate::catalogue::{Argument, Sizes};
 use crate::emit::plain::{expression, of_robot, waves, Syntax};

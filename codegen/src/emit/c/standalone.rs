@@ -5,13 +5,13 @@
 
 use std::fmt::Write;
 
-use super::header::{comment, constant, link, macros, macros_of, opening, signature, POINTERS};
+use super::header::{comment, link, macros, macros_of, opening, signature, POINTERS};
+use super::syntax::C;
 use super::{batch, prefix, returns_a_number};
 use crate::emit::documentation::{self, Block};
 use crate::emit::origin::{Notes, Origin};
-use crate::emit::plain::{asks_for_signs, expression, of_robot, places, reads_an_argument, waves, Syntax};
+use crate::emit::plain::{asks_for_signs, expression, of_robot, places, reads_an_argument, waves};
 use crate::emit::rust::asks_for_sines;
-use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{Line, Listing, Name, Part};
 use crate::program::{Function, Module, Trig};
@@ -22,22 +22,6 @@ const SIGN: &str = include_str!("sines/sign.h");
 const STD: &str = include_str!("sines/std.h");
 const FAST_F64: &str = include_str!("sines/fast_f64.h");
 const FAST_F32: &str = include_str!("sines/fast_f32.h");
-
-pub(super) struct C<'a> {
-    pub(super) module: &'a Module,
-    pub(super) name: String,
-    pub(super) upper: String,
-}
-
-impl Syntax for C<'_> {
-    fn number(&self, value: &Number) -> String {
-        constant(value, self.module.scalar)
-    }
-
-    fn sign(&self, entry: &str) -> String {
-        format!("{}_sign({entry})", self.name)
-    }
-}
 
 pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let name = prefix(module);

@@ -1,0 +1,23 @@
+//! How C writes numbers and signs: what the functions for one state and those for many share.
+
+use super::header::constant;
+use crate::emit::plain::Syntax;
+use crate::exact::Number;
+use crate::program::Module;
+
+/// A module under the names that C gives it.
+pub(super) struct C<'a> {
+    pub(super) module: &'a Module,
+    pub(super) name: String,
+    pub(super) upper: String,
+}
+
+impl Syntax for C<'_> {
+    fn number(&self, value: &Number) -> String {
+        constant(value, self.module.scalar)
+    }
+
+    fn sign(&self, entry: &str) -> String {
+        format!("{}_sign({entry})", self.name)
+    }
+}
