@@ -297,7 +297,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, headroom, the_box, states]);
     entry(tally, scara, "B11 + 1e300 - 1e300", &[headroom, the_box, states]);
     entry(tally, scara, "(B11) * 1e300 * 1e-300", &[headroom]);
-    entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[the_box, states]);
+    entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[headroom, the_box, states]);
     entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, states]);
     entry(tally, scara, "B11 + 100000.0 - 100000.0", &[(Plain, "in f64, at a state of the box")]);
     // Finite in the box, and not a number where q[2] is 2.
