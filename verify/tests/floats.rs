@@ -51,17 +51,18 @@ fn what_leaves_the_scalar_or_vanishes_is_refused() {
     let right = "10.0 * c2 + 21.526";
     let why = "a value can leave f64 inside the box";
     check(Scalar::F64, &format!("{right} + (1e200 * 1e200 - 1e200 * 1e200)"), why);
-    check(Scalar::F64, &format!("({right}) * (1e-200 * 1e-200) * 1e200 * 1e200"), "rounding can make an error of");
+    check(Scalar::F64, &format!("({right}) * (1e-200 * 1e-200) * 1e200 * 1e200"), "on the way to entries");
+    check(Scalar::F64, &format!("({right}) * 1e200 * 1e-200"), "on the way to entries");
     check(Scalar::F64, &format!("({right}) * 1e160 * 1e160 * 1e-160 * 1e-160"), why);
     check(Scalar::F32, &format!("({right}) * 1e25 * 1e25 * 1e-25 * 1e-25"), "a value can leave f32 inside the box");
     check(Scalar::F32, &format!("({right}) * 1e-30 * 1e-30 * 1e30 * 1e30"), "rounding can make an error of");
-    check(Scalar::F64, &format!("({right}) * 1e-160 * 1e-160 * 1e160 * 1e160"), "rounding can make an error of");
+    check(Scalar::F64, &format!("({right}) * 1e-160 * 1e-160 * 1e160 * 1e160"), "on the way to entries");
 }
 
 #[test]
 fn what_loses_its_digits_is_refused() {
     let (right, why) = ("10.0 * c2 + 21.526", "rounding can make an error of");
-    check(Scalar::F64, &format!("{right} + 1e300 - 1e300"), why);
+    check(Scalar::F64, &format!("{right} + 1e25 - 1e25"), why);
     check(Scalar::F64, &format!("{right} - 0.3 + (1e16 + 0.3 - 1e16)"), why);
     // With a variable there is nothing for an interval to see cancel.
     for scalar in [Scalar::F64, Scalar::F32] {
