@@ -188,6 +188,23 @@ const VERIFY: Layers = &[
         ],
     ),
     ("identities", &["arithmetic", "checker", "element", "equations", "formula", "program", "reader", "reference", "report"]),
+    (
+        "at_state",
+        &[
+            "arithmetic",
+            "bounds",
+            "checker",
+            "contract",
+            "enclosure",
+            "equations",
+            "float",
+            "formula",
+            "program",
+            "reader",
+            "reference",
+            "report",
+        ],
+    ),
     ("influence", &["arithmetic", "checker", "element", "formula", "program"]),
     (
         "stability",
