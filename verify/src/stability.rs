@@ -183,7 +183,7 @@ impl<'a> Trial<'a> {
         let (real, unit) = (self.module.real, Float::F64.unit());
         let runs = self.runs(program, values)?;
         let plain = self.plain.get(&program.name)?;
-        let judged = runs.iter().zip(plain).zip(self.states()).enumerate().filter(|(k, _)| (k / LANES) % 2 == 0);
+        let judged = runs.iter().zip(plain).zip(self.states()).enumerate().filter(|(k, _)| (k / LANES).is_multiple_of(2));
         // Not at the ends of the box: where the arm is exactly singular, errors are as large as what they are errors of.
         for (_, ((run, (error, size)), state)) in judged {
             let lost = error / (unit * size);
