@@ -223,6 +223,14 @@ pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, Str
     test_kit::test_kit(&manipulator, &Module::read(text)?, import)
 }
 
+/// The same for a module in another language than Rust; `name` is what the module is called where it is taken in: a file of C or JavaScript, a
+/// module of Python, a package of MATLAB.
+pub fn test_kit_in(source: &Source, text: ModuleText<'_>, name: &str) -> Result<String, String> {
+    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
+    let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
+    test_kit::in_language(&manipulator, &Module::read(text)?, text.language, name)
+}
+
 /// Puts the error bounds of all functions into the documentation of what was generated: see [`bounds`](mod@bounds).
 pub fn document_bounds(source: &Source, generated: &mut Generated) -> Result<(), String> {
     let (read, diagnostics) = validate::read_for(source, Scalar::F64);

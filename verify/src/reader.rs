@@ -23,12 +23,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use armgen_codegen::emit::Language;
 
 use crate::check::Check;
+use crate::contract::Sizes;
 use crate::enclosure::Float;
 use crate::program::Program;
 use body::Shared;
+pub(crate) use c::in_the_name_of;
 pub use constant::Constant;
 use items::Items;
 pub use lexer::Fault;
+pub(crate) use plain::camel;
 
 /// The longest text that is read, in bytes; that of a chain of 32 joints has a third of it.
 pub const LONGEST: usize = 32 << 20;
@@ -142,6 +145,15 @@ impl Module {
         let lines = |lines: &Vec<&str>| lines.iter().map(ToString::to_string).collect();
         let documentation = items.documentation.iter().map(|(name, found)| ((*name).to_string(), lines(found))).collect();
         Ok(Module { real, trig, head, documentation: Some(documentation), constants, functions })
+    }
+
+    /// The sizes that its constants state.
+    pub fn sizes(&self) -> Sizes {
+        let of = |name: &str| match self.constants.get(name) {
+            Some(Constant::Integer(value)) => *value as usize,
+            _ => 0,
+        };
+        Sizes { n: of("DOF"), p: of("PARAMETERS"), b: of("BASE_PARAMETERS"), m: of("TASK_ROWS") }
     }
 
     /// The programs of all functions that could be read, by name.

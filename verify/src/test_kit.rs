@@ -2,15 +2,18 @@
 //!
 //! It holds reference states with the values of every function there, computed from the equations in 256 bits and rounded once, and the
 //! identities of the dynamics at many states in floats. It needs the module and nothing else; the part that is the same for every robot is
-//! `test_kit/template.rs`.
+//! `test_kit/template.rs`, in other languages (`test_kit/languages.rs`) a template of their own.
+
+mod languages;
 
 use std::fmt::Write;
 
+use armgen_codegen::emit::Language;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::Arithmetic;
-use crate::contract::Promise;
+use crate::contract::{Promise, Sizes};
 use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::parameters::Vector;
@@ -90,62 +93,94 @@ fn list(values: &[f64], real: Float) -> String {
     digits.join(", ")
 }
 
+/// A value from the equations: of which function, at which state, by rows.
+struct Value {
+    name: String,
+    promise: &'static Promise,
+    with: bool,
+    state: usize,
+    entries: Vec<f64>,
+}
+
+/// What a test file is made of, in no language.
+struct Kit {
+    robot: String,
+    real: Float,
+    sizes: Sizes,
+    states: Vec<Arguments<f64>>,
+    values: Vec<Value>,
+}
+
+impl Kit {
+    fn of(manipulator: &Manipulator, module: &Module) -> Result<Kit, String> {
+        let missing = Promise::required().into_iter().find(|name| module.program(name).is_none());
+        if let Some(name) = missing {
+            return Err(format!("a test file is for all functions, and the module has no `{name}`"));
+        }
+        let vector = Vector::of(manipulator, &crate::constants::parameter_names(module))?;
+        let sizes = module.sizes();
+        let mut fine = Fine(Stream::new(1));
+        let mut stream = Stream::new(20_240_229);
+        let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
+        let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes, states: Vec::new(), values: Vec::new() };
+        for index in 0..STATES {
+            let arguments = arguments(&mut stream, manipulator.joints.len(), sizes.p);
+            let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
+            let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
+            let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
+            for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
+                let Some((promise, with)) = Promise::of(name) else { continue };
+                let entries = entries.iter().map(nearest).collect();
+                kit.values.push(Value { name: name.to_string(), promise, with, state: index, entries });
+            }
+            kit.states.push(arguments);
+        }
+        Ok(kit)
+    }
+}
+
 /// The text of the test file. `import` brings the module in as `robot`: `use my_crate::robot;`, or
 /// `#[path = "../src/robot.rs"] mod robot;`.
 pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Result<String, String> {
-    let missing = Promise::required().into_iter().find(|name| module.program(name).is_none());
-    if let Some(name) = missing {
-        return Err(format!("a test file is for all functions, and the module has no `{name}`"));
-    }
-    let vector = Vector::of(manipulator, &crate::constants::parameter_names(module))?;
-    let (n, p) = (manipulator.joints.len(), crate::constants::parameter_names(module).len());
-    let mut fine = Fine(Stream::new(1));
-    let mut stream = Stream::new(20_240_229);
+    let kit = Kit::of(manipulator, module)?;
     let mut text = format!(
         "// Tests of the robot `{}` on your machine: reference values, computed from its equations in 256 bits, and the identities of its\n\
          // dynamics. Written by armgen {}.\n\n{import}\n\nuse robot::*;\n\n",
-        manipulator.name,
+        kit.robot,
         env!("CARGO_PKG_VERSION")
     );
-    let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
-    let mut states = String::new();
-    let mut values = String::new();
-    for index in 0..STATES {
-        let arguments = arguments(&mut stream, n, p);
-        let write = |v: &[f64]| list(v, module.real);
-        let _ = writeln!(
-            states,
-            "    Arguments {{ q: [{}], dq: [{}], ddq: [{}], dqr: [{}], ddqr: [{}], tau: [{}], pi: [{}] }},",
-            write(&arguments.q),
-            write(&arguments.dq),
-            write(&arguments.ddq),
-            write(&arguments.dqr),
-            write(&arguments.ddqr),
-            write(&arguments.tau),
-            write(&arguments.pi)
-        );
-        let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
-        let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
-        let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
-        for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
-            let Some((promise, with)) = Promise::of(name) else { continue };
-            let mut call: Vec<String> = promise.arguments.iter().map(|a| format!("&STATES[{index}].{a}")).collect();
-            if with {
-                call.insert(0, format!("&STATES[{index}].pi"));
-            }
-            let entries: Vec<f64> = entries.iter().map(nearest).collect();
-            let _ = writeln!(
-                values,
-                "        (\"{name}\", {index}, robot::{name}({}).flat(), vec![{}]),",
-                call.join(", "),
-                list(&entries, module.real)
-            );
-        }
-    }
+    let write = |v: &[f64]| list(v, kit.real);
     let _ = writeln!(
         text,
-        "/// States at which values are known.\n#[rustfmt::skip]\nconst STATES: [Arguments; {STATES}] = [\n{states}];\n"
+        "/// States at which values are known.\n#[rustfmt::skip]\nconst STATES: [Arguments; {STATES}] = [\n{}];\n",
+        kit.states.iter().fold(String::new(), |mut states, arguments| {
+            let _ = writeln!(
+                states,
+                "    Arguments {{ q: [{}], dq: [{}], ddq: [{}], dqr: [{}], ddqr: [{}], tau: [{}], pi: [{}] }},",
+                write(&arguments.q),
+                write(&arguments.dq),
+                write(&arguments.ddq),
+                write(&arguments.dqr),
+                write(&arguments.ddqr),
+                write(&arguments.tau),
+                write(&arguments.pi)
+            );
+            states
+        })
     );
+    let mut values = String::new();
+    for Value { name, promise, with, state, entries } in &kit.values {
+        let mut call: Vec<String> = promise.arguments.iter().map(|a| format!("&STATES[{state}].{a}")).collect();
+        if *with {
+            call.insert(0, format!("&STATES[{state}].pi"));
+        }
+        let _ = writeln!(
+            values,
+            "        (\"{name}\", {state}, robot::{name}({}).flat(), vec![{}]),",
+            call.join(", "),
+            list(entries, kit.real)
+        );
+    }
     let _ = writeln!(
         text,
         "/// Function, number of the state, value on this machine, value from the equations.\n#[rustfmt::skip]\n\
@@ -153,6 +188,12 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
     );
     text += include_str!("test_kit/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
     Ok(text)
+}
+
+/// The text of the test file in another language than Rust; `name` is what the module is called where it is taken in: a file of C or
+/// JavaScript, a module of Python, a package of MATLAB.
+pub fn in_language(manipulator: &Manipulator, module: &Module, language: Language, name: &str) -> Result<String, String> {
+    Ok(languages::print(&Kit::of(manipulator, module)?, language, name))
 }
 
 /// The nearest float but for the last bit, and 0 without a sign.

@@ -122,6 +122,20 @@ fn a_package_is_called_as_its_help_says() {
 }
 
 #[test]
+fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
+    for language in others() {
+        run::check_tests("scara", Scalar::F64, language);
+    }
+    run::check_tests("scara4", Scalar::F32, Language::C);
+    run::check_tests("scara4", Scalar::F32, Language::Python);
+}
+
+#[test]
+fn declarations_are_those_that_tsc_takes() {
+    run::check_declarations();
+}
+
+#[test]
 fn fast_math_is_refused() {
     run::check_fast_math();
 }

@@ -48,6 +48,12 @@ fn turned(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_lowercase() { c.to_ascii_uppercase() } else { c.to_ascii_lowercase() }).collect()
 }
 
+/// A text that stands in the name of a robot called `robot`, for one of another name.
+pub(crate) fn in_the_name_of(name: &str, text: &str) -> String {
+    let name = spelled(name);
+    Robot { upper: turned(&name), name }.own(text)
+}
+
 impl Robot {
     /// The texts of all modules in the name of this one.
     fn own(&self, text: &str) -> String {

@@ -760,7 +760,7 @@ impl<'a> Parts<'a> {
 }
 
 /// `inertia_matrix` as `inertiaMatrix`.
-pub(super) fn camel(name: &str) -> String {
+pub(crate) fn camel(name: &str) -> String {
     let mut result = String::new();
     let mut capital = false;
     for c in name.chars() {

@@ -74,10 +74,14 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
         && a.outputs.iter().zip(&b.outputs).all(|(x, y)| x.place == y.place && numbers[x.step] == numbers[y.step + offset])
 }
 
-/// Changes one character of code: a digit, a sign, a letter of a name, a bracket. None where the line is a comment or nothing changes.
+/// Changes a term or one character of code: a digit, a sign, a letter of a name, a bracket. None where the line is a comment or nothing changes.
 fn changed(text: &str, code: &[(usize, usize)], stream: &mut Stream) -> Option<(String, String)> {
     let (start, end) = code[stream.below(code.len() as u64) as usize];
     let line = &text[start..end];
+    if let Some(new) = larger_change(line, stream) {
+        let changed = format!("{}{new}{}", &text[..start], &text[end..]);
+        return Some((changed, format!("`{}` for `{}`", new.trim(), line.trim())));
+    }
     let places: Vec<usize> = line.char_indices().filter(|(_, c)| c.is_ascii_graphic()).map(|(at, _)| at).collect();
     let at = places[stream.below(places.len() as u64) as usize];
     let old = line.as_bytes()[at] as char;
@@ -94,6 +98,28 @@ fn changed(text: &str, code: &[(usize, usize)], stream: &mut Stream) -> Option<(
     let line = format!("{}{new}{}", &line[..at], &line[at + 1..]);
     let changed = format!("{}{line}{}", &text[..start], &text[end..]);
     Some((changed, format!("`{}` for `{}`", line.trim(), text[start..end].trim())))
+}
+
+/// Leaves a term out, or takes the sine for the cosine; in half of the lines that have one.
+fn larger_change(line: &str, stream: &mut Stream) -> Option<String> {
+    let choice = stream.below(4);
+    if choice == 0 {
+        let terms: Vec<usize> = line.match_indices(" + ").chain(line.match_indices(" - ")).map(|(at, _)| at).collect();
+        let at = *terms.get(stream.below(terms.len().max(1) as u64) as usize)?;
+        let rest = &line[at + 3..];
+        let ends = [" + ", " - ", ")", ";", ","].iter().filter_map(|end| rest.find(end)).min().unwrap_or(rest.len());
+        return Some(format!("{}{}", &line[..at], &rest[ends..]));
+    }
+    let is_wave = |at: &usize| {
+        let (before, name) = line.split_at(*at);
+        !before.ends_with(|c: char| c.is_ascii_alphanumeric() || c == '_')
+            && name.starts_with(['s', 'c'])
+            && name[1..].starts_with(|c: char| c.is_ascii_digit())
+    };
+    let waves: Vec<usize> = line.char_indices().map(|(at, _)| at).filter(is_wave).collect();
+    let at = *waves.get(stream.below(waves.len().max(1) as u64) as usize).filter(|_| choice == 1)?;
+    let other = if line[at..].starts_with('s') { "c" } else { "s" };
+    Some(format!("{}{other}{}", &line[..at], &line[at + 1..]))
 }
 
 /// Makes so many changes of code, each of which must be found: the text is refused, or another function than that of the equations is read.

@@ -11,7 +11,7 @@ use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
 use armgen_verify::contract::{Array, Length, Promise, Sizes};
 use armgen_verify::program::Argument;
-use armgen_verify::reader::{Constant, Module};
+use armgen_verify::reader::{Constant, Module, ModuleText};
 use armgen_verify::stream::Stream;
 
 use crate::common;
@@ -606,6 +606,118 @@ end
 ",
     );
     succeed(Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "--eval", "main"]));
+}
+
+/// The test file of a language passes beside the module, and fails beside one whose gravity is another.
+pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
+    let python = if language == Language::Python { numpy() } else { Some("") };
+    let there = match language {
+        Language::C => there("gcc", "gcc"),
+        Language::JavaScript => there("node", "nodejs"),
+        Language::Python => python.is_some(),
+        Language::Matlab => there("octave-cli", "octave"),
+        Language::Rust => false,
+    };
+    if !there {
+        return;
+    }
+    let (folder, _) = folder_of(&format!("languages_tests_{name}_{scalar:?}_{language:?}"));
+    let source = common::source(name);
+    let generated = crate::generated(&source, scalar, Trig::Fast);
+    let text = generated.in_language(language);
+    let called = match language {
+        Language::C => "robot.h",
+        Language::JavaScript => "robot.mjs",
+        _ => "robot",
+    };
+    let tests = armgen_verify::test_kit_in(&source, ModuleText { language, text: &text }, called).expect("a test file");
+    let run = |spoilt: bool| {
+        // The torque that holds a part of the arm.
+        let change = |text: &str| if spoilt { text.replace("98.1", "98.3").replace("9.81", "9.83") } else { text.to_string() };
+        let mut command = match language {
+            Language::C => {
+                write(folder.join("robot.h"), change(&text));
+                write(folder.join("robot_test.c"), &tests);
+                let strict = ["-std=c99", "-O1", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"];
+                let mut gcc = Command::new("gcc");
+                succeed(gcc.current_dir(&folder).args(strict).args(["robot_test.c", "-lm", "-o", "robot_test"]));
+                Command::new(folder.join("robot_test"))
+            }
+            Language::JavaScript => {
+                write(folder.join("robot.mjs"), change(&text));
+                write(folder.join("robot.test.mjs"), &tests);
+                let mut node = Command::new("node");
+                node.args(["--test", "robot.test.mjs"]);
+                node
+            }
+            Language::Python => {
+                write(folder.join("robot.py"), change(&text));
+                write(folder.join("test_robot.py"), &tests);
+                let mut command = Command::new(python.unwrap_or_default());
+                command.args(["-B", "test_robot.py"]);
+                command
+            }
+            Language::Matlab => {
+                std::fs::create_dir_all(folder.join("+robot")).expect("a folder");
+                generated.package().into_iter().for_each(|file| write(folder.join("+robot").join(file.name), change(&file.text)));
+                write(folder.join("robotTest.m"), &tests);
+                let mut octave = Command::new("octave-cli");
+                octave.args(["--no-init-file", "--eval", "robotTest"]);
+                octave
+            }
+            Language::Rust => unreachable!("it has a test of its own"),
+        };
+        let output = command.current_dir(&folder).output().expect("it runs");
+        let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.success(), !spoilt, "{name} {scalar:?} {language:?}, spoilt: {spoilt}\n{said}");
+    };
+    assert!(text.contains("98.1") || text.contains("9.81"), "something to spoil");
+    run(false);
+    run(true);
+}
+
+/// The declarations of JavaScript by the compiler of TypeScript: a caller that is right, and ones that are not.
+pub(crate) fn check_declarations() {
+    let (folder, generated) = folder_of("languages_tsc");
+    if !there("tsc", "node-typescript") {
+        return;
+    }
+    write(folder.join("scara.mjs"), generated.in_language(Language::JavaScript));
+    write(folder.join("scara.d.mts"), generated.declarations());
+    let compile = |caller: &str| {
+        let text = format!(
+            "import * as scara from \"./scara.mjs\";\nconst b = scara.inertiaMatrix([1, 2, 3, 4]);\n{caller}\nexport {{}};\n"
+        );
+        write(folder.join("caller.mts"), text);
+        let options = [
+            "--strict",
+            "--noEmit",
+            "--module",
+            "nodenext",
+            "--moduleResolution",
+            "nodenext",
+            "--target",
+            "es2022",
+            "caller.mts",
+        ];
+        let output = Command::new("tsc").current_dir(&folder).args(options).output().expect("it runs");
+        (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let right = "const tau: number = scara.inverseDynamics(new Float64Array(4), [0, 0, 0, 0], [0, 0, 0, 0])[3];\n\
+                 const name: string = scara.JOINT_NAMES[0];\nconsole.log(b[3][3] + tau, scara.equationsOfMotion([1, 2, 3, 4], [0, 0, 0, 0]).inertia[0][0], name);";
+    let (passed, said) = compile(right);
+    assert!(passed, "{said}");
+    for wrong in [
+        "b[9];",
+        "b[0][4];",
+        "scara.gravity(\"q\" as string & number[]).foo;",
+        "scara.nothing();",
+        "scara.gravity(1);",
+        "scara.DOF = 5;",
+    ] {
+        let (passed, _) = compile(wrong);
+        assert!(!passed, "{wrong} is taken");
+    }
 }
 
 /// What reorders sums is refused by the header itself, and without `math.h` it needs no header.

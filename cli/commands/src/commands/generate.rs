@@ -12,6 +12,7 @@ use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Generated;
 use armgen_verify::certificate::Certificate;
+use armgen_verify::reader::ModuleText;
 
 use super::verify::{certificate_beside, with_spinner};
 use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
@@ -47,7 +48,8 @@ pub(crate) struct Beside {
     /// Verify the module and write the certificate beside it: robot.cert.json for robot.rs
     #[arg(long, conflicts_with_all = ["batch", "functions"])]
     verify: bool,
-    /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine
+    /// Write a test file beside it, robot_test.rs: identities and reference values, run on your machine; robot_test.c,
+    /// robot.test.mjs, test_robot.py, robotTest.m in other languages
     #[arg(long, conflicts_with_all = ["batch", "functions"])]
     tests: bool,
     /// Write a companion beside it, robot_bounds.rs: how far rounding can have taken each function's entries at a state
@@ -235,7 +237,6 @@ fn unfit(
         (beside.runtime, "--runtime", "the runtime is Rust"),
         (beside.c_abi, "--c-abi", "it is the face for C of a module in Rust"),
         (beside.ik, "--ik", "inverse kinematics is written in Rust"),
-        (beside.tests, "--tests", "test files are written for Rust"),
         (
             choices.batch.is_some() && language != Language::C,
             "--batch",
@@ -316,9 +317,22 @@ fn files(
     }
     if beside.tests {
         let name = out.file_name().unwrap_or_default().to_string_lossy();
-        let import = format!("#[path = {name:?}]\nmod robot;");
-        let tests = with_spinner("computing reference values", || armgen_verify::test_kit(source, &generated.module, &import))?;
-        files.push((out.with_file_name(format!("{stem}_test.rs")), tests));
+        let extension = out.extension().unwrap_or_default().to_string_lossy();
+        let (file, taken_in) = match language {
+            Language::Rust => (format!("{stem}_test.rs"), format!("#[path = {name:?}]\nmod robot;")),
+            Language::C => (format!("{stem}_test.c"), name.into_owned()),
+            Language::JavaScript => (format!("{stem}.test.{extension}"), name.into_owned()),
+            Language::Python => (format!("test_{stem}.py"), stem.to_string()),
+            Language::Matlab => (format!("{}Test.m", stem.trim_start_matches('+')), stem.trim_start_matches('+').to_string()),
+        };
+        let tests = with_spinner("computing reference values", || match language {
+            Language::Rust => armgen_verify::test_kit(source, &generated.module, &taken_in),
+            language => {
+                let text = generated.in_language(language);
+                armgen_verify::test_kit_in(source, ModuleText { language, text: &text }, &taken_in)
+            }
+        })?;
+        files.push((out.with_file_name(file), tests));
     }
     let all_solutions = if beside.ik { generated.inverse_kinematics() } else { String::new() };
     if beside.bounds {

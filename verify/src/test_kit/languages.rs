@@ -1,0 +1,172 @@
+//! The test file in other languages than Rust: the reference values as each writes them, in front of what is the same for every robot.
+
+use std::fmt::Write;
+
+use armgen_codegen::emit::Language;
+
+use super::{list, Kit, Value};
+use crate::contract::Length;
+use crate::enclosure::Float;
+use crate::float::Arguments;
+use crate::reader::{camel, in_the_name_of};
+
+/// The template of a language, behind its line BEGIN.
+fn template(text: &'static str) -> &'static str {
+    text.split_once("BEGIN").and_then(|(_, rest)| rest.split_once('\n')).map_or("", |(_, rest)| rest)
+}
+
+/// Arguments by name.
+fn named(state: &Arguments<f64>) -> [(&'static str, &[f64]); 7] {
+    let Arguments { q, dq, ddq, dqr, ddqr, tau, pi } = state;
+    [("q", q), ("dq", dq), ("ddq", ddq), ("dqr", dqr), ("ddqr", ddqr), ("tau", tau), ("pi", pi)]
+}
+
+/// The test file: `module` is what the module is called where it is taken in, a file, a module or a package.
+pub(super) fn print(kit: &Kit, language: Language, module: &str) -> String {
+    let mark = match language {
+        Language::C | Language::JavaScript | Language::Rust => "//",
+        Language::Python => "#",
+        Language::Matlab => "%",
+    };
+    let said = [
+        format!(
+            "Tests of the robot `{}` on your machine: reference values, computed from its equations in 256 bits, and the",
+            kit.robot
+        ),
+        format!("identities of its dynamics. Written by armgen {}.", env!("CARGO_PKG_VERSION")),
+    ];
+    let commented: String = said.iter().map(|line| format!("{mark} {line}\n")).collect();
+    match language {
+        Language::Rust => String::new(),
+        Language::C => format!("/*\n * {}\n */\n{}", said.join("\n * "), c(kit, module)),
+        Language::JavaScript => commented + &javascript(kit, module),
+        Language::Python => commented + &python(kit, module),
+        Language::Matlab => matlab(kit, module, &commented),
+    }
+}
+
+/// The arguments of a call, each as `of_state` writes it.
+fn arguments(value: &Value, of_state: &dyn Fn(&str) -> String) -> String {
+    let names = value.with.then_some("pi").into_iter().chain(value.promise.arguments.iter().copied());
+    names.map(of_state).collect::<Vec<_>>().join(", ")
+}
+
+fn javascript(kit: &Kit, module: &str) -> String {
+    let mut text = format!(
+        "\nimport assert from \"node:assert/strict\";\nimport test from \"node:test\";\n\nimport * as robot from {:?};\n\n\
+         /** States at which values are known. */\nconst STATES = [\n",
+        format!("./{module}")
+    );
+    for state in &kit.states {
+        let fields: Vec<String> =
+            named(state).iter().map(|(name, values)| format!("{name}: [{}]", list(values, kit.real))).collect();
+        let _ = writeln!(text, "    {{ {} }},", fields.join(", "));
+    }
+    text +=
+        "];\n\n/** Function, number of the state, value on this machine, value from the equations. */\nconst values = () => [\n";
+    for value in &kit.values {
+        let (name, state) = (camel(&value.name), value.state);
+        let call = format!("robot.{name}({})", arguments(value, &|name| format!("STATES[{state}].{name}")));
+        let _ = writeln!(text, "    [\"{name}\", {state}, {call}, [{}]],", list(&value.entries, kit.real));
+    }
+    text + "];\n\n" + template(include_str!("template.mjs"))
+}
+
+fn python(kit: &Kit, module: &str) -> String {
+    let identifier =
+        module.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !module.starts_with(|c: char| c.is_ascii_digit());
+    let import = match identifier {
+        true => format!("import {module} as robot"),
+        false => format!("import importlib\n\nrobot = importlib.import_module({module:?})"),
+    };
+    let mut text = format!("\n{import}\n\n# States at which values are known.\nSTATES = [\n");
+    for state in &kit.states {
+        let fields: Vec<String> =
+            named(state).iter().map(|(name, values)| format!("\"{name}\": [{}]", list(values, kit.real))).collect();
+        let _ = writeln!(text, "    {{{}}},", fields.join(", "));
+    }
+    text += "]\n\n\ndef values():\n    \"\"\"Function, number of the state, value on this machine, value from the equations.\"\"\"\n    return [\n";
+    for value in &kit.values {
+        let (name, state) = (&value.name, value.state);
+        let call = format!("robot.{name}({})", arguments(value, &|name| format!("STATES[{state}][\"{name}\"]")));
+        let _ = writeln!(text, "        (\"{name}\", {state}, {call}, [{}]),", list(&value.entries, kit.real));
+    }
+    text + "    ]\n\n\n" + template(include_str!("template.py"))
+}
+
+fn matlab(kit: &Kit, module: &str, comment: &str) -> String {
+    let column = |values: &[f64]| list(values, kit.real).replace(", ", "; ");
+    let mut text = format!("function {module}Test()\n{comment}");
+    for (name, _) in named(&kit.states[0]) {
+        let columns: Vec<String> = kit
+            .states
+            .iter()
+            .filter_map(|state| named(state).into_iter().find(|(other, _)| *other == name))
+            .map(|(_, values)| format!("[{}]", column(values)))
+            .collect();
+        let _ = writeln!(text, "    states.{name} = [{}];", columns.join(", "));
+    }
+    for value in &kit.values {
+        let (name, state) = (camel(&value.name), value.state + 1);
+        let call = format!("{module}.{name}({})", arguments(value, &|name| format!("states.{name}(:, {state})")));
+        let results: Vec<String> = (1..=value.promise.returned.named().len()).map(|k| format!("r{k}")).collect();
+        let found: Vec<String> = results.iter().map(|result| format!("byRows({result})")).collect();
+        let _ = writeln!(text, "    [{}] = {call};", results.join(", "));
+        let _ = writeln!(text, "    compare('{name}', {state}, [{}], [{}]);", found.join("; "), column(&value.entries));
+    }
+    text + &template(include_str!("template.m")).replace("robot.", &format!("{module}."))
+}
+
+fn c(kit: &Kit, module: &str) -> String {
+    let suffix = if kit.real == Float::F32 { "f" } else { "" };
+    let numbers = |values: &[f64]| {
+        let all: Vec<String> = list(values, kit.real).split(", ").map(|number| format!("{number}{suffix}")).collect();
+        all.join(", ")
+    };
+    let epsilon = if kit.real == Float::F32 { "FLT_EPSILON" } else { "DBL_EPSILON" };
+    let mut text = format!("#include <float.h>\n#include <stdio.h>\n\n#include {module:?}\n\n#define EPSILON {epsilon}\n\n/* States at which values are known. */\n");
+    for (name, values) in named(&kit.states[0]) {
+        let length = if name == "pi" { "ROBOT_PARAMETERS" } else { "ROBOT_DOF" };
+        debug_assert!(!values.is_empty());
+        let rows = kit.states.iter().filter_map(|state| named(state).into_iter().find(|(other, _)| *other == name));
+        let rows: Vec<String> = rows.map(|(_, values)| format!("{{{}}}", numbers(values))).collect();
+        let _ = writeln!(text, "static const robot_real state_{name}[{}][{length}] = {{{}}};", kit.states.len(), rows.join(", "));
+    }
+    text += "\nstatic void values(void);\n\n";
+    let (before_main, main) = template(include_str!("template.c")).split_once("int main(void)").unwrap_or_default();
+    text += before_main;
+    text += "/* Values on this machine and from the equations. */\nstatic void values(void)\n{\n";
+    for (state, _) in kit.states.iter().enumerate() {
+        let _ = writeln!(text, "    at(state_q[{state}], state_dq[{state}], state_ddq[{state}], state_tau[{state}]);");
+    }
+    for value in kit.values.iter().filter(|value| !value.name.starts_with("forward_dynamics")) {
+        let (name, state) = (&value.name, value.state);
+        let mut call = arguments(value, &|name| format!("state_{name}[{state}]"));
+        let parts = value.promise.returned.named();
+        let number = parts.len() == 1 && parts[0].1.is_empty();
+        let mut at = 0;
+        for (_, lengths) in parts.iter().filter(|_| !number) {
+            let inner: String = lengths.iter().skip(1).map(|&length| format!("[{}]", of_macro(length))).collect();
+            let place = if at == 0 { "found".to_string() } else { format!("found + {at}") };
+            let _ = if inner.is_empty() { write!(call, ", {place}") } else { write!(call, ", (robot_real (*){inner})({place})") };
+            at += lengths.iter().map(|length| length.of(&kit.sizes)).product::<usize>();
+        }
+        let call = format!("{}robot_{name}({call});", if number { "found[0] = " } else { "" });
+        // An inverse loses what the condition of its matrix takes.
+        let lost = if name == "operational_inertia" { "256 * ROUNDING" } else { "ROUNDING" };
+        let entries = value.entries.len();
+        let _ = writeln!(text, "    {{\n        static const robot_real expected[{entries}] = {{{}}};", numbers(&value.entries));
+        let _ = writeln!(text, "        static robot_real found[{entries}];\n        {call}");
+        let _ = writeln!(text, "        agree(\"{name} at state {state}\", {entries}, found, expected, {lost});\n    }}");
+    }
+    text += "}\n\nint main(void)";
+    text += main;
+    in_the_name_of(&kit.robot, &text)
+}
+
+fn of_macro(length: Length) -> String {
+    match length {
+        Length::Of(value) => value.to_string(),
+        named => format!("ROBOT_{}", named.rust()),
+    }
+}
