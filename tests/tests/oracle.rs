@@ -198,7 +198,7 @@ fn check_laws(what: &str, text: &str, state: &State) {
     check("B is symmetric", &flat(&b), &flat(&transposed));
     check("T = ½ dq' B dq", &[arm.kinetic_energy(q, dq)], &[0.5 * dot(dq, &times(&b, dq))]);
     check("g = dU/dq", &g, &arm.potential_gradient(q));
-    let newton_euler = arm.newton_euler(q, dq, ddq, arm.gravity);
+    let newton_euler = arm.with_springs(q, arm.newton_euler(q, dq, ddq, arm.gravity));
     check("NE = B ddq + C dq + g", &newton_euler, &sum(&sum(&times(&b, ddq), &times(&c, dq)), &g));
     check("C v by polarisation", &arm.coriolis_times(q, dq, dqr), &times(&c, dqr));
     check("power", &[arm.power(q, dq, ddq)], &[dot(dq, &newton_euler)]);

@@ -70,6 +70,8 @@ pub(crate) enum Check {
     Identities,
     /// Floats: divisors are those that the equations ask for.
     Divisors,
+    /// Floats: the number 0 is an entry alone.
+    Zeros,
     /// Floats: functions grow with their arguments as the equations do.
     Growth,
     /// Floats: values on the way are not far above entries and arguments.

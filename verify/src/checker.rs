@@ -22,7 +22,7 @@ use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::{Atoms, Dependent, Formula};
-use crate::program::{Argument, Inputs, Program};
+use crate::program::{Argument, Inputs, Program, Step};
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
@@ -355,6 +355,7 @@ impl Checker {
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
             None => (self.foreign_divisor(program, &chosen))
+                .or_else(|| zero_operand(program))
                 .or_else(|| self.foreign_growth(program, &chosen))
                 .unwrap_or(Verdict::Equal),
             Some((entry, why)) => {
@@ -444,8 +445,8 @@ impl Checker {
             Some(parts) if argument == Argument::Q => (argument, parts.of(argument), torques.of(argument)),
             _ => (argument, found.of(argument), own.of(argument)),
         });
-        let (argument, found, own) = compared.into_iter().find(|(_, found, own)| found > own)?;
         let degree = |degree: Option<i64>| degree.unwrap_or(0);
+        let (argument, found, own) = compared.into_iter().find(|(_, found, own)| degree(*found) > degree(*own))?;
         Check::Growth.is_made().then(|| {
             Verdict::Refused(format!(
                 "it takes `{}` to the power {} where its equations have {}",
@@ -472,6 +473,16 @@ impl Checker {
             "it divides by what is no pivot of a matrix that its equations invert".into()
         }))
     }
+}
+
+/// A sum or a product with the number 0, in which anything can be hidden that is not a number somewhere.
+fn zero_operand(program: &Program) -> Option<Verdict> {
+    let is_zero = |step: usize| matches!(program.steps[step], Step::Literal(k) if program.literals[k].value == 0.0);
+    let with_zero = program.steps.iter().any(|step| match step {
+        Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => is_zero(*a) || is_zero(*b),
+        _ => false,
+    });
+    (with_zero && Check::Zeros.is_made()).then(|| Verdict::Refused("it calculates with the number 0".into()))
 }
 
 /// How fast the functions of an arm grow with their arguments, by the equations.
@@ -583,7 +594,6 @@ fn refused(name: &str, why: String) -> FunctionReport {
 
 /// An index that its argument does not have: the reader knows arguments by name only.
 fn beyond_the_end(program: &Program, n: usize, p: usize) -> Option<String> {
-    use crate::program::Step;
     program.steps.iter().find_map(|step| match step {
         Step::Input(argument, index) if *index >= Promise::length(*argument, n, p) => {
             Some(format!("index {index} is beyond the end of its argument"))

@@ -12,7 +12,7 @@
 //! (e)  no argument has a higher degree than in the equations (growth.rs)
 //! ```
 //!
-//! The wide box has all angles, prismatic joints as far to one side as to the other, and parameters that are 0 in the description as large as the largest.
+//! The wide box has all angles, prismatic joints as far to one side as to the other, and all parameters up to the largest of the description.
 //! By (e) what is found in it holds outside, multiplied by at most the powers of the equations. (a) and (b) are of the whole box and follow from intervals,
 //! which widen by a factor with each joint; (c) and (d) are sharp, and of states alone: half of them random, half with arguments at the ends of the box, all
 //! drawn from the hash of the module. Emitted functions stay below 2^19 u S over the box and below 2^10 u S at states with seven joints, 2^39 and 2^16 with
@@ -24,7 +24,7 @@
 use std::collections::BTreeMap;
 
 use crate::arithmetic::running::{Running, RunningNumbers};
-use crate::bounds::{corner, draw, two_digits, undivided_bound, widened};
+use crate::bounds::{corner, draw, two_digits, undivided_bound, widened, Parameters};
 use crate::check::Check;
 use crate::checker::Checker;
 use crate::companion::{LaneArguments, Table};
@@ -46,9 +46,6 @@ const FACTOR: f64 = 16.0;
 /// Where the equations themselves lose more units of the last place nothing is asked for.
 const LOST: f64 = (1 << 24) as f64;
 
-/// Parameters that are 0 in the description, as a part of the largest, where a function that divides is judged: B stays positive.
-const HARDLY: f64 = 1.0 / (1 << 30) as f64;
-
 /// Batches of states.
 const BATCHES: usize = 4;
 
@@ -59,7 +56,7 @@ pub struct Trial<'a> {
     batches: Vec<([Arguments<f64>; LANES], LaneArguments)>,
     /// By function, state by state: the largest error of an entry that the equations themselves have in f64, and the size of the largest.
     plain: BTreeMap<String, Vec<(f64, f64)>>,
-    /// The box without limits of angles, parameters that are 0 as large as the others.
+    /// The box without limits of angles, all parameters up to the largest.
     wide: Domain,
     /// The largest size of an argument there.
     arguments: f64,
@@ -103,8 +100,8 @@ impl<'a> Trial<'a> {
     pub fn new(module: &'a Module, domain: &Domain, checker: &Checker) -> Trial<'a> {
         let stream = &mut checker.rest();
         let manipulator = checker.manipulator();
-        let wide = widened(manipulator, domain, 1.0);
-        let near = widened(manipulator, domain, HARDLY);
+        let wide = widened(manipulator, domain, Parameters::Any);
+        let near = widened(manipulator, domain, Parameters::Described);
         let batch = |k: usize| {
             let states = std::array::from_fn(|_| match k % 2 {
                 0 => draw(&near, stream, module.real),

@@ -19,9 +19,9 @@ impl Origin {
     /// Of a description: its file name, not its folder, so that the output is the same everywhere.
     pub fn of(source: &Source) -> Origin {
         let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
-        // In a comment, which a line break or a mark of writing direction would end or disguise, and `*/` in C.
-        let plain = |c: char| c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && c != '*');
-        let escaped = |c: char| if plain(c) { c.to_string() } else { c.escape_unicode().to_string() };
+        // In a comment, which a line break or a mark of writing direction would end or disguise, `*/` in C, a backslash or `coding=` in Python.
+        let plain = |c: char| c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && !"*\\?:=".contains(c));
+        let escaped = |c: char| if plain(c) { c.to_string() } else { format!("U+{:04X}", u32::from(c)) };
         let file = name.chars().map(escaped).collect();
         let digest = Sha256::digest(source.text().as_bytes());
         Origin { file, hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect() }

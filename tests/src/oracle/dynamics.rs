@@ -194,7 +194,7 @@ impl Model {
     }
 
     /// Torques with those of springs, k (q - rest).
-    fn with_springs<S: Scalar>(&self, q: &[S], torques: Vec<S>) -> Vec<S> {
+    pub fn with_springs<S: Scalar>(&self, q: &[S], torques: Vec<S>) -> Vec<S> {
         let spring = |(joint, &q): (&super::Joint, &S)| S::from(joint.stiffness.unwrap_or(0.0)) * (q - S::from(joint.rest));
         torques.into_iter().zip(self.joints.iter().zip(q).map(spring)).map(|(torque, spring)| torque + spring).collect()
     }

@@ -306,6 +306,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let grown = edited(&grown, B, B11, &format!("{B11} + t910 - t910"));
     let layers = [(Growth, "inertia_matrix: it takes `q` to the power 1024 where its equations have 0")];
     tally.text(scara, "a high power", &grown, &[&layers[..], &comments].concat());
+    entry(tally, scara, "B11 + 0.0 * c2", &[(Zeros, "inertia_matrix: it calculates with the number 0")]);
     let shortest = (Shortest, "is not the shortest decimal of a float");
     let rounded = "B11 - 4.0 + (100000000000000004.0 - 100000000000000000.0)";
     entry(tally, scara, rounded, &[shortest, the_box, states]);

@@ -19,6 +19,9 @@ use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Literal, Output, Program, Step};
 
+/// What a language reads in comments: escapes in Python's, splices and trigraphs that end those of C, the encoding of a Python file.
+const ESCAPES: [&str; 4] = ["\\", "??/", "coding:", "coding="];
+
 /// Steps and entries of results in a module.
 const MOST_STEPS: usize = 4_000_000;
 /// Brackets in brackets.
@@ -68,6 +71,13 @@ impl<'a> Lines<'a> {
             last = number;
             if let Some(c) = line.chars().find(|c| is_hidden(*c)) {
                 return Err(Fault { line: number, reason: format!("the character {}, which cannot be seen", name_of(c)) });
+            }
+            let commented = open.is_some()
+                || comments.line.is_some_and(|begin| line.starts_with(begin))
+                || comments.block.is_some_and(|(begin, _)| line.starts_with(begin));
+            if let Some(escape) = ESCAPES.into_iter().find(|escape| commented && line.contains(escape)) {
+                let reason = format!("`{escape}` in a comment, which a compiler can read as something else");
+                return Err(Fault { line: number, reason });
             }
             let begins = comments.block.filter(|(begin, _)| open.is_none() && line.starts_with(begin));
             if let Some((begin, end)) = open.or(begins) {
