@@ -58,6 +58,8 @@ pub struct Trial<'a> {
     plain: BTreeMap<String, Vec<(f64, f64)>>,
     /// The box without limits of angles, all parameters up to the largest.
     wide: Domain,
+    /// The same with the parameters of the description.
+    described: Domain,
     /// The largest size of an argument there.
     arguments: f64,
 }
@@ -128,7 +130,7 @@ impl<'a> Trial<'a> {
         let ends = wide.clone().map(|(low, high)| low.abs().max(high.abs()));
         let all = [&ends.pi, &ends.q, &ends.dq, &ends.ddq, &ends.dqr, &ends.ddqr, &ends.tau];
         let arguments = all.into_iter().flatten().fold(0.0f64, |most, &x| most.max(x));
-        Trial { module, joints: manipulator.joints.len(), batches, plain, wide, arguments }
+        Trial { module, joints: manipulator.joints.len(), batches, plain, wide, described: near, arguments }
     }
 
     fn states(&self) -> impl Iterator<Item = &Arguments<f64>> {
@@ -139,7 +141,9 @@ impl<'a> Trial<'a> {
     pub fn fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
         let operands = undivided_operands(program);
         let undivided = if operands.is_empty() { program.clone() } else { program.part(&operands) };
-        let wide = undivided_bound(&undivided, values, &self.wide, self.module.real);
+        let over = |domain: &Domain| undivided_bound(&undivided, values, domain, self.module.real);
+        // Where masses of 1e12 kg stand beside inertias of 1e-12 kg m², each as large as the largest is beyond f32.
+        let wide = Some(over(&self.wide)).filter(|(bound, _)| bound.is_finite()).unwrap_or_else(|| over(&self.described));
         if operands.is_empty() {
             return self.undivided_fault(program, values, wide, true);
         }

@@ -155,7 +155,8 @@ fn other_base_parameters_will_do() {
     let a = subject.own.nominal[x].times(&half);
     subject.own.nominal[y] = subject.own.nominal[y].minus(&a);
     subject.own.nominal[x] = a;
-    let joints = 0..subject.rows.len();
+    let joints = subject.felt(x);
+    assert_eq!(joints, subject.felt(y));
     subject.replace(x, joints.clone(), |row| Step::Add(row[x], row[x]));
     subject.replace(x, joints, |row| Step::Add(row[x], row[y]));
     let checker = subject.checker();
