@@ -233,7 +233,10 @@ fn check_laws(what: &str, text: &str, state: &State) {
     let tau_4 = arm.inverse_dynamics_4(q, dq, dqr, ddqr);
     let viscous: Vec<f64> = arm.viscous().iter().zip(dqr).map(|(f, v)| f * v).collect();
     let coulomb = sum(&arm.friction(dq), &arm.viscous().iter().zip(dq).map(|(f, v)| -f * v).collect::<Vec<_>>());
-    let right = sum(&sum(&times(&b, ddqr), &times(&c, dqr)), &sum(&sum(&viscous, &coulomb), &g));
+    // Of cubic friction the four-argument form has F_3 dq² dqr.
+    let cubic = arm.joints.iter().zip(dq).zip(dqr).map(|((joint, v), r)| joint.cubic.unwrap_or(0.0) * v * v * (r - v));
+    let friction = sum(&sum(&viscous, &coulomb), &cubic.collect::<Vec<f64>>());
+    let right = sum(&sum(&times(&b, ddqr), &times(&c, dqr)), &sum(&friction, &g));
     check("four arguments", &tau_4, &right);
     check("Y pi + known", &arm.standard_regressor(q, dq, dqr, ddqr).torque(), &tau_4);
     if let Some(regressor) = read(text).regressor(q, dq, dqr, ddqr) {
