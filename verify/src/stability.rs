@@ -157,6 +157,9 @@ impl<'a> Trial<'a> {
         }
         let runs = self.runs(program, values)?;
         let size = runs.iter().flatten().fold(0.0f64, |size, (value, _)| size.max(value.abs()));
+        if !size.is_finite() && Check::Headroom.is_made() {
+            return Some(Unfit::Leaves("a value can leave f64 at a state of the box".into()));
+        }
         let headroom = 2f64.powi(64) * size.max(self.arguments).max(1.0).powi(3);
         if largest > headroom && Check::Headroom.is_made() {
             let (largest, size) = (two_digits(largest), two_digits(size));
