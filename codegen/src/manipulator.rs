@@ -192,6 +192,16 @@ pub enum RegressorChoice {
 }
 
 impl Manipulator {
+    /// Whether joints have springs.
+    pub fn has_springs(&self) -> bool {
+        self.joints.iter().any(|joint| joint.spring.is_some())
+    }
+
+    /// Whether joints have friction that is neither viscous nor Coulomb's.
+    pub fn has_more_friction(&self) -> bool {
+        self.joints.iter().any(|joint| joint.offset.is_some() || joint.cubic.is_some())
+    }
+
     /// Number of joints.
     pub fn dof(&self) -> usize {
         self.joints.len()

@@ -65,27 +65,16 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
 }
 
 fn state(arguments: &Arguments<f64>) -> State<f64> {
-    State {
-        angles: arguments.q.iter().map(|q| q.sin_cos()).collect(),
-        q: arguments.q.clone(),
-        dq: arguments.dq.clone(),
-        ddq: arguments.ddq.clone(),
-        dqr: arguments.dqr.clone(),
-        ddqr: arguments.ddqr.clone(),
-        tau: arguments.tau.clone(),
-        signs: arguments.dq.iter().map(|rate| if *rate == 0.0 { 0.0 } else { rate.signum() }).collect(),
-        pi: arguments.pi.clone(),
-        zero: 0.0,
-        one: 1.0,
-    }
+    let sign = |rate: &f64| if *rate == 0.0 { 0.0 } else { rate.signum() };
+    let angles = arguments.q.iter().map(|q| q.sin_cos()).collect();
+    State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0])
 }
 
 /// The arguments of a function, as a reader writes them; parameters are those of the description.
 fn place(name: &str, arguments: &Arguments<f64>) -> String {
     let promise = Promise::of(name);
     let of = |argument: &&str| {
-        let values = [Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
-        let found = values.into_iter().find(|value| value.name() == *argument)?;
+        let found = Argument::named(argument)?;
         let numbers: Vec<String> = arguments.of(found).iter().map(f64::to_string).collect();
         Some(format!("{argument} = [{}]", numbers.join(", ")))
     };

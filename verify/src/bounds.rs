@@ -21,13 +21,13 @@ use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::wide::Wide;
 use crate::claims::Claims;
-use crate::divisors::undivided_operands;
+use crate::divisors::{divisors, undivided_operands};
 use crate::enclosure::Float;
 use crate::equations::arm::formula;
 use crate::float::Arguments;
 use crate::formula::Formula;
-use crate::program::{Program, Step};
-use crate::ranges::{literal_errors, ranges, Domain, Range};
+use crate::program::Program;
+use crate::ranges::{literal_errors, ranges, worst, Domain, Range};
 use crate::reader::{Constant, Module};
 use crate::residual::{residual, Equations, Residual};
 use crate::stream::Stream;
@@ -60,7 +60,7 @@ impl Bound {
 
     /// The largest of all entries.
     pub fn largest(&self) -> f64 {
-        self.entries.iter().fold(0.0, |a, &b| if b > a || b.is_nan() { b } else { a })
+        worst(self.entries.iter().copied())
     }
 }
 
@@ -134,10 +134,7 @@ const HARDLY: f64 = 1.0 / (1 << 30) as f64;
 /// size of any value on the way to them.
 pub fn undivided_bound(program: &Program, values: &[Formula], domain: &Domain, real: Float) -> (f64, f64) {
     let ranges = ranges(program, &literal_errors(program, values, real), domain, None, real);
-    let largest =
-        |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |most, x| if x > most || x.is_nan() { x } else { most });
-    let error = largest(&mut program.outputs.iter().map(|output| ranges[output.step].error));
-    (error, largest(&mut ranges.iter().map(Range::size)))
+    (worst(program.outputs.iter().map(|output| ranges[output.step].error)), worst(ranges.iter().map(Range::size)))
 }
 
 /// A random point of a domain, each entry rounded to the scalar.
@@ -176,14 +173,7 @@ const STATES_FOR_DIVISORS: usize = 4096;
 
 /// Half of the smallest divisor among random states of the box.
 fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f64> {
-    let divisors: Vec<usize> = program
-        .steps
-        .iter()
-        .filter_map(|step| match step {
-            Step::Divide(_, divisor) => Some(*divisor),
-            _ => None,
-        })
-        .collect();
+    let divisors = divisors(program);
     if divisors.is_empty() {
         return None;
     }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
-use crate::arithmetic::growth::{Growth, Growths, COUNTED};
+use crate::arithmetic::growth::{Growth, Growths};
 use crate::arithmetic::prime::Prime;
 use crate::arithmetic::roots::dependent;
 use crate::arithmetic::tower::Tower;
@@ -21,6 +21,7 @@ use crate::enclosure::Float;
 use crate::equations::arm::Arm;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
+use crate::float::Arguments;
 use crate::formula::{Atoms, Dependent, Formula};
 use crate::program::{Argument, Inputs, Program, Step};
 use crate::reader::{Function, Module};
@@ -441,7 +442,7 @@ impl Checker {
         let parts = (!operands.is_empty()).then(|| most(&program.part(&operands)));
         let torques = ["inverse_dynamics", "inverse_dynamics_with"].into_iter().filter_map(|name| self.growth.get(name));
         let (found, torques) = (most(program), torques.fold(own, |most, &growth| most.most(growth)));
-        let compared = COUNTED.into_iter().map(|argument| match parts {
+        let compared = Argument::ALL.into_iter().map(|argument| match parts {
             Some(parts) if argument == Argument::Q => (argument, parts.of(argument), torques.of(argument)),
             _ => (argument, found.of(argument), own.of(argument)),
         });
@@ -488,21 +489,10 @@ fn zero_operand(program: &Program) -> Option<Verdict> {
 /// How fast the functions of an arm grow with their arguments, by the equations.
 fn growth(manipulator: &Manipulator, vector: &Vector) -> Result<BTreeMap<String, Growth>, String> {
     let joints = manipulator.joints.len();
-    let of = |argument| vec![Growths.entry(argument, 0); joints];
     let one = Growths.integer(1);
-    let state = State {
-        angles: vec![(one, one); joints],
-        signs: vec![one; joints],
-        q: of(Argument::Q),
-        dq: of(Argument::Dq),
-        ddq: of(Argument::Ddq),
-        dqr: of(Argument::Dqr),
-        ddqr: of(Argument::Ddqr),
-        tau: of(Argument::Tau),
-        pi: Vec::new(),
-        zero: Growths.integer(0),
-        one,
-    };
+    let arguments = Arguments::each(|argument| vec![Growths.entry(argument, 0); joints]);
+    let arguments = Arguments { pi: Vec::new(), ..arguments };
+    let state = State::of(arguments, vec![(one, one); joints], vec![one; joints], [Growths.integer(0), one]);
     let wanted = Wanted { base: BaseParameters::Free, pivots: false };
     let reference = Reference::at(&mut Growths, manipulator, vector, state, wanted)?;
     let most = |entries: Vec<Growth>| entries.into_iter().fold(Growths.integer(0), Growth::most);

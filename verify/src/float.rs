@@ -60,7 +60,7 @@ impl<T: Copy> Arguments<T> {
 
 impl<T> Arguments<T> {
     /// All arguments, asked for in the order of the fields.
-    fn each(mut of: impl FnMut(Argument) -> Vec<T>) -> Arguments<T> {
+    pub(crate) fn each(mut of: impl FnMut(Argument) -> Vec<T>) -> Arguments<T> {
         Arguments {
             pi: of(Argument::Pi),
             q: of(Argument::Q),

@@ -25,6 +25,10 @@ pub enum Argument {
 }
 
 impl Argument {
+    /// All arguments.
+    pub const ALL: [Argument; 7] =
+        [Argument::Pi, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

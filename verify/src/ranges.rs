@@ -30,6 +30,11 @@ pub fn literal_errors(program: &Program, values: &[Formula], real: Float) -> Vec
 /// Lowest and highest value of each argument's entries.
 pub type Domain = Arguments<(f64, f64)>;
 
+/// The largest of some sizes, at least 0; no number if one of them is none.
+pub fn worst(sizes: impl IntoIterator<Item = f64>) -> f64 {
+    sizes.into_iter().fold(0.0, |most, size| if size > most || size.is_nan() { size } else { most })
+}
+
 /// An interval around the exact value, and how far the computed one can be from it.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {

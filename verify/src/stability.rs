@@ -34,8 +34,8 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::{Arguments, LANES};
 use crate::formula::Formula;
-use crate::program::Program;
-use crate::ranges::{literal_errors, Domain};
+use crate::program::{Argument, Program};
+use crate::ranges::{literal_errors, worst, Domain};
 use crate::reader::Module;
 use crate::reference::{BaseParameters, Reference, Wanted};
 use crate::report::Unfit;
@@ -58,10 +58,10 @@ pub struct Trial<'a> {
     plain: BTreeMap<String, Vec<(f64, f64)>>,
     /// The box without limits of angles, all parameters up to the largest.
     wide: Domain,
-    /// The same with the parameters of the description.
-    described: Domain,
     /// The largest size of an argument there.
     arguments: f64,
+    /// The same box with the parameters of the description.
+    described: Domain,
 }
 
 /// The arm at some states, in numbers that know their errors.
@@ -73,27 +73,14 @@ fn running(states: &[Arguments<f64>; LANES]) -> State<Running> {
         (Running::rounded(both.map(|(sine, _)| sine), 2.0), Running::rounded(both.map(|(_, cosine)| cosine), 2.0))
     };
     let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
-    State {
-        angles: arguments.q.iter().map(circle).collect(),
-        signs: arguments.dq.iter().map(sign).collect(),
-        q: arguments.q,
-        dq: arguments.dq,
-        ddq: arguments.ddq,
-        dqr: arguments.dqr,
-        ddqr: arguments.ddqr,
-        tau: arguments.tau,
-        pi: arguments.pi,
-        zero: Running::exact([0.0; LANES]),
-        one: Running::exact([1.0; LANES]),
-    }
+    let (angles, signs) = (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
+    State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Running::exact([x; LANES])))
 }
 
 /// Largest error and largest size of the entries of a function at each state.
 fn largest(entries: &[Running]) -> [(f64, f64); LANES] {
     std::array::from_fn(|k| {
-        let worst = |worst: f64, x: f64| if exceeds(x, worst) { x } else { worst };
-        let error = entries.iter().fold(0.0, |most, entry| worst(most, entry.error[k]));
-        (error, entries.iter().fold(0.0, |most, entry| worst(most, entry.value[k].abs())))
+        (worst(entries.iter().map(|entry| entry.error[k])), worst(entries.iter().map(|entry| entry.value[k].abs())))
     })
 }
 
@@ -127,9 +114,8 @@ impl<'a> Trial<'a> {
             }
         }
         plain.retain(|_, states| states.len() == BATCHES * LANES);
-        let ends = wide.clone().map(|(low, high)| low.abs().max(high.abs()));
-        let all = [&ends.pi, &ends.q, &ends.dq, &ends.ddq, &ends.dqr, &ends.ddqr, &ends.tau];
-        let arguments = all.into_iter().flatten().fold(0.0f64, |most, &x| most.max(x));
+        let ranges = Argument::ALL.into_iter().flat_map(|argument| wide.of(argument));
+        let arguments = worst(ranges.map(|(low, high)| low.abs().max(high.abs())));
         Trial { module, joints: manipulator.joints.len(), batches, plain, wide, described: near, arguments }
     }
 
@@ -140,18 +126,19 @@ impl<'a> Trial<'a> {
     /// What makes a function useless in floats, if it is.
     pub fn fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
         let operands = undivided_operands(program);
-        let undivided = if operands.is_empty() { program.clone() } else { program.part(&operands) };
-        let over = |domain: &Domain| undivided_bound(&undivided, values, domain, self.module.real);
-        // Where masses of 1e12 kg stand beside inertias of 1e-12 kg m², each as large as the largest is beyond f32.
-        let wide = Some(over(&self.wide)).filter(|(bound, _)| bound.is_finite()).unwrap_or_else(|| over(&self.described));
         if operands.is_empty() {
-            return self.undivided_fault(program, values, wide, true);
+            return self.undivided_fault(program, values, true);
         }
-        self.undivided_fault(&undivided, values, wide, false).or_else(|| self.divided_fault(program, values))
+        self.undivided_fault(&program.part(&operands), values, false).or_else(|| self.divided_fault(program, values))
     }
 
-    fn undivided_fault(&self, program: &Program, values: &[Formula], (bound, largest): (f64, f64), whole: bool) -> Option<Unfit> {
+    /// Of a whole function, or of what no quotient takes part in.
+    fn undivided_fault(&self, program: &Program, values: &[Formula], whole: bool) -> Option<Unfit> {
         let real = self.module.real;
+        let over = |domain: &Domain| undivided_bound(program, values, domain, real);
+        // Where masses of 1e12 kg stand beside inertias of 1e-12 kg m², each as large as the largest is beyond f32.
+        let wide = Some(over(&self.wide)).filter(|(bound, _)| bound.is_finite());
+        let (bound, largest) = wide.unwrap_or_else(|| over(&self.described));
         if !bound.is_finite() && Check::Leaves.is_made() {
             return Some(Unfit::Leaves(format!("a value can leave {} inside the box", real.name())));
         }
@@ -173,14 +160,14 @@ impl<'a> Trial<'a> {
         if exceeds(bound, allowed) && Check::Box.is_made() {
             return Some(too_much("anywhere in the box", bound, allowed, size));
         }
-        let worst = runs.iter().flatten().fold(0.0f64, |worst, (_, error)| if exceeds(*error, worst) { *error } else { worst });
+        let error = largest_error(runs.iter().flatten());
         let mut allowed = most(12.0 + 0.5 * n, Float::F64);
         if let Some(plain) = whole.then(|| self.plain.get(&program.name)).flatten().filter(|_| Check::Plain.is_made()) {
             let errors = plain.iter().map(|(error, _)| *error);
             allowed = allowed.min(FACTOR * (errors.fold(0.0, f64::max) + Float::F64.unit() * size + f64::MIN_POSITIVE));
         }
-        (exceeds(worst, allowed) && Check::States.is_made())
-            .then(|| too_much("in f64, at a state of the box", worst, allowed, size))
+        (exceeds(error, allowed) && Check::States.is_made())
+            .then(|| too_much("in f64, at a state of the box", error, allowed, size))
     }
 
     fn divided_fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
@@ -191,10 +178,10 @@ impl<'a> Trial<'a> {
         // Not at the ends of the box: where the arm is exactly singular, errors are as large as what they are errors of.
         for (_, ((run, (error, size)), state)) in judged {
             let lost = error / (unit * size);
-            let worst = run.iter().fold(0.0f64, |worst, (_, error)| if exceeds(*error, worst) { *error } else { worst });
+            let found = largest_error(run);
             let allowed = FACTOR * (error + unit * size + f64::MIN_POSITIVE);
-            if lost < LOST && exceeds(worst, allowed) && Check::DividedStates.is_made() {
-                return Some(too_much("in f64, at a state of the box", worst, allowed, *size));
+            if lost < LOST && exceeds(found, allowed) && Check::DividedStates.is_made() {
+                return Some(too_much("in f64, at a state of the box", found, allowed, *size));
             }
             // Of a single number the quotients alone are finite in f64.
             if Check::DividedLeaves.is_made()
@@ -225,6 +212,11 @@ impl<'a> Trial<'a> {
         }
         Some(runs)
     }
+}
+
+/// The largest error among values with their errors.
+fn largest_error<'a>(values: impl IntoIterator<Item = &'a (f64, f64)>) -> f64 {
+    worst(values.into_iter().map(|(_, error)| *error))
 }
 
 /// Whether a is larger than b, or one of the two is not a number.

@@ -42,6 +42,7 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
     let mut faults = Vec::new();
     for (name, function) in &module.functions {
         let Ok(function) = function else { continue };
+        let before = faults.len();
         let rounding = notes.functions.get(name).map(|sentence| bounded.then_some(sentence.as_str()));
         let mut check = |check: Check, prefix: &str, expected: Option<&str>| {
             if let Err(fault) =
@@ -54,10 +55,9 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
         if let Some(expected) = rounding {
             check(Check::Rounding, "Rounding error: ", expected);
         }
-        if module.documentation.is_some() && Check::Prose.is_made() {
-            faults.extend(
-                prose(manipulator, name, function, bounded && rounding.is_some()).map(|fault| format!("{name}: {fault}")),
-            );
+        // A line of its own that is wrong is said once.
+        if faults.len() == before && module.documentation.is_some() && Check::Prose.is_made() {
+            faults.extend(prose(manipulator, name, function, bounded).map(|fault| format!("{name}: {fault}")));
         }
     }
     if Check::Meanings.is_made() {
@@ -87,8 +87,8 @@ fn prose(manipulator: &Manipulator, name: &str, function: &Function, bounded: bo
         quantity,
         with_parameters,
         gravity: &gravity,
-        has_springs: manipulator.joints.iter().any(|joint| joint.spring.is_some()),
-        has_more_friction: manipulator.joints.iter().any(|joint| joint.offset.is_some() || joint.cubic.is_some()),
+        has_springs: manipulator.has_springs(),
+        has_more_friction: manipulator.has_more_friction(),
         turned_joint: turned,
         cost: operations(&function.program),
         method,

@@ -65,21 +65,10 @@ fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
 
 fn wide_state(arguments: &Arguments<f64>) -> Option<State<Wide>> {
     let inputs = WideArguments::new(arguments)?;
-    let n = arguments.q.len();
-    let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments.map(Wide::from_f64);
-    Some(State {
-        angles: (0..n).map(|i| inputs.sine_cosine(&[(i, 1)])).collect(),
-        q,
-        dq,
-        ddq,
-        dqr,
-        ddqr,
-        tau,
-        signs: (0..n).map(|i| Inputs::<Wide>::sign(&inputs, i)).collect(),
-        pi,
-        zero: Wide::from_f64(0.0),
-        one: Wide::from_f64(1.0),
-    })
+    let joints = 0..arguments.q.len();
+    let angles = joints.clone().map(|i| inputs.sine_cosine(&[(i, 1)])).collect();
+    let signs = joints.map(|i| Inputs::<Wide>::sign(&inputs, i)).collect();
+    Some(State::of(arguments.map(Wide::from_f64), angles, signs, [0.0, 1.0].map(Wide::from_f64)))
 }
 
 fn list(values: &[f64], real: Float) -> String {

@@ -9,10 +9,6 @@ use crate::element::Element;
 use crate::formula::Formula;
 use crate::program::{Argument, Inputs, Turn};
 
-/// The arguments in which degrees are counted.
-pub const COUNTED: [Argument; 7] =
-    [Argument::Pi, Argument::Q, Argument::Dq, Argument::Ddq, Argument::Dqr, Argument::Ddqr, Argument::Tau];
-
 /// The degree of a value in each argument; `None` for 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Growth(Option<[i64; 7]>);
@@ -22,12 +18,12 @@ impl Growth {
 
     /// An entry of an argument.
     fn entry(argument: Argument) -> Growth {
-        Growth(Some(COUNTED.map(|counted| i64::from(counted == argument))))
+        Growth(Some(Argument::ALL.map(|counted| i64::from(counted == argument))))
     }
 
     /// The degree in an argument; 0 has none.
     pub fn of(&self, argument: Argument) -> Option<i64> {
-        self.0.zip(COUNTED.iter().position(|&counted| counted == argument)).map(|(degrees, k)| degrees[k])
+        self.0.zip(Argument::ALL.iter().position(|&counted| counted == argument)).map(|(degrees, k)| degrees[k])
     }
 
     /// The larger of two in each argument.
@@ -55,7 +51,9 @@ impl Element for Growth {
     }
     fn inverse(&self) -> Option<Growth> {
         let degrees = self.0?;
-        Some(Growth(Some(std::array::from_fn(|k| if COUNTED[k] == Argument::Pi { degrees[k].saturating_neg() } else { 0 }))))
+        Some(Growth(Some(std::array::from_fn(
+            |k| if Argument::ALL[k] == Argument::Pi { degrees[k].saturating_neg() } else { 0 },
+        ))))
     }
     fn is_zero(&self) -> bool {
         self.0.is_none()

@@ -3,6 +3,7 @@
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::Arithmetic;
 use crate::element::Element;
+use crate::float::Arguments;
 use crate::program::{by_addition, Argument, Inputs, Turn};
 
 /// Values of joint variables, rates, accelerations, references, torques and parameters.
@@ -33,6 +34,12 @@ pub struct State<E> {
 }
 
 impl<E: Element> State<E> {
+    /// A state of these arguments.
+    pub fn of(arguments: Arguments<E>, angles: Vec<(E, E)>, signs: Vec<E>, [zero, one]: [E; 2]) -> State<E> {
+        let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments;
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, pi, zero, one }
+    }
+
     /// A random state; `pi` is filled in by who knows what it means.
     pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, n: usize) -> State<E> {
         let mut many = |_| (0..n).map(|_| arithmetic.draw()).collect::<Vec<E>>();
