@@ -124,41 +124,29 @@ impl Values<'_> {
 
     /// A coefficient of friction; 0 is none.
     pub(crate) fn coefficient(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
-        let value = value.filter(|value| !value.is_zero())?;
-        if value.value > 0.0 {
-            return Some(value);
-        }
-        let message = format!("a friction coefficient of joint `{}` is negative: {}", shown(joint), value.text);
         let help = "friction takes energy from the arm, so its coefficient is at least 0";
-        self.report(Code::NegativeFriction, value.span, message, "", help);
-        None
+        self.not_negative(value, "a friction coefficient", joint, Code::NegativeFriction, help)
     }
 
     /// An inertia that a joint alone feels; 0 is none.
     pub(crate) fn armature(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
-        let value = value.filter(|value| !value.is_zero())?;
-        if value.value > 0.0 {
-            return Some(value);
-        }
-        let message = format!("the armature of joint `{}` is negative: {}", shown(joint), value.text);
-        self.report(Code::NegativeArmature, value.span, message, "", "an inertia is at least 0");
-        None
+        self.not_negative(value, "the armature", joint, Code::NegativeArmature, "an inertia is at least 0")
     }
 
     /// The stiffness of a spring; 0 is none.
     pub(crate) fn stiffness(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
+        let help = "a spring pulls back to its rest, so its stiffness is at least 0";
+        self.not_negative(value, "the stiffness", joint, Code::MjcfFeature, help)
+    }
+
+    /// What is above 0; 0 is none, and less is a fault.
+    fn not_negative(&mut self, value: Option<Decimal>, what: &str, joint: &str, code: Code, help: &str) -> Option<Decimal> {
         let value = value.filter(|value| !value.is_zero())?;
         if value.value > 0.0 {
             return Some(value);
         }
-        let message = format!("the stiffness of joint `{}` is negative: {}", shown(joint), value.text);
-        self.report(
-            Code::MjcfFeature,
-            value.span,
-            message,
-            "",
-            "a spring pulls back to its rest, so its stiffness is at least 0",
-        );
+        let message = format!("{what} of joint `{}` is negative: {}", shown(joint), value.text);
+        self.report(code, value.span, message, "", help);
         None
     }
 

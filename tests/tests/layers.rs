@@ -88,8 +88,13 @@ const PAGE: Layers = &[
     ("document", &["bodies", "html", "rows", "sheet", "warnings"]),
 ];
 
-const COMMANDS: Layers =
-    &[("table", &[]), ("terminal", &[]), ("input", &["terminal"]), ("commands", &["input", "table", "terminal"])];
+const COMMANDS: Layers = &[
+    ("table", &[]),
+    ("terminal", &[]),
+    ("input", &["terminal"]),
+    ("output", &["terminal"]),
+    ("commands", &["input", "output", "table", "terminal"]),
+];
 
 /// From a text and a description to a verdict; `docs/certificate.md` says what each step is for.
 const VERIFY: Layers = &[

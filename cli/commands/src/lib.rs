@@ -13,6 +13,7 @@
 
 mod commands;
 mod input;
+mod output;
 mod table;
 mod terminal;
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use armgen_codegen::description::Convention;
 
-use super::generate::{same_file, write};
-use crate::{input, terminal, DONE, UNREADABLE};
+use crate::output::write_other;
+use crate::{input, terminal};
 
 /// A convention.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -41,14 +41,8 @@ pub(crate) fn run(file: &Path, to: To, out: Option<&PathBuf>) -> u8 {
     for line in &converted.lines {
         terminal::note(line);
     }
-    let Some(out) = out else { return terminal::print(&converted.yaml) };
-    if same_file(file, out) {
-        terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
-        return UNREADABLE;
+    match out {
+        Some(out) => write_other(file, out, &converted.yaml),
+        None => terminal::print(&converted.yaml),
     }
-    if let Err(error) = write(out, &converted.yaml) {
-        terminal::error(&format!("cannot write {}: {error}", out.display()));
-        return UNREADABLE;
-    }
-    DONE
 }

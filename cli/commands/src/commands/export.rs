@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::generate::{same_file, write};
-use crate::{input, terminal, DONE, UNREADABLE};
+use crate::output::write_other;
+use crate::{input, terminal};
 
 /// What can be written.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
@@ -27,14 +27,8 @@ pub(crate) fn run(file: &Path, format: Format, out: Option<&PathBuf>) -> u8 {
     for line in &exported.lines {
         terminal::note(line);
     }
-    let Some(out) = out else { return terminal::print(&exported.urdf) };
-    if same_file(file, out) {
-        terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
-        return UNREADABLE;
+    match out {
+        Some(out) => write_other(file, out, &exported.urdf),
+        None => terminal::print(&exported.urdf),
     }
-    if let Err(error) = write(out, &exported.urdf) {
-        terminal::error(&format!("cannot write {}: {error}", out.display()));
-        return UNREADABLE;
-    }
-    DONE
 }

@@ -15,6 +15,7 @@ use armgen_verify::certificate::Certificate;
 use armgen_verify::reader::ModuleText;
 
 use super::verify::{certificate_beside, with_spinner};
+use crate::output::{same_file, write};
 use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
 /// What the module is to be.
@@ -251,27 +252,6 @@ fn unfit(
         true => None,
         false => Some(format!("{title} has no single precision: leave `--scalar f32` out")),
     }
-}
-
-/// Whether two paths lead to one file, whatever they are called.
-pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
-
-/// Writes beside the file first and then renames: nobody ever finds half of it.
-pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
-    // A rename would turn a device or a link into a plain file.
-    if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
-        return std::fs::write(path, text);
-    }
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".new");
-    let beside = path.with_file_name(name);
-    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
-    if written.is_err() {
-        let _ = std::fs::remove_file(&beside);
-    }
-    written
 }
 
 /// The Rust module name for a file with this stem.

@@ -6,7 +6,7 @@ use armgen_import::Options;
 use clap::{Args, ValueHint};
 
 use super::convert::To;
-use super::generate::{same_file, write};
+use crate::output::{same_file, write};
 use crate::{input, terminal, DONE, UNREADABLE};
 
 /// Which arm of the file, and how it is read.

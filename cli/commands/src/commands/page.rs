@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use armgen_page::{Log, Misfit, Run};
 
-use super::generate::{same_file, write};
 use super::verify::with_spinner;
-use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
+use crate::output::write_other;
+use crate::{input, terminal, FAULTY};
 
 pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
     let mut runs: Vec<Run> = Vec::new();
@@ -31,15 +31,7 @@ pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
         Ok(page) => page,
         Err(code) => return code,
     };
-    if same_file(file, out) {
-        terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
-        return UNREADABLE;
-    }
-    if let Err(error) = write(out, &page) {
-        terminal::error(&format!("cannot write {}: {error}", out.display()));
-        return UNREADABLE;
-    }
-    DONE
+    write_other(file, out, &page)
 }
 
 /// A log by the name of its file.

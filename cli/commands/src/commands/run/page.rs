@@ -8,7 +8,7 @@ use armgen_experiments::draw;
 use armgen_experiments::model::{Record, Robot};
 use armgen_page::{Log, Run, Verdict};
 
-use super::super::generate::write;
+use crate::output::write;
 use crate::{terminal, DONE, UNREADABLE};
 
 /// The experiments, and the figures of their groups.
