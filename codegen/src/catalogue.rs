@@ -6,7 +6,7 @@ pub use crate::derive::model::Sizes;
 pub use crate::derive::parameters::Parameter;
 pub use crate::derive::quantities;
 pub use crate::derive::quantity::{
-    Absent, Argument, Documentation, Element, Length, Part, Quantity, Recursion, Setting, Structure, Typeset,
+    Absent, Argument, Documentation, Element, Length, Quantity, Recursion, ResultPart, Setting, Structure, Typeset,
 };
 
 use quantities::DECLARED;
@@ -44,8 +44,10 @@ mod tests {
             assert!(documentation.title.ends_with('.') && documentation.result.ends_with('.'), "{name}");
             match result {
                 [] => panic!("{name} returns nothing"),
-                [one] => assert!(one.name == Part::RESULT && structure.is_none(), "{name}"),
-                parts => assert!(parts.iter().all(|part| part.name != Part::RESULT && !part.meaning[0].is_empty()), "{name}"),
+                [one] => assert!(one.name == ResultPart::RESULT && structure.is_none(), "{name}"),
+                parts => {
+                    assert!(parts.iter().all(|part| part.name != ResultPart::RESULT && !part.meaning[0].is_empty()), "{name}")
+                }
             }
             for part in *result {
                 assert!(!part.unit.is_empty(), "{name}");

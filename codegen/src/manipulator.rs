@@ -38,7 +38,7 @@ pub struct Manipulator {
     /// End-effector frame in the tip's link frame.
     pub tool: Pose,
     /// Rigid load, in the end-effector frame.
-    pub payload: Option<Part>,
+    pub payload: Option<PlacedBody>,
     /// Rows of the operational space, in the order of the file.
     pub task: Vec<TaskRow>,
     /// What the regressor's columns are.
@@ -72,7 +72,7 @@ pub struct Joint {
     /// Limits as written, if any.
     pub limits: Limits,
     /// The bodies that make up the link, in the *link frame*: its own, then those that are fixed to it.
-    pub link: Vec<Part>,
+    pub link: Vec<PlacedBody>,
     /// The rotor that drives this joint, on the parent link.
     pub motor: Option<Motor>,
     /// Friction at the joint; `None` where the file does not give it.
@@ -121,7 +121,7 @@ pub struct Pose {
 
 /// A body as the file gives it, and the same in the frame of what carries it.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct PlacedBody {
     /// Its own frame F, in the frame of what carries it.
     pub frame: Pose,
     /// The axes of the inertia tensor, in F.
@@ -272,9 +272,9 @@ impl Pose {
     }
 }
 
-impl Part {
+impl PlacedBody {
     /// The body `given` in its own frame, with the axes of its tensor in that frame.
-    pub fn new(frame: Pose, axes: Pose, given: Body) -> Part {
+    pub fn new(frame: Pose, axes: Pose, given: Body) -> PlacedBody {
         let body = if frame.elements.is_empty() && axes.elements.is_empty() {
             given.clone()
         } else {
@@ -290,6 +290,6 @@ impl Part {
                 inertia: [full(0, 0), full(0, 1), full(1, 1), full(0, 2), full(1, 2), full(2, 2)],
             }
         };
-        Part { frame, axes, given, body }
+        PlacedBody { frame, axes, given, body }
     }
 }

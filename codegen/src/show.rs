@@ -26,7 +26,7 @@ mod text;
 use std::collections::BTreeSet;
 
 use crate::catalogue::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
-use crate::catalogue::{self, Absent, Length, Part, Quantity, Typeset};
+use crate::catalogue::{self, Absent, Length, Quantity, ResultPart, Typeset};
 use crate::derive::arm::Arm;
 use crate::derive::derivation::{Derivation, CLOSED_FORM_TERMS};
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
@@ -314,7 +314,7 @@ fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation
             }
             None => {
                 let Typeset { text, latex } = part.symbol;
-                let name = if part.name == Part::RESULT { name.to_owned() } else { format!("{name}_{}", part.name) };
+                let name = if part.name == ResultPart::RESULT { name.to_owned() } else { format!("{name}_{}", part.name) };
                 all.push(matrix(model, part, name, [text.into(), latex.into()], of(own)));
             }
         }
@@ -350,7 +350,7 @@ fn names(model: &Model) -> Vec<String> {
     model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect()
 }
 
-fn matrix(model: &Model, part: &Part, name: String, symbol: [String; 2], derivation: Derivation) -> Shown {
+fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], derivation: Derivation) -> Shown {
     let sizes = model.sizes();
     let columns_of = match part.columns() {
         Length::Parameters => Some(&model.parameters),

@@ -49,7 +49,7 @@ use evaluate::Evaluator;
 pub use names::{is_free_name, is_rust_name};
 pub use nominal::NominalValues;
 use parameters::Parameters;
-pub use places::{JointPlaces, Places, Role, Use};
+pub use places::{JointPlaces, Occurrence, Places, Role};
 
 /// Most named quantities: more than all numbers of an arm with `MAX_JOINTS` joints.
 pub const MAX_PARAMETERS: usize = 1024;

@@ -3,13 +3,10 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
-use crate::draw;
+use crate::draw::{self, OutputFile};
 use crate::judge::{judge, Line};
 use crate::model::{Body, Experiment, Quantity, Record};
 use crate::run::{Arm, Run};
-
-/// A file that is to be written: its name and its text.
-pub type File = (String, String);
 
 /// One experiment and what is known of it.
 pub struct Job<'a> {
@@ -17,7 +14,7 @@ pub struct Job<'a> {
     arm: &'a dyn Arm,
     prepared: Option<Result<Box<dyn Run + 'a>, String>>,
     record: Record,
-    figures: Vec<File>,
+    figures: Vec<OutputFile>,
 }
 
 impl std::fmt::Debug for Job<'_> {
@@ -68,13 +65,13 @@ impl<'a> Job<'a> {
     }
 
     /// Its figures.
-    pub fn figures(&self) -> &[File] {
+    pub fn figures(&self) -> &[OutputFile] {
         &self.figures
     }
 
     /// Its log as comma-separated values.
-    pub fn log(&self) -> File {
-        (format!("{}.csv", self.experiment.name), self.record.csv())
+    pub fn log(&self) -> OutputFile {
+        OutputFile { name: format!("{}.csv", self.experiment.name), text: self.record.csv() }
     }
 
     /// The lines of the table; a run that ended early is one of them, unless an expectation is about `lost_at`.
@@ -100,7 +97,7 @@ impl<'a> Job<'a> {
 }
 
 /// The figures of the groups of these experiments.
-pub fn groups(jobs: &[Job<'_>]) -> Vec<File> {
+pub fn groups(jobs: &[Job<'_>]) -> Vec<OutputFile> {
     let Some(arm) = jobs.first().map(|job| job.arm) else { return Vec::new() };
     let all: Vec<(&Experiment, &Record)> = jobs.iter().map(|job| (job.experiment, &job.record)).collect();
     draw::groups(&all, arm.robot())

@@ -27,10 +27,19 @@ use crate::model::{Body, Experiment, Record, Robot};
 
 pub use run::demonstration;
 
-/// The figures of one experiment: names of files and their texts.
-pub fn experiment(experiment: &Experiment, record: &Record, robot: &Robot) -> Vec<(String, String)> {
+/// A file that is to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputFile {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What stands in it.
+    pub text: String,
+}
+
+/// The figures of one experiment.
+pub fn experiment(experiment: &Experiment, record: &Record, robot: &Robot) -> Vec<OutputFile> {
     let Experiment { name, title, body, .. } = experiment;
-    let figure = |suffix: &str, text: String| (format!("{name}{suffix}.svg"), text);
+    let figure = |suffix: &str, text: String| OutputFile { name: format!("{name}{suffix}.svg"), text };
     match body {
         Body::Postures(postures) => {
             let mut figures = vec![figure("_postures", arm::postures(title, postures, &record.shapes))];
@@ -52,8 +61,8 @@ pub fn experiment(experiment: &Experiment, record: &Record, robot: &Robot) -> Ve
     }
 }
 
-/// The comparisons of all groups that have more than one member: names of files and their texts.
-pub fn groups(all: &[(&Experiment, &Record)], robot: &Robot) -> Vec<(String, String)> {
+/// The comparisons of all groups that have more than one member.
+pub fn groups(all: &[(&Experiment, &Record)], robot: &Robot) -> Vec<OutputFile> {
     let mut groups: BTreeMap<&str, Vec<(&Experiment, &Record)>> = BTreeMap::new();
     for (experiment, record) in all {
         // An experiment may belong to several groups.
@@ -62,7 +71,8 @@ pub fn groups(all: &[(&Experiment, &Record)], robot: &Robot) -> Vec<(String, Str
         }
     }
     let compared = groups.iter().filter(|(_, members)| members.len() > 1);
-    let figure =
-        |(group, members): (&&str, &Vec<_>)| Some((format!("group_{group}.svg"), compare::group(group, members, robot)?));
+    let figure = |(group, members): (&&str, &Vec<_>)| {
+        Some(OutputFile { name: format!("group_{group}.svg"), text: compare::group(group, members, robot)? })
+    };
     compared.filter_map(figure).collect()
 }

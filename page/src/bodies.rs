@@ -10,7 +10,7 @@
 //! are only gathered in numbers.
 
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::manipulator::{Manipulator, Part};
+use armgen_codegen::manipulator::{Manipulator, PlacedBody};
 use serde_json::{json, Value};
 
 use crate::rows::frame;
@@ -18,7 +18,7 @@ use crate::rows::frame;
 /// The bodies of all links, those of the payload in the end effector's frame: name, frame that carries them (from 1, or `e`), mass, centre
 /// of mass, tensor xx xy yy xz yz zz.
 pub(crate) fn bodies(manipulator: &Manipulator) -> Value {
-    let of = |name: String, carrier: Value, part: &Part| {
+    let of = |name: String, carrier: Value, part: &PlacedBody| {
         let number = |p: &_| nominal(manipulator, p).to_f64();
         json!({
             "name": name,

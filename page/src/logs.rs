@@ -23,8 +23,17 @@ pub struct Run {
     pub log: Option<Log>,
     /// What came out beside what was expected.
     pub verdicts: Vec<Verdict>,
-    /// Titles and texts of figures, SVG.
-    pub figures: Vec<(String, String)>,
+    /// Its figures.
+    pub figures: Vec<Figure>,
+}
+
+/// A figure of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Figure {
+    /// What it shows.
+    pub title: String,
+    /// Its text.
+    pub svg: String,
 }
 
 /// A line of the table of results.
@@ -108,7 +117,7 @@ impl Log {
 /// What the script is given, by the names of the runs.
 pub(crate) fn data(runs: &[Run]) -> Value {
     let of = |run: &Run| {
-        let figures: Vec<Value> = run.figures.iter().map(|(title, text)| json!([title, pack(text)])).collect();
+        let figures: Vec<Value> = run.figures.iter().map(|figure| json!([figure.title, pack(&figure.svg)])).collect();
         (run.name.clone(), json!({"log": run.log.as_ref().map(Log::packed), "figures": figures}))
     };
     Value::Object(runs.iter().map(of).collect::<Map<_, _>>())

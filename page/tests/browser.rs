@@ -10,7 +10,7 @@ mod rust;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::source::Source;
-use armgen_page::{Log, Run, Verdict};
+use armgen_page::{Figure, Log, Run, Verdict};
 use driver::{Browser, Tab};
 use rust::State;
 use serde_json::Value;
@@ -315,7 +315,7 @@ fn hostile_texts_are_inert() {
         title: hostile.into(),
         log: Some(log),
         verdicts: vec![verdict],
-        figures: vec![(hostile.into(), figure)],
+        figures: vec![Figure { title: hostile.into(), svg: figure }],
     };
     let source = Source::new(format!("{hostile}.yaml"), format!("# {hostile}\n{}", robot("scara").text()));
     let (page, _) = armgen_page::page(&source, &[run]).expect("a log without joints goes with any arm");

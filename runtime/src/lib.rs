@@ -24,9 +24,9 @@ pub mod control;
 pub mod linalg;
 pub mod manipulability;
 pub mod orientation;
-pub mod parameters;
 pub mod reference;
 pub mod robot;
+pub mod settings;
 #[cfg(feature = "std")]
 pub mod simulation;
 #[cfg(feature = "std")]

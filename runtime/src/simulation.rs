@@ -35,5 +35,5 @@ pub use continuous::{run_continuous, ContinuousOptions, ContinuousSample};
 pub use integrator::{dormand_prince, rk4, Integrator, Phase, StepError};
 pub use log::Log;
 pub use plant::{Energy, Plant};
-pub use run::{run, Passed, RunError, RunOptions, Sample, BEYOND};
+pub use run::{run, Divergence, RunError, RunOptions, Sample, DIVERGENCE_BOUND};
 pub use sensor::{Noise, Sensor};

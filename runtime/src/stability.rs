@@ -49,5 +49,5 @@ mod sampled_loop;
 pub use delay::Delay;
 pub use error::StabilityError;
 pub use feedback::{Feedback, Linearise, Settle};
-pub use motion::{Growth, Left, Motion, Rehearsal, Rehearse, Weights};
+pub use motion::{Growth, Motion, ReferenceLost, Rehearsal, Rehearse, Weights};
 pub use sampled_loop::{analyse, analyse_start, Report, SampledLoop, StablePeriod};

@@ -5,7 +5,7 @@ mod common;
 use armgen_runtime::{
     control::{Adaptive, BoundaryLayer, ControlError, InverseDynamics, PdGravity, Robust},
     reference::{JointReference, State},
-    simulation::{run, run_continuous, ContinuousOptions, Passed, RunError, RunOptions, Sample},
+    simulation::{run, run_continuous, ContinuousOptions, Divergence, RunError, RunOptions, Sample},
 };
 use common::{below, close, close_percent, ghost, scara::NOMINAL};
 use nalgebra::{vector, SVector, Vector4};
@@ -243,7 +243,7 @@ fn a_run_in_continuous_time_that_ends_early_says_when() {
     );
     assert_eq!(refused, Err(RunError::Controller { time: Duration::from_millis(3), error: "brake" }));
     let lost = run_continuous(&plant, start, none, options, |_, _, _, _| Ok::<_, ()>((Vector4::repeat(f64::NAN), none)), |_| {});
-    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1), passed: Passed::Rate(0) }));
+    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1), divergence: Divergence::Rate(0) }));
 }
 
 #[test]

@@ -5,7 +5,7 @@ mod common;
 use armgen_runtime::{
     control::OperationalSpace,
     reference::State,
-    simulation::{run, Integrator, Passed, Plant, RunError, RunOptions, Sensor},
+    simulation::{run, Divergence, Integrator, Plant, RunError, RunOptions, Sensor},
 };
 use common::{below, ghost, scara::Scara};
 use nalgebra::{vector, Vector4};
@@ -122,7 +122,7 @@ fn a_run_that_ends_early_says_when() {
     assert_eq!(broken, Err(RunError::Controller { time: Duration::from_millis(5), error: "brake" }));
     assert_eq!(logged, 5);
     let lost = run(&plant, start, options(), |_, _| Ok::<_, ()>(Vector4::repeat(f64::NAN)), |_| {});
-    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1), passed: Passed::Rate(0) }));
+    assert_eq!(lost, Err(RunError::Diverged { time: Duration::from_millis(1), divergence: Divergence::Rate(0) }));
     // A torque that is finite, and a rate that no arm has.
     let torn = run(
         &plant,

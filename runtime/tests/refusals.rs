@@ -9,8 +9,8 @@ use armgen_runtime::{
         TorqueLimits,
     },
     linalg::{Damping, DampingError},
-    parameters::{Parameter, ParameterError},
     reference::{JointReference, OperationalReference, Pose, State},
+    settings::{Setting, SettingError},
     simulation::{Integrator, Plant, RunError},
     task::{Row, Task, TaskError},
     trajectory::{PlanError, PlanFault},
@@ -23,30 +23,30 @@ const NAN: f64 = f64::NAN;
 
 #[test]
 fn gains_are_checked() {
-    let positive = |parameter, index| Some(ParameterError::NotPositive { parameter, index });
-    let finite = |parameter, index| Some(ParameterError::NotFinite { parameter, index });
+    let positive = |setting, index| Some(SettingError::NotPositive { setting, index });
+    let finite = |setting, index| Some(SettingError::NotFinite { setting, index });
     let (two, one) = ([2.0, 2.0], [1.0, 1.0]);
-    assert_eq!(PdGravity::new([1.0, 0.0], one).err(), positive(Parameter::Proportional, 1));
-    assert_eq!(PdGravity::new(two, [-1.0, 1.0]).err(), positive(Parameter::Derivative, 0));
-    assert_eq!(InverseDynamics::new([1.0, NAN], one).err(), finite(Parameter::Proportional, 1));
-    assert_eq!(InverseDynamics::new(two, [f64::INFINITY, 1.0]).err(), finite(Parameter::Derivative, 0));
+    assert_eq!(PdGravity::new([1.0, 0.0], one).err(), positive(Setting::Proportional, 1));
+    assert_eq!(PdGravity::new(two, [-1.0, 1.0]).err(), positive(Setting::Derivative, 0));
+    assert_eq!(InverseDynamics::new([1.0, NAN], one).err(), finite(Setting::Proportional, 1));
+    assert_eq!(InverseDynamics::new(two, [f64::INFINITY, 1.0]).err(), finite(Setting::Derivative, 0));
     let layer = |rho, epsilon| BoundaryLayer { rho, epsilon };
-    assert_eq!(Robust::new(two, one, one, [1.0, 0.0], layer(1.0, 1.0)).err(), positive(Parameter::LyapunovWeight, 1));
-    assert_eq!(Robust::new(two, one, one, one, layer(-1.0, 1.0)).err(), positive(Parameter::UncertaintyBound, 0));
-    assert_eq!(Robust::new(two, one, one, one, layer(1.0, 0.0)).err(), positive(Parameter::BoundaryLayer, 0));
-    assert_eq!(Adaptive::new(two, one, [1.0, 0.0, 1.0], [0.0; 3], 1e-3).err(), positive(Parameter::Adaptation, 1));
-    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0, 0.0, NAN], 1e-3).err(), finite(Parameter::Estimate, 2));
-    assert_eq!(Adaptive::new([2.0, 0.0], one, [1.0; 3], [0.0; 3], 1e-3).err(), positive(Parameter::Filter, 1));
-    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0; 3], 0.0).err(), positive(Parameter::Period, 0));
-    assert_eq!(Interval::new([0.0, 2.0], [1.0, 1.0]).err(), positive(Parameter::Interval, 1));
+    assert_eq!(Robust::new(two, one, one, [1.0, 0.0], layer(1.0, 1.0)).err(), positive(Setting::LyapunovWeight, 1));
+    assert_eq!(Robust::new(two, one, one, one, layer(-1.0, 1.0)).err(), positive(Setting::UncertaintyBound, 0));
+    assert_eq!(Robust::new(two, one, one, one, layer(1.0, 0.0)).err(), positive(Setting::BoundaryLayer, 0));
+    assert_eq!(Adaptive::new(two, one, [1.0, 0.0, 1.0], [0.0; 3], 1e-3).err(), positive(Setting::Adaptation, 1));
+    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0, 0.0, NAN], 1e-3).err(), finite(Setting::Estimate, 2));
+    assert_eq!(Adaptive::new([2.0, 0.0], one, [1.0; 3], [0.0; 3], 1e-3).err(), positive(Setting::Filter, 1));
+    assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0; 3], 0.0).err(), positive(Setting::Period, 0));
+    assert_eq!(Interval::new([0.0, 2.0], [1.0, 1.0]).err(), positive(Setting::Interval, 1));
     let operational = |k_i, h| OperationalSpace::<f64, 4, 4>::new(ghost::task(), [1.0; 4], [1.0; 4], k_i, h);
-    assert_eq!(operational([0.0, 0.0, -1.0, 0.0], 1e-3).err(), positive(Parameter::Integral, 2));
-    assert_eq!(operational([0.0; 4], NAN).err(), finite(Parameter::Period, 0));
-    assert_eq!(operational([0.0; 4], 1e-3).unwrap().with_integral_limit([-1.0; 4]).err(), positive(Parameter::IntegralLimit, 0));
-    assert_eq!(NullSpace::new([0.0, 0.0], [1.0, 0.0], [0.0; 2]).err(), positive(Parameter::NullSpace, 1));
-    assert_eq!(TorqueLimits::new([1.0, 0.0]).err(), positive(Parameter::TorqueLimit, 1));
-    assert_eq!(JointLimits::rates([1.0, NAN]).err(), finite(Parameter::RateLimit, 1));
-    assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Parameter::PositionLimit, 1));
+    assert_eq!(operational([0.0, 0.0, -1.0, 0.0], 1e-3).err(), positive(Setting::Integral, 2));
+    assert_eq!(operational([0.0; 4], NAN).err(), finite(Setting::Period, 0));
+    assert_eq!(operational([0.0; 4], 1e-3).unwrap().with_integral_limit([-1.0; 4]).err(), positive(Setting::IntegralLimit, 0));
+    assert_eq!(NullSpace::new([0.0, 0.0], [1.0, 0.0], [0.0; 2]).err(), positive(Setting::NullSpace, 1));
+    assert_eq!(TorqueLimits::new([1.0, 0.0]).err(), positive(Setting::TorqueLimit, 1));
+    assert_eq!(JointLimits::rates([1.0, NAN]).err(), finite(Setting::RateLimit, 1));
+    assert_eq!(JointLimits::rates(one).unwrap().with_range([0.0, 1.0], [1.0, 1.0]).err(), positive(Setting::PositionLimit, 1));
     assert_eq!(Damping::new(0.0, 1.0).err(), Some(DampingError::Threshold));
     assert_eq!(Damping::new(1.0, NAN).err(), Some(DampingError::Factor));
 }

@@ -234,7 +234,7 @@ fn deviations_in_motion_grow_by_the_eigenvalues() {
         println!("{motion:?} {rate}");
         close("rate", motion.growth.rate, rate, 0.05 * rate.abs());
         assert_eq!(motion.diverges(), rate * 4.0 > 10f64.ln(), "{motion:?}");
-        assert_eq!(motion.left, None, "it starts on the reference, and nothing disturbs it");
+        assert_eq!(motion.lost, None, "it starts on the reference, and nothing disturbs it");
     }
     let late = Rehearsal { delay: Delay::samples(3), ..rehearsal.clone() };
     let controller = InverseDynamics::new([2000.0], [20.0]).unwrap();

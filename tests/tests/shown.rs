@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use armgen_codegen::catalogue::{self, Part, Sizes};
+use armgen_codegen::catalogue::{self, ResultPart, Sizes};
 use armgen_codegen::show::{Item, Reading, Sheet};
 use armgen_codegen::{source::Source, validate, Model};
 use armgen_tests::formula;
@@ -73,7 +73,7 @@ fn place(shown: &str, sizes: &Sizes) -> Option<(String, Range<usize>)> {
                         return Some((function, first..first + size));
                     }
                 }
-                None if part.name == Part::RESULT && shown == function => return Some((function, all)),
+                None if part.name == ResultPart::RESULT && shown == function => return Some((function, all)),
                 None if shown == format!("{function}_{}", part.name) => return Some((function, all)),
                 None => {}
             }

@@ -9,7 +9,7 @@
 //! ([`crate::report::MOST_LOG2_ODDS`]).
 
 use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::manipulator::{Body, Joint, Manipulator, Part, Placement, Pose, RegressorChoice};
+use armgen_codegen::manipulator::{Body, Joint, Manipulator, PlacedBody, Placement, Pose, RegressorChoice};
 use sha2::{Digest, Sha256};
 
 use crate::claims::{Claims, Resolved};
@@ -245,7 +245,7 @@ impl Description {
     }
 
     /// A body, with what sets it apart from one in the frame that carries it.
-    fn part(&mut self, part: &Part) {
+    fn part(&mut self, part: &PlacedBody) {
         for pose in [&part.frame, &part.axes] {
             if !pose.elements.is_empty() {
                 self.pose(pose);

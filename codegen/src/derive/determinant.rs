@@ -15,7 +15,7 @@ use super::arm::Arm;
 use super::parameters::View;
 use super::quantities::kinematics::geometric_jacobian;
 use crate::exact::{Angle, Number, Rational};
-use crate::ring::normal_form::{Factors, Harmonic, NormalForm};
+use crate::ring::normal_form::{Harmonic, NormalForm, Powers};
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::Model;
@@ -251,8 +251,8 @@ fn normalised(parts: Vec<(NormalForm, Zeros)>) -> (Vec<(NormalForm, Zeros)>, Num
 }
 
 /// A form as polynomials in one variable, by what they are multiplied with.
-fn split(form: &NormalForm, variable: Variable) -> BTreeMap<(Harmonic, Factors), Univariate> {
-    let mut groups: BTreeMap<(Harmonic, Factors), Univariate> = BTreeMap::new();
+fn split(form: &NormalForm, variable: Variable) -> BTreeMap<(Harmonic, Powers), Univariate> {
+    let mut groups: BTreeMap<(Harmonic, Powers), Univariate> = BTreeMap::new();
     for (harmonic, factors, c) in form.terms() {
         match variable {
             Variable::Position(i) => {

@@ -11,16 +11,16 @@
 use crate::ring::{ExprId, Pool};
 
 /// L and D^-1.
-pub struct Factors {
+pub struct LdlFactors {
     /// L, below the diagonal.
     unit: Vec<Vec<ExprId>>,
     /// 1/D.
     reciprocal: Vec<ExprId>,
 }
 
-impl Factors {
+impl LdlFactors {
     /// Factors a matrix none of whose leading minors is identically zero.
-    pub fn new(pool: &mut Pool, m: &[Vec<ExprId>]) -> Factors {
+    pub fn new(pool: &mut Pool, m: &[Vec<ExprId>]) -> LdlFactors {
         let n = m.len();
         // Columns of L D as they come (undivided) and of L (unit): an entry of L D L' needs one of each.
         let mut undivided = vec![vec![ExprId::ZERO; n]; n];
@@ -40,7 +40,7 @@ impl Factors {
                 unit[i][j] = pool.mul(undivided[i][j], reciprocal[j]);
             }
         }
-        Factors { unit, reciprocal }
+        LdlFactors { unit, reciprocal }
     }
 
     /// L^-1 r.

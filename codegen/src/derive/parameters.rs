@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::exact::{Number, Polynomial, Rational};
 use crate::kinds::ParameterId;
-use crate::manipulator::{Body, LinkId, Manipulator, Part};
+use crate::manipulator::{Body, LinkId, Manipulator, PlacedBody};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// One of the parameters in which the dynamics of every arm are linear.
@@ -212,7 +212,7 @@ enum Entry<'a> {
     /// It is given as such.
     Whole(Option<&'a Polynomial>),
     /// The sum over bodies in one frame: first and second moments about one origin add.
-    OfBodies(&'a [Part], Inertial),
+    OfBodies(&'a [PlacedBody], Inertial),
 }
 
 /// An inertial parameter of a body about the origin of its frame: m, m c, I_c + m (c'c 1 - c c'), where `of` gives the entries of the
@@ -308,7 +308,7 @@ pub enum View<'a> {
     /// The entries of the parameter vector symbols, everything else a number.
     Vector(&'a ParameterVector),
     /// The entries of the parameter vector zero, everything else a number: what remains is the known part.
-    Known(&'a ParameterVector),
+    VectorZero(&'a ParameterVector),
 }
 
 /// The value of a standard parameter at the nominal values of all names.
@@ -323,7 +323,7 @@ impl View<'_> {
         match self {
             View::Nominal => pool.constant(&nominal(manipulator, value)),
             View::Symbolic => pool.polynomial(value, &|pool, id| pool.symbol(Symbol::Parameter(id as u16))),
-            View::Vector(vector) | View::Known(vector) => {
+            View::Vector(vector) | View::VectorZero(vector) => {
                 let ParameterKind::Names(names) = &vector.kind else { return pool.constant(&nominal(manipulator, value)) };
                 pool.polynomial(value, &|pool, id| match names.iter().position(|name| name.0 == id) {
                     Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
@@ -343,13 +343,13 @@ impl View<'_> {
     pub fn standard(self, pool: &mut Pool, manipulator: &Manipulator, parameter: StandardParameter) -> ExprId {
         match self {
             View::Nominal => pool.constant(&parameter.nominal(manipulator)),
-            View::Vector(vector) | View::Known(vector) if !matches!(vector.kind, ParameterKind::Names(_)) => {
+            View::Vector(vector) | View::VectorZero(vector) if !matches!(vector.kind, ParameterKind::Names(_)) => {
                 match vector.position(parameter) {
                     Some(column) if matches!(self, View::Vector(_)) => pool.symbol(Symbol::Parameter(column as u16)),
                     _ => ExprId::ZERO,
                 }
             }
-            View::Symbolic | View::Vector(_) | View::Known(_) => self.in_names(pool, manipulator, parameter),
+            View::Symbolic | View::Vector(_) | View::VectorZero(_) => self.in_names(pool, manipulator, parameter),
         }
     }
 

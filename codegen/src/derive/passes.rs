@@ -15,7 +15,7 @@ pub(crate) use last_link::{angle_of_last_link, rotate_last_link};
 
 /// Which passes may rewrite the arm for a derivation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
+pub enum RewriteScope {
     /// Motion and forces; the parameters of the links are numbers and may be mixed.
     Dynamics,
     /// Motion and forces; the parameters of the links are symbols, or the potential energy is needed, whose constant grouping drops.
@@ -50,15 +50,15 @@ pub fn disable_unsuitable(pool: &Pool, arm: &Arm, plan: &mut Plan) {
 }
 
 /// The arm after all passes, in the ways that the plan takes.
-pub fn rewrite(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, used: Use) {
-    match used {
-        Use::Dynamics => {
+pub fn rewrite(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, scope: RewriteScope) {
+    match scope {
+        RewriteScope::Dynamics => {
             last_link::rotate(pool, arm, plan);
             grouping::group(pool, arm, plan);
             unit::unit_of_length(pool, arm, plan);
         }
-        Use::Frames => grouping::choose_origins(pool, arm, plan),
-        Use::Plain => {}
+        RewriteScope::Frames => grouping::choose_origins(pool, arm, plan),
+        RewriteScope::Plain => {}
     }
     orientation::parallel_axes(pool, arm, plan);
 }

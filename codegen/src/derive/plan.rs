@@ -24,12 +24,12 @@ pub enum Place {
     /// A joint that feels gravity.
     Gravity(usize),
     /// A body whose columns of the regressor are formed, links before the payload.
-    Regressor(usize, Wrench),
+    Regressor(usize, UnitWrench),
 }
 
 /// Which of the unit wrenches of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Wrench {
+pub enum UnitWrench {
     /// Those with a force.
     Force,
     /// Couples.

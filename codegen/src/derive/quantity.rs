@@ -10,7 +10,7 @@ use super::arm::Arm;
 use super::derivation::{Derivation, OVER_GROUPED_BODIES, OVER_THE_LINKS};
 use super::model::{Model, Sizes};
 use super::parameters::View;
-use super::passes::{self, Use};
+use super::passes::{self, RewriteScope};
 use super::plan::Plan;
 use crate::pass::{Pass, Passes};
 use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
@@ -25,7 +25,7 @@ pub struct Quantity {
     /// Arguments of the plain function, in order.
     pub arguments: &'static [Argument],
     /// What it returns.
-    pub result: &'static [Part],
+    pub result: &'static [ResultPart],
     /// The type that holds the parts where these have one, instead of a mere list of them.
     pub structure: Option<Structure>,
     /// Whether there is a form `_with` the parameters at run time.
@@ -65,8 +65,8 @@ impl Typeset {
 
 /// A number, a vector, a matrix or a list of matrices that a function returns.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
-    /// Its name, [`Part::RESULT`] where it is all that is returned.
+pub struct ResultPart {
+    /// Its name, [`ResultPart::RESULT`] where it is all that is returned.
     pub name: &'static str,
     /// Its symbol.
     pub symbol: Typeset,
@@ -165,7 +165,7 @@ pub struct Recursion {
     /// The entries of all parts, row by row, for an arm in a pool.
     pub entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>,
     /// What the derivation may do to the arm where its parameters are numbers.
-    pub rewriting: Use,
+    pub rewriting: RewriteScope,
     /// How the parameters enter, where the quantity decides that.
     pub view: for<'a> fn(&'a Model, View<'a>) -> View<'a>,
     /// What is done to the arm before all else.
@@ -203,7 +203,7 @@ impl Documentation {
 
 impl Recursion {
     /// A derivation without anything out of the ordinary.
-    pub const fn new(rewriting: Use, entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>) -> Recursion {
+    pub const fn new(rewriting: RewriteScope, entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>) -> Recursion {
         fn as_asked<'a>(_: &'a Model, view: View<'a>) -> View<'a> {
             view
         }
@@ -211,13 +211,13 @@ impl Recursion {
     }
 }
 
-impl Part {
+impl ResultPart {
     /// The name of a part that is the whole result.
     pub const RESULT: &'static str = "result";
 
     /// A part that is the whole result.
-    pub const fn whole(symbol: Typeset, letter: Typeset, lengths: &'static [Length], unit: &'static str) -> Part {
-        Part { name: Part::RESULT, symbol, letter, lengths, unit, element: None, meaning: [""; 2] }
+    pub const fn whole(symbol: Typeset, letter: Typeset, lengths: &'static [Length], unit: &'static str) -> ResultPart {
+        ResultPart { name: ResultPart::RESULT, symbol, letter, lengths, unit, element: None, meaning: [""; 2] }
     }
 
     /// Number of entries.
@@ -357,8 +357,8 @@ impl Quantity {
         let Recursion { entries, rewriting, view: own_view, prepare, without, starts } = self.recursion;
         let setting = Setting { model, view: own_view(model, view) };
         let rewriting = match (rewriting, setting.view) {
-            (Use::Dynamics, View::Nominal) => Use::Dynamics,
-            (Use::Dynamics, _) => Use::Plain,
+            (RewriteScope::Dynamics, View::Nominal) => RewriteScope::Dynamics,
+            (RewriteScope::Dynamics, _) => RewriteScope::Plain,
             (other, _) => other,
         };
         let mut pool = Pool::new(model.field.clone());
@@ -383,7 +383,7 @@ impl Quantity {
             });
         }
         let entries = derive(&mut pool, &mut plan);
-        let grouped = rewriting == Use::Dynamics && plan.has(Pass::Grouping);
+        let grouped = rewriting == RewriteScope::Dynamics && plan.has(Pass::Grouping);
         let parallel = arm.parallel_axes();
         Derivation { pool, entries, parallel, method: if grouped { OVER_GROUPED_BODIES } else { OVER_THE_LINKS } }
     }

@@ -240,9 +240,9 @@ fn link_columns(
     }
     // Two forms (twist, moment) for each link of the path where a wrench may stop; one at the base, behind which no joint is left.
     let ways = 2 * path.len() - 1;
-    let forces = (plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::Wrench::Force), ways) + plan.start()) % ways;
+    let forces = (plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::UnitWrench::Force), ways) + plan.start()) % ways;
     // Couples go as far as forces (way 0), so that one set of twists will do, or stop elsewhere.
-    let couples = match plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::Wrench::Couple), path.len()) {
+    let couples = match plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::UnitWrench::Couple), path.len()) {
         0 => (forces / 2).min(path.len().saturating_sub(2)),
         way => way - 1,
     };

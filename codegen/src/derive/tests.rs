@@ -391,7 +391,7 @@ fn torque_is_the_regressor_times_the_parameters() {
             let motion = Motion::with_reference(&mut pool, &arm);
             let tau = inverse_dynamics(&mut pool, &arm, &motion);
             let symbols: Vec<ExprId> = (0..vector.len() as u16).map(|k| pool.symbol(Symbol::Parameter(k))).collect();
-            let known_arm = Arm::new(&mut pool, &manipulator, View::Known(&vector));
+            let known_arm = Arm::new(&mut pool, &manipulator, View::VectorZero(&vector));
             let known = inverse_dynamics(&mut pool, &known_arm, &motion);
             let product = times(&mut pool, &y, &symbols);
             let sum: Vec<ExprId> = (0..arm.dof()).map(|i| pool.add(product[i], known[i])).collect();
@@ -640,7 +640,7 @@ fn operational_inertia_is_the_inverse_of_the_mobility_of_the_task() {
             // B_A J B^-1 J' = 1, B^-1 by columns from forward dynamics without forces but one.
             let jacobian = kinematics::geometric_jacobian(&mut pool, &arm);
             let b = inertia::inertia_matrix(&mut pool, &arm, &mut Plan::default());
-            let factors = factors::Factors::new(&mut pool, &b);
+            let factors = factors::LdlFactors::new(&mut pool, &b);
             for (s, &row) in task.iter().enumerate() {
                 let accelerations = factors.solve(&mut pool, &jacobian[row]);
                 let back = times(&mut pool, &b, &accelerations);

@@ -10,7 +10,7 @@ use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
-use crate::program::listing::{decimal, Line, Listing, Name, Part};
+use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Trig};
 
 const CHECK: &str = include_str!("javascript/check.mjs");
@@ -236,7 +236,7 @@ fn nested(text: &mut String, begin: &str, indent: &str, end: &str, lengths: &[us
     let _ = writeln!(text, "{indent}]{end}");
 }
 
-fn print_part(text: &mut String, function: &Function, part: &Part, number: usize) {
+fn print_part(text: &mut String, function: &Function, part: &BodyPart, number: usize) {
     let name = camel(&function.name());
     let arguments: Vec<&str> = part.arguments.iter().map(|a| a.name()).chain(["taken"]).collect();
     let _ = writeln!(text, "\n/** Part {number} of `{name}`. */\nfunction {name}Part{number}({}) {{", arguments.join(", "));
@@ -248,7 +248,7 @@ fn print_part(text: &mut String, function: &Function, part: &Part, number: usize
     let _ = writeln!(text, "    return [{}];\n}}", given.join(", "));
 }
 
-fn call(text: &mut String, function: &Function, part: &Part, number: usize) {
+fn call(text: &mut String, function: &Function, part: &BodyPart, number: usize) {
     let taken: Vec<String> = part.taken.iter().map(|value| value.text()).collect();
     let arguments = part.arguments.iter().map(|a| a.name().to_string()).chain([format!("[{}]", taken.join(", "))]);
     let arguments: Vec<String> = arguments.collect();

@@ -11,7 +11,7 @@ use super::plain::{blocks, camel, constants, expression, head, places, waves, Sy
 use crate::catalogue::{Argument, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
-use crate::program::listing::{decimal, Line, Listing, Name, Part};
+use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Operation, Trig};
 use crate::ring::Symbol;
 
@@ -262,7 +262,7 @@ fn cells(values: &[Name]) -> String {
     format!("{{{}}}", values.iter().map(|value| value.text()).collect::<Vec<_>>().join(", "))
 }
 
-fn print_part(text: &mut String, function: &str, part: &Part, number: usize) {
+fn print_part(text: &mut String, function: &str, part: &BodyPart, number: usize) {
     let arguments: Vec<&str> = part.arguments.iter().map(|a| a.name()).chain(["taken"]).collect();
     let _ =
         writeln!(text, "\nfunction given = {function}Part{number}({})\n% Part {number} of `{function}`.", arguments.join(", "));
@@ -274,7 +274,7 @@ fn print_part(text: &mut String, function: &str, part: &Part, number: usize) {
     *text += "end\n";
 }
 
-fn call_of(text: &mut String, function: &str, part: &Part, number: usize) {
+fn call_of(text: &mut String, function: &str, part: &BodyPart, number: usize) {
     let arguments = part.arguments.iter().map(|a| a.name().to_string()).chain([cells(&part.taken)]);
     let arguments: Vec<String> = arguments.collect();
     define(text, &format!("given{number}"), &format!("{function}Part{number}({})", arguments.join(", ")));

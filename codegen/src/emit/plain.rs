@@ -3,7 +3,7 @@
 
 use super::documentation::{self, Block};
 use super::origin::{Notes, Origin};
-use crate::catalogue::{Argument, Length, Parameter, Part, Quantity, Sizes};
+use crate::catalogue::{Argument, Length, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
 use crate::program::{Function, Joint, Module, Operation};
@@ -105,10 +105,10 @@ fn sum(angle: &Angle, turn: Option<&Number>, syntax: &dyn Syntax) -> String {
 }
 
 /// Each entry of a result, in order: the part that it belongs to and its indices there, counted from 0.
-pub(super) fn places(quantity: &'static Quantity, sizes: &Sizes) -> Vec<(&'static Part, Vec<usize>)> {
-    let of_part = |part: &'static Part| {
-        part.lengths.iter().fold(vec![(part, Vec::new())], |places: Vec<(&Part, Vec<usize>)>, length| {
-            let within = |(part, place): (&'static Part, Vec<usize>)| {
+pub(super) fn places(quantity: &'static Quantity, sizes: &Sizes) -> Vec<(&'static ResultPart, Vec<usize>)> {
+    let of_part = |part: &'static ResultPart| {
+        part.lengths.iter().fold(vec![(part, Vec::new())], |places: Vec<(&ResultPart, Vec<usize>)>, length| {
+            let within = |(part, place): (&'static ResultPart, Vec<usize>)| {
                 (0..length.of(sizes)).map(move |i| (part, place.iter().copied().chain([i]).collect()))
             };
             places.into_iter().flat_map(within).collect()

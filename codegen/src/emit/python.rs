@@ -13,7 +13,7 @@ use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
-use crate::program::listing::{decimal, Line, Listing, Name, Part};
+use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Trig};
 
 pub use native::{print as native, Native};
@@ -225,7 +225,7 @@ impl Python {
         }
     }
 
-    fn part(&self, text: &mut String, function: &Function, part: &Part, number: usize) {
+    fn part(&self, text: &mut String, function: &Function, part: &BodyPart, number: usize) {
         let arguments = part.arguments.iter().map(|a| format!("{}: Any, ", a.name())).collect::<String>();
         let _ = writeln!(
             text,

@@ -15,7 +15,7 @@ use quote::{format_ident, quote};
 
 use super::documentation::{self as common, Block, Described};
 use super::origin::{Notes, Origin};
-use crate::catalogue::{Absent, Length, Part, Quantity, Sizes};
+use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::{Function, Module};
@@ -236,7 +236,7 @@ fn function(module: &Module, function: &Function, note: Option<&String>) -> Toke
 /// The value of a result from its entries.
 fn result(quantity: &Quantity, entries: &[TokenStream], sizes: &Sizes) -> TokenStream {
     let mut rest = entries;
-    let mut part = |part: &Part| {
+    let mut part = |part: &ResultPart| {
         let (own, others) = rest.split_at(part.len(sizes));
         rest = others;
         nested(part.lengths, own, sizes)

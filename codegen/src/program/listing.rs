@@ -63,7 +63,7 @@ pub struct Line {
 
 /// A piece of a long body: a function of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct BodyPart {
     /// The arguments of the function that it uses.
     pub arguments: Vec<Argument>,
     /// The values that it takes.
@@ -336,7 +336,7 @@ impl Listing {
     }
 
     /// The lines of a long body in parts; none where it is not long.
-    pub fn parts(&self) -> Vec<Part> {
+    pub fn parts(&self) -> Vec<BodyPart> {
         if self.lines.len() <= LONG {
             return Vec::new();
         }
@@ -355,7 +355,7 @@ impl Listing {
                 Name::Argument(argument) => Some(*argument),
                 Name::SineOrCosine(_) | Name::Step(_) => None,
             };
-            Part {
+            BodyPart {
                 arguments: needed.iter().filter_map(argument).collect(),
                 taken: needed.iter().filter(|name| argument(name).is_none()).copied().collect(),
                 lines: chunk.to_vec(),

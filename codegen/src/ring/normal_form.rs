@@ -28,12 +28,12 @@ pub struct Harmonic {
 }
 
 /// Powers of the symbols that are no sines or cosines, by symbol.
-pub type Factors = Vec<(Symbol, u32)>;
+pub type Powers = Vec<(Symbol, u32)>;
 
 /// A sum of terms: coefficient · factors · harmonic.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct NormalForm {
-    terms: BTreeMap<(Harmonic, Factors), Number>,
+    terms: BTreeMap<(Harmonic, Powers), Number>,
 }
 
 impl Harmonic {
@@ -50,7 +50,7 @@ impl Harmonic {
 
 impl NormalForm {
     /// The terms, in a fixed order.
-    pub fn terms(&self) -> impl Iterator<Item = (&Harmonic, &Factors, &Number)> {
+    pub fn terms(&self) -> impl Iterator<Item = (&Harmonic, &Powers, &Number)> {
         self.terms.iter().map(|((harmonic, factors), coefficient)| (harmonic, factors, coefficient))
     }
 
@@ -70,8 +70,8 @@ impl NormalForm {
     }
 
     /// The terms gathered by harmonic, those of the highest order first: what a reader expects of `10 cos q2 + 10763/500`.
-    pub fn by_harmonic(&self) -> Vec<(&Harmonic, Vec<(&Factors, &Number)>)> {
-        let mut groups: BTreeMap<&Harmonic, Vec<(&Factors, &Number)>> = BTreeMap::new();
+    pub fn by_harmonic(&self) -> Vec<(&Harmonic, Vec<(&Powers, &Number)>)> {
+        let mut groups: BTreeMap<&Harmonic, Vec<(&Powers, &Number)>> = BTreeMap::new();
         for (harmonic, factors, coefficient) in self.terms() {
             groups.entry(harmonic).or_default().push((factors, coefficient));
         }
@@ -89,14 +89,14 @@ impl NormalForm {
     }
 
     /// The form of a single term.
-    pub fn term(harmonic: Harmonic, factors: Factors, coefficient: Number) -> NormalForm {
+    pub fn term(harmonic: Harmonic, factors: Powers, coefficient: Number) -> NormalForm {
         let mut form = NormalForm::default();
         form.add_term(harmonic, factors, coefficient);
         form
     }
 
     /// Adds a term; `harmonic` is in its canonical form.
-    pub fn add_term(&mut self, harmonic: Harmonic, factors: Factors, coefficient: Number) {
+    pub fn add_term(&mut self, harmonic: Harmonic, factors: Powers, coefficient: Number) {
         let key = (harmonic, factors);
         let sum = self.terms.get(&key).map_or_else(|| coefficient.clone(), |c| c.plus(&coefficient));
         if sum.is_zero() {
@@ -157,7 +157,7 @@ impl NormalForm {
 }
 
 /// Adds c · sin or cos(angles), whatever the sign of the leading coefficient.
-fn add_harmonic(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, factors: Factors, c: Number) {
+fn add_harmonic(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, factors: Powers, c: Number) {
     let negative = angles.first().is_some_and(|(_, k)| *k < 0);
     if negative {
         angles.iter_mut().for_each(|(_, k)| *k = -*k);
@@ -176,7 +176,7 @@ fn combine(a: &Harmonic, b: &Harmonic, sign: i32) -> Vec<(u16, i32)> {
     sum.into_iter().filter(|(_, k)| *k != 0).collect()
 }
 
-fn merge(a: &Factors, b: &Factors) -> Factors {
+fn merge(a: &Powers, b: &Powers) -> Powers {
     let mut powers: BTreeMap<Symbol, u32> = a.iter().copied().collect();
     for (symbol, power) in b {
         *powers.entry(*symbol).or_default() += power;

@@ -5,7 +5,7 @@
 
 use dashu_base::{Abs, Signed};
 
-use super::normal_form::{Factors, Harmonic, NormalForm};
+use super::normal_form::{Harmonic, NormalForm, Powers};
 use super::Symbol;
 use crate::exact::{Atom, Number, Rational};
 
@@ -102,7 +102,7 @@ impl Printer<'_> {
         }
     }
 
-    fn term(&self, sum: &mut Sum, coefficient: &Number, factors: &Factors, harmonic: Option<&Harmonic>) {
+    fn term(&self, sum: &mut Sum, coefficient: &Number, factors: &Powers, harmonic: Option<&Harmonic>) {
         let mut parts: Vec<String> = Vec::new();
         if let Some(harmonic) = harmonic.filter(|w| !w.angles.is_empty()) {
             parts.push(self.harmonic(harmonic));
@@ -264,7 +264,7 @@ impl Sum {
 }
 
 /// The common rational factor of coefficients, with the sign of the first: 1 unless all are rational and share their size.
-fn content(group: &[(&Factors, &Number)]) -> Rational {
+fn content(group: &[(&Powers, &Number)]) -> Rational {
     let first = group[0].1.as_rational().cloned();
     match first {
         Some(first) if group.iter().all(|(_, c)| c.as_rational().is_some_and(|r| r.clone().abs() == first.clone().abs())) => {

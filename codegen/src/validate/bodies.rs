@@ -12,11 +12,11 @@ use crate::description::{BodyDescription, InertiaDescription, Value, INERTIA_ELE
 use crate::diagnostic::{Code, Diagnostic};
 use crate::document::{excerpt, Expression};
 use crate::exact::{Number, Polynomial, Rational};
-use crate::manipulator::{Body, Part, Placement, Pose};
+use crate::manipulator::{Body, PlacedBody, Placement, Pose};
 use crate::source::Span;
 
 /// The bodies that are fixed to each other, the first one in the frame of what carries them; `called` is how messages call it.
-pub(super) fn parts(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Vec<Part>> {
+pub(super) fn parts(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Vec<PlacedBody>> {
     let mut all = vec![part(description, Some(Pose::identity()), called, context)];
     for (i, attached) in description.attached.iter().enumerate() {
         let name = attached.name.as_ref().map_or_else(|| format!("body {}", i + 1), |name| format!("`{}`", excerpt(&name.value)));
@@ -28,14 +28,19 @@ pub(super) fn parts(description: &BodyDescription, called: &str, context: &mut C
 }
 
 /// One body in a frame of its own.
-pub(super) fn part(description: &BodyDescription, frame: Option<Pose>, called: &str, context: &mut Context<'_>) -> Option<Part> {
+pub(super) fn part(
+    description: &BodyDescription,
+    frame: Option<Pose>,
+    called: &str,
+    context: &mut Context<'_>,
+) -> Option<PlacedBody> {
     let given = body(description, called, context);
     let axes = match description.inertia.as_ref().and_then(|inertia| inertia.rotation.as_ref()) {
         Some(rotation) => geometry::rotation(rotation, &format!("the inertia of {called}"), context),
         None => Some(Vec::new()),
     };
     let axes = axes?.into_iter().filter(|turn| *turn != Placement::identity()).collect();
-    Some(Part::new(frame?, Pose::new(axes), given?))
+    Some(PlacedBody::new(frame?, Pose::new(axes), given?))
 }
 
 fn body(description: &BodyDescription, called: &str, context: &mut Context<'_>) -> Option<Body> {

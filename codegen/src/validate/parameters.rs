@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::number::{self, Nominals};
-use super::places::{self, Role, Use};
+use super::places::{self, Occurrence, Role};
 use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::{excerpt, Expression, ExpressionKind, Operator};
@@ -46,7 +46,7 @@ pub(super) struct Entry<'d> {
     /// Whether it stands for the expression under it.
     pub(super) abbreviation: bool,
     /// Where it stands in expressions.
-    pub(super) uses: Vec<Use>,
+    pub(super) uses: Vec<Occurrence>,
 }
 
 /// Why a name cannot be a symbol.
@@ -154,7 +154,7 @@ impl<'d> Parameters<'d> {
     }
 
     /// Where the names that stay symbols stand, and where they are used.
-    pub(super) fn places_of_symbols(&self) -> Vec<(Span, Vec<Use>)> {
+    pub(super) fn places_of_symbols(&self) -> Vec<(Span, Vec<Occurrence>)> {
         self.entries.iter().filter(|e| e.symbol.is_some()).map(|e| (e.span, e.uses.clone())).collect()
     }
 
@@ -171,7 +171,7 @@ impl<'d> Parameters<'d> {
     fn note_uses(&mut self, expression: &Expression, role: Role, later: &BTreeSet<&'d str>, diagnostics: &mut Diagnostics) {
         for (name, span) in expression.named() {
             match self.by_name.get(name) {
-                Some(&i) => self.entries[i].uses.push(Use { span, role }),
+                Some(&i) => self.entries[i].uses.push(Occurrence { span, role }),
                 None => {
                     self.forward.extend(later.get(name));
                     self.unknown += 1;

@@ -24,7 +24,7 @@ pub struct Places {
     /// Definitions of the names that are symbols, by [`ParameterId`](crate::kinds::ParameterId).
     pub parameters: Vec<Span>,
     /// Where these names stand in expressions, abbreviations included, by [`ParameterId`](crate::kinds::ParameterId).
-    pub uses: Vec<Vec<Use>>,
+    pub uses: Vec<Vec<Occurrence>>,
 }
 
 /// Places of a joint's parts.
@@ -42,7 +42,7 @@ pub struct JointPlaces {
 
 /// A place where a name enters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Use {
+pub struct Occurrence {
     /// The name.
     pub span: Span,
     /// What it is part of.
@@ -204,7 +204,7 @@ impl<'d> Gathered<'d> {
 }
 
 /// The places of a valid description, whose names that stay symbols stand and are used at `symbols`.
-pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Use>)>) -> Places {
+pub(super) fn gather(description: &RobotDescription, symbols: Vec<(Span, Vec<Occurrence>)>) -> Places {
     let joints = description.joints.iter().flat_map(|joints| &joints.value);
     let (parameters, uses) = symbols.into_iter().unzip();
     Places {

@@ -9,9 +9,9 @@ use armgen_runtime::clik::{
 use armgen_runtime::linalg::Damping;
 use armgen_runtime::manipulability::{manipulability, manipulability_gradient};
 use armgen_runtime::nalgebra::SVector;
-use armgen_runtime::parameters::ParameterError;
 use armgen_runtime::reference::State;
 use armgen_runtime::robot::Kinematics;
+use armgen_runtime::settings::SettingError;
 use armgen_runtime::task::Row;
 
 use super::instance::{sized, task_of, Functions};
@@ -57,7 +57,7 @@ impl<R: Kinematics<N, Real = f64>, const N: usize> Objective<R, N> for Climb<'_>
     }
 }
 
-fn refused(error: ParameterError) -> String {
+fn refused(error: SettingError) -> String {
     format!("the gains are refused: {error}")
 }
 
@@ -92,7 +92,7 @@ impl<const N: usize> Sample<'_, N> {
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
     /// The limits of the description; rates of [`FASTEST`] where it gives none.
-    pub(super) fn limits(&self) -> Result<JointLimits<f64, N>, ParameterError> {
+    pub(super) fn limits(&self) -> Result<JointLimits<f64, N>, SettingError> {
         let joints = &self.robot.joints;
         let limits = JointLimits::rates(std::array::from_fn(|i| joints[i].velocity.min(FASTEST)))?;
         if joints.iter().flat_map(|joint| joint.position).all(f64::is_finite) {
@@ -108,7 +108,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         (k_p, k_d): (&[f64], &[f64]),
         period: f64,
         integration: Integration,
-    ) -> Result<SecondOrder<f64, N, M>, ParameterError> {
+    ) -> Result<SecondOrder<f64, N, M>, SettingError> {
         SecondOrder::new(self.task, sized(k_p), sized(k_d), period, integration, self.limits()?, [TOLERANCE; M])
     }
 

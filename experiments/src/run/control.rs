@@ -8,10 +8,10 @@ use armgen_runtime::control::{
     Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, OperationalSpace, PdGravity, Robust, TorqueLimits,
 };
 use armgen_runtime::nalgebra::SVector;
-use armgen_runtime::parameters::ParameterError;
 use armgen_runtime::reference::{JointReference, OperationalReference, Pose, State};
+use armgen_runtime::settings::SettingError;
 use armgen_runtime::simulation::{
-    run as simulate, run_continuous, ContinuousOptions, Integrator, Passed, RunError, RunOptions, Sensor, BEYOND,
+    run as simulate, run_continuous, ContinuousOptions, Divergence, Integrator, RunError, RunOptions, Sensor, DIVERGENCE_BOUND,
 };
 use armgen_runtime::stability::{
     analyse, analyse_start, Delay, Motion, Rehearsal, Rehearse, Report, Settle, StabilityError, StablePeriod,
@@ -169,7 +169,7 @@ where
         let begins = self.start(&run.start, &run.sampling)?;
         let (joints, tip, postures) = self.desired(run, begins, run.sampling.period)?;
         let period = run.sampling.period.as_secs_f64();
-        let refused = |error: ParameterError| format!("the controller is refused: {error}");
+        let refused = |error: SettingError| format!("the controller is refused: {error}");
         let drive = match run.continuous {
             true => Drive::Continuous(adaptive(&run.law, period).map_err(refused)?),
             false => Drive::Sampled(self.sampled_law(&run.law, period).map_err(refused)?),
@@ -264,7 +264,7 @@ where
     }
 
     /// The controller of a law. A new one also needs `LawKind` (model/law.rs), and `Linearise`, `Settle` and `Rehearse` in the runtime.
-    fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, ParameterError>
+    fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, SettingError>
     where
         R: 'a,
         W: 'a,
@@ -318,11 +318,11 @@ where
     Box::new(Watched { controller, watch: nothing, watched: Vec::new() })
 }
 
-fn limits<const N: usize>(law: &Law) -> Result<Option<TorqueLimits<f64, N>>, ParameterError> {
+fn limits<const N: usize>(law: &Law) -> Result<Option<TorqueLimits<f64, N>>, SettingError> {
     law.torque_limits.as_deref().map(|bound| TorqueLimits::new(sized(bound))).transpose()
 }
 
-fn adaptive<const N: usize, const P: usize>(law: &Law, period: f64) -> Result<Adaptive<f64, N, P>, ParameterError> {
+fn adaptive<const N: usize, const P: usize>(law: &Law, period: f64) -> Result<Adaptive<f64, N, P>, SettingError> {
     let [lambda, k_d] = ["lambda", "k_d"].map(|key| sized(law.gain(key)));
     let adaptation = &law.adaptation;
     let mut controller = Adaptive::new(lambda, k_d, sized(law.gain("k_pi")), sized(&adaptation.estimate), period)?;
@@ -364,13 +364,13 @@ fn explain(error: RunError<Stop>, robot: &Robot) -> String {
             format!("given up at {}: {name} is off by more than {GIVEN_UP} {}", s(time), joint.unit())
         }
         RunError::Controller { time, error: Stop::Control(error) } => format!("no torque at {}: {error}", s(time)),
-        RunError::Diverged { time, passed } => {
-            let passed = match passed {
-                Passed::Rate(i) => format!("{} passed {BEYOND:e} {}", joint(i).0, joint(i).1.rate_unit()),
-                Passed::Position(i) => format!("{} passed {BEYOND:e} {}", joint(i).0, joint(i).1.unit()),
-                Passed::Memory => passed.to_string(),
+        RunError::Diverged { time, divergence } => {
+            let divergence = match divergence {
+                Divergence::Rate(i) => format!("{} passed {DIVERGENCE_BOUND:e} {}", joint(i).0, joint(i).1.rate_unit()),
+                Divergence::Position(i) => format!("{} passed {DIVERGENCE_BOUND:e} {}", joint(i).0, joint(i).1.unit()),
+                Divergence::Memory => divergence.to_string(),
             };
-            format!("diverged at {}: {passed}", s(time))
+            format!("diverged at {}: {divergence}", s(time))
         }
         RunError::Integrator { time, error } => format!("not integrable at {}: {error}", s(time)),
         RunError::NoPeriod => "the sampling period is zero".to_owned(),
@@ -404,10 +404,10 @@ where
         }
         let seconds = |t: f64| number((t * 1e4).round() / 1e4);
         if let Some(motion) = report.motion.filter(Motion::diverges) {
-            said.push(match motion.left {
-                Some(left) => {
-                    let joint = &self.arm.robot.joints[left.joint].name;
-                    format!("diverges in motion: rehearsed, joint `{joint}` is lost at {} s", seconds(left.at))
+            said.push(match motion.lost {
+                Some(lost) => {
+                    let joint = &self.arm.robot.joints[lost.joint].name;
+                    format!("diverges in motion: rehearsed, joint `{joint}` is lost at {} s", seconds(lost.at))
                 }
                 None => format!(
                     "diverges in motion: a small deviation grows by a factor of {:.0e} within {} s",
@@ -461,7 +461,7 @@ where
             Quantity::RestPeriod => limit(&report),
             Quantity::MotionGrowth => motion(|motion| motion.growth.largest),
             Quantity::MotionRate => motion(|motion| motion.growth.rate),
-            Quantity::MotionLostAt => motion(|motion| motion.left.map_or(f64::INFINITY, |left| left.at)),
+            Quantity::MotionLostAt => motion(|motion| motion.lost.map_or(f64::INFINITY, |lost| lost.at)),
             Quantity::DelayedSpectralRadius => delayed.unwrap_or(f64::NAN),
             Quantity::LostAt => lost_at,
             _ => f64::NAN,

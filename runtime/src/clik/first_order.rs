@@ -3,8 +3,8 @@
 use super::{ClikError, Objective};
 use crate::{
     linalg::{left_singular, Damping, RightInverse},
-    parameters::{self, Parameter, ParameterError},
     robot::Kinematics,
+    settings::{self, Setting, SettingError},
 };
 use nalgebra::{RealField, SMatrix, SVector};
 
@@ -47,9 +47,9 @@ impl<R: Kinematics<N>, A: Algorithm<R, N, M> + ?Sized, const N: usize, const M: 
     }
 }
 
-fn gain<T: RealField + Copy, const M: usize>(k: [T; M]) -> Result<SVector<T, M>, ParameterError> {
+fn gain<T: RealField + Copy, const M: usize>(k: [T; M]) -> Result<SVector<T, M>, SettingError> {
     let k = k.into();
-    parameters::positive(Parameter::Proportional, &k)?;
+    settings::positive(Setting::Proportional, &k)?;
     Ok(k)
 }
 
@@ -64,7 +64,7 @@ impl<T: RealField + Copy, const M: usize> JacobianInverse<T, M> {
     ///
     /// # Errors
     /// Where an element is not positive and finite.
-    pub fn new(k: [T; M]) -> Result<Self, ParameterError> {
+    pub fn new(k: [T; M]) -> Result<Self, SettingError> {
         Ok(Self { k: gain(k)? })
     }
 }
@@ -94,7 +94,7 @@ impl<T: RealField + Copy, const M: usize> JacobianTranspose<T, M> {
     ///
     /// # Errors
     /// Where an element is not positive and finite.
-    pub fn new(k: [T; M]) -> Result<Self, ParameterError> {
+    pub fn new(k: [T; M]) -> Result<Self, SettingError> {
         Ok(Self { k: gain(k)? })
     }
 
@@ -137,8 +137,8 @@ impl<T: RealField + Copy, O, const M: usize> PseudoInverse<T, O, M> {
     ///
     /// # Errors
     /// Where an element of K is not positive and finite, or k_0 is negative or not finite.
-    pub fn new(k: [T; M], k_0: T, objective: O) -> Result<Self, ParameterError> {
-        parameters::not_negative_scalar(Parameter::NullSpace, k_0)?;
+    pub fn new(k: [T; M], k_0: T, objective: O) -> Result<Self, SettingError> {
+        settings::not_negative_scalar(Setting::NullSpace, k_0)?;
         Ok(Self { k: gain(k)?, k_0, objective, damping: None })
     }
 
@@ -193,7 +193,7 @@ impl<T: RealField + Copy, const M: usize> DampedLeastSquares<T, M> {
     ///
     /// # Errors
     /// Where an element of K is not positive and finite.
-    pub fn new(k: [T; M], damping: Damping<T>) -> Result<Self, ParameterError> {
+    pub fn new(k: [T; M], damping: Damping<T>) -> Result<Self, SettingError> {
         Ok(Self { k: gain(k)?, damping })
     }
 }

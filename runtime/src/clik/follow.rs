@@ -3,9 +3,9 @@
 use super::{Algorithm, ClikError, JointLimits, Outcome};
 use crate::{
     linalg::{is_finite, lit},
-    parameters::{self, Parameter, ParameterError},
     reference::{OperationalReference, Pose},
     robot::Kinematics,
+    settings::{self, Setting, SettingError},
     task::Task,
 };
 use nalgebra::{RealField, SMatrix, SVector};
@@ -58,10 +58,10 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         period: T,
         limits: JointLimits<T, N>,
         tolerance: [T; M],
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, SettingError> {
         let tolerance = tolerance.into();
-        parameters::positive_scalar(Parameter::Period, period)?;
-        parameters::positive(Parameter::Tolerance, &tolerance)?;
+        settings::positive_scalar(Setting::Period, period)?;
+        settings::positive(Setting::Tolerance, &tolerance)?;
         Ok(Self { task, algorithm, period, limits, tolerance })
     }
 

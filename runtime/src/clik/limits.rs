@@ -1,6 +1,6 @@
 //! Limits of joint variables and rates.
 
-use crate::parameters::{self, Parameter, ParameterError};
+use crate::settings::{self, Setting, SettingError};
 use nalgebra::{RealField, SVector};
 
 /// How fast and how far joints may go.
@@ -18,9 +18,9 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
     ///
     /// # Errors
     /// Where a rate is not positive and finite.
-    pub fn rates(rate: [T; N]) -> Result<Self, ParameterError> {
+    pub fn rates(rate: [T; N]) -> Result<Self, SettingError> {
         let rate = rate.into();
-        parameters::positive(Parameter::RateLimit, &rate)?;
+        settings::positive(Setting::RateLimit, &rate)?;
         Ok(Self { rate, range: None })
     }
 
@@ -28,9 +28,9 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
     ///
     /// # Errors
     /// Where the lower limit is not below the upper one, or one is NaN.
-    pub fn with_range(self, lower: [T; N], upper: [T; N]) -> Result<Self, ParameterError> {
+    pub fn with_range(self, lower: [T; N], upper: [T; N]) -> Result<Self, SettingError> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
-        parameters::positive_or_infinite(Parameter::PositionLimit, &(upper - lower))?;
+        settings::positive_or_infinite(Setting::PositionLimit, &(upper - lower))?;
         Ok(Self { range: Some((lower, upper)), ..self })
     }
 

@@ -3,8 +3,8 @@
 use crate::{
     linalg::lit,
     manipulability::manipulability_gradient,
-    parameters::{self, Parameter, ParameterError},
     robot::Kinematics,
+    settings::{self, Setting, SettingError},
     task::Task,
 };
 use nalgebra::{RealField, SVector};
@@ -53,12 +53,12 @@ impl<T: RealField + Copy, const N: usize> JointRangeDistance<T, N> {
     ///
     /// # Errors
     /// Where a limit is not finite, or the lower one is not below the upper one.
-    pub fn new(lower: [T; N], upper: [T; N]) -> Result<Self, ParameterError> {
+    pub fn new(lower: [T; N], upper: [T; N]) -> Result<Self, SettingError> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
-        parameters::finite(Parameter::PositionLimit, &lower)?;
-        parameters::finite(Parameter::PositionLimit, &upper)?;
+        settings::finite(Setting::PositionLimit, &lower)?;
+        settings::finite(Setting::PositionLimit, &upper)?;
         let range = upper - lower;
-        parameters::positive(Parameter::PositionLimit, &range)?;
+        settings::positive(Setting::PositionLimit, &range)?;
         Ok(Self { middle: lower + range * lit::<T>(0.5), range })
     }
 }

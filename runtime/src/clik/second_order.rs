@@ -14,9 +14,9 @@
 use super::{ClikError, JointLimits, Outcome};
 use crate::{
     linalg::{is_finite, lit, Damping, RightInverse},
-    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Kinematics,
+    settings::{self, Setting, SettingError},
     task::Task,
 };
 use nalgebra::{RealField, SVector};
@@ -71,12 +71,12 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
         integration: Integration,
         limits: JointLimits<T, N>,
         tolerance: [T; M],
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, SettingError> {
         let (k_p, k_d, tolerance) = (k_p.into(), k_d.into(), tolerance.into());
-        parameters::positive(Parameter::Proportional, &k_p)?;
-        parameters::positive(Parameter::Derivative, &k_d)?;
-        parameters::positive_scalar(Parameter::Period, period)?;
-        parameters::positive(Parameter::Tolerance, &tolerance)?;
+        settings::positive(Setting::Proportional, &k_p)?;
+        settings::positive(Setting::Derivative, &k_d)?;
+        settings::positive_scalar(Setting::Period, period)?;
+        settings::positive(Setting::Tolerance, &tolerance)?;
         Ok(Self { task, k_p, k_d, period, integration, limits, tolerance, damping: None, null_damping: T::zero() })
     }
 
@@ -90,8 +90,8 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
     ///
     /// # Errors
     /// Where the rate is negative or not finite.
-    pub fn with_null_space_damping(self, rate: T) -> Result<Self, ParameterError> {
-        parameters::not_negative_scalar(Parameter::NullSpace, rate)?;
+    pub fn with_null_space_damping(self, rate: T) -> Result<Self, SettingError> {
+        settings::not_negative_scalar(Setting::NullSpace, rate)?;
         Ok(Self { null_damping: rate, ..self })
     }
 

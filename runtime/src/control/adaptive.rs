@@ -14,9 +14,9 @@
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
     linalg::is_finite,
-    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, State},
     robot::Regressor,
+    settings::{self, Setting, SettingError},
 };
 use nalgebra::{RealField, SVector};
 
@@ -32,11 +32,11 @@ impl<T: RealField + Copy, const P: usize> Interval<T, P> {
     ///
     /// # Errors
     /// Where a bound is not finite, or the lower one exceeds the upper one.
-    pub fn new(lower: [T; P], upper: [T; P]) -> Result<Self, ParameterError> {
+    pub fn new(lower: [T; P], upper: [T; P]) -> Result<Self, SettingError> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
-        parameters::finite(Parameter::Interval, &lower)?;
-        parameters::finite(Parameter::Interval, &upper)?;
-        parameters::not_negative(Parameter::Interval, &(upper - lower))?;
+        settings::finite(Setting::Interval, &lower)?;
+        settings::finite(Setting::Interval, &upper)?;
+        settings::not_negative(Setting::Interval, &(upper - lower))?;
         Ok(Self { lower, upper })
     }
 }
@@ -60,13 +60,13 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     ///
     /// # Errors
     /// Where a gain or the period is not positive and finite, or the estimate is not finite.
-    pub fn new(lambda: [T; N], k_d: [T; N], k_pi: [T; P], estimate: [T; P], period: T) -> Result<Self, ParameterError> {
+    pub fn new(lambda: [T; N], k_d: [T; N], k_pi: [T; P], estimate: [T; P], period: T) -> Result<Self, SettingError> {
         let (lambda, k_d, k_pi, estimate) = (lambda.into(), k_d.into(), SVector::from(k_pi), estimate.into());
-        parameters::positive(Parameter::Filter, &lambda)?;
-        parameters::positive(Parameter::Derivative, &k_d)?;
-        parameters::positive(Parameter::Adaptation, &k_pi)?;
-        parameters::finite(Parameter::Estimate, &estimate)?;
-        parameters::positive_scalar(Parameter::Period, period)?;
+        settings::positive(Setting::Filter, &lambda)?;
+        settings::positive(Setting::Derivative, &k_d)?;
+        settings::positive(Setting::Adaptation, &k_pi)?;
+        settings::finite(Setting::Estimate, &estimate)?;
+        settings::positive_scalar(Setting::Period, period)?;
         let rate = k_pi.map(|k| T::one() / k);
         Ok(Self { lambda, k_d, rate, estimate, period, interval: None, limits: None })
     }

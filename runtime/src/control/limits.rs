@@ -2,7 +2,7 @@
 
 use crate::{
     linalg::saturate,
-    parameters::{positive_or_infinite, Parameter, ParameterError},
+    settings::{positive_or_infinite, Setting, SettingError},
 };
 use nalgebra::{RealField, SVector};
 
@@ -18,9 +18,9 @@ impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
     ///
     /// # Errors
     /// Where one is not positive.
-    pub fn new(bound: [T; N]) -> Result<Self, ParameterError> {
+    pub fn new(bound: [T; N]) -> Result<Self, SettingError> {
         let bound = SVector::from(bound);
-        positive_or_infinite(Parameter::TorqueLimit, &bound)?;
+        positive_or_infinite(Setting::TorqueLimit, &bound)?;
         Ok(Self { bound })
     }
 

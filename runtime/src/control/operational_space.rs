@@ -16,9 +16,9 @@
 use super::{check, issue, ControlError, Torque, TorqueLimits};
 use crate::{
     linalg::{is_finite, saturate, Damping, RightInverse},
-    parameters::{self, Parameter, ParameterError},
     reference::{OperationalReference, Pose, State},
     robot::Dynamics,
+    settings::{self, Setting, SettingError},
     task::Task,
 };
 use nalgebra::{RealField, SVector};
@@ -38,11 +38,11 @@ impl<T: RealField + Copy, const N: usize> NullSpace<T, N> {
     ///
     /// # Errors
     /// Where the stiffness is negative, the damping is not positive, or something is not finite.
-    pub fn new(stiffness: [T; N], damping: [T; N], posture: [T; N]) -> Result<Self, ParameterError> {
+    pub fn new(stiffness: [T; N], damping: [T; N], posture: [T; N]) -> Result<Self, SettingError> {
         let (stiffness, damping, posture) = (stiffness.into(), damping.into(), posture.into());
-        parameters::not_negative(Parameter::NullSpace, &stiffness)?;
-        parameters::positive(Parameter::NullSpace, &damping)?;
-        parameters::finite(Parameter::NullSpace, &posture)?;
+        settings::not_negative(Setting::NullSpace, &stiffness)?;
+        settings::positive(Setting::NullSpace, &damping)?;
+        settings::finite(Setting::NullSpace, &posture)?;
         Ok(Self { stiffness, damping, posture })
     }
 
@@ -78,12 +78,12 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     ///
     /// # Errors
     /// Where K_P, K_D or the period is not positive and finite, or K_I negative or not finite.
-    pub fn new(task: Task<M>, k_p: [T; M], k_d: [T; M], k_i: [T; M], period: T) -> Result<Self, ParameterError> {
+    pub fn new(task: Task<M>, k_p: [T; M], k_d: [T; M], k_i: [T; M], period: T) -> Result<Self, SettingError> {
         let (k_p, k_d, k_i) = (k_p.into(), k_d.into(), k_i.into());
-        parameters::positive(Parameter::Proportional, &k_p)?;
-        parameters::positive(Parameter::Derivative, &k_d)?;
-        parameters::not_negative(Parameter::Integral, &k_i)?;
-        parameters::positive_scalar(Parameter::Period, period)?;
+        settings::positive(Setting::Proportional, &k_p)?;
+        settings::positive(Setting::Derivative, &k_d)?;
+        settings::not_negative(Setting::Integral, &k_i)?;
+        settings::positive_scalar(Setting::Period, period)?;
         Ok(Self {
             task,
             k_p,
@@ -102,9 +102,9 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     ///
     /// # Errors
     /// Where a limit is negative or not finite.
-    pub fn with_integral_limit(self, limit: [T; M]) -> Result<Self, ParameterError> {
+    pub fn with_integral_limit(self, limit: [T; M]) -> Result<Self, SettingError> {
         let limit = limit.into();
-        parameters::not_negative(Parameter::IntegralLimit, &limit)?;
+        settings::not_negative(Setting::IntegralLimit, &limit)?;
         Ok(Self { integral_limit: Some(limit), ..self })
     }
 

@@ -5,9 +5,9 @@
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
-    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, State},
     robot::Dynamics,
+    settings::{self, Setting, SettingError},
 };
 use nalgebra::{RealField, SVector};
 
@@ -24,10 +24,10 @@ impl<T: RealField + Copy, const N: usize> PdGravity<T, N> {
     ///
     /// # Errors
     /// Where one is not positive and finite.
-    pub fn new(k_p: [T; N], k_d: [T; N]) -> Result<Self, ParameterError> {
+    pub fn new(k_p: [T; N], k_d: [T; N]) -> Result<Self, SettingError> {
         let (k_p, k_d) = (k_p.into(), k_d.into());
-        parameters::positive(Parameter::Proportional, &k_p)?;
-        parameters::positive(Parameter::Derivative, &k_d)?;
+        settings::positive(Setting::Proportional, &k_p)?;
+        settings::positive(Setting::Derivative, &k_d)?;
         Ok(Self { k_p, k_d, limits: None })
     }
 

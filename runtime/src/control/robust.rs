@@ -14,9 +14,9 @@
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
     linalg::{diagonal_lyapunov, LyapunovBlocks},
-    parameters::{self, Parameter, ParameterError},
     reference::{JointReference, State},
     robot::Dynamics,
+    settings::{self, Setting, SettingError},
 };
 use nalgebra::{RealField, SVector};
 
@@ -50,14 +50,14 @@ impl<T: RealField + Copy, const N: usize> Robust<T, N> {
         p_position: [T; N],
         p_velocity: [T; N],
         layer: BoundaryLayer<T>,
-    ) -> Result<Self, ParameterError> {
+    ) -> Result<Self, SettingError> {
         let (k_p, k_d, p1, p2) = (k_p.into(), k_d.into(), p_position.into(), p_velocity.into());
-        parameters::positive(Parameter::Proportional, &k_p)?;
-        parameters::positive(Parameter::Derivative, &k_d)?;
-        parameters::positive(Parameter::LyapunovWeight, &p1)?;
-        parameters::positive(Parameter::LyapunovWeight, &p2)?;
-        parameters::not_negative_scalar(Parameter::UncertaintyBound, layer.rho)?;
-        parameters::positive_scalar(Parameter::BoundaryLayer, layer.epsilon)?;
+        settings::positive(Setting::Proportional, &k_p)?;
+        settings::positive(Setting::Derivative, &k_d)?;
+        settings::positive(Setting::LyapunovWeight, &p1)?;
+        settings::positive(Setting::LyapunovWeight, &p2)?;
+        settings::not_negative_scalar(Setting::UncertaintyBound, layer.rho)?;
+        settings::positive_scalar(Setting::BoundaryLayer, layer.epsilon)?;
         Ok(Self { k_p, k_d, q: diagonal_lyapunov(&k_p, &k_d, &p1, &p2), layer, limits: None })
     }
 

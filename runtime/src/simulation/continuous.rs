@@ -4,7 +4,7 @@
 
 use super::{
     integrator::rk4,
-    run::{beyond, Passed},
+    run::{diverged, Divergence},
     Phase, RunError,
 };
 use crate::{linalg::is_finite, linalg::lit, reference::State, robot::Dynamics};
@@ -83,8 +83,8 @@ where
     let (mut index, mut time) = (0, Duration::ZERO);
     loop {
         let state = State { q: x.q, dq: x.dq };
-        if let Some(passed) = beyond(&state).or_else(|| (!is_finite(&x.memory)).then_some(Passed::Memory)) {
-            return Err(RunError::Diverged { time, passed });
+        if let Some(divergence) = diverged(&state).or_else(|| (!is_finite(&x.memory)).then_some(Divergence::Memory)) {
+            return Err(RunError::Diverged { time, divergence });
         }
         log(&ContinuousSample { index, time, state, memory: x.memory });
         let next = time.saturating_add(period);

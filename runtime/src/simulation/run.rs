@@ -46,11 +46,11 @@ pub struct Sample<T, const N: usize> {
 }
 
 /// Joint variables, rad or m, and rates, per s, that no arm reaches: beyond, a run has diverged.
-pub const BEYOND: f64 = 1e6;
+pub const DIVERGENCE_BOUND: f64 = 1e6;
 
-/// What went beyond [`BEYOND`], or became infinite or NaN; joints count from 0.
+/// What went beyond [`DIVERGENCE_BOUND`], or became infinite or NaN; joints count from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Passed {
+pub enum Divergence {
     /// The rate of this joint.
     Rate(usize),
     /// The variable of this joint.
@@ -59,25 +59,25 @@ pub enum Passed {
     Memory,
 }
 
-impl fmt::Display for Passed {
+impl fmt::Display for Divergence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Passed::Rate(joint) => write!(f, "joint {joint} (from 0) passed {BEYOND:e} rad/s or m/s"),
-            Passed::Position(joint) => write!(f, "joint {joint} (from 0) passed {BEYOND:e} rad or m"),
-            Passed::Memory => write!(f, "the memory of the law is no longer finite"),
+            Divergence::Rate(joint) => write!(f, "joint {joint} (from 0) passed {DIVERGENCE_BOUND:e} rad/s or m/s"),
+            Divergence::Position(joint) => write!(f, "joint {joint} (from 0) passed {DIVERGENCE_BOUND:e} rad or m"),
+            Divergence::Memory => write!(f, "the memory of the law is no longer finite"),
         }
     }
 }
 
 /// The joint rate or joint variable beyond the divergence bound, if any; rates first, since divergence shows there first.
-pub(super) fn beyond<T: RealField + Copy, const N: usize>(state: &State<T, N>) -> Option<Passed> {
+pub(super) fn diverged<T: RealField + Copy, const N: usize>(state: &State<T, N>) -> Option<Divergence> {
     let first = |x: &SVector<T, N>| {
         // The largest, and what is no number before all others.
         let size = |i: usize| if x[i].is_finite() { x[i].abs() } else { lit(f64::MAX) };
         let largest = (0..N).reduce(|a, b| if size(b) > size(a) { b } else { a })?;
-        (size(largest) > lit(BEYOND)).then_some(largest)
+        (size(largest) > lit(DIVERGENCE_BOUND)).then_some(largest)
     };
-    first(&state.dq).map(Passed::Rate).or_else(|| first(&state.q).map(Passed::Position))
+    first(&state.dq).map(Divergence::Rate).or_else(|| first(&state.q).map(Divergence::Position))
 }
 
 /// Why a run ended early, and when; the samples before were logged.
@@ -95,7 +95,7 @@ pub enum RunError<E> {
         /// The time of the first such state.
         time: Duration,
         /// What went beyond all bounds.
-        passed: Passed,
+        divergence: Divergence,
     },
     /// The integrator gave up.
     Integrator {
@@ -112,7 +112,7 @@ impl<E: fmt::Display> fmt::Display for RunError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             RunError::Controller { time, error } => write!(f, "at {} s: {error}", time.as_secs_f64()),
-            RunError::Diverged { time, passed } => write!(f, "diverged at {} s: {passed}", time.as_secs_f64()),
+            RunError::Diverged { time, divergence } => write!(f, "diverged at {} s: {divergence}", time.as_secs_f64()),
             RunError::Integrator { time, error } => write!(f, "at {} s: {error}", time.as_secs_f64()),
             RunError::NoPeriod => write!(f, "the period is zero, or is to be covered in no steps"),
         }
@@ -159,8 +159,8 @@ where
     let (mut index, mut time) = (0, Duration::ZERO);
     loop {
         let state = *plant.state();
-        if let Some(passed) = beyond(&state) {
-            return Err(RunError::Diverged { time, passed });
+        if let Some(divergence) = diverged(&state) {
+            return Err(RunError::Diverged { time, divergence });
         }
         let measured = sensor.measure(&state);
         let tau = controller(time, &measured).map_err(|error| RunError::Controller { time, error })?;

@@ -155,7 +155,7 @@ pub struct Growth<T> {
 
 /// Where a rehearsal leaves its reference by more than 1 rad or m, or has no torque any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Left<T> {
+pub struct ReferenceLost<T> {
     /// When, s.
     pub at: T,
     /// At which sample, counted from 0.
@@ -170,24 +170,24 @@ pub struct Motion<T> {
     /// Of small deviations along the reference, as far as the run is not lost.
     pub growth: Growth<T>,
     /// Where the run itself is lost; `None` where it keeps to its reference to the end.
-    pub left: Option<Left<T>>,
+    pub lost: Option<ReferenceLost<T>>,
 }
 
 impl<T: RealField + Copy> Motion<T> {
     /// Whether the loop diverges on this motion.
     pub fn diverges(&self) -> bool {
-        self.growth.unbounded || self.left.is_some()
+        self.growth.unbounded || self.lost.is_some()
     }
 }
 
 /// An error of a joint, rad or m, at which a rehearsal is lost.
-const LEFT: f64 = 1.0;
+const LOST_ERROR: f64 = 1.0;
 /// Growth from which on a loop counts as lost, whatever comes after.
-const LOST: f64 = 1e6;
+const LOST_GROWTH: f64 = 1e6;
 /// Transient growth below this factor is not called unbounded: a stable loop can reach it.
-const LARGE: f64 = 10.0;
+const TRANSIENT_GROWTH: f64 = 10.0;
 /// What the rate adds up to over the motion, at least, where growth counts as going on: a factor of e.
-const GOES_ON: f64 = 1.0;
+const LASTING_GROWTH: f64 = 1.0;
 /// Part of a memory's deviation that counts for the length of a difference.
 const MEMORY: f64 = 1e-6;
 /// In place of a size of zero, where that divides.
@@ -246,7 +246,7 @@ where
             let torque = controller.torque(model, references.get(k)?, measured).ok()?;
             Some((torque.tau, controller.memory()))
         };
-        let left = self.run(controller.memory(), &|k, measured, memory| law(controller, k, measured, memory));
+        let lost = self.run(controller.memory(), &|k, measured, memory| law(controller, k, measured, memory));
         let settled = controller.settled(self.plant);
         let loop_ = Linear {
             rehearsal: self,
@@ -255,34 +255,34 @@ where
             memory: settled.memory(),
         };
         // Where the run is lost, nothing after it counts.
-        let samples = left.map_or(self.joints.len(), |left| left.sample + 1);
+        let samples = lost.map_or(self.joints.len(), |lost| lost.sample + 1);
         let growth = loop_.growth(samples, &|k, measured, memory| law(&settled, k, measured, memory))?;
-        Ok(Motion { growth, left })
+        Ok(Motion { growth, lost })
     }
 
     /// The run from its start, without noise.
-    fn run(&self, mut memory: Vec<T>, law: &AnyLaw<'_, T, N>) -> Option<Left<T>> {
+    fn run(&self, mut memory: Vec<T>, law: &AnyLaw<'_, T, N>) -> Option<ReferenceLost<T>> {
         let mut plant = Plant::new(self.plant, self.start, Integrator::RungeKutta4 { substeps: 1 });
         let mut unseen: VecDeque<State<T, N>> = vec![self.start; self.delay.count()].into();
         let mut joint = 0;
         for (k, reference) in self.joints.iter().enumerate() {
             let state = *plant.state();
-            let left = Left { at: self.period * lit(k as f64), sample: k, joint };
+            let lost = ReferenceLost { at: self.period * lit(k as f64), sample: k, joint };
             if !state.is_finite() {
-                return Some(left);
+                return Some(lost);
             }
             let error = (reference.q - state.q).abs();
             joint = error.imax();
-            let left = Left { joint, ..left };
-            if error[joint] > lit(LEFT) {
-                return Some(left);
+            let lost = ReferenceLost { joint, ..lost };
+            if error[joint] > lit(LOST_ERROR) {
+                return Some(lost);
             }
             unseen.push_back(state);
             let measured = unseen.pop_front()?;
-            let Some((tau, next)) = law(k, &measured, &memory) else { return Some(left) };
+            let Some((tau, next)) = law(k, &measured, &memory) else { return Some(lost) };
             memory = next;
             if plant.advance(&tau, self.period).is_err() {
-                return Some(left);
+                return Some(lost);
             }
         }
         None
@@ -326,7 +326,7 @@ where
                 // Within the range where a difference is a derivative.
                 deviation.scale(T::one() / size.max(lit(TINY)));
             }
-            if !(largest < lit(LOST.ln())) {
+            if !(largest < lit(LOST_GROWTH.ln())) {
                 // The rate of the way there: nothing after it counts.
                 let largest = if largest.is_finite() { largest } else { lit(f64::MAX.ln()) };
                 return Ok(Growth { largest: largest.exp(), at, rate: largest / at, unbounded: true });
@@ -334,7 +334,7 @@ where
         }
         let duration = period * lit(samples as f64);
         let rate = if let [Some(third), Some(last)] = quarters { (last - third) * lit(4.0) / duration } else { T::zero() };
-        let unbounded = largest > lit(LARGE.ln()) && rate * duration > lit(GOES_ON);
+        let unbounded = largest > lit(TRANSIENT_GROWTH.ln()) && rate * duration > lit(LASTING_GROWTH);
         Ok(Growth { largest: largest.exp(), at, rate, unbounded })
     }
 

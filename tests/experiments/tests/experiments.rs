@@ -3,6 +3,7 @@
 mod common;
 
 use armgen_experiments::campaign::{in_parallel, Job};
+use armgen_experiments::draw::OutputFile;
 use armgen_experiments::model::{Experiment, JointQuantity, LawKind, Quantity};
 use armgen_experiments::run::Arm;
 use common::{experiment, files, folder, text_of};
@@ -40,7 +41,7 @@ fn every_experiment_gives_what_is_expected() {
             lines += 1;
         }
         assert!(!job.figures().is_empty(), "{name} is drawn");
-        for (file, text) in job.figures() {
+        for OutputFile { name: file, text } in job.figures() {
             assert!(file.starts_with(name.as_str()) && text.starts_with("<svg") && !text.contains("NaN"), "{file}");
         }
     }

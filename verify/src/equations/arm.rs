@@ -158,7 +158,7 @@ impl<K: Arithmetic> Builder<'_, K> {
     }
 
     /// Bodies as the file gives them, lumped: their ten parameters add where they are in one frame.
-    fn lumped(&self, parts: &[manipulator::Part]) -> Option<Body<K::Element>> {
+    fn lumped(&self, parts: &[manipulator::PlacedBody]) -> Option<Body<K::Element>> {
         let zero = self.arithmetic.integer(0);
         let mut all: Option<Body<K::Element>> = None;
         for part in parts {

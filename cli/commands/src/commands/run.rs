@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use armgen_codegen::source::Source;
 use armgen_experiments::campaign::{self, in_parallel, Job};
-use armgen_experiments::draw;
+use armgen_experiments::draw::{self, OutputFile};
 use armgen_experiments::model::{number, Channel, Experiment, JointQuantity, Quantity, Record, Robot, Unit};
 use armgen_experiments::read::{self, Parsed};
 use armgen_experiments::run::Arm;
@@ -132,7 +132,7 @@ fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path, description: &
     let groups = campaign::groups(&jobs);
     let drawn = groups.len() + jobs.iter().map(|job| job.figures().len()).sum::<usize>();
     let (mut code, mut written) = (DONE, 0);
-    for (name, text) in jobs.iter().map(Job::log).chain(jobs.iter().flat_map(Job::figures).cloned()).chain(groups) {
+    for OutputFile { name, text } in jobs.iter().map(Job::log).chain(jobs.iter().flat_map(Job::figures).cloned()).chain(groups) {
         match std::fs::write(out.join(&name), text) {
             Ok(()) => written += 1,
             Err(error) => {

@@ -2,8 +2,8 @@
 
 use crate::derive::base;
 use crate::derive::parameters::View;
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::regressor::STARTS;
 
 /// Y_b(q, dq, ddq).
@@ -11,7 +11,7 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
     name: "base_regressor",
     symbol: Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
-    result: &[Part::whole(Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"), Typeset::plain("y_b"), &[Length::Dof, Length::BaseParameters], "Y_b pi_b is a torque")],
+    result: &[ResultPart::whole(Typeset::new("Y_b(q, dq, ddq)", "Y_b(q, \\dot q, \\ddot q)"), Typeset::plain("y_b"), &[Length::Dof, Length::BaseParameters], "Y_b pi_b is a torque")],
     structure: None,
     has_parameters: false,
     documentation: Documentation::new(
@@ -22,7 +22,7 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
          that carry them. With {NOMINAL_BASE_PARAMETERS} it is the torque of {inverse_dynamics}. For identification take {regressor} with \
          `regressor: base` in the description: it has all base parameters, zero or not.",
     ),
-    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(Use::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
+    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: None,

@@ -30,9 +30,9 @@
 use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body, Joint};
 use crate::derive::columns::{origin_rate, Column, ColumnPropagator, Rate};
-use crate::derive::passes::Use;
+use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::{Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -41,7 +41,7 @@ pub static CORIOLIS_MATRIX: Quantity = Quantity {
     name: "coriolis_matrix",
     symbol: Typeset::new("C(q, dq)", "C(q, \\dot q)"),
     arguments: &[Argument::Q, Argument::Dq],
-    result: &[Part::whole(
+    result: &[ResultPart::whole(
         Typeset::new("C(q, dq)", "C(q, \\dot q)"),
         Typeset::plain("c"),
         &[Length::Dof, Length::Dof],
@@ -54,7 +54,7 @@ pub static CORIOLIS_MATRIX: Quantity = Quantity {
         "C_ij = sum_k 1/2 (dB_ij/dq_k + dB_ik/dq_j - dB_jk/dq_i) dq_k       (Siciliano et al., eq. 7.45)",
         "`c[row][column]`, on the left of the equation of motion: C dq is part of the torque.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| coriolis_matrix(pool, arm, plan).concat()),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| coriolis_matrix(pool, arm, plan).concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Dynamics"),

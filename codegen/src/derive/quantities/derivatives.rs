@@ -36,11 +36,11 @@ use super::gravity::gravity;
 use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::origin_rate;
-use crate::derive::factors::Factors;
+use crate::derive::factors::LdlFactors;
 use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, wrenches, LinkMotion, Motion};
-use crate::derive::passes::Use;
+use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::wrench::{along, wrench_outward};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -54,15 +54,15 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     symbol: Typeset::new("dtau/dq, dtau/d(dq)", "\\partial\\tau/\\partial q, \\partial\\tau/\\partial\\dot q"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
     result: &[
-        Part {
+        ResultPart {
             name: "by_q",
             meaning: ["Derivatives by joint variables", ""],
-            ..Part::whole(Typeset::new("dtau/dq", "\\partial\\tau/\\partial q"), Typeset::new("dtau", "\\partial\\tau"), &[Length::Dof, Length::Dof], "N m or N, per rad or m")
+            ..ResultPart::whole(Typeset::new("dtau/dq", "\\partial\\tau/\\partial q"), Typeset::new("dtau", "\\partial\\tau"), &[Length::Dof, Length::Dof], "N m or N, per rad or m")
         },
-        Part {
+        ResultPart {
             name: "by_dq",
             meaning: ["Derivatives by rates", ""],
-            ..Part::whole(Typeset::new("dtau/d(dq)", "\\partial\\tau/\\partial\\dot q"), Typeset::new("dtau", "\\partial\\tau"), &[Length::Dof, Length::Dof], "N m or N, per rad/s or m/s")
+            ..ResultPart::whole(Typeset::new("dtau/d(dq)", "\\partial\\tau/\\partial\\dot q"), Typeset::new("dtau", "\\partial\\tau"), &[Length::Dof, Length::Dof], "N m or N, per rad/s or m/s")
         },
     ],
     structure: None,
@@ -73,7 +73,7 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "two matrices `m[joint of tau][joint of q or dq]`; units of tau per rad or m, and per rad/s or m/s. Coulomb friction counts as constant: its \
          derivative is taken as 0, at rest too.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| {
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let motion = Motion::plain(pool, arm);
         let (by_q, by_dq) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
         [by_q, by_dq].concat().concat()
@@ -89,20 +89,20 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     symbol: Typeset::new("d(ddq)/dq, d(ddq)/d(dq), B^-1", "\\partial\\ddot q/\\partial q, \\partial\\ddot q/\\partial\\dot q, B^{-1}"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Tau],
     result: &[
-        Part {
+        ResultPart {
             name: "by_q",
             meaning: ["Derivatives by joint variables", ""],
-            ..Part::whole(Typeset::new("d(ddq)/dq", "\\partial\\ddot q/\\partial q"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per rad or m")
+            ..ResultPart::whole(Typeset::new("d(ddq)/dq", "\\partial\\ddot q/\\partial q"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per rad or m")
         },
-        Part {
+        ResultPart {
             name: "by_dq",
             meaning: ["Derivatives by rates", ""],
-            ..Part::whole(Typeset::new("d(ddq)/d(dq)", "\\partial\\ddot q/\\partial\\dot q"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per rad/s or m/s")
+            ..ResultPart::whole(Typeset::new("d(ddq)/d(dq)", "\\partial\\ddot q/\\partial\\dot q"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per rad/s or m/s")
         },
-        Part {
+        ResultPart {
             name: "by_tau",
             meaning: ["Derivatives by torques", ", the inverse of B"],
-            ..Part::whole(Typeset::new("B^-1", "B^{-1}"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per N m or N")
+            ..ResultPart::whole(Typeset::new("B^-1", "B^{-1}"), Typeset::new("dddq", "\\partial\\ddot q"), &[Length::Dof, Length::Dof], "rad/s² or m/s², per N m or N")
         },
     ],
     structure: None,
@@ -113,7 +113,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "three matrices `m[joint of ddq][joint of q, dq or tau]`; units of ddq per rad or m, per rad/s or m/s, and per N m or N. The third is the \
          inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| {
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let (by_q, by_dq, inverse) = forward_dynamics_derivatives(pool, arm, plan);
         [by_q, by_dq, inverse].concat().concat()
     }),
@@ -159,7 +159,7 @@ pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan)
             pool.sub(tau, bias)
         })
         .collect();
-    let factors = Factors::new(pool, &b);
+    let factors = LdlFactors::new(pool, &b);
     let motion = Motion { accelerations: factors.solve(pool, &right), ..Motion::plain(pool, arm) };
     let inverse = factors.inverse(pool);
     let (by_q, by_rates) = inverse_dynamics_derivatives(pool, arm, plan, &motion);

@@ -3,8 +3,8 @@
 use super::coriolis::{inertia_and_coriolis, CORIOLIS_MATRIX};
 use super::gravity::{gravity, GRAVITY};
 use super::inertia::INERTIA_MATRIX;
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Structure, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Structure, Typeset};
 
 /// B, C and g together.
 pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
@@ -12,25 +12,25 @@ pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
     symbol: Typeset::plain("B, C, g"),
     arguments: &[Argument::Q, Argument::Dq],
     result: &[
-        Part {
+        ResultPart {
             name: "inertia",
             meaning: ["Inertia matrix B(q)", ": symmetric, positive definite"],
-            ..Part::whole(Typeset::plain("B(q)"), Typeset::plain("b"), &[Length::Dof, Length::Dof], "kg m², kg m, kg")
+            ..ResultPart::whole(Typeset::plain("B(q)"), Typeset::plain("b"), &[Length::Dof, Length::Dof], "kg m², kg m, kg")
         },
-        Part {
+        ResultPart {
             name: "coriolis",
             meaning: ["Coriolis and centrifugal matrix C(q, dq)", " by Christoffel symbols: dB/dt - 2C is skew-symmetric"],
-            ..Part::whole(
+            ..ResultPart::whole(
                 Typeset::new("C(q, dq)", "C(q, \\dot q)"),
                 Typeset::plain("c"),
                 &[Length::Dof, Length::Dof],
                 "as B, per s",
             )
         },
-        Part {
+        ResultPart {
             name: "gravity",
             meaning: ["Gravity term g(q)", ", on the left of the equation of motion"],
-            ..Part::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")
+            ..ResultPart::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")
         },
     ],
     structure: Some(Structure { name: "EquationsOfMotion", title: "The terms of the equation of motion" }),
@@ -40,7 +40,7 @@ pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
         "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                        (Siciliano et al., eq. 7.42)",
         "the three terms as the functions of their own return them.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| {
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let (b, c) = inertia_and_coriolis(pool, arm, plan);
         let g = gravity(pool, arm, plan);
         [b.concat(), c.concat(), g].concat()

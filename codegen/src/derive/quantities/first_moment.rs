@@ -9,8 +9,8 @@ use crate::derive::arm::Arm;
 use crate::derive::model::Model;
 use crate::derive::newton_euler::deflection;
 use crate::derive::parameters::{ParameterKind, View};
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 
@@ -22,7 +22,7 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
     name: "potential_energy",
     symbol: Typeset::new("U(q)", "\\mathcal U(q)"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(Typeset::new("U(q)", "\\mathcal U(q)"), Typeset::new("U", "\\mathcal U"), &[], "J")],
+    result: &[ResultPart::whole(Typeset::new("U(q)", "\\mathcal U(q)"), Typeset::new("U", "\\mathcal U"), &[], "J")],
     structure: None,
     has_parameters: true,
     documentation: Documentation {
@@ -33,7 +33,7 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
             "an energy, J.",
         )
     },
-    recursion: Recursion::new(Use::Plain, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
+    recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Dynamics"),
@@ -44,7 +44,7 @@ pub static CENTER_OF_MASS: Quantity = Quantity {
     name: "center_of_mass",
     symbol: Typeset::plain("p_c(q)"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(Typeset::plain("p_c(q)"), Typeset::plain("p_c"), &[Length::Fixed(3)], "m")],
+    result: &[ResultPart::whole(Typeset::plain("p_c(q)"), Typeset::plain("p_c"), &[Length::Fixed(3)], "m")],
     structure: None,
     has_parameters: true,
     documentation: Documentation {
@@ -55,7 +55,7 @@ pub static CENTER_OF_MASS: Quantity = Quantity {
             "its x, y and z, m.",
         )
     },
-    recursion: Recursion::new(Use::Plain, |pool, arm, _, setting| {
+    recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, setting| {
         let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, setting.model, setting.view));
         let inverse = pool.reciprocal(mass);
         pool.scale(inverse, &first).to_vec()

@@ -2,11 +2,11 @@
 
 use super::inertia::inertia_matrix;
 use crate::derive::arm::Arm;
-use crate::derive::factors::Factors;
+use crate::derive::factors::LdlFactors;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
-use crate::derive::passes::Use;
+use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// ddq(q, dq, tau).
@@ -14,7 +14,7 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
     name: "forward_dynamics",
     symbol: Typeset::new("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Tau],
-    result: &[Part::whole(
+    result: &[ResultPart::whole(
         Typeset::new("ddq(q, dq, tau)", "\\ddot q(q, \\dot q, \\tau)"),
         Typeset::new("ddq", "\\ddot q"),
         &[Length::Dof],
@@ -30,7 +30,7 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
             "an acceleration for each joint, rad/s² (revolute) or m/s² (prismatic).",
         )
     },
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan)),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan)),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Dynamics"),
@@ -43,5 +43,5 @@ pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Expr
     let bias = inverse_dynamics(pool, arm, &motion);
     let tau = arm.symbols(pool, Symbol::Torque);
     let right: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sub(tau[i], bias[i])).collect();
-    Factors::new(pool, &b).solve(pool, &right)
+    LdlFactors::new(pool, &b).solve(pool, &right)
 }

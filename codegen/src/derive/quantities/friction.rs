@@ -7,8 +7,8 @@
 //! and F_0 + F_3 dq_i³ where the description has them.
 
 use crate::derive::newton_euler;
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::Symbol;
 
 /// F(dq).
@@ -16,7 +16,7 @@ pub static FRICTION: Quantity = Quantity {
     name: "friction",
     symbol: Typeset::new("F(dq)", "F(\\dot q)"),
     arguments: &[Argument::Dq],
-    result: &[Part::whole(Typeset::new("F(dq)", "F(\\dot q)"), Typeset::plain("f"), &[Length::Dof], "N m or N")],
+    result: &[ResultPart::whole(Typeset::new("F(dq)", "F(\\dot q)"), Typeset::plain("f"), &[Length::Dof], "N m or N")],
     structure: None,
     has_parameters: true,
     documentation: Documentation::new(
@@ -24,7 +24,7 @@ pub static FRICTION: Quantity = Quantity {
         "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     ),
-    recursion: Recursion::new(Use::Plain, |pool, arm, _, _| {
+    recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {
         let rates = arm.symbols(pool, Symbol::Rate);
         newton_euler::friction(pool, arm, &rates)
     }),

@@ -9,9 +9,9 @@
 
 use crate::derive::arm::Arm;
 use crate::derive::newton_euler::add_springs;
-use crate::derive::passes::Use;
+use crate::derive::passes::RewriteScope;
 use crate::derive::plan::{Place, Plan};
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::pass::Pass;
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
@@ -21,7 +21,7 @@ pub static GRAVITY: Quantity = Quantity {
     name: "gravity",
     symbol: Typeset::plain("g(q)"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")],
+    result: &[ResultPart::whole(Typeset::plain("g(q)"), Typeset::plain("g"), &[Length::Dof], "N m or N")],
     structure: None,
     has_parameters: true,
     documentation: Documentation {
@@ -32,7 +32,7 @@ pub static GRAVITY: Quantity = Quantity {
             "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         )
     },
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| gravity(pool, arm, plan)),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| gravity(pool, arm, plan)),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Dynamics"),

@@ -11,9 +11,9 @@
 
 use crate::derive::arm::{Arm, Body};
 use crate::derive::columns::{Column, ColumnPropagator};
-use crate::derive::passes::Use;
+use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::wrench::along;
 use crate::kinds::JointKind;
 use crate::ring::matrix::{Vector, ZERO};
@@ -24,7 +24,7 @@ pub static INERTIA_MATRIX: Quantity = Quantity {
     name: "inertia_matrix",
     symbol: Typeset::plain("B(q)"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(Typeset::plain("B(q)"), Typeset::plain("b"), &[Length::Dof, Length::Dof], "kg m², kg m, kg")],
+    result: &[ResultPart::whole(Typeset::plain("B(q)"), Typeset::plain("b"), &[Length::Dof, Length::Dof], "kg m², kg m, kg")],
     structure: None,
     has_parameters: true,
     documentation: Documentation { result_with: Some("`b[row][column]`, symmetric, positive definite where {pi} is physically possible, all entries filled; kg m² between revolute joints, kg m between a revolute and a \
@@ -34,7 +34,7 @@ pub static INERTIA_MATRIX: Quantity = Quantity {
         "`b[row][column]`, symmetric and positive definite, all entries filled; kg m² between revolute joints, kg m between a revolute and a \
          prismatic one, kg between prismatic ones. J_Pi and J_Oi are the Jacobians of the centre of mass of link i, I_i is about it.",
     ) },
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, plan, _| inertia_matrix(pool, arm, plan).concat()),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| inertia_matrix(pool, arm, plan).concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Dynamics"),

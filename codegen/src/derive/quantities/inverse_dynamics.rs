@@ -1,15 +1,15 @@
 //! Inverse dynamics by Newton and Euler's equations: tau = B ddq + C dq + F + g.
 
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 
 /// tau(q, dq, ddq).
 pub static INVERSE_DYNAMICS: Quantity = Quantity {
     name: "inverse_dynamics",
     symbol: Typeset::new("tau(q, dq, ddq)", "\\tau(q, \\dot q, \\ddot q)"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Ddq],
-    result: &[Part::whole(
+    result: &[ResultPart::whole(
         Typeset::new("tau(q, dq, ddq)", "\\tau(q, \\dot q, \\ddot q)"),
         Typeset::new("tau", "\\tau"),
         &[Length::Dof],
@@ -22,7 +22,7 @@ pub static INVERSE_DYNAMICS: Quantity = Quantity {
         "tau = B(q) ddq + C(q, dq) dq + F(dq) + g(q)                        (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| {
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| {
         let motion = Motion::plain(pool, arm);
         inverse_dynamics(pool, arm, &motion)
     }),

@@ -7,8 +7,8 @@
 //! ```
 
 use crate::derive::arm::Arm;
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Element, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Element, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::{Matrix, Vector, IDENTITY, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -21,7 +21,7 @@ pub static DIRECT_KINEMATICS: Quantity = Quantity {
     name: "direct_kinematics",
     symbol: Typeset::plain("T_e(q)"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(Typeset::plain("T_e(q)"), Typeset::plain("t"), &[Length::Fixed(4), Length::Fixed(4)], "1, m")],
+    result: &[ResultPart::whole(Typeset::plain("T_e(q)"), Typeset::plain("t"), &[Length::Fixed(4), Length::Fixed(4)], "1, m")],
     structure: None,
     has_parameters: false,
     documentation: Documentation::new(
@@ -30,7 +30,7 @@ pub static DIRECT_KINEMATICS: Quantity = Quantity {
         "the 4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
          frame, the last column is its origin in m.",
     ),
-    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()),
+    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -41,9 +41,9 @@ pub static LINK_FRAMES: Quantity = Quantity {
     name: "link_frames",
     symbol: Typeset::plain("T_i(q)"),
     arguments: &[Argument::Q],
-    result: &[Part {
+    result: &[ResultPart {
         element: Some(Element { name: "link_frame", letter: "T" }),
-        ..Part::whole(Typeset::plain("T_i(q)"), Typeset::plain("t"), &[Length::Dof, Length::Fixed(4), Length::Fixed(4)], "1, m")
+        ..ResultPart::whole(Typeset::plain("T_i(q)"), Typeset::plain("t"), &[Length::Dof, Length::Fixed(4), Length::Fixed(4)], "1, m")
     }],
     structure: None,
     has_parameters: false,
@@ -53,7 +53,7 @@ pub static LINK_FRAMES: Quantity = Quantity {
         "a 4 x 4 homogeneous transformation for each link, `t[link][row][column]`, the frames as the description's convention defines them; \
          translations in m.",
     ),
-    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| link_frames(pool, arm).concat().concat()),
+    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| link_frames(pool, arm).concat().concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -64,7 +64,7 @@ pub static GEOMETRIC_JACOBIAN: Quantity = Quantity {
     name: "geometric_jacobian",
     symbol: Typeset::plain("J(q)"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(
+    result: &[ResultPart::whole(
         Typeset::plain("J(q)"),
         Typeset::plain("j"),
         &[Length::Fixed(6), Length::Dof],
@@ -77,7 +77,7 @@ pub static GEOMETRIC_JACOBIAN: Quantity = Quantity {
         "(v_e, omega_e) = J(q) dq                                          (Siciliano et al., Sect. 3.1)",
         "`j[row][joint]`, 6 rows: three linear (velocity of the end-effector frame's origin, m/s), then three angular (rad/s).",
     ),
-    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| geometric_jacobian(pool, arm).concat()),
+    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian(pool, arm).concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -88,7 +88,7 @@ pub static GEOMETRIC_JACOBIAN_DOT: Quantity = Quantity {
     name: "geometric_jacobian_dot",
     symbol: Typeset::new("dJ/dt(q, dq)", "\\dot J(q, \\dot q)"),
     arguments: &[Argument::Q, Argument::Dq],
-    result: &[Part::whole(
+    result: &[ResultPart::whole(
         Typeset::new("dJ/dt(q, dq)", "\\dot J(q, \\dot q)"),
         Typeset::new("dj", "\\dot j"),
         &[Length::Fixed(6), Length::Dof],
@@ -101,7 +101,7 @@ pub static GEOMETRIC_JACOBIAN_DOT: Quantity = Quantity {
         "d/dt (v_e, omega_e) = J ddq + (dJ/dt) dq",
         "`j[row][joint]`, 6 rows: three linear, then three angular, in the base frame.",
     ),
-    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| geometric_jacobian_dot(pool, arm).concat()),
+    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian_dot(pool, arm).concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -112,9 +112,9 @@ pub static LINK_JACOBIANS: Quantity = Quantity {
     name: "link_jacobians",
     symbol: Typeset::plain("J_i(q)"),
     arguments: &[Argument::Q],
-    result: &[Part {
+    result: &[ResultPart {
         element: Some(Element { name: "link_jacobian", letter: "J" }),
-        ..Part::whole(
+        ..ResultPart::whole(
             Typeset::plain("J_i(q)"),
             Typeset::plain("j"),
             &[Length::Dof, Length::Fixed(6), Length::Dof],
@@ -129,7 +129,7 @@ pub static LINK_JACOBIANS: Quantity = Quantity {
         "`j[link][row][joint]`, 6 rows each: three linear (velocity of the origin of the frame that {link_frames} gives, m/s), then three \
          angular (rad/s). Joints beyond a link have columns of zeros.",
     ),
-    recursion: Recursion::new(Use::Frames, |pool, arm, _, _| link_jacobians(pool, arm).concat().concat()),
+    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| link_jacobians(pool, arm).concat().concat()),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("LinkJacobians"),

@@ -5,8 +5,8 @@
 //! ```
 
 use crate::derive::arm::{symmetric, Arm};
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -15,7 +15,7 @@ pub static KINETIC_ENERGY: Quantity = Quantity {
     name: "kinetic_energy",
     symbol: Typeset::new("T(q, dq)", "\\mathcal T(q, \\dot q)"),
     arguments: &[Argument::Q, Argument::Dq],
-    result: &[Part::whole(Typeset::new("T(q, dq)", "\\mathcal T(q, \\dot q)"), Typeset::new("T", "\\mathcal T"), &[], "J")],
+    result: &[ResultPart::whole(Typeset::new("T(q, dq)", "\\mathcal T(q, \\dot q)"), Typeset::new("T", "\\mathcal T"), &[], "J")],
     structure: None,
     has_parameters: true,
     documentation: Documentation::new(
@@ -23,7 +23,7 @@ pub static KINETIC_ENERGY: Quantity = Quantity {
         "T = 1/2 dq' B(q) dq                                               (Siciliano et al., eq. 7.31)",
         "an energy, J.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| vec![kinetic_energy(pool, arm)]),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| vec![kinetic_energy(pool, arm)]),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Dynamics"),

@@ -17,8 +17,8 @@
 //! The rotor of joint i has I_m k dq_i z_m beside what turns with its link, and p_i holds I_m k (k dq_i + z_m · ω).
 
 use crate::derive::arm::{symmetric, Arm};
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::wrench::{along, wrench_outward};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -31,7 +31,7 @@ pub static MOMENTUM: Quantity = Quantity {
     name: "momentum",
     symbol: Typeset::new("B dq", "B(q) \\dot q"),
     arguments: &[Argument::Q, Argument::Dq],
-    result: &[Part::whole(Typeset::new("B dq", "B(q) \\dot q"), Typeset::plain("p"), &[Length::Dof], "N m s or N s")],
+    result: &[ResultPart::whole(Typeset::new("B dq", "B(q) \\dot q"), Typeset::plain("p"), &[Length::Dof], "N m s or N s")],
     structure: None,
     has_parameters: false,
     documentation: Documentation::new(
@@ -39,7 +39,7 @@ pub static MOMENTUM: Quantity = Quantity {
         "p = B(q) dq = dT/d(dq)                                            (De Luca and Mattone 2003)",
         "a momentum, N m s (revolute) or N s (prismatic), for each joint.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| momentum(pool, arm)),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| momentum(pool, arm)),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: None,
@@ -50,7 +50,12 @@ pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
     name: "coriolis_transpose_times",
     symbol: Typeset::new("C' dq", "C^T(q, \\dot q) \\dot q"),
     arguments: &[Argument::Q, Argument::Dq],
-    result: &[Part::whole(Typeset::new("C' dq", "C^T(q, \\dot q) \\dot q"), Typeset::plain("c"), &[Length::Dof], "N m or N")],
+    result: &[ResultPart::whole(
+        Typeset::new("C' dq", "C^T(q, \\dot q) \\dot q"),
+        Typeset::plain("c"),
+        &[Length::Dof],
+        "N m or N",
+    )],
     structure: None,
     has_parameters: false,
     documentation: Documentation::new(
@@ -58,7 +63,7 @@ pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
         "C' dq = dT/dq = (dB/dt) dq - C dq,  dp/dt = tau + C' dq - F - g    (De Luca and Mattone 2003)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint, on the right of the equation of dp/dt.",
     ),
-    recursion: Recursion::new(Use::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: None,

@@ -11,12 +11,12 @@
 use super::inertia::inertia_matrix;
 use super::kinematics::geometric_jacobian;
 use crate::derive::arm::Arm;
-use crate::derive::factors::Factors;
+use crate::derive::factors::LdlFactors;
 use crate::derive::model::Model;
 use crate::derive::parameters::View;
-use crate::derive::passes::Use;
+use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::pass::Pass;
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Pool};
@@ -26,7 +26,7 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
     name: "operational_inertia",
     symbol: Typeset::new("(J B^-1 J')^-1", "(J B^{-1} J^T)^{-1}"),
     arguments: &[Argument::Q],
-    result: &[Part::whole(Typeset::new("(J B^-1 J')^-1", "(J B^{-1} J^T)^{-1}"), Typeset::new("b_a", "b_A"), &[Length::Task, Length::Task], "kg, kg m, kg m²")],
+    result: &[ResultPart::whole(Typeset::new("(J B^-1 J')^-1", "(J B^{-1} J^T)^{-1}"), Typeset::new("b_a", "b_A"), &[Length::Task, Length::Task], "kg, kg m, kg m²")],
     structure: None,
     has_parameters: false,
     documentation: Documentation { failure: ["not finite where J is singular"; 2], ..Documentation::new(
@@ -36,7 +36,7 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
          configuration it is infinite, and its entries are not finite or, by rounding, very large.",
     ) },
     recursion: Recursion { // The Jacobian wants the lengths of the description.
-        without: &[Pass::UnitOfLength], ..Recursion::new(Use::Dynamics, |pool, arm, plan, setting| {
+        without: &[Pass::UnitOfLength], ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, setting| {
             operational_inertia(pool, arm, plan, &setting.model.manipulator.task_rows()).concat()
         }) },
     missing,
@@ -49,8 +49,8 @@ pub fn operational_inertia(pool: &mut Pool, arm: &Arm, plan: &mut Plan, task: &[
     let jacobian = geometric_jacobian(pool, arm);
     let rows: Vec<Vec<ExprId>> = task.iter().map(|&row| jacobian[row].clone()).collect();
     let b = inertia_matrix(pool, arm, plan);
-    let mobility = Factors::new(pool, &b).congruent(pool, &rows);
-    Factors::new(pool, &mobility).inverse(pool)
+    let mobility = LdlFactors::new(pool, &b).congruent(pool, &rows);
+    LdlFactors::new(pool, &mobility).inverse(pool)
 }
 
 /// Why an arm has none.

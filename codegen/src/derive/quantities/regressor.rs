@@ -4,8 +4,8 @@
 
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::parameters::View;
-use crate::derive::passes::Use;
-use crate::derive::quantity::{Argument, Documentation, Length, Part, Quantity, Recursion, Typeset};
+use crate::derive::passes::RewriteScope;
+use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::regressor::{regressor_by_plan, STARTS};
 
 /// In the order of the emitted module.
@@ -16,7 +16,7 @@ pub static REGRESSOR: Quantity = Quantity {
     name: "regressor",
     symbol: Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
-    result: &[Part::whole(Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"), Typeset::plain("y"), &[Length::Dof, Length::Parameters], "Y pi is a torque")],
+    result: &[ResultPart::whole(Typeset::new("Y(q, dq, dqr, ddqr)", "Y(q, \\dot q, \\dot q_r, \\ddot q_r)"), Typeset::plain("y"), &[Length::Dof, Length::Parameters], "Y pi is a torque")],
     structure: None,
     has_parameters: false,
     documentation: Documentation::new(
@@ -25,7 +25,7 @@ pub static REGRESSOR: Quantity = Quantity {
         "`y[joint][parameter]`, parameters in the order of {PARAMETER_NAMES}. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
     ),
-    recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(Use::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
+    recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Regressor"),
@@ -36,7 +36,7 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
     name: "known_torque",
     symbol: Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
     arguments: &[Argument::Q, Argument::Dq, Argument::Dqr, Argument::Ddqr],
-    result: &[Part::whole(
+    result: &[ResultPart::whole(
         Typeset::new("tau_known(q, dq, dqr, ddqr)", "\\tau_0(q, \\dot q, \\dot q_r, \\ddot q_r)"),
         Typeset::new("tau_known", "\\tau_0"),
         &[Length::Dof],
@@ -50,8 +50,8 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     ),
     recursion: Recursion {
-        view: |model, _| View::Known(&model.parameters),
-        ..Recursion::new(Use::Plain, |pool, arm, _, _| {
+        view: |model, _| View::VectorZero(&model.parameters),
+        ..Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {
             let motion = Motion::with_reference(pool, arm);
             inverse_dynamics(pool, arm, &motion)
         })

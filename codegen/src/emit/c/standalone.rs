@@ -13,7 +13,7 @@ use crate::emit::origin::{Notes, Origin};
 use crate::emit::plain::{asks_for_signs, expression, of_robot, places, reads_an_argument, waves};
 use crate::emit::rust::asks_for_sines;
 use crate::kinds::Scalar;
-use crate::program::listing::{Line, Listing, Name, Part};
+use crate::program::listing::{BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Trig};
 
 const PROLOGUE: &str = include_str!("prologue.h");
@@ -181,7 +181,7 @@ impl C<'_> {
     }
 
     /// A part of a long function.
-    fn part(&self, text: &mut String, function: &Function, part: &Part, number: usize) {
+    fn part(&self, text: &mut String, function: &Function, part: &BodyPart, number: usize) {
         let C { name, upper, .. } = self;
         let mut arguments: Vec<String> = part.arguments.iter().map(|a| format!("const {name}_real *{}", a.name())).collect();
         // A part that takes nothing but arguments has no values to take.
@@ -204,7 +204,7 @@ impl C<'_> {
     }
 
     /// The lines that call a part.
-    fn call(&self, text: &mut String, function: &Function, part: &Part, number: usize) {
+    fn call(&self, text: &mut String, function: &Function, part: &BodyPart, number: usize) {
         let name = &self.name;
         let mut arguments: Vec<String> = part.arguments.iter().map(|a| a.name().to_string()).collect();
         if !part.taken.is_empty() {

@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 
 use super::signature::{self, argument, length as length_of, usize_literal};
 use super::{body, documentation, sincos};
-use crate::catalogue::{Length, Part, Quantity, Sizes};
+use crate::catalogue::{Length, Quantity, ResultPart, Sizes};
 use crate::emit::documentation::{self as common, Block};
 use crate::program::{Function, Module};
 
@@ -110,7 +110,7 @@ fn places(quantity: &Quantity, sizes: &Sizes) -> Vec<TokenStream> {
 
 /// A block of zeros.
 fn zeros(quantity: &Quantity) -> TokenStream {
-    let zeros = |part: &Part| {
+    let zeros = |part: &ResultPart| {
         part.lengths.iter().rev().fold(quote!([0.0; LANES]), |of, &length| {
             let length = length_of(length);
             quote!([#of; #length])

@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::literal::literal;
 use super::signature::{argument, input, name, usize_literal};
 use crate::kinds::Scalar;
-use crate::program::listing::{Expression, Line, Listing, Part};
+use crate::program::listing::{BodyPart, Expression, Line, Listing};
 use crate::program::{Function, Module, Operation};
 
 /// What stands in a function.
@@ -38,7 +38,7 @@ pub(super) fn body(module: &Module, function: &Function) -> Body {
 }
 
 /// A part of a long function, and the line that calls it.
-fn of_part(module: &Module, function: &Function, part: &Part, number: usize) -> (TokenStream, TokenStream) {
+fn of_part(module: &Module, function: &Function, part: &BodyPart, number: usize) -> (TokenStream, TokenStream) {
     let idents = |names: &[_]| names.iter().copied().map(name).collect::<Vec<Ident>>();
     let (taken, given) = (idents(&part.taken), idents(&part.given));
     let own = format_ident!("{}_part_{}", function.name(), number);

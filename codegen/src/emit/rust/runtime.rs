@@ -5,7 +5,7 @@ use quote::{format_ident, quote, ToTokens};
 
 use super::documentation;
 use super::signature::{accesses, argument, length, of_parts, usize_literal, with_fields};
-use crate::catalogue::{self, Argument, Length, Part, Quantity};
+use crate::catalogue::{self, Argument, Length, Quantity, ResultPart};
 use crate::emit::documentation as common;
 use crate::program::Module;
 
@@ -173,13 +173,13 @@ fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
         passed.insert(0, quote!(&self.parameters));
     }
     let call = quote!(#called(#(#passed),*));
-    let own = |part: &Part| part_type(part, &quote!(Real), &quote!(armgen_runtime::nalgebra::), length);
+    let own = |part: &ResultPart| part_type(part, &quote!(Real), &quote!(armgen_runtime::nalgebra::), length);
     let returns = of_parts(quantity, own, |name| quote!(armgen_runtime::robot::#name<Real, DOF>));
     let value = match quantity.result {
         [part] => converted(part, &call),
         parts => {
             let mut terms = parts.iter().zip(accesses(quantity)).map(|(part, access)| converted(part, &quote!(terms #access)));
-            let mut part = |_: &Part| terms.next().expect("a term for each part");
+            let mut part = |_: &ResultPart| terms.next().expect("a term for each part");
             let all = match quantity.structure {
                 Some(named) => {
                     let value = with_fields(&format_ident!("{}", named.name), quantity, part);
@@ -201,7 +201,7 @@ fn method(quantity: &Quantity, with_parameters: bool) -> TokenStream {
 }
 
 /// The type of a part of a result in the runtime.
-fn part_type(part: &Part, real: &TokenStream, nalgebra: &TokenStream, length: fn(Length) -> TokenStream) -> TokenStream {
+fn part_type(part: &ResultPart, real: &TokenStream, nalgebra: &TokenStream, length: fn(Length) -> TokenStream) -> TokenStream {
     let of_matrix = |rows: Length, columns: Length| match (rows, columns) {
         (Length::Fixed(4), Length::Fixed(4)) => quote!(#nalgebra Matrix4<#real>),
         (rows, columns) => {
@@ -224,7 +224,7 @@ fn part_type(part: &Part, real: &TokenStream, nalgebra: &TokenStream, length: fn
 }
 
 /// A part of a result of the module as the runtime's type.
-fn converted(part: &Part, value: &TokenStream) -> TokenStream {
+fn converted(part: &ResultPart, value: &TokenStream) -> TokenStream {
     match part.lengths.len() {
         0 => value.clone(),
         1 => quote!(armgen_runtime::nalgebra::SVector::from(#value)),

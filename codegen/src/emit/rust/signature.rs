@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote, ToTokens};
 
-use crate::catalogue::{Argument, Length, Part, Quantity};
+use crate::catalogue::{Argument, Length, Quantity, ResultPart};
 use crate::program::listing::Name;
 use crate::program::{Function, Module};
 use crate::ring::Symbol;
@@ -96,7 +96,7 @@ pub(super) fn type_of(quantity: &Quantity) -> TokenStream {
 }
 
 /// The type of a part of a result: its entries in arrays, outermost first.
-pub(super) fn part_type(part: &Part, entry: &TokenStream) -> TokenStream {
+pub(super) fn part_type(part: &ResultPart, entry: &TokenStream) -> TokenStream {
     part.lengths.iter().rev().fold(entry.clone(), |of, &dimension| {
         let dimension = length(dimension);
         quote!([#of; #dimension])
@@ -106,7 +106,7 @@ pub(super) fn part_type(part: &Part, entry: &TokenStream) -> TokenStream {
 /// A result: its only part, the structure of its parts by `structure` of that name, or a list of them.
 pub(super) fn of_parts(
     quantity: &Quantity,
-    mut part: impl FnMut(&Part) -> TokenStream,
+    mut part: impl FnMut(&ResultPart) -> TokenStream,
     structure: impl FnOnce(&Ident) -> TokenStream,
 ) -> TokenStream {
     match (quantity.result, quantity.structure) {
@@ -120,7 +120,7 @@ pub(super) fn of_parts(
 }
 
 /// A structure whose parts are these.
-pub(super) fn with_fields(name: &Ident, quantity: &Quantity, part: impl FnMut(&Part) -> TokenStream) -> TokenStream {
+pub(super) fn with_fields(name: &Ident, quantity: &Quantity, part: impl FnMut(&ResultPart) -> TokenStream) -> TokenStream {
     let fields = quantity.result.iter().map(|part| format_ident!("{}", part.name));
     let parts = quantity.result.iter().map(part);
     quote!(#name { #(#fields: #parts),* })

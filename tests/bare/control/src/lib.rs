@@ -21,7 +21,7 @@ pub use armgen_runtime::{nalgebra::SVector, reference::JointReference};
 use armgen_runtime::{
     clik::{ClikError, Integration, JointLimits, SecondOrder},
     control::{Adaptive, ControlError},
-    parameters::ParameterError,
+    settings::SettingError,
     reference::{OperationalReference, State},
     task::{Row, Task, TaskError},
     trajectory::PlanError,
@@ -41,7 +41,7 @@ const START: [f32; robot::DOF] = [-1.391_31, 2.065_078_7, 0.4, 0.673_768_66];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A gain or the period is out of range.
-    Gain(ParameterError),
+    Gain(SettingError),
     /// The task names a row twice.
     Task(TaskError),
     /// The path cannot be planned.

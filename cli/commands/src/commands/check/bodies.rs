@@ -2,7 +2,7 @@
 
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::exact::Polynomial;
-use armgen_codegen::manipulator::{Manipulator, Part};
+use armgen_codegen::manipulator::{Manipulator, PlacedBody};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::table::{Align, Table};
@@ -17,11 +17,11 @@ struct Solid {
 
 impl Solid {
     /// Bodies in one frame as one (Steiner); `None` without mass.
-    fn of(manipulator: &Manipulator, parts: &[Part]) -> Option<Solid> {
+    fn of(manipulator: &Manipulator, parts: &[PlacedBody]) -> Option<Solid> {
         let number = |p: &Polynomial| nominal(manipulator, p).to_f64();
         let solids: Vec<Solid> = parts
             .iter()
-            .map(|Part { body, .. }| {
+            .map(|PlacedBody { body, .. }| {
                 let [xx, xy, yy, xz, yz, zz] = body.inertia.each_ref().map(number);
                 let inertia = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
                 Solid { mass: number(&body.mass), com: Vector3::from(body.com.each_ref().map(number)), inertia }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use armgen_codegen::source::Source;
 use armgen_experiments::campaign::{groups, Job};
-use armgen_experiments::draw;
+use armgen_experiments::draw::{self, OutputFile};
 use armgen_experiments::model::{Record, Robot};
-use armgen_page::{Log, Run, Verdict};
+use armgen_page::{Figure, Log, Run, Verdict};
 
 use crate::output::write;
 use crate::{terminal, DONE, UNREADABLE};
@@ -24,12 +24,12 @@ pub(super) fn of_jobs(jobs: &[Job<'_>]) -> Vec<Run> {
         title: job.experiment().title.clone(),
         log: log(job.record()),
         verdicts: job.lines().into_iter().map(verdict).collect(),
-        figures: job.figures().to_vec(),
+        figures: job.figures().iter().cloned().map(figure).collect(),
     };
-    let group = |(name, text): (String, String)| Run {
-        name: name.trim_end_matches(".svg").to_owned(),
+    let group = |file: OutputFile| Run {
+        name: file.name.trim_end_matches(".svg").to_owned(),
         title: "the members of the group side by side".into(),
-        figures: vec![(name, text)],
+        figures: vec![figure(file)],
         ..Run::default()
     };
     jobs.iter().map(of).chain(groups(jobs).into_iter().map(group)).collect()
@@ -41,9 +41,14 @@ pub(super) fn of_demonstration(record: &Record, robot: &Robot) -> Run {
         name: "demonstration".into(),
         title: "from posture to posture within the limits".into(),
         log: log(record),
-        figures: vec![("demonstration.svg".into(), draw::demonstration(record, robot))],
+        figures: vec![Figure { title: "demonstration.svg".into(), svg: draw::demonstration(record, robot) }],
         ..Run::default()
     }
+}
+
+/// A figure with the name of its file as its title.
+fn figure(file: OutputFile) -> Figure {
+    Figure { title: file.name, svg: file.text }
 }
 
 /// The log with the units of its channels; none of a record without samples.

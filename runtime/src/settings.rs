@@ -7,7 +7,7 @@ use nalgebra::{RealField, SVector};
 /// What a refused number was meant for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Parameter {
+pub enum Setting {
     /// K_P, 1/s^2 (or N m/rad, N/m for [`PdGravity`](crate::control::PdGravity)); K of first-order inverse kinematics, 1/s (or 1/(m^2 s),
     /// 1/s for [`JacobianTranspose`](crate::clik::JacobianTranspose)).
     Proportional,
@@ -45,26 +45,26 @@ pub enum Parameter {
     Estimate,
 }
 
-impl core::fmt::Display for Parameter {
+impl core::fmt::Display for Setting {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str(match self {
-            Parameter::Proportional => "K_P",
-            Parameter::Derivative => "K_D",
-            Parameter::Integral => "K_I",
-            Parameter::Filter => "Lambda",
-            Parameter::Adaptation => "K_pi",
-            Parameter::Interval => "the interval of the estimate",
-            Parameter::LyapunovWeight => "P",
-            Parameter::UncertaintyBound => "rho",
-            Parameter::BoundaryLayer => "epsilon",
-            Parameter::NullSpace => "the null-space gains",
-            Parameter::PositionLimit => "the position limits",
-            Parameter::RateLimit => "the rate limits",
-            Parameter::Tolerance => "the tolerances",
-            Parameter::IntegralLimit => "the integral limits",
-            Parameter::TorqueLimit => "the torque limits",
-            Parameter::Period => "the sampling period",
-            Parameter::Estimate => "the initial estimate",
+            Setting::Proportional => "K_P",
+            Setting::Derivative => "K_D",
+            Setting::Integral => "K_I",
+            Setting::Filter => "Lambda",
+            Setting::Adaptation => "K_pi",
+            Setting::Interval => "the interval of the estimate",
+            Setting::LyapunovWeight => "P",
+            Setting::UncertaintyBound => "rho",
+            Setting::BoundaryLayer => "epsilon",
+            Setting::NullSpace => "the null-space gains",
+            Setting::PositionLimit => "the position limits",
+            Setting::RateLimit => "the rate limits",
+            Setting::Tolerance => "the tolerances",
+            Setting::IntegralLimit => "the integral limits",
+            Setting::TorqueLimit => "the torque limits",
+            Setting::Period => "the sampling period",
+            Setting::Estimate => "the initial estimate",
         })
     }
 }
@@ -72,39 +72,39 @@ impl core::fmt::Display for Parameter {
 /// Why a number was refused; `index` is the joint, task row or parameter, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum ParameterError {
+pub enum SettingError {
     /// It is infinite or NaN.
     NotFinite {
         /// What it was meant for.
-        parameter: Parameter,
+        setting: Setting,
         /// Which of its elements.
         index: usize,
     },
     /// It is negative, or zero where only a positive value makes sense: the gain matrix would not be positive definite.
     NotPositive {
         /// What it was meant for.
-        parameter: Parameter,
+        setting: Setting,
         /// Which of its elements.
         index: usize,
     },
 }
 
-messages! { ParameterError,
-    ParameterError::NotFinite { parameter, index } => "element {} (from 0) of {} is infinite or NaN", index, parameter;
-    ParameterError::NotPositive { parameter, index } => "element {} (from 0) of {} is negative, or zero where only a positive value makes sense", index, parameter;
+messages! { SettingError,
+    SettingError::NotFinite { setting, index } => "element {} (from 0) of {} is infinite or NaN", index, setting;
+    SettingError::NotPositive { setting, index } => "element {} (from 0) of {} is negative, or zero where only a positive value makes sense", index, setting;
 }
 
 fn each<T: RealField + Copy, const K: usize>(
-    parameter: Parameter,
+    setting: Setting,
     values: &SVector<T, K>,
     allowed: impl Fn(T) -> bool,
-) -> Result<(), ParameterError> {
+) -> Result<(), SettingError> {
     for (index, x) in values.iter().enumerate() {
         if !x.is_finite() {
-            return Err(ParameterError::NotFinite { parameter, index });
+            return Err(SettingError::NotFinite { setting, index });
         }
         if !allowed(*x) {
-            return Err(ParameterError::NotPositive { parameter, index });
+            return Err(SettingError::NotPositive { setting, index });
         }
     }
     Ok(())
@@ -112,43 +112,40 @@ fn each<T: RealField + Copy, const K: usize>(
 
 /// All elements positive and finite.
 pub(crate) fn positive<T: RealField + Copy, const K: usize>(
-    parameter: Parameter,
+    setting: Setting,
     values: &SVector<T, K>,
-) -> Result<(), ParameterError> {
-    each(parameter, values, |x| x > T::zero())
+) -> Result<(), SettingError> {
+    each(setting, values, |x| x > T::zero())
 }
 
 /// All elements positive; an infinite one is a limit that never acts.
 pub(crate) fn positive_or_infinite<T: RealField + Copy, const K: usize>(
-    parameter: Parameter,
+    setting: Setting,
     values: &SVector<T, K>,
-) -> Result<(), ParameterError> {
+) -> Result<(), SettingError> {
     // A NaN is not below the largest number either.
-    positive(parameter, &values.map(|x| if x > T::one() { T::one() } else { x }))
+    positive(setting, &values.map(|x| if x > T::one() { T::one() } else { x }))
 }
 
 /// All elements finite and not negative.
 pub(crate) fn not_negative<T: RealField + Copy, const K: usize>(
-    parameter: Parameter,
+    setting: Setting,
     values: &SVector<T, K>,
-) -> Result<(), ParameterError> {
-    each(parameter, values, |x| x >= T::zero())
+) -> Result<(), SettingError> {
+    each(setting, values, |x| x >= T::zero())
 }
 
 /// All elements finite.
-pub(crate) fn finite<T: RealField + Copy, const K: usize>(
-    parameter: Parameter,
-    values: &SVector<T, K>,
-) -> Result<(), ParameterError> {
-    each(parameter, values, |_| true)
+pub(crate) fn finite<T: RealField + Copy, const K: usize>(setting: Setting, values: &SVector<T, K>) -> Result<(), SettingError> {
+    each(setting, values, |_| true)
 }
 
 /// Positive and finite.
-pub(crate) fn positive_scalar<T: RealField + Copy>(parameter: Parameter, value: T) -> Result<(), ParameterError> {
-    positive(parameter, &SVector::<T, 1>::new(value))
+pub(crate) fn positive_scalar<T: RealField + Copy>(setting: Setting, value: T) -> Result<(), SettingError> {
+    positive(setting, &SVector::<T, 1>::new(value))
 }
 
 /// Finite and not negative.
-pub(crate) fn not_negative_scalar<T: RealField + Copy>(parameter: Parameter, value: T) -> Result<(), ParameterError> {
-    not_negative(parameter, &SVector::<T, 1>::new(value))
+pub(crate) fn not_negative_scalar<T: RealField + Copy>(setting: Setting, value: T) -> Result<(), SettingError> {
+    not_negative(setting, &SVector::<T, 1>::new(value))
 }
