@@ -12,8 +12,10 @@ mod unit;
 
 pub use channel::{Channel, JointQuantity, PostureQuantity, Quantity};
 pub use expectation::{Expectation, Take, Target};
-pub use experiment::{Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Postures, Sampling, Start};
-pub use law::{Adaptation, Gain, Law, LawKind, Per};
+pub use experiment::{
+    Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Posture, Postures, ReferenceGains, Sampling, Start,
+};
+pub use law::{Adaptation, EstimateBounds, Gain, Law, LawKind, Per};
 pub use motion::{Motion, Sheet, Trajectory};
 pub use number::{digits, number};
 pub use record::{Peak, Record, Shape, Shapes, Speed};

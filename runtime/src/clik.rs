@@ -43,7 +43,7 @@ mod second_order;
 
 pub use first_order::{Algorithm, DampedLeastSquares, JacobianInverse, JacobianTranspose, PseudoInverse, Rates};
 pub use follow::{Clik, Reached, Step};
-pub use limits::JointLimits;
+pub use limits::{JointLimits, WithinRange};
 pub use objective::{JointRangeDistance, Manipulability, NoObjective, Objective};
 pub use second_order::{Integration, SecondOrder, SecondOrderStep};
 

@@ -61,7 +61,7 @@ pub use pd::PdGravity;
 pub use robust::{BoundaryLayer, Robust};
 
 use crate::{
-    linalg::is_finite,
+    linalg::{is_finite, Limited},
     reference::{JointReference, OperationalReference, State},
     robot::{Dynamics, Kinematics, Regressor},
 };
@@ -173,9 +173,9 @@ fn issue<T: RealField + Copy, const N: usize>(
     if !is_finite(&tau) {
         return Err(ControlError::TorqueNotFinite);
     }
-    let (tau, limited) = match limits {
+    let Limited { value: tau, is_limited: limited } = match limits {
         Some(limits) => limits.apply(&tau),
-        None => (tau, false),
+        None => Limited { value: tau, is_limited: false },
     };
     Ok(Torque { tau, limited, damped })
 }

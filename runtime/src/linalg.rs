@@ -32,9 +32,18 @@ pub fn is_finite<T: RealField + Copy, const R: usize, const C: usize>(m: &SMatri
     m.iter().all(|x| x.is_finite())
 }
 
-/// `x` with every element cut to `[-bound, bound]`, and whether anything was cut.
+/// A vector within its limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limited<T, const N: usize> {
+    /// The vector.
+    pub value: SVector<T, N>,
+    /// Whether it had to be changed.
+    pub is_limited: bool,
+}
+
+/// `x` with every element cut to `[-bound, bound]`.
 #[inline]
-pub fn saturate<T: RealField + Copy, const N: usize>(x: &SVector<T, N>, bound: &SVector<T, N>) -> (SVector<T, N>, bool) {
+pub fn saturate<T: RealField + Copy, const N: usize>(x: &SVector<T, N>, bound: &SVector<T, N>) -> Limited<T, N> {
     let mut cut = false;
     let y = x.zip_map(bound, |x, b| {
         if x > b {
@@ -47,5 +56,5 @@ pub fn saturate<T: RealField + Copy, const N: usize>(x: &SVector<T, N>, bound: &
             x
         }
     });
-    (y, cut)
+    Limited { value: y, is_limited: cut }
 }

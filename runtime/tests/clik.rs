@@ -7,7 +7,7 @@ use armgen_runtime::{
         Algorithm, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
         JointRangeDistance, Manipulability, NoObjective, Objective, Outcome, PseudoInverse,
     },
-    linalg::Damping,
+    linalg::{Damping, Limited},
     manipulability::manipulability,
     reference::{OperationalReference, Pose, State},
     robot::Kinematics,
@@ -219,9 +219,9 @@ fn a_damped_step_tells_what_is_left_of_the_error() {
 fn rates_are_slowed_down_along_their_direction() {
     let limits = bounded();
     let dq = vector![6.0, -12.0, 1.5, 1.0];
-    let (slow, slowed) = limits.slow_down(&dq);
-    assert!(slowed && (slow - dq / 4.0).amax() < 1e-15, "joint 2 sets the pace: {slow}");
-    assert_eq!(limits.slow_down(&(dq / 4.0)), (dq / 4.0, false));
+    let Limited { value: slow, is_limited } = limits.slow_down(&dq);
+    assert!(is_limited && (slow - dq / 4.0).amax() < 1e-15, "joint 2 sets the pace: {slow}");
+    assert_eq!(limits.slow_down(&(dq / 4.0)), Limited { value: dq / 4.0, is_limited: false });
 }
 
 #[test]

@@ -3,12 +3,12 @@
 mod common;
 
 use armgen_runtime::{
-    clik::{Clik, Integration, JacobianInverse, JointLimits, Outcome},
+    clik::{Clik, Integration, JacobianInverse, JointLimits, Outcome, WithinRange},
     control::{
         Adaptive, BoundaryLayer, ControlError, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
         TorqueLimits,
     },
-    linalg::{Damping, DampingError},
+    linalg::{Damping, DampingError, Limited},
     reference::{JointReference, OperationalReference, Pose, State},
     settings::{Setting, SettingError},
     simulation::{Integrator, Plant, RunError},
@@ -55,10 +55,10 @@ fn gains_are_checked() {
 fn an_infinite_limit_never_acts() {
     const FREE: f64 = f64::INFINITY;
     let torque = TorqueLimits::new([FREE, 1.0]).unwrap();
-    assert_eq!(torque.apply(&vector![1e300, -2.0]), (vector![1e300, -1.0], true));
+    assert_eq!(torque.apply(&vector![1e300, -2.0]), Limited { value: vector![1e300, -1.0], is_limited: true });
     assert!(TorqueLimits::new([NAN]).is_err() && TorqueLimits::new([-FREE]).is_err());
     let limits = JointLimits::rates([1.0, 1.0]).unwrap().with_range([-FREE, 0.0], [FREE, FREE]).unwrap();
-    assert_eq!(limits.stop(&vector![0.0, 0.0], &vector![1e300, -1.0]), (vector![1e300, 0.0], Some(1)));
+    assert_eq!(limits.stop(&vector![0.0, 0.0], &vector![1e300, -1.0]), WithinRange { q: vector![1e300, 0.0], stopped: Some(1) });
     assert!(JointLimits::rates([1.0]).unwrap().with_range([FREE], [FREE]).is_err());
     assert!(JointLimits::rates([1.0]).unwrap().with_range([0.0], [NAN]).is_err());
     assert!(JointLimits::rates([FREE]).is_err(), "a rate always has a limit");

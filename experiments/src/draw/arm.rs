@@ -5,7 +5,7 @@ use armgen_runtime::task::Row;
 
 use super::plot::{figure, style, Panel, Series};
 use super::svg::{Stroke, INK};
-use crate::model::{Postures, Shape, Shapes};
+use crate::model::{Posture, Postures, Shape, Shapes};
 
 /// The ellipse about a point, its semi-axes times `scale`.
 fn ellipse(centre: (f64, f64), ellipsoid: &Ellipsoid<f64, 2>, scale: f64) -> Vec<(f64, f64)> {
@@ -43,7 +43,7 @@ pub(super) fn postures(title: &str, postures: &Postures, shapes: &Shapes) -> Str
         .list
         .iter()
         .zip(&shapes.postures)
-        .map(|((name, _), shape)| {
+        .map(|(Posture { name, .. }, shape)| {
             let (x, y) = axes(postures.plane);
             let arm = links(postures.plane, shape);
             let tip = arm.last().copied().unwrap_or_default();

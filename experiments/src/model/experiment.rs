@@ -35,11 +35,20 @@ pub enum Body {
     Control(ControlRun),
 }
 
+/// A posture with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Posture {
+    /// Its name.
+    pub name: String,
+    /// Joint variables, rad or m.
+    pub q: Vec<f64>,
+}
+
 /// Postures to be judged.
 #[derive(Clone, Debug)]
 pub struct Postures {
-    /// Name and joint variables.
-    pub list: Vec<(String, Vec<f64>)>,
+    /// They, in their order.
+    pub list: Vec<Posture>,
     /// The two linear rows in which ellipsoids are drawn and measured.
     pub plane: [Row; 2],
     /// Further postures for a figure only: all combinations of values of the first two joints.
@@ -158,6 +167,15 @@ pub enum Algorithm {
     },
 }
 
+/// Gains of second-order inverse kinematics, one per row of the task.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceGains {
+    /// K_P, 1/s².
+    pub proportional: Vec<f64>,
+    /// K_D, 1/s.
+    pub derivative: Vec<f64>,
+}
+
 /// A run of a controller.
 #[derive(Clone, Debug)]
 pub struct ControlRun {
@@ -167,8 +185,8 @@ pub struct ControlRun {
     pub start: Start,
     /// Parameters of the plant.
     pub plant: Vec<f64>,
-    /// K_P and K_D of the second-order inverse kinematics that makes the joint reference, one per row of the task.
-    pub reference: (Vec<f64>, Vec<f64>),
+    /// Of the second-order inverse kinematics that makes the joint reference.
+    pub reference: ReferenceGains,
     /// The controller.
     pub law: Law,
     /// Samples between measurement and torque.
@@ -232,8 +250,8 @@ impl Body {
     pub fn numbers(&self, robot: &Robot) -> Vec<Channel> {
         let quantities = match self {
             Body::Postures(postures) => {
-                let of = |(i, (name, _)): (usize, &(String, Vec<f64>))| {
-                    PostureQuantity::ALL.map(|quantity| Channel::of_posture(quantity, i, name))
+                let of = |(i, posture): (usize, &Posture)| {
+                    PostureQuantity::ALL.map(|quantity| Channel::of_posture(quantity, i, &posture.name))
                 };
                 return postures.list.iter().enumerate().flat_map(of).collect();
             }

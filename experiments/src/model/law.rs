@@ -124,13 +124,22 @@ pub struct Law {
     pub adaptation: Adaptation,
 }
 
+/// The interval that an estimate is projected on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EstimateBounds {
+    /// The lowest estimates.
+    pub lowest: Vec<f64>,
+    /// The highest estimates.
+    pub highest: Vec<f64>,
+}
+
 /// How a law adapts its estimate of the parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Adaptation {
     /// What it starts from.
     pub estimate: Vec<f64>,
-    /// Lowest and highest estimates, where there are bounds.
-    pub bounds: Option<(Vec<f64>, Vec<f64>)>,
+    /// What it is kept in, where there are bounds.
+    pub bounds: Option<EstimateBounds>,
     /// Whether it adapts at all.
     pub is_on: bool,
 }

@@ -8,7 +8,7 @@ use armgen_codegen::source::Span;
 
 use super::values::{optionals, Allowed, Numbers, Reader};
 use super::Code;
-use crate::model::{Adaptation, ControlRun, Law, LawKind, Noise, Per, Sampling};
+use crate::model::{Adaptation, ControlRun, EstimateBounds, Law, LawKind, Noise, Per, ReferenceGains, Sampling};
 
 /// Integration steps of a run: some seconds of work each million.
 const MAX_STEPS: u128 = 20_000_000;
@@ -50,17 +50,18 @@ impl Reader<'_> {
 
     /// K_P and K_D of the inverse kinematics that makes the joint reference: w² and 2 w with w = 1/(20 T) where none are given, so that an
     /// error is closed without overshoot within a hundred samples, and sampling does not disturb that.
-    fn reference(&mut self, fields: &Fields<'_>, sampling: Option<&Sampling>) -> Option<(Vec<f64>, Vec<f64>)> {
+    fn reference(&mut self, fields: &Fields<'_>, sampling: Option<&Sampling>) -> Option<ReferenceGains> {
         let Some((at, node)) = fields.get("reference") else {
             let w = 1.0 / (20.0 * sampling?.period.as_secs_f64());
             let rows = self.robot.task.len();
-            return Some((vec![w * w; rows], vec![2.0 * w; rows]));
+            return Some(ReferenceGains { proportional: vec![w * w; rows], derivative: vec![2.0 * w; rows] });
         };
         let keys = [required("k_p", "k_p: [1000, 1000, ...]"), required("k_d", "k_d: [50, 50, ...]")];
         let keys = self.mapping(node, "`reference`", at, &keys)?;
         let rows = self.robot.task.len();
-        let k_p = self.rows_of_numbers(&keys, "k_p", rows);
-        Some((k_p?, self.rows_of_numbers(&keys, "k_d", rows)?))
+        let proportional = self.rows_of_numbers(&keys, "k_p", rows);
+        let derivative = self.rows_of_numbers(&keys, "k_d", rows);
+        Some(ReferenceGains { proportional: proportional?, derivative: derivative? })
     }
 
     fn sensor(&mut self, fields: &Fields<'_>) -> (usize, Noise) {
@@ -145,9 +146,9 @@ impl Reader<'_> {
         let given = [self.parameters(keys, "lowest", lowest.clone()), self.parameters(keys, "highest", highest.clone())];
         let bounds = match given {
             [None, None] => None,
-            [low, high] => Some((low.unwrap_or(lowest), high.unwrap_or(highest))),
+            [low, high] => Some(EstimateBounds { lowest: low.unwrap_or(lowest), highest: high.unwrap_or(highest) }),
         };
-        if let Some((low, high)) = &bounds {
+        if let Some(EstimateBounds { lowest: low, highest: high }) = &bounds {
             let robot = self.robot;
             for (i, parameter) in robot.parameters.iter().enumerate().filter(|(i, _)| low[*i] > high[*i]) {
                 let message = format!("no estimate of `{}` lies between {} and {}", parameter.name, low[i], high[i]);

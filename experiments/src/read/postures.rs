@@ -6,7 +6,7 @@ use armgen_codegen::source::Span;
 use armgen_runtime::task::Row;
 
 use super::values::{Allowed, Numbers, Reader};
-use crate::model::Postures;
+use crate::model::{Posture, Postures};
 
 /// Postures of a grid.
 const MAX_POSTURES: usize = 10_000;
@@ -22,7 +22,7 @@ impl Reader<'_> {
         for item in items {
             let fields = self.mapping(item, "a posture", item.span, &keys)?;
             let name = self.word(&fields, "name")?;
-            list.push((name.value, self.joints(&fields, "q")?));
+            list.push(Posture { name: name.value, q: self.joints(&fields, "q")? });
         }
         if list.is_empty() {
             self.report(Shared::EmptyList, at, "`postures` names no posture", "empty", HELP);

@@ -19,7 +19,10 @@ use armgen_runtime::stability::{
 
 use super::instance::{sized, Functions};
 use super::{Instance, Run};
-use crate::model::{number, Body, ControlRun, Experiment, JointQuantity, Law, LawKind, Peak, Quantity, Record, Robot, Speed};
+use crate::model::{
+    number, Body, ControlRun, EstimateBounds, Experiment, JointQuantity, Law, LawKind, Peak, Quantity, Record, ReferenceGains,
+    Robot, Speed,
+};
 
 /// Distance between the postures at which the loop is linearised.
 const POSTURE_STEP: Duration = Duration::from_millis(250);
@@ -241,8 +244,8 @@ where
 
     fn desired(&self, run: &ControlRun, begins: SVector<f64, N>, period: Duration) -> Result<Desired<N>, String> {
         let trajectory = &run.sampling.motion.trajectory;
-        let gains = (run.reference.0.as_slice(), run.reference.1.as_slice());
-        let clik = self.second_order(gains, period.as_secs_f64(), Integration::HoldConsistent);
+        let ReferenceGains { proportional, derivative } = &run.reference;
+        let clik = self.second_order((proportional, derivative), period.as_secs_f64(), Integration::HoldConsistent);
         let clik = clik.map_err(|error| format!("the gains of the reference are refused: {error}"))?;
         let mut state = State::at_rest(begins);
         let (mut joints, mut tip, mut postures) = (Vec::new(), Vec::new(), Vec::new());
@@ -329,7 +332,7 @@ fn adaptive<const N: usize, const P: usize>(law: &Law, period: f64) -> Result<Ad
     if let Some(limits) = limits(law)? {
         controller = controller.with_torque_limits(limits);
     }
-    if let Some((lowest, highest)) = &adaptation.bounds {
+    if let Some(EstimateBounds { lowest, highest }) = &adaptation.bounds {
         controller = controller.with_projection(Interval::new(sized(lowest), sized(highest))?);
     }
     Ok(if adaptation.is_on { controller } else { controller.with_frozen([true; P]) })

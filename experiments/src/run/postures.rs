@@ -44,12 +44,12 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
 
     pub(super) fn judge_postures(&self, postures: &Postures, numbers: Vec<Channel>) -> Record {
         let shapes = Shapes {
-            postures: postures.list.iter().map(|(_, q)| self.shape(postures.plane, &Self::joints(q))).collect(),
+            postures: postures.list.iter().map(|posture| self.shape(postures.plane, &Self::joints(&posture.q))).collect(),
             grid: self.grid(postures),
         };
         let value = |channel: &Channel| match channel.quantity {
             Quantity::Posture(quantity, i) => {
-                self.value(postures, &shapes.postures[i], quantity, &Self::joints(&postures.list[i].1))
+                self.value(postures, &shapes.postures[i], quantity, &Self::joints(&postures.list[i].q))
             }
             _ => f64::NAN,
         };

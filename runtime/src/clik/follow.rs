@@ -1,8 +1,8 @@
 //! Running a first-order algorithm: bounded, within joint limits, with a name for what happened.
 
-use super::{Algorithm, ClikError, JointLimits, Outcome};
+use super::{Algorithm, ClikError, JointLimits, Outcome, WithinRange};
 use crate::{
-    linalg::{is_finite, lit},
+    linalg::{is_finite, lit, Limited},
     reference::{OperationalReference, Pose},
     robot::Kinematics,
     settings::{self, Setting, SettingError},
@@ -95,8 +95,8 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         if !is_finite(&rates.dq) {
             return Err(ClikError::RatesNotFinite);
         }
-        let (dq, slowed) = self.limits.slow_down(&rates.dq);
-        let (next, stopped) = self.limits.stop(q, &(q + dq * self.period));
+        let Limited { value: dq, is_limited: slowed } = self.limits.slow_down(&rates.dq);
+        let WithinRange { q: next, stopped } = self.limits.stop(q, &(q + dq * self.period));
         // A joint that is stopped does not move: its rate is what it really did.
         let dq = if stopped.is_some() { (next - q) / self.period } else { dq };
         let outcome = if self.converged(&error) {
@@ -158,7 +158,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
             }
             rested_at = Some(distance);
             let aside = SVector::from_fn(|i, _| lit::<T>(if i % 2 == 0 { 0.01 } else { -0.01 }));
-            q = self.limits.stop(&q, &(q + aside)).0;
+            q = self.limits.stop(&q, &(q + aside)).q;
         }
         let last = ended(q, most_steps, Outcome::OutOfSteps);
         Ok(Reached { outcome: if self.converged(&last.error) { Outcome::Converged } else { last.outcome }, ..last })

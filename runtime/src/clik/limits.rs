@@ -1,5 +1,6 @@
 //! Limits of joint variables and rates.
 
+use crate::linalg::{saturate, Limited};
 use crate::settings::{self, Setting, SettingError};
 use nalgebra::{RealField, SVector};
 
@@ -8,6 +9,15 @@ use nalgebra::{RealField, SVector};
 pub struct JointLimits<T, const N: usize> {
     rate: SVector<T, N>,
     range: Option<(SVector<T, N>, SVector<T, N>)>,
+}
+
+/// Joint variables that do not leave their range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithinRange<T, const N: usize> {
+    /// The joint variables.
+    pub q: SVector<T, N>,
+    /// The first joint that was stopped at a limit, counted from 0.
+    pub stopped: Option<usize>,
 }
 
 impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
@@ -39,8 +49,8 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
         &self.rate
     }
 
-    /// `dq` slowed down, along its direction, until every rate is within its limit; and whether it was.
-    pub fn slow_down(&self, dq: &SVector<T, N>) -> (SVector<T, N>, bool) {
+    /// `dq` slowed down, along its direction, until every rate is within its limit.
+    pub fn slow_down(&self, dq: &SVector<T, N>) -> Limited<T, N> {
         let mut factor = T::one();
         for i in 0..N {
             if dq[i].abs() > self.rate[i] {
@@ -49,28 +59,28 @@ impl<T: RealField + Copy, const N: usize> JointLimits<T, N> {
         }
         if factor < T::one() {
             // The rounding of the product may exceed the limit by one unit: cut it.
-            (crate::linalg::saturate(&(dq * factor), &self.rate).0, true)
+            Limited { is_limited: true, ..saturate(&(dq * factor), &self.rate) }
         } else {
-            (*dq, false)
+            Limited { value: *dq, is_limited: false }
         }
     }
 
-    /// `next` kept within the range, and the first joint that was stopped.
+    /// `next` kept within the range.
     ///
     /// A joint that stands outside already, at `q`, may move inwards or stay.
-    pub fn stop(&self, q: &SVector<T, N>, next: &SVector<T, N>) -> (SVector<T, N>, Option<usize>) {
+    pub fn stop(&self, q: &SVector<T, N>, next: &SVector<T, N>) -> WithinRange<T, N> {
         let Some((lower, upper)) = &self.range else {
-            return (*next, None);
+            return WithinRange { q: *next, stopped: None };
         };
         let mut stopped = None;
-        let kept = SVector::from_fn(|i, _| {
+        let q = SVector::from_fn(|i, _| {
             let x = next[i].max(lower[i].min(q[i])).min(upper[i].max(q[i]));
             if x != next[i] && stopped.is_none() {
                 stopped = Some(i);
             }
             x
         });
-        (kept, stopped)
+        WithinRange { q, stopped }
     }
 
     /// Whether joint `i` stands at or beyond a limit at `q` and the rate `dq` leads further out.

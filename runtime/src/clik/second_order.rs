@@ -11,9 +11,9 @@
 //! A controller that is given (q_d, dq_d, ddq_d) and holds its torque needs the latter: with the former, q_d and ddq_d contradict each
 //! other, and the controller follows the contradiction.
 
-use super::{ClikError, JointLimits, Outcome};
+use super::{ClikError, JointLimits, Outcome, WithinRange};
 use crate::{
-    linalg::{is_finite, lit, Damping, RightInverse},
+    linalg::{is_finite, lit, Damping, Limited, RightInverse},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Kinematics,
     settings::{self, Setting, SettingError},
@@ -151,14 +151,14 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
     fn integrate(&self, state: &State<T, N>, ddq: SVector<T, N>) -> (SVector<T, N>, State<T, N>, bool, Option<usize>) {
         let State { q, dq } = state;
         let h = self.period;
-        let (mut next_dq, slowed) = self.limits.slow_down(&(dq + ddq * h));
+        let Limited { value: mut next_dq, is_limited: slowed } = self.limits.slow_down(&(dq + ddq * h));
         // Only a step that was held back changes the acceleration: (dq + h ddq - dq) / h would not give ddq back to the last bit.
         let ddq = if slowed { (next_dq - dq) / h } else { ddq };
         let way = match self.integration {
             Integration::ExplicitEuler => dq * h,
             Integration::HoldConsistent => dq * h + ddq * (h * h * lit(0.5)),
         };
-        let (next_q, mut stopped) = self.limits.stop(q, &(q + way));
+        let WithinRange { q: next_q, mut stopped } = self.limits.stop(q, &(q + way));
         let mut ddq = ddq;
         for i in 0..N {
             // A joint at its stop has no rate outwards, whether it arrives there or was there already.

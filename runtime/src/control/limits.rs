@@ -1,7 +1,7 @@
 //! Torque limits.
 
 use crate::{
-    linalg::saturate,
+    linalg::{saturate, Limited},
     settings::{positive_or_infinite, Setting, SettingError},
 };
 use nalgebra::{RealField, SVector};
@@ -24,8 +24,8 @@ impl<T: RealField + Copy, const N: usize> TorqueLimits<T, N> {
         Ok(Self { bound })
     }
 
-    /// `tau` within the limits, and whether anything was cut.
-    pub fn apply(&self, tau: &SVector<T, N>) -> (SVector<T, N>, bool) {
+    /// `tau` within the limits.
+    pub fn apply(&self, tau: &SVector<T, N>) -> Limited<T, N> {
         saturate(tau, &self.bound)
     }
 }

@@ -177,7 +177,7 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
             return Err(ControlError::MemoryNotFinite);
         }
         self.integral = match &self.integral_limit {
-            Some(limit) => saturate(&next, limit).0,
+            Some(limit) => saturate(&next, limit).value,
             None => next,
         };
         Ok(())
