@@ -85,6 +85,10 @@ impl Functions for ThroughTraits {
         (self.0.traits)("parameters", &Arguments::default())
     }
 
+    fn nominal_base(&self) -> Vec<f64> {
+        self.0.nominal_base()
+    }
+
     fn has(&self, function: &str) -> bool {
         let (method, robot) = function.strip_suffix("_with").map_or((function, "Nominal"), |method| (method, "WithParameters"));
         signatures::of_robot(self.0.runtime_text, robot).iter().any(|(name, _)| name == method)

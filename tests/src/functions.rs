@@ -37,7 +37,7 @@ pub trait Functions {
         Vec::new()
     }
 
-    /// Whether there is a function: the traits of the runtime do not have all of them, and not every arm has all.
+    /// Whether there is a function: not every arm has all.
     fn has(&self, function: &str) -> bool;
 
     /// The value of a function by its name in the emitted module, row by row; of functions with several results one after the other.

@@ -122,7 +122,7 @@ impl Case<'_> {
         self.check("Y(q, dq, dq, ddq) pi + tau_known", &tau, &robot.call("inverse_dynamics", &a));
     }
 
-    /// The functions beyond the traits that no formula gives: base regressor, operational inertia, derivatives of forward dynamics.
+    /// The functions that no formula gives: base regressor, operational inertia, derivatives of forward dynamics.
     fn judge_beyond(&self, a: &Arguments) {
         let (robot, model, n) = (self.robot, &self.model, self.robot.dof());
         if !robot.has("base_regressor") {

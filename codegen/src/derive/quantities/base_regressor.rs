@@ -25,5 +25,5 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
     recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
-    interface: None,
+    interface: Some("BaseRegressor"),
 };

@@ -80,7 +80,7 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     }),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
-    interface: None,
+    interface: Some("InverseDynamicsDerivatives"),
 };
 
 /// ∂ddq/∂q, ∂ddq/∂dq and B^-1.
@@ -119,7 +119,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     }),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
-    interface: None,
+    interface: Some("ForwardDynamicsDerivatives"),
 };
 
 type Rows = Vec<Vec<ExprId>>;

@@ -42,7 +42,7 @@ pub static MOMENTUM: Quantity = Quantity {
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| momentum(pool, arm)),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
-    interface: None,
+    interface: Some("Momentum"),
 };
 
 /// C(q, dq)' dq.
@@ -66,7 +66,7 @@ pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
-    interface: None,
+    interface: Some("CoriolisTransposeTimes"),
 };
 
 /// Velocities of a link, and the momentum of all that it carries, in its joint frame.

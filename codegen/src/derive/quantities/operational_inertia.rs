@@ -41,7 +41,7 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
         }) },
     missing,
     gathers: &[],
-    interface: None,
+    interface: Some("OperationalInertia"),
 };
 
 /// (J B^-1 J')^-1, all entries, for the rows of the task; only where it [`is_defined`].

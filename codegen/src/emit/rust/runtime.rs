@@ -41,7 +41,7 @@ pub(super) fn implementation(module: &Module) -> TokenStream {
     }
 }
 
-/// The traits that every implementation has; every other is of one function, which not every arm has.
+/// The traits that every implementation has, of what controllers and the plant need; every other is of one function.
 const BASIC: [&str; 3] = ["Kinematics", "Dynamics", "Regressor"];
 
 /// The methods of a trait.
@@ -147,7 +147,7 @@ pub fn single_traits() -> String {
         use nalgebra::{SMatrix, SVector};
         #(#traits)*
     };
-    "//! Traits of one function each, for what not every robot has. Written from the catalogue of emitted functions; a test says when that differs.\n\n"
+    "//! Traits of one function each, for what not every controller needs or not every robot has. Written from the catalogue of emitted functions; a test says when that differs.\n\n"
         .to_string()
         + &super::format(traits)
 }
