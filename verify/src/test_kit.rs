@@ -14,7 +14,6 @@ use armgen_codegen::manipulator::Manipulator;
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::Arithmetic;
 use crate::contract::{Promise, Sizes};
-use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
@@ -119,7 +118,7 @@ impl Kit {
             let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
             for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
                 let Some((promise, with)) = Promise::of(name) else { continue };
-                let entries = entries.iter().map(nearest).collect();
+                let entries = nearest(entries);
                 kit.values.push(Value { name: name.to_string(), promise, with, state: index, entries });
             }
             kit.states.push(arguments);
@@ -185,11 +184,31 @@ pub fn in_language(manipulator: &Manipulator, module: &Module, language: Languag
     Ok(languages::print(&Kit::of(manipulator, module)?, language, name))
 }
 
-/// The nearest float but for the last bit, and 0 without a sign.
-fn nearest(value: &Wide) -> f64 {
-    if value.is_zero() {
-        0.0
-    } else {
-        value.to_f64()
+/// The nearest floats but for the last bit, and 0 without a sign.
+///
+/// The 256 bits round, so that an entry that is 0 identically comes out as some 2^-256 of what it was summed from: what is below 2^-200 of the
+/// largest entry is 0. No test in floats could tell the two apart.
+fn nearest(entries: &[Wide]) -> Vec<f64> {
+    let entries: Vec<f64> = entries.iter().map(|entry| entry.to_f64()).collect();
+    let largest = entries.iter().fold(1.0f64, |largest, x| largest.max(x.abs()));
+    entries.into_iter().map(|x| if x.abs() < largest * ROUNDING { 0.0 } else { x }).collect()
+}
+
+/// 2^-200.
+const ROUNDING: f64 = 1.0 / (1u128 << 100) as f64 / (1u128 << 100) as f64;
+
+#[cfg(test)]
+mod tests {
+    use super::{nearest, Wide};
+    use crate::element::Element;
+
+    #[test]
+    fn what_256_bits_leave_of_a_zero_is_zero() {
+        let of = Wide::from_f64;
+        // 1/3 rounds: thrice it is 1 but for the last bit.
+        let third = of(1.0).times(&of(3.0).inverse().unwrap());
+        let left = third.times(&of(3.0)).minus(&of(1.0));
+        assert!(left.to_f64() != 0.0);
+        assert_eq!(nearest(&[left, of(-2.5), of(1e-50)]), [0.0, -2.5, 1e-50]);
     }
 }
