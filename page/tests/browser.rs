@@ -213,7 +213,7 @@ const OPEN: &str = r#"(async () => {
     const all = [];
     for (const details of document.querySelectorAll("details[data-equation]")) {
         details.open = true;
-        while (!details.querySelector("math")) await new Promise((done) => setTimeout(done, 1));
+        while (!details.querySelector("math") || details.querySelector("[aria-busy=true]")) await new Promise((done) => setTimeout(done, 1));
         all.push([details.dataset.equation, details.querySelectorAll("math *").length]);
         if (details.dataset.equation !== "inertia_matrix") details.open = false;
     }
@@ -379,7 +379,7 @@ fn table_of_budgets() {
     let Some(program) = driver::program() else { return };
     let folder = driver::folder("budgets");
     let mut browser = Browser::start(&program, &folder.join("browser"));
-    println!("| robot | page, kB | drawn after, ms | slider, ms | slowest section of equations, ms |\n|---|---|---|---|---|");
+    println!("| robot | page, kB | drawn after, ms | slider, ms | slowest section of equations, ms | longest standstill, ms |\n|---|---|---|---|---|---|");
     for name in ["scara", "puma560", "ur5", "panda7", "everything"] {
         let source = robot(name);
         let file = written(&folder, &source);
@@ -414,18 +414,27 @@ const SLIDE: &str = r#"(() => {
     return times.sort((a, b) => a - b)[20];
 })()"#;
 
-/// The section of equations that takes longest to open, laid out.
+/// The section of equations that takes longest to open, until its first lines are laid out; and the longest that the page stands still while any
+/// is set, between two frames.
 const SLOWEST: &str = r#"(async () => {
-    let [slowest, name] = [0, ""];
+    let [slowest, name, still, which] = [0, "", 0, ""];
+    const frame = () => new Promise((done) => requestAnimationFrame(done));
     for (const details of document.querySelectorAll("details[data-equation]")) {
-        const begin = performance.now();
+        await frame();
+        let begin = performance.now();
         details.open = true;
         while (!details.querySelector("math")) await new Promise((done) => setTimeout(done, 0));
         details.getBoundingClientRect();
         const time = performance.now() - begin;
         if (time > slowest) [slowest, name] = [time, details.dataset.equation];
+        do {
+            await frame();
+            const gap = performance.now() - begin;
+            if (gap > still) [still, which] = [gap, details.dataset.equation];
+            begin = performance.now();
+        } while (details.querySelector("[aria-busy=true]"));
         details.open = false;
         details.querySelector("div").replaceChildren();
     }
-    return `${Math.round(slowest)} (${name})`;
+    return `${Math.round(slowest)} (${name}) | ${Math.round(still)} (${which})`;
 })()"#;

@@ -8,8 +8,9 @@ import { parse } from "./formula.mjs";
 import { mathml, nameElement } from "./mathml.mjs";
 import { unpack } from "./pack.mjs";
 
-/** Nodes that are set at once. */
+/** Nodes that are set until somebody asks for more, and those of them that are set before the browser lays out what there is. */
 const NODES = 2500;
+const SLICE = 500;
 /** Characters of an entry that stands in a matrix, and of all entries of a row. */
 const ENTRY = 44;
 const LINE = 110;
@@ -182,26 +183,28 @@ function lines(equation, form) {
     return all;
 }
 
-/** Sets lines up to so many nodes, and the others when they are asked for. @param {HTMLElement} host @param {any[]} all @param {any} options */
+/** Sets lines up to so many nodes, a slice a frame, and the others when they are asked for. @param {HTMLElement} host @param {any[]} all @param {any} options */
 function list(host, all, options) {
     let next = 0;
     const table = html("div", { class: "lines scroll", tabindex: 0, role: "region", "aria-label": "Formulas" });
     const more = html("button", { type: "button" });
     host.append(table, more);
-    const some = () => {
-        const until = options.count + NODES;
-        while (next < all.length && options.count < until) {
+    const slice = (until) => {
+        const end = Math.min(until, options.count + SLICE);
+        while (next < all.length && options.count < end) {
             const { name, text, entry } = all[next++];
             const row = math("mrow", {}, name(options), math("mo", {}, "="), mathml(parse(text), options));
             table.append(html("div", { "data-entry": entry || undefined }, math("math", {}, row)));
         }
-        more.hidden = next === all.length;
+        const busy = next < all.length && options.count < until;
+        table.setAttribute("aria-busy", String(busy));
+        more.hidden = busy || next === all.length;
         more.textContent = `show ${Math.min(all.length - next, next)} more of ${all.length - next} lines`;
+        if (busy) requestAnimationFrame(() => setTimeout(() => slice(until)));
     };
     more.addEventListener("click", () => {
         options.count = 0;
-        some();
+        slice(NODES);
     });
-    some();
+    slice(options.count + NODES);
 }
-
