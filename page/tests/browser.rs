@@ -278,10 +278,11 @@ fn a_log_is_played_on_the_arm() {
         .collect();
     let csv = format!("t,q_shoulder,q_elbow,q_quill,q_wrist,e_x,e_y,e_z\n{rows}");
     let log = Log::read(&csv, |name| if name == "t" { "s".into() } else { "m".into() }).expect("a log");
-    let run = Run { name: "small".into(), log: Some(log), ..Run::default() };
+    let run = Run { name: "small".into(), log: Some(log.clone()), ..Run::default() };
+    let large = Run { name: "large".into(), log: Some(log), ..Run::default() };
     let source = robot("scara");
     let file = folder.join("scara.html");
-    let (page, _) = armgen_page::page(&source, std::slice::from_ref(&run)).expect("the joints are those of the arm");
+    let (page, _) = armgen_page::page(&source, &[run.clone(), large]).expect("the joints are those of the arm");
     std::fs::write(&file, page.expect("a page")).expect("written");
     let mut tab = browser.open(&file, 1600, "light");
     let played = tab.run(
@@ -292,6 +293,15 @@ fn a_log_is_played_on_the_arm() {
                  log.querySelectorAll('.uplot').length, time.max]; })()",
     );
     assert_eq!(played, serde_json::json!(["-0.5", 2, 2, "10"]));
+    // The other run lies over it: two curves more in the plot of the joints, and its trail; taken away again, they are gone.
+    let laid = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
+         const seen = () => [log.querySelectorAll('.uplot .u-series').length, document.querySelectorAll('#arm .trail path').length]; \
+         const lay = async (name) => { select.value = name; select.dispatchEvent(new Event('change')); \
+             await new Promise((done) => setTimeout(done, 200)); return seen(); }; \
+         return [seen(), await lay('large'), await lay('')]; })()",
+    );
+    assert_eq!(laid, serde_json::json!([[9, 2], [16, 4], [9, 2]]));
     tab.close(&file);
     let other = robot("ur5");
     let misfit = armgen_page::page(&other, &[run]).expect_err("other joints");

@@ -1,6 +1,7 @@
 /**
  * Logs played on the arm, with their plots: a time line, the trail of the tip, the desired one beside it where the log has errors of the
- * tip, curves over time with a common cursor.
+ * tip, curves over time with a common cursor. Another run can be laid over one: its curves of the same names, at its sample at or before each
+ * time, and its trail.
  */
 
 import { byId, html, svg } from "./dom.mjs";
@@ -48,6 +49,20 @@ export function sampleAt(times, t) {
         else high = middle - 1;
     }
     return low;
+}
+
+/**
+ * Columns of another log at the times of one: the sample at or before each, as values are held; nothing before its first and after its last.
+ * @param {Log} log @param {Log} other @param {string[]} names
+ */
+export function laidOver(log, other, names) {
+    const times = other.columns[0];
+    const end = Number(times[times.length - 1]);
+    const at = log.columns[0].map((t) => (Number(t) < Number(times[0]) || Number(t) > end ? null : sampleAt(times, Number(t))));
+    return names.map((name) => {
+        const column = other.columns[other.names.indexOf(name)];
+        return at.map((k) => (k === null || !column ? null : column[k]));
+    });
 }
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
@@ -122,6 +137,22 @@ export function logs(data, state, picture) {
         show(time.valueAsNumber, false);
     });
 
+    const texts = new Map();
+    /** The log of a run, unpacked once. @param {string} name @returns {Promise<Log>} */
+    const load = (name) => {
+        if (!texts.has(name)) texts.set(name, unpack(data.runs[name].log).then((text) => JSON.parse(text)));
+        return texts.get(name);
+    };
+    const placesOf = (log) => data.rows.map((row) => log.names.indexOf(`q_${row.name}`)).filter((place) => place >= 0);
+    /** Draws the plots of a run, with another one laid over them. @param {any} run @param {string} other */
+    const draw = async (run, other) => {
+        const over = other === "" ? null : { name: other, log: await load(other) };
+        for (const chart of run.charts) chart.destroy();
+        run.trails = trails(run.log, run.places);
+        if (over) run.trails.push(...trails(over.log, placesOf(over.log)).map(({ path, kind }) => ({ path, kind: `${kind} other` })));
+        run.charts = plots(run.log).map((plot) => chart(run.host, run.log, plot, run.name, run.follow, over));
+        choose(run);
+    };
     const open = async (details) => {
         const name = details.getAttribute("data-log") ?? "";
         if (opened.has(name)) {
@@ -135,18 +166,21 @@ export function logs(data, state, picture) {
             details.querySelector(".figures")?.append(html("figure", { class: "drawn-figure" }, html("img", { src: source, alt: title, loading: "lazy" }), html("figcaption", {}, title)));
         }
         if (packed === null) return;
-        const log = JSON.parse(await unpack(packed));
-        const places = data.rows.map((row) => log.names.indexOf(`q_${row.name}`)).filter((place) => place >= 0);
-        const run = { name, log, places, trails: trails(log, places), charts: [] };
-        opened.set(name, run);
-        const host = details.querySelector(".plots");
+        const log = await load(name);
         // The cursor of one plot is that of all, and the arm follows it.
         const follow = (chart) => {
             const { left, idx } = chart.cursor;
             if (active === run && idx !== null && idx !== undefined && left >= 0 && !moving) show(Number(log.columns[0][idx]), true);
         };
-        for (const plot of plots(log)) run.charts.push(chart(host, log, plot, name, follow));
-        choose(run);
+        const run = { name, log, places: placesOf(log), trails: [], charts: [], host: details.querySelector(".plots"), follow };
+        opened.set(name, run);
+        const others = Object.keys(data.runs).filter((other) => other !== name && data.runs[other].log !== null);
+        if (others.length > 0) {
+            const select = html("select", {}, html("option", { value: "" }, "nothing"), ...others.map((other) => html("option", { value: other }, other)));
+            select.addEventListener("change", () => draw(run, select.value));
+            run.host.before(html("p", { class: "controls" }, html("label", { class: "lay-over" }, "laid over it: ", select)));
+        }
+        await draw(run, "");
     };
     for (const details of runs) details.addEventListener("toggle", () => details.open && open(details));
     state.on("theme", () => {
@@ -188,19 +222,33 @@ function isDark() {
     return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-/** @param {any} host @param {Log} log @param {any} plot @param {string} name @param {(chart: any) => void} follow */
-function chart(host, log, plot, name, follow) {
+/**
+ * @param {any} host @param {Log} log @param {any} plot @param {string} name @param {(chart: any) => void} follow
+ * @param {{name: string, log: Log} | null} over
+ */
+function chart(host, log, plot, name, follow, over) {
     const ink = () => (isDark() ? "#a9b5c1" : "#525d69");
     const grid = () => (isDark() ? "#2b343d" : "#dfe4e9");
     const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "11px sans-serif", labelFont: "12px sans-serif", labelSize: 18, size: 46 });
-    const series = plot.columns.map((column, k) => ({
-        label: log.names[column],
+    const curve = (label, k, dash, weight) => ({
+        label,
         stroke: () => (isDark() ? DARK : COLOURS)[k % COLOURS.length],
-        dash: k >= COLOURS.length ? [6, 3] : undefined,
-        width: 1.5,
+        dash,
+        width: weight,
         points: { show: false },
-        value: (_, x) => (x === null ? "–" : short(Number(x.toPrecision(5)))),
-    }));
+        value: (_, x) => (x === null || x === undefined ? "–" : short(Number(x.toPrecision(5)))),
+    });
+    const series = plot.columns.map((column, k) => curve(log.names[column], k, k >= COLOURS.length ? [6, 3] : undefined, 1.5));
+    const values = plot.columns.map((column) => log.columns[column]);
+    if (over) {
+        // The same colours, dotted: a curve and its like are seen as a pair.
+        const names = plot.columns.map((column) => log.names[column]);
+        laidOver(log, over.log, names).forEach((column, k) => {
+            if (column.every((x) => x === null)) return;
+            series.push(curve(`${names[k]}, ${over.name}`, k, [2, 3], 2));
+            values.push(column);
+        });
+    }
     const options = {
         title: plot.title,
         width: width(host),
@@ -211,5 +259,5 @@ function chart(host, log, plot, name, follow) {
         axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
         hooks: { setCursor: [follow] },
     };
-    return new uPlot(options, [log.columns[0], ...plot.columns.map((column) => log.columns[column])], host);
+    return new uPlot(options, [log.columns[0], ...values], host);
 }

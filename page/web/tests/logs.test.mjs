@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { plots, sampleAt } from "../logs.mjs";
+import { laidOver, plots, sampleAt } from "../logs.mjs";
 import { sequence } from "../workspace.mjs";
 
 test("columns of one kind and unit share a plot", () => {
@@ -27,4 +27,10 @@ test("the sequence fills every box of a grid", () => {
     const points = sequence(2, 400);
     const boxes = new Set(points.map(([x, y]) => Math.floor(x * 10) * 10 + Math.floor(y * 10)));
     assert.equal(boxes.size, 100);
+});
+
+test("another log is held from sample to sample, and nothing beyond its ends", () => {
+    const log = { names: ["t", "q_a"], units: ["s", "rad"], columns: [[0, 1, 2, 3, 4], [0, 0, 0, 0, 0]] };
+    const other = { names: ["t", "q_b", "q_a"], units: ["s", "rad", "rad"], columns: [[1, 2.5, 3], [7, 7, 7], [10, 20, 30]] };
+    assert.deepEqual(laidOver(log, other, ["q_a", "q_c"]), [[null, 10, 10, 30, null], [null, null, null, null, null]]);
 });
