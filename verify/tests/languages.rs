@@ -7,8 +7,14 @@
 mod common;
 #[path = "languages/mutation.rs"]
 mod mutation;
+#[path = "languages/page.rs"]
+mod page;
+#[path = "languages/programs.rs"]
+mod programs;
 #[path = "languages/run.rs"]
 mod run;
+#[path = "languages/tools.rs"]
+mod tools;
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
@@ -113,31 +119,31 @@ fn all_languages_have_the_bits_of_rust() {
 
 #[test]
 fn callers_of_the_page_print_what_it_says() {
-    run::check_page();
+    page::check_page();
 }
 
 #[test]
 fn a_package_is_called_as_its_help_says() {
-    run::check_package();
+    page::check_package();
 }
 
 #[test]
 fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
     for language in others() {
-        run::check_tests("scara", Scalar::F64, language);
+        page::check_tests("scara", Scalar::F64, language);
     }
-    run::check_tests("scara4", Scalar::F32, Language::C);
-    run::check_tests("scara4", Scalar::F32, Language::Python);
+    page::check_tests("scara4", Scalar::F32, Language::C);
+    page::check_tests("scara4", Scalar::F32, Language::Python);
 }
 
 #[test]
 fn declarations_are_those_that_tsc_takes() {
-    run::check_declarations();
+    page::check_declarations();
 }
 
 #[test]
 fn fast_math_is_refused() {
-    run::check_fast_math();
+    page::check_fast_math();
 }
 
 #[test]

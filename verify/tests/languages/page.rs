@@ -1,0 +1,258 @@
+//! What stands on the page of languages, carried out; the package, the tests, the declarations that are written beside a module.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use armgen_codegen::emit::Language;
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::program::Trig;
+use armgen_codegen::Generated;
+use armgen_verify::reader::ModuleText;
+
+use crate::common;
+use crate::tools::{numpy, succeed, there, write, write_package};
+
+/// The block of a kind of the page of languages, the first behind a heading.
+fn block(heading: &str, kind: &str) -> String {
+    let page = include_str!("../../../docs/languages.md");
+    let section = page.split(&format!("\n## {heading}\n")).nth(1).expect("a section");
+    let block = section.split(&format!("```{kind}\n")).nth(1).expect("a block");
+    block.split("```").next().expect("its end").into()
+}
+
+/// A folder with the module of the SCARA in a language.
+fn folder_of(name: &str) -> (PathBuf, Generated) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    (folder, crate::generated(&common::source("scara"), Scalar::F64, Trig::Fast))
+}
+
+#[track_caller]
+fn prints(command: &mut Command, expected: &str) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && out == expected, "{command:?}: {}\n{out}{err}", output.status);
+}
+
+/// The callers of the page print what stands below them.
+pub(crate) fn check_page() {
+    let (folder, generated) = folder_of("languages_page");
+    if there("gcc", "gcc") {
+        write(folder.join("scara.h"), generated.in_language(Language::C));
+        write(folder.join("caller.c"), block("C", "c"));
+        succeed(Command::new("gcc").current_dir(&folder).args(["-O2", "caller.c", "-lm", "-o", "caller"]));
+        prints(&mut Command::new(folder.join("caller")), &block("C", "text"));
+    }
+    if there("node", "nodejs") {
+        write(folder.join("scara.mjs"), generated.in_language(Language::JavaScript));
+        write(folder.join("caller.mjs"), block("JavaScript", "js"));
+        prints(Command::new("node").current_dir(&folder).arg("caller.mjs"), &block("JavaScript", "text"));
+    }
+    if let Some(python) = numpy() {
+        write(folder.join("scara.py"), generated.in_language(Language::Python));
+        write(folder.join("caller.py"), block("Python", "python"));
+        prints(Command::new(python).current_dir(&folder).arg("caller.py"), &block("Python", "text"));
+        if there("cc", "gcc") {
+            let native = generated.native();
+            write(folder.join("scara_native.c"), native.c);
+            write(folder.join("scara_native.py"), native.python);
+            write(folder.join("compiled.py"), block("Python, compiled", "python"));
+            let mut command = Command::new(python);
+            command.current_dir(&folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("compiled.py");
+            prints(&mut command, &block("Python, compiled", "text"));
+        }
+    }
+    if there("octave-cli", "octave") {
+        write_package(&folder.join("+scara"), &generated);
+        write(folder.join("caller.m"), block("MATLAB and Octave", "matlab"));
+        prints(
+            Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "caller.m"]),
+            &block("MATLAB and Octave", "text"),
+        );
+    }
+}
+
+/// What the callers of a package are told: of a row where a column is wanted, of other numbers, by `help`.
+pub(crate) fn check_package() {
+    let (folder, generated) = folder_of("languages_package");
+    if !there("octave-cli", "octave") {
+        return;
+    }
+    write_package(&folder.join("+scara"), &generated);
+    // One file alone, with another name, as in a block of Simulink.
+    let gravity = generated.package().into_iter().find(|file| file.name == "inverseDynamics.m").expect("a function");
+    write(folder.join("block.m"), gravity.text.replace("= inverseDynamics(", "= block("));
+    write(
+        folder.join("main.m"),
+        "function main()
+    told(@() scara.gravity([0.1, 0.2, 0.3, 0.4]), 'armgen:size', 'q is 1 x 4 where 4 x 1 is wanted');
+    told(@() scara.coriolisMatrix(zeros(4, 3), zeros(4, 2)), 'armgen:size', 'dq is 4 x 2 where 4 x 1 is wanted');
+    told(@() scara.gravity(single([0.1; 0.2; 0.3; 0.4])), 'armgen:type', 'double precision');
+    told(@() scara.gravity(1i * [0.1; 0.2; 0.3; 0.4]), 'armgen:type', 'real numbers');
+    q = reshape(linspace(-3, 3, 20), 4, 5);
+    all = scara.inertiaMatrix(q);
+    assert(isequal(size(all), [4, 4, 5]));
+    for k = 1:5
+        assert(isequal(all(:, :, k), scara.inertiaMatrix(q(:, k))));
+    end
+    assert(isequal(size(scara.linkFrames(q)), [4, 4, 4, 5]));
+    [inertia, coriolis, gravity] = scara.equationsOfMotion(q, [1; 2; 3; 4]);
+    assert(isequal(inertia, all) && isequal(size(coriolis), [4, 4, 5]) && isequal(gravity, scara.gravity(q)));
+    assert(isequal(size(scara.potentialEnergy(q)), [1, 5]));
+    model = scara.model();
+    assert(model.dof == 4 && strcmp(model.name, 'scara') && numel(model.jointNames) == 4);
+    assert(isequal(scara.gravityWith(model.nominalParameters, q), scara.gravity(q)) || ...
+        max(max(abs(scara.gravityWith(model.nominalParameters, q) - scara.gravity(q)))) < 1e-9);
+    assert(isequal(size(scara.gravity(zeros(4, 0))), [4, 0]));
+    assert(isequal(block(q, q, q), scara.inverseDynamics(q, q, q)));
+    assert(~isempty(strfind(evalc('help scara.inertiaMatrix'), 'inertiaMatrix(q)')));
+end
+
+function told(call, identifier, words)
+    try
+        call();
+    catch fault
+        assert(strcmp(fault.identifier, identifier) && ~isempty(strfind(fault.message, words)), fault.message);
+        return;
+    end
+    error('nothing was said: %s', words);
+end
+",
+    );
+    succeed(Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "--eval", "main"]));
+}
+
+/// The test file of a language passes beside the module, and fails beside one whose gravity is another.
+pub(crate) fn check_tests(name: &str, scalar: Scalar, language: Language) {
+    let python = if language == Language::Python { numpy() } else { Some("") };
+    let there = match language {
+        Language::C => there("gcc", "gcc"),
+        Language::JavaScript => there("node", "nodejs"),
+        Language::Python => python.is_some(),
+        Language::Matlab => there("octave-cli", "octave"),
+        Language::Rust => false,
+    };
+    if !there {
+        return;
+    }
+    let (folder, _) = folder_of(&format!("languages_tests_{name}_{scalar:?}_{language:?}"));
+    let source = common::source(name);
+    let generated = crate::generated(&source, scalar, Trig::Fast);
+    let text = generated.in_language(language);
+    let called = match language {
+        Language::C => "robot.h",
+        Language::JavaScript => "robot.mjs",
+        _ => "robot",
+    };
+    let tests = armgen_verify::test_kit_in(&source, ModuleText { language, text: &text }, called).expect("a test file");
+    let run = |spoilt: bool| {
+        // The torque that holds a part of the arm.
+        let change = |text: &str| if spoilt { text.replace("98.1", "98.3").replace("9.81", "9.83") } else { text.to_string() };
+        let mut command = match language {
+            Language::C => {
+                write(folder.join("robot.h"), change(&text));
+                write(folder.join("robot_test.c"), &tests);
+                let strict = ["-std=c99", "-O1", "-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"];
+                let mut gcc = Command::new("gcc");
+                succeed(gcc.current_dir(&folder).args(strict).args(["robot_test.c", "-lm", "-o", "robot_test"]));
+                Command::new(folder.join("robot_test"))
+            }
+            Language::JavaScript => {
+                write(folder.join("robot.mjs"), change(&text));
+                write(folder.join("robot.test.mjs"), &tests);
+                let mut node = Command::new("node");
+                node.args(["--test", "robot.test.mjs"]);
+                node
+            }
+            Language::Python => {
+                write(folder.join("robot.py"), change(&text));
+                write(folder.join("test_robot.py"), &tests);
+                let mut command = Command::new(python.unwrap_or_default());
+                command.args(["-B", "test_robot.py"]);
+                command
+            }
+            Language::Matlab => {
+                std::fs::create_dir_all(folder.join("+robot")).expect("a folder");
+                generated.package().into_iter().for_each(|file| write(folder.join("+robot").join(file.name), change(&file.text)));
+                write(folder.join("robotTest.m"), &tests);
+                let mut octave = Command::new("octave-cli");
+                octave.args(["--no-init-file", "--eval", "robotTest"]);
+                octave
+            }
+            Language::Rust => unreachable!("it has a test of its own"),
+        };
+        let output = command.current_dir(&folder).output().expect("it runs");
+        let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+        assert_eq!(output.status.success(), !spoilt, "{name} {scalar:?} {language:?}, spoilt: {spoilt}\n{said}");
+    };
+    assert!(text.contains("98.1") || text.contains("9.81"), "something to spoil");
+    run(false);
+    run(true);
+}
+
+/// The declarations of JavaScript by the compiler of TypeScript: a caller that is right, and ones that are not.
+pub(crate) fn check_declarations() {
+    let (folder, generated) = folder_of("languages_tsc");
+    if !there("tsc", "node-typescript") {
+        return;
+    }
+    write(folder.join("scara.mjs"), generated.in_language(Language::JavaScript));
+    write(folder.join("scara.d.mts"), generated.declarations());
+    let compile = |caller: &str| {
+        let text = format!(
+            "import * as scara from \"./scara.mjs\";\nconst b = scara.inertiaMatrix([1, 2, 3, 4]);\n{caller}\nexport {{}};\n"
+        );
+        write(folder.join("caller.mts"), text);
+        let options = [
+            "--strict",
+            "--noEmit",
+            "--module",
+            "nodenext",
+            "--moduleResolution",
+            "nodenext",
+            "--target",
+            "es2022",
+            "caller.mts",
+        ];
+        let output = Command::new("tsc").current_dir(&folder).args(options).output().expect("it runs");
+        (output.status.success(), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    let right = "const tau: number = scara.inverseDynamics(new Float64Array(4), [0, 0, 0, 0], [0, 0, 0, 0])[3];\n\
+                 const name: string = scara.JOINT_NAMES[0];\nconsole.log(b[3][3] + tau, scara.equationsOfMotion([1, 2, 3, 4], [0, 0, 0, 0]).inertia[0][0], name);";
+    let (passed, said) = compile(right);
+    assert!(passed, "{said}");
+    for wrong in [
+        "b[9];",
+        "b[0][4];",
+        "scara.gravity(\"q\" as string & number[]).foo;",
+        "scara.nothing();",
+        "scara.gravity(1);",
+        "scara.DOF = 5;",
+    ] {
+        let (passed, _) = compile(wrong);
+        assert!(!passed, "{wrong} is taken");
+    }
+}
+
+/// What reorders sums is refused by the header itself, and without `math.h` it needs no header.
+pub(crate) fn check_fast_math() {
+    let (folder, generated) = folder_of("languages_fast_math");
+    write(folder.join("scara.h"), generated.in_language(Language::C));
+    write(folder.join("twice.c"), "#include \"scara.h\"\n#include \"scara.h\"\n");
+    for compiler in ["gcc", "clang"] {
+        if !there(compiler, compiler) {
+            continue;
+        }
+        let compile = |flags: &[&str]| {
+            let mut command = Command::new(compiler);
+            command.current_dir(&folder).args(["-O2", "-Wall", "-Werror", "-c", "-o", "twice.o", "twice.c"]).args(flags);
+            command
+        };
+        let output = compile(&["-ffast-math"]).output().expect("it is there");
+        let told = String::from_utf8_lossy(&output.stderr).contains("compile without");
+        assert!(!output.status.success() && told, "{compiler} -ffast-math");
+        succeed(&mut compile(&[]));
+        succeed(&mut compile(&["-DSCARA_NO_MATH_H", "-nostdinc", "-ffreestanding"]));
+    }
+}

@@ -1,0 +1,44 @@
+//! Compilers and interpreters: whether they are there, and running them.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use armgen_codegen::Generated;
+
+/// Runs a command; what went wrong if it failed or warned.
+#[track_caller]
+pub(crate) fn succeed(command: &mut Command) {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && !err.contains("warning"), "{command:?}: {}\n{out}{err}", output.status);
+}
+
+/// Whether a program is there; a line says which package brings it if not.
+pub(crate) fn there(program: &str, package: &str) -> bool {
+    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        println!("skipped: no `{program}` here (Debian: {package})");
+    }
+    found
+}
+
+pub(crate) fn write(path: PathBuf, text: impl AsRef<[u8]>) {
+    std::fs::write(&path, text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+}
+
+/// A Python that has NumPy.
+pub(crate) fn numpy() -> Option<&'static str> {
+    let has =
+        |python: &&str| Command::new(python).args(["-c", "import numpy"]).output().is_ok_and(|output| output.status.success());
+    let found = ["python3", "/usr/bin/python3"].into_iter().find(has);
+    if found.is_none() {
+        println!("skipped: no Python with NumPy here (Debian: python3-numpy)");
+    }
+    found
+}
+
+/// Writes the files of the package.
+pub(crate) fn write_package(folder: &Path, generated: &Generated) {
+    std::fs::create_dir_all(folder).expect("a folder");
+    generated.package().into_iter().for_each(|file| write(folder.join(file.name), file.text));
+}
