@@ -51,15 +51,15 @@ const CODEGEN: Layers = &[
 const RUNTIME: Layers = &[
     ("linalg", &[]),
     ("message", &[]),
-    ("parameters", &[]),
+    ("settings", &[]),
     ("robot", &[]),
     ("orientation", &["linalg"]),
     ("reference", &["linalg", "robot"]),
     ("task", &["orientation", "reference"]),
     ("manipulability", &["linalg", "robot", "task"]),
     ("trajectory", &["linalg", "orientation", "reference"]),
-    ("clik", &["linalg", "manipulability", "parameters", "reference", "robot", "task"]),
-    ("control", &["linalg", "parameters", "reference", "robot", "task"]),
+    ("clik", &["linalg", "manipulability", "settings", "reference", "robot", "task"]),
+    ("control", &["linalg", "settings", "reference", "robot", "task"]),
     ("simulation", &["linalg", "reference", "robot"]),
     ("stability", &["control", "linalg", "reference", "robot", "simulation"]),
 ];
