@@ -239,7 +239,6 @@ const VERIFY: Layers = &[
             "arithmetic",
             "constants",
             "contract",
-            "element",
             "enclosure",
             "equations",
             "float",
