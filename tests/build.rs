@@ -55,6 +55,8 @@ fn main() {
             }
         }
     }
+    // An arm without mass, for `tests/kinematics_alone.rs`.
+    Robot::new("data/kinematics_alone.yaml").generate();
     // With functions for many states, for `tests/batches.rs`.
     let mut batches = String::new();
     for (robot, module, trig, scalar, lanes) in BATCHES {

@@ -222,6 +222,8 @@ codes! {
         DegreesSuspected Warning "degrees-suspected",
         /// A decimal that is nearly a multiple of pi/12.
         RoundedAngle Warning "rounded-angle",
+        /// Nothing in the arm has mass or inertia.
+        NoDynamics Warning "no-dynamics",
         /// A length that no arm has.
         ImplausibleReach Warning "implausible-reach",
         /// Masses that do not fit the size of the arm.

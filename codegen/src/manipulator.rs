@@ -192,6 +192,16 @@ pub enum RegressorChoice {
 }
 
 impl Manipulator {
+    /// Whether nothing that moves has mass or inertia, whatever the parameters: there are no equations of motion.
+    pub fn is_massless(&self) -> bool {
+        let bodies = self.joints.iter().flat_map(|joint| &joint.link).chain(&self.payload);
+        let motors = self.joints.iter().filter_map(|joint| joint.motor.as_ref());
+        let of_bodies = bodies.flat_map(|body| body.given.inertia.iter().chain([&body.given.mass]));
+        let of_motors = motors.flat_map(|motor| motor.inertia.iter().chain([&motor.mass]));
+        let of_joints = self.joints.iter().filter_map(|joint| joint.armature.as_ref());
+        of_bodies.chain(of_motors).chain(of_joints).all(Polynomial::is_zero)
+    }
+
     /// Whether joints have springs.
     pub fn has_springs(&self) -> bool {
         self.joints.iter().any(|joint| joint.spring.is_some())

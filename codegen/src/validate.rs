@@ -40,7 +40,7 @@ use crate::description::{Convention, JointDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Polynomial;
 use crate::kinds::{Scalar, MAX_JOINTS};
-use crate::manipulator::{Joint, LinkId, Manipulator, Pose};
+use crate::manipulator::{Joint, LinkId, Manipulator, Pose, RegressorChoice};
 use crate::source::{Source, Span};
 pub use allow::warning;
 pub use bodies::impossible_inertia;
@@ -125,7 +125,7 @@ fn validate(
     frames::lay(&mut joints, &tool, convention == Some(Convention::Urdf), &symbols);
     let tip = LinkId(u32::try_from(joints.len() - 1).expect("the number of joints is bounded"));
     let places = places::gather(description, context.evaluator.parameters.places_of_symbols());
-    let manipulator = Manipulator {
+    let mut manipulator = Manipulator {
         name: description.name.as_ref()?.value.clone(),
         parameters: symbols,
         gravity: gravity?,
@@ -139,6 +139,10 @@ fn validate(
         task,
         regressor: regressor?,
     };
+    if manipulator.is_massless() {
+        // There are no torques that a regressor could be of.
+        manipulator.regressor = RegressorChoice::Names(Vec::new());
+    }
     equations::check(&manipulator, &places, context.diagnostics);
     Some((manipulator, places))
 }

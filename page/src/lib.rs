@@ -105,7 +105,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     Ok((Some(page), diagnostics))
 }
 
-/// Leaves the functions that a page computes with; those that are too long for it are named with their operations.
+/// Keeps only the functions that a page computes with; those that are too long for it are named with their operations.
 fn keep_what_is_used(module: &mut Module) -> Vec<(String, usize)> {
     let mut left_out = Vec::new();
     module.functions.retain(|function| {

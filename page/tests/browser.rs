@@ -308,6 +308,23 @@ fn a_log_is_played_on_the_arm() {
     assert!(misfit.reason.contains("shoulder, elbow") && misfit.reason.contains("the arm's are joint1"), "{misfit:?}");
 }
 
+/// An arm without mass has its frames, its Jacobian and nothing of the dynamics.
+#[test]
+fn an_arm_without_mass_has_its_kinematics() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("massless");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let row = |name: &str| format!("  - {{name: {name}, type: revolute, a: 0.4, alpha: 0, d: 0, theta: 0, link: {{mass: 0}}}}\n");
+    let text = format!("name: light\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{}{}", row("one"), row("two"));
+    let file = written(&folder, &Source::new("light.yaml", text));
+    let mut tab = browser.open(&file, 1600, "light");
+    let count = |quantity: &str| format!("document.querySelectorAll('[data-quantity={quantity}]').length");
+    let shown =
+        tab.run(&format!("[{}, {}, {}]", count("direct_kinematics"), count("geometric_jacobian"), count("inertia_matrix")));
+    assert_eq!(shown, serde_json::json!([16, 12, 0]));
+    tab.close(&file);
+}
+
 /// Texts of files that would be markup are texts, and nothing of them runs, with the policy removed as well.
 #[test]
 fn hostile_texts_are_inert() {

@@ -57,14 +57,14 @@ function quantities(data, state) {
     });
     list.push(scalar("w", "w", "Manipulability of the task, sqrt(det(J J'))", "", () => manipulability(task())));
     list.push(scalar("condition", "σ₁/σₘ", "Condition number of the Jacobian of the task", "", () => condition(task())));
-    list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m², kg m, kg", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
+    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m², kg m, kg", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
         list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
         list.push(scalar("skew_symmetry", "N", "Largest entry of the symmetric part of dB/dt − 2C, dB/dt by differences", "", () => skewSymmetry(state)));
     }
-    list.push(vector("gravity", "g", "Gravity term", "N m, N", n, () => robot.gravity(state.q), joints));
+    if (has("gravity")) list.push(vector("gravity", "g", "Gravity term", "N m, N", n, () => robot.gravity(state.q), joints));
     if (has("friction")) list.push(vector("friction", "F", "Friction", "N m, N", n, () => robot.friction(state.dq), joints));
-    list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B ddq + C dq + F + g", "N m, N", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
+    if (has("inverse_dynamics")) list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B ddq + C dq + F + g", "N m, N", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
     if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));
     return list;

@@ -327,7 +327,8 @@ impl Checker {
             module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
         // An optional one is missing where the arm has it.
         let of_arm = |name: &str| !self.points.is_empty() && self.points.iter().all(|point| point.knows(name));
-        let required = Promise::required().into_iter().filter(|_| Check::Required.is_made());
+        let needed = |name: &String| !self.manipulator.is_massless() || of_arm(name);
+        let required = Promise::required().into_iter().filter(|name| needed(name) && Check::Required.is_made());
         for name in required.chain(Promise::optional().filter(|name| of_arm(name) && Check::Optional.is_made())) {
             if !module.functions.iter().any(|(other, _)| *other == name) {
                 reports.push(refused(&name, "the module does not have it".into()));
@@ -498,8 +499,9 @@ fn growth(manipulator: &Manipulator, vector: &Vector) -> Result<BTreeMap<String,
     let most = |entries: Vec<Growth>| entries.into_iter().fold(Growths.integer(0), Growth::most);
     let mut growth: BTreeMap<String, Growth> =
         reference.values.into_iter().map(|(name, entries)| (name, most(entries))).collect();
-    let torques = growth["inverse_dynamics"];
-    growth.insert(BASE_REGRESSOR.into(), torques);
+    if let Some(&torques) = growth.get("inverse_dynamics") {
+        growth.insert(BASE_REGRESSOR.into(), torques);
+    }
     Ok(growth)
 }
 

@@ -335,6 +335,12 @@ impl<E: Element> Reference<E> {
         let n = arm.dof();
         let mut values = Values::new();
         kinematics(&arm, &state, &mut values);
+        if manipulator.is_massless() {
+            // Accelerations are not defined: no equations but those of kinematics.
+            let none = || Pivots::of(Vec::new());
+            let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, n), none()));
+            return Ok(Reference { state, values, elsewhere: None, nominal_base: None, two_derivations_agree: true, pivots });
+        }
         let singular = || "the inertia matrix is singular at a random state".to_string();
         let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
         let task = manipulator.task_rows();

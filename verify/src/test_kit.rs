@@ -103,7 +103,8 @@ impl Kit {
     fn of(manipulator: &Manipulator, module: &Module) -> Result<Kit, String> {
         let missing = Promise::required().into_iter().find(|name| module.program(name).is_none());
         if let Some(name) = missing {
-            return Err(format!("a test file is for all functions, and the module has no `{name}`"));
+            let why = if manipulator.is_massless() { ": nothing in the arm has mass or inertia" } else { "" };
+            return Err(format!("a test file is for all functions, and the module has no `{name}`{why}"));
         }
         let vector = Vector::of(manipulator, &crate::constants::parameter_names(module))?;
         let sizes = module.sizes();

@@ -143,3 +143,26 @@ fn an_arm_with_nested_roots_is_verified() {
     let report = certify(&source, &common::generate(&source, Scalar::F64));
     assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
 }
+
+/// An arm without mass has no equations of motion: its module is verified without them, and a function that it cannot have is refused.
+#[test]
+fn kinematics_alone_are_verified() {
+    let text = include_str!("../../tests/data/kinematics_alone.yaml");
+    let source = Source::new("kinematics_alone.yaml", text);
+    for scalar in [Scalar::F64, Scalar::F32] {
+        let generated = common::generate(&source, scalar);
+        let report = certify(&source, &generated);
+        assert!(report.passed(), "{}", report.first_fault().unwrap_or_default());
+        assert_eq!(report.functions.len(), 5);
+        let added = generated.module.replacen(
+            "/// End-effector frame",
+            "/// Torque.\n#[allow(dead_code, clippy::all)]\npub fn gravity(q: &[Real; DOF]) -> [Real; DOF] {\n    let _ = q;\n    [0.0, 0.0, 0.0]\n}\n\n/// End-effector frame",
+            1,
+        );
+        assert_ne!(added, generated.module);
+        let fault = verify(&source, &added, None).first_fault().expect("a fault");
+        assert!(fault.contains("there is no equation to compare it with for this robot"), "{fault}");
+        let without = generated.module.replacen("pub fn link_jacobians(", "pub fn link_frames(", 1);
+        assert!(!verify(&source, &without, None).passed());
+    }
+}

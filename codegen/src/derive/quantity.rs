@@ -324,6 +324,10 @@ impl Quantity {
     /// Every arm has it.
     pub const NEVER_MISSING: fn(&Model, bool) -> Option<String> = |_, _| None;
 
+    /// Of quantities of the dynamics.
+    pub const MISSING_WITHOUT_MASS: fn(&Model, bool) -> Option<String> =
+        |model, _| model.manipulator.is_massless().then(|| "nothing in the arm has mass or inertia".into());
+
     /// The name of the function, or of its form with parameters at run time.
     pub fn function_name(&self, with_parameters: bool) -> String {
         format!("{}{}", self.name, if with_parameters { "_with" } else { "" })

@@ -62,12 +62,13 @@ fn absent(module: &Module) -> String {
 
 /// The implementation of the runtime's traits for the module, as text for a file beside it.
 pub fn print_runtime(module: &Module, origin: &Origin) -> String {
-    let missing = runtime::missing(module);
-    if missing.is_empty() {
-        return head(origin, &[]) + &format(runtime::implementation(module));
-    }
-    head(origin, &[])
-        + &format!("// The traits of the runtime are not implemented: the module was generated without {}.\n", missing.join(", "))
+    let lacking = runtime::lacking(module);
+    let line = |(interface, functions): &(&str, Vec<String>)| {
+        format!("// `{interface}` is not implemented: the module has no {}.\n", functions.join(", "))
+    };
+    let notes: String = lacking.iter().map(line).collect();
+    let notes = if notes.is_empty() { notes } else { notes + "\n" };
+    head(origin, &[]) + &notes + &runtime::implementation(module).map_or_else(String::new, format)
 }
 
 /// The comment that says where a file came from, and notes below it.

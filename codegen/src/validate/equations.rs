@@ -46,6 +46,11 @@ pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mu
             found.push(immovable_task(manipulator, places));
         }
     }
+    if manipulator.is_massless() {
+        found.push(Some(no_dynamics(places)));
+        found.into_iter().flatten().for_each(|diagnostic| diagnostics.push(diagnostic));
+        return;
+    }
     let b = inertia::inertia_matrix(&mut pool, &arm, &mut Plan::default());
     let values = b.iter().map(|row| row.iter().map(|&e| pool.fingerprint(e)[0]).collect()).collect();
     found.extend(zero_pivots(&field, values).into_iter().map(|joint| singular_inertia(manipulator, places, joint)));
@@ -171,6 +176,13 @@ fn immovable_task(manipulator: &Manipulator, places: &Places) -> Option<Diagnost
     let message = format!("no joint moves any row of the task ({})", rows.join(", "));
     let help = "name rows that the arm can move: x y z are along, rx ry rz about the axes of the base frame";
     Some(Diagnostic::new(Code::ImmovableTask, span, message, "zero for every q", help))
+}
+
+/// Nothing in the arm has mass or inertia.
+fn no_dynamics(places: &Places) -> Diagnostic {
+    let message = "nothing in this arm has mass or inertia: its module holds the kinematics alone";
+    let help = "give the links `mass`, `com` and `inertia` for the dynamics; `allow: [no-dynamics]` where kinematics are all that is wanted";
+    Diagnostic::new(Code::NoDynamics, places.name, message, "has no dynamics", help)
 }
 
 /// B(q) is singular for every q, because `joint` (by index) accelerates nothing beyond what the joints before it do.

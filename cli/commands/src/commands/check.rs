@@ -120,6 +120,7 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     let regressor = match &manipulator.regressor {
         RegressorChoice::Standard => "standard",
         RegressorChoice::Base => "base",
+        RegressorChoice::Names(_) if manipulator.is_massless() => "none: the arm has no dynamics",
         RegressorChoice::Names(_) => "names of the file",
     };
     row("regressor", regressor.into());

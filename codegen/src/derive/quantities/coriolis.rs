@@ -55,7 +55,7 @@ pub static CORIOLIS_MATRIX: Quantity = Quantity {
         "`c[row][column]`, on the left of the equation of motion: C dq is part of the torque.",
     ),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| coriolis_matrix(pool, arm, plan).concat()),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

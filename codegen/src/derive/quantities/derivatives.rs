@@ -78,7 +78,7 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         let (by_q, by_dq) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
         [by_q, by_dq].concat().concat()
     }),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("InverseDynamicsDerivatives"),
 };
@@ -117,7 +117,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         let (by_q, by_dq, inverse) = forward_dynamics_derivatives(pool, arm, plan);
         [by_q, by_dq, inverse].concat().concat()
     }),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("ForwardDynamicsDerivatives"),
 };

@@ -45,7 +45,7 @@ pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
         let g = gravity(pool, arm, plan);
         [b.concat(), c.concat(), g].concat()
     }),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[&INERTIA_MATRIX, &CORIOLIS_MATRIX, &GRAVITY],
     interface: Some("Dynamics"),
 };

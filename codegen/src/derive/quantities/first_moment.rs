@@ -34,7 +34,7 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
         )
     },
     recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

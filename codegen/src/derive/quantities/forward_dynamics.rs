@@ -31,7 +31,7 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
         )
     },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan)),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

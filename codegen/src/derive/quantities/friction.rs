@@ -28,7 +28,7 @@ pub static FRICTION: Quantity = Quantity {
         let rates = arm.symbols(pool, Symbol::Rate);
         newton_euler::friction(pool, arm, &rates)
     }),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

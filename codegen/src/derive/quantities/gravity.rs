@@ -33,7 +33,7 @@ pub static GRAVITY: Quantity = Quantity {
         )
     },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| gravity(pool, arm, plan)),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

@@ -35,7 +35,7 @@ pub static INERTIA_MATRIX: Quantity = Quantity {
          prismatic one, kg between prismatic ones. J_Pi and J_Oi are the Jacobians of the centre of mass of link i, I_i is about it.",
     ) },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| inertia_matrix(pool, arm, plan).concat()),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

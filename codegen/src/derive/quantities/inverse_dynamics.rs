@@ -26,7 +26,7 @@ pub static INVERSE_DYNAMICS: Quantity = Quantity {
         let motion = Motion::plain(pool, arm);
         inverse_dynamics(pool, arm, &motion)
     }),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

@@ -24,7 +24,7 @@ pub static KINETIC_ENERGY: Quantity = Quantity {
         "an energy, J.",
     ),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| vec![kinetic_energy(pool, arm)]),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
 };

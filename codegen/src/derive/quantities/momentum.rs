@@ -40,7 +40,7 @@ pub static MOMENTUM: Quantity = Quantity {
         "a momentum, N m s (revolute) or N s (prismatic), for each joint.",
     ),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| momentum(pool, arm)),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Momentum"),
 };
@@ -64,7 +64,7 @@ pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
         "a torque, N m (revolute), or a force, N (prismatic), for each joint, on the right of the equation of dp/dt.",
     ),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("CoriolisTransposeTimes"),
 };

@@ -54,7 +54,10 @@ pub fn operational_inertia(pool: &mut Pool, arm: &Arm, plan: &mut Plan, task: &[
 }
 
 /// Why an arm has none.
-fn missing(model: &Model, _: bool) -> Option<String> {
+fn missing(model: &Model, with_parameters: bool) -> Option<String> {
+    if let Some(reason) = Quantity::MISSING_WITHOUT_MASS(model, with_parameters) {
+        return Some(reason);
+    }
     let task = model.manipulator.task_rows();
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);

@@ -26,7 +26,7 @@ pub static REGRESSOR: Quantity = Quantity {
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
     ),
     recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Regressor"),
 };
@@ -56,7 +56,7 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
             inverse_dynamics(pool, arm, &motion)
         })
     },
-    missing: Quantity::NEVER_MISSING,
+    missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Regressor"),
 };

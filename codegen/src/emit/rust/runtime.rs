@@ -11,16 +11,33 @@ use crate::program::Module;
 
 /// Two robots over the functions of the module, in scope by `use super::*` or by standing beside it: `Nominal`, the robot of the description,
 /// and `WithParameters`, the same robot with parameters chosen at run time.
-pub(super) fn implementation(module: &Module) -> TokenStream {
+///
+/// None of a module without kinematics, which all other traits build on; of one without dynamics there is the kinematics of `Nominal` alone.
+pub(super) fn implementation(module: &Module) -> Option<TokenStream> {
+    if !is_implemented(module, "Kinematics") {
+        return None;
+    }
     let doc = format!(" The robot `{}` as described.", module.name);
     let nominal = traits(module, &quote!(Nominal), false);
-    let with_parameters = traits(module, &quote!(WithParameters), true);
-    quote! {
+    let (chosen, with_parameters) = if is_implemented(module, "Dynamics") {
+        (with_parameters_type(), traits(module, &quote!(WithParameters), true))
+    } else {
+        (quote!(), quote!())
+    };
+    Some(quote! {
         #[doc = #doc]
         #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Nominal;
 
+        #chosen
+        #nominal
+        #with_parameters
+    })
+}
+
+fn with_parameters_type() -> TokenStream {
+    quote! {
         /// The same robot with other parameters, in the order of `PARAMETER_NAMES`.
         #[allow(dead_code)]
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +52,10 @@ pub(super) fn implementation(module: &Module) -> TokenStream {
                 WithParameters { parameters: NOMINAL_PARAMETERS }
             }
         }
-
-        #nominal
-        #with_parameters
     }
 }
 
-/// The traits that every implementation has, of what controllers and the plant need; every other is of one function.
+/// The traits of what controllers and the plant need, each building on those before it; every other is of one function.
 const BASIC: [&str; 3] = ["Kinematics", "Dynamics", "Regressor"];
 
 /// The methods of a trait.
@@ -58,16 +72,54 @@ fn has(module: &Module, quantity: &Quantity, with_parameters: bool) -> bool {
     module.functions.iter().any(|f| (f.quantity, f.with_parameters) == (quantity, with_parameters))
 }
 
-/// Functions that every implementation calls and the module does not have.
-pub(super) fn missing(module: &Module) -> Vec<String> {
-    let basic = |quantity: &Quantity| quantity.interface.is_some_and(|name| BASIC.contains(&name));
-    let needed = catalogue::functions().filter(|(quantity, with)| basic(quantity) && !has(module, quantity, *with));
-    needed.map(|(quantity, with)| quantity.function_name(with)).collect()
+/// Basic traits that have functions which the module does not have, and these.
+pub(super) fn lacking(module: &Module) -> Vec<(&'static str, Vec<String>)> {
+    let absent = |interface: &str| -> Vec<String> {
+        let of_interface = catalogue::functions().filter(|(quantity, _)| quantity.interface == Some(interface));
+        let absent = of_interface.filter(|(quantity, with)| !has(module, quantity, *with));
+        absent.map(|(quantity, with)| quantity.function_name(with)).collect()
+    };
+    BASIC.into_iter().map(|interface| (interface, absent(interface))).filter(|(_, absent)| !absent.is_empty()).collect()
+}
+
+/// Whether a basic trait and those that it builds on are implemented.
+fn is_implemented(module: &Module, interface: &str) -> bool {
+    let lacking = lacking(module);
+    let needed = BASIC.into_iter().take_while(|name| *name != interface).chain([interface]);
+    needed.into_iter().all(|name| lacking.iter().all(|(other, _)| *other != name))
 }
 
 fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenStream {
-    let of = |interface: &str| methods(interface).map(|q| method(q, with_parameters)).collect::<Vec<_>>();
-    let (kinematics, dynamics, regressor) = (of("Kinematics"), of("Dynamics"), of("Regressor"));
+    let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
+    let basic = BASIC.into_iter().filter(|interface| is_implemented(module, interface)).map(|interface| {
+        let methods = methods(interface).map(|quantity| method(quantity, with_parameters));
+        let (lengths, first, last) = match interface {
+            "Kinematics" => (
+                quote!(DOF),
+                quote!(
+                    type Real = Real;
+                ),
+                quote!(),
+            ),
+            "Dynamics" => (quote!(DOF), quote!(), quote!()),
+            _ => {
+                let parameters = quote! {
+                    fn parameters(&self) -> armgen_runtime::nalgebra::SVector<Real, PARAMETERS> {
+                        armgen_runtime::nalgebra::SVector::from(#parameters)
+                    }
+                };
+                (quote!(DOF, PARAMETERS), quote!(), parameters)
+            }
+        };
+        let interface = format_ident!("{interface}");
+        quote! {
+            impl armgen_runtime::robot::#interface<#lengths> for #robot {
+                #first
+                #(#methods)*
+                #last
+            }
+        }
+    });
     let single = single().filter(|(quantity, _)| has(module, quantity, with_parameters && quantity.has_parameters));
     let single = single.map(|(quantity, interface)| {
         let (interface, method) = (format_ident!("{interface}"), method(quantity, with_parameters));
@@ -78,23 +130,8 @@ fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenS
             }
         }
     });
-    let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     quote! {
-        impl armgen_runtime::robot::Kinematics<DOF> for #robot {
-            type Real = Real;
-            #(#kinematics)*
-        }
-
-        impl armgen_runtime::robot::Dynamics<DOF> for #robot {
-            #(#dynamics)*
-        }
-
-        impl armgen_runtime::robot::Regressor<DOF, PARAMETERS> for #robot {
-            #(#regressor)*
-            fn parameters(&self) -> armgen_runtime::nalgebra::SVector<Real, PARAMETERS> {
-                armgen_runtime::nalgebra::SVector::from(#parameters)
-            }
-        }
+        #(#basic)*
 
         #(#single)*
     }

@@ -17,8 +17,11 @@ use crate::table::{Align, Table};
 /// A line of this length or less.
 const WIDTH: usize = 100;
 
-/// The report for the regressor that the description chooses, and for `base_regressor`, which every module has.
+/// The report for the regressor that the description chooses, and for `base_regressor`, which the module of every arm with dynamics has.
 pub(super) fn report(model: &Model) -> String {
+    if model.manipulator.is_massless() {
+        return "  Nothing in the arm has mass or inertia: its module holds frames, Jacobians and their rates.\n".into();
+    }
     of_regressor(model) + &of_base_regressor(model)
 }
 
