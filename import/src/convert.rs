@@ -12,8 +12,8 @@ mod lines;
 mod write;
 
 use armgen_codegen::description::{
-    BodyDescription, Convention, JointDescription, PoseDescription, PoseElement, RegressorDescription, RobotDescription,
-    RotationDescription, Value, INERTIA_ELEMENTS,
+    BodyDescription, Convention, FrictionDescription, JointDescription, PoseDescription, PoseElement, RegressorDescription,
+    RobotDescription, RotationDescription, SpringDescription, Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
 use armgen_codegen::document::Expression;
@@ -187,7 +187,7 @@ impl Converter<'_> {
         let names: Vec<&str> = self.arm.joints.iter().map(|joint| joint.name.as_str()).collect();
         let normals = lines::normals(&joints, &self.nominal(&self.arm.tool.frame))?;
         for (k, normal) in normals.iter().enumerate() {
-            let turned = normal.twist.0.to_f64().hypot(0.0).abs();
+            let turned = normal.twist.0.to_f64().abs();
             if turned > 0.0 && turned < 1e-3 && normal.twist.0.sign() != std::cmp::Ordering::Equal {
                 let axis = |k: usize| match (k, names.get(k.wrapping_sub(1))) {
                     (0, _) => "the z axis of the base".to_owned(),
@@ -257,13 +257,23 @@ impl Converter<'_> {
         text.push("    link:".into());
         self.link(joint, k, row, text);
         self.motor(joint, k, before, text);
-        let friction = [("viscous", &joint.friction.viscous), ("coulomb", &joint.friction.coulomb)];
-        let given: Vec<String> =
-            friction.iter().filter_map(|(name, value)| Some(format!("{name}: {}", self.text(value.as_ref()?)))).collect();
-        if !given.is_empty() {
-            text.push(format!("    friction: {{{}}}", given.join(", ")));
+        let FrictionDescription { viscous, coulomb, offset, cubic } = &joint.friction;
+        let friction = [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic)];
+        self.mapping("friction", &friction, text);
+        if let Some(SpringDescription { stiffness, rest, .. }) = &joint.spring {
+            // The joint variable is the same in rows of every convention.
+            self.mapping("spring", &[("stiffness", stiffness), ("rest", rest)], text);
         }
         text.extend(joint.armature.as_ref().map(|armature| format!("    armature: {}", self.text(armature))));
+    }
+
+    /// A key of a joint with the numbers that the file gives under it, if there are any.
+    fn mapping(&self, key: &str, numbers: &[(&str, &Value)], text: &mut Vec<String>) {
+        let given: Vec<String> =
+            numbers.iter().filter_map(|(name, value)| Some(format!("{name}: {}", self.text(value.as_ref()?)))).collect();
+        if !given.is_empty() {
+            text.push(format!("    {key}: {{{}}}", given.join(", ")));
+        }
     }
 
     /// The bodies of a link, in its new frame.

@@ -7,7 +7,7 @@ use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::source::Source;
 use armgen_codegen::{schedule, Model};
 use armgen_import::{convert, Converted};
-use common::{arms, assert_same, assert_same_rotors, valid};
+use common::{arms, assert_same, assert_same_joints, valid};
 
 #[track_caller]
 fn converted(yaml: &str, to: Convention) -> Converted {
@@ -23,7 +23,7 @@ fn every_arm_in_every_convention() {
         for to in [Standard, Modified, Urdf] {
             let once = converted(&yaml, to);
             assert_same(&format!("{name} {to:?}"), &arm, &valid(&once.yaml));
-            assert_same_rotors(&format!("{name} {to:?}"), &arm, &valid(&once.yaml));
+            assert_same_joints(&format!("{name} {to:?}"), &arm, &valid(&once.yaml));
             if name.contains("robots/") && !name.contains("general") {
                 for back in [Standard, Modified, Urdf] {
                     let twice = converted(&once.yaml, back);

@@ -33,6 +33,8 @@ joints:
   - name: slide
     type: prismatic
     axis: [0.6, 0, 0.8]
+    friction: {coulomb: 2, offset: -1/4, cubic: 1e-3}
+    spring: {stiffness: 40, rest: -0.1}
     link: {mass: 0, attached: [{mass: 2, inertia: {xx: 1, yy: 1, zz: 1}}]}
 tool: [{xyz: [0, 0, 0.1]}, {rpy: [0, 1, 0]}]
 ";
@@ -76,7 +78,7 @@ fn matrix(arm: &Manipulator, frame: &Placement) -> Matrix {
     })
 }
 
-/// The end effector's frame, of each rotor its first moment and axis, and of each link mass, first and second moments in the base frame, where q is 0.3, -0.7, 1.1, ...
+/// The end effector's frame, of each rotor its first moment and axis, of each joint its friction, armature and spring, and of each link mass, first and second moments in the base frame, where q is 0.3, -0.7, 1.1, ...
 pub(crate) fn state(arm: &Manipulator) -> [Vec<f64>; 2] {
     let mut frame: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     let (mut values, mut rotors) = (Vec::new(), Vec::new());
@@ -90,6 +92,9 @@ pub(crate) fn state(arm: &Manipulator) -> [Vec<f64>; 2] {
             rotors.extend((0..3).map(|i| mass * (frame[i][3] + turned(&p, i))));
             rotors.extend((0..3).map(|i| turned(&u, i)));
         }
+        let passive = [&joint.viscous, &joint.coulomb, &joint.offset, &joint.cubic, &joint.armature];
+        rotors.extend(passive.map(|value| value.as_ref().map_or(0.0, number)));
+        rotors.extend(joint.spring.iter().flat_map(|spring| [number(&spring.stiffness), number(&spring.rest)]));
         let q = [0.3, -0.7, 1.1, 0.4][k % 4];
         let u = joint.row.axis.each_ref().map(|x| x.to_f64());
         let (s, c) = if joint.kind == JointKind::Revolute { f64::sin_cos(q) } else { (0.0, 1.0) };
@@ -147,10 +152,10 @@ pub(crate) fn assert_same(name: &str, before: &Manipulator, after: &Manipulator)
     assert_near(name, &state(before)[0], &state(after)[0]);
 }
 
-/// Demands that the rotors of two arms are the same in floats.
+/// Demands that the rotors, the friction and the springs of two arms are the same in floats.
 #[allow(dead_code, reason = "a URDF has none")]
 #[track_caller]
-pub(crate) fn assert_same_rotors(name: &str, before: &Manipulator, after: &Manipulator) {
+pub(crate) fn assert_same_joints(name: &str, before: &Manipulator, after: &Manipulator) {
     assert_near(name, &state(before)[1], &state(after)[1]);
 }
 
