@@ -1,4 +1,4 @@
-//! Many experiments at once: all sampled loops are linearised first, then everything moves, on all processors.
+//! Many experiments at once: all sampled loops are analysed first, each linearised and followed once along its motion without noise, then everything moves, on all processors.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
@@ -39,7 +39,7 @@ impl<'a> Job<'a> {
         &self.record
     }
 
-    /// Analyses the stability of the sampled loop; nothing is simulated yet.
+    /// Analyses the stability of the sampled loop, at rest and along its motion without noise; nothing is recorded yet.
     pub fn prepare(&mut self) {
         self.prepared = Some(self.arm.prepare(self.experiment));
     }

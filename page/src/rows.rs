@@ -1,7 +1,9 @@
 //! The rows of a description: each value as it is written, its number, its place.
 
 use armgen_codegen::derive::parameters::nominal;
-use armgen_codegen::description::{Convention, JointDescription, PoseDescription, RobotDescription};
+use armgen_codegen::description::{
+    Convention, JointDescription, PoseDescription, PoseElement, RobotDescription, RotationDescription,
+};
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::Polynomial;
 use armgen_codegen::kinds::JointKind;
@@ -120,10 +122,21 @@ fn row(
     }
 }
 
-/// A pose as it is written, on one line.
+/// A pose as it is written, on one line: translations, and rotations with the key that they are written under.
 fn pose_text(source: &Source, pose: Option<&PoseDescription>) -> String {
-    let xyz = pose.into_iter().flat_map(|pose| &pose.elements).filter_map(|element| element.xyz.as_ref());
-    xyz.map(|xyz| source.slice(xyz.span).to_string()).collect::<Vec<_>>().join(" ")
+    let rotation = |rotation: &RotationDescription| match rotation {
+        RotationDescription::Rpy(rpy) => format!("rpy {}", source.slice(rpy.span)),
+        RotationDescription::Quat(quat) => format!("quat {}", source.slice(quat.span)),
+        RotationDescription::AxisAngle(axis, angle) => {
+            format!("axis {} angle {}", source.slice(axis.span), source.slice(angle.span))
+        }
+        RotationDescription::XyAxes(axes) => format!("xyaxes {}", source.slice(axes.span)),
+    };
+    let element = |element: &PoseElement| {
+        let xyz = element.xyz.as_ref().map(|xyz| source.slice(xyz.span).to_string());
+        xyz.into_iter().chain(element.rotation.as_ref().map(rotation)).collect::<Vec<_>>()
+    };
+    pose.into_iter().flat_map(|pose| &pose.elements).flat_map(element).collect::<Vec<_>>().join(", ")
 }
 
 /// A placement with the numbers of the description.

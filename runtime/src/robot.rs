@@ -72,7 +72,8 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     /// Gravity term g(q) = dU/dq, on the left of the equation of motion.
     fn gravity(&self, q: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
-    /// Friction torque at the joints, viscous and Coulomb, on the left of the equation of motion: of the sign of `dq`.
+    /// Friction torque at the joints on the left of the equation of motion: viscous and Coulomb friction, which have the sign of `dq`, and what
+    /// the description has besides.
     fn friction(&self, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
     /// B, C and g at one state, sharing their work.

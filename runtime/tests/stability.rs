@@ -241,7 +241,7 @@ fn deviations_in_motion_grow_by_the_eigenvalues() {
     assert!(!rehearsal.of(&Mass, &controller, &joints).unwrap().diverges());
     assert!(late.of(&Mass, &InverseDynamics::new([1e5], [400.0]).unwrap(), &joints).unwrap().diverges());
     let nothing = Rehearsal { joints: &[], ..rehearsal.clone() };
-    assert_eq!(nothing.of(&Mass, &controller, &[]), Err(StabilityError::NoPosture));
+    assert_eq!(nothing.of(&Mass, &controller, &[]), Err(StabilityError::NoSample));
     let never = Rehearsal { period: 0.0, ..rehearsal };
     assert_eq!(never.of(&Mass, &controller, &joints), Err(StabilityError::Period));
 }

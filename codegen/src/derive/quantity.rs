@@ -158,6 +158,10 @@ pub struct Documentation {
     pub failure: [&'static str; 2],
     /// Whether it depends on the acceleration of free fall directly, so that this is said.
     pub names_gravity: bool,
+    /// What springs add, said of arms that have them.
+    pub springs: Option<&'static str>,
+    /// What friction that is neither viscous nor Coulomb's adds, said of arms that have it.
+    pub more_friction: Option<&'static str>,
 }
 
 /// The derivation of a quantity by recursion over the links.
@@ -197,7 +201,19 @@ impl Documentation {
             result_with: None,
             failure: [Documentation::CANNOT_FAIL; 2],
             names_gravity: false,
+            springs: None,
+            more_friction: None,
         }
+    }
+
+    /// The same with what springs add.
+    pub const fn with_springs(self, springs: &'static str) -> Documentation {
+        Documentation { springs: Some(springs), ..self }
+    }
+
+    /// The same with what more friction adds.
+    pub const fn with_more_friction(self, more_friction: &'static str) -> Documentation {
+        Documentation { more_friction: Some(more_friction), ..self }
     }
 }
 

@@ -64,7 +64,7 @@ pub(super) fn linked(text: &str, write: &dyn Fn(Link<'_>) -> String) -> String {
 pub(super) fn of_quantity(quantity: &Quantity) -> Vec<Block> {
     let Documentation { title, formula, result, .. } = quantity.documentation;
     let items = quantity.arguments.iter().map(argument).chain([format!("Returns {result}")]);
-    vec![Block::text(title), Block::Verbatim(vec![formula.into()]), Block::List(items.collect())]
+    vec![Block::text(title), Block::Formula(formula), Block::List(items.collect())]
 }
 
 fn argument(argument: &Argument) -> String {
@@ -109,7 +109,8 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
 
 impl Described<'_> {
     pub(super) fn blocks(&self, allocates: bool) -> Vec<Block> {
-        let Documentation { title, formula, result, result_with, failure, names_gravity } = self.quantity.documentation;
+        let Documentation { title, formula, result, result_with, failure, names_gravity, springs, more_friction } =
+            self.quantity.documentation;
         let (result, failure) = match self.with_parameters {
             false => (result, failure[0]),
             true => (result_with.unwrap_or(result), failure[1]),
@@ -119,7 +120,8 @@ impl Described<'_> {
             let [x, y, z] = self.gravity.each_ref().map(Number::to_f64);
             blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
         }
-        blocks.extend(self.of_joints().map(Block::text));
+        let of_joints = springs.filter(|_| self.has_springs).into_iter().chain(more_friction.filter(|_| self.has_more_friction));
+        blocks.extend(of_joints.map(Block::text));
         if self.with_parameters {
             blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
         }
@@ -136,19 +138,6 @@ impl Described<'_> {
         let (first, rest) = failure.split_at(1);
         blocks.push(Block::text(format!("Cost: {}. Derived by {}. {}{rest}.", self.cost, self.method, first.to_uppercase())));
         blocks
-    }
-
-    /// What springs and friction beyond the textbook's add to a function, where the arm has them.
-    fn of_joints(&self) -> Option<&'static str> {
-        match self.quantity.name {
-            "gravity" | "equations_of_motion" if self.has_springs => {
-                Some("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
-            }
-            "potential_energy" if self.has_springs => Some("A spring of a joint adds 1/2 k_s (q_i - rest)²."),
-            "friction" if self.has_more_friction => Some("Where the description has them, F_0 + F_3 dq_i³ are added."),
-            "regressor" if self.has_more_friction => Some("In F cubic friction is F_3 dq² dqr."),
-            _ => None,
-        }
     }
 }
 

@@ -93,7 +93,7 @@ pub trait OperationalInertia<const N: usize, const M: usize>: Kinematics<N> {
     /// Inertia of the end effector along and about the rows of the task, in the base frame.
     ///
     /// ```text
-    /// B_A(q) = (J B(q)^-1 J')^-1, J the rows {TASK} of the geometric Jacobian (Siciliano et al., Sect. 7.8)
+    /// B_A(q) = (J B(q)^-1 J')^-1, J the rows `TASK` of the geometric Jacobian (Siciliano et al., Sect. 7.8)
     /// ```
     ///
     /// - `q`: joint variables, rad (revolute) or m (prismatic).

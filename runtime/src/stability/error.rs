@@ -20,6 +20,13 @@ pub enum StabilityError {
     Period,
     /// There is no posture.
     NoPosture,
+    /// The controller's law is singular at this sample of a motion (counted from 0).
+    SingularAtSample {
+        /// Index of the sample.
+        sample: usize,
+    },
+    /// The motion has no sample.
+    NoSample,
 }
 
 messages! { StabilityError,
@@ -28,4 +35,6 @@ messages! { StabilityError,
     StabilityError::Eigenvalues => "the eigenvalues were not found: gains or model are beyond the range of the scalar";
     StabilityError::Period => "the sampling period is not positive and finite";
     StabilityError::NoPosture => "there is no posture";
+    StabilityError::SingularAtSample { sample } => "the controller's law is singular at sample {} (from 0) of the motion", sample;
+    StabilityError::NoSample => "the motion has no sample";
 }

@@ -240,7 +240,7 @@ where
         if !(self.period > T::zero() && self.period.is_finite()) {
             return Err(StabilityError::Period);
         }
-        let first = references.first().and(self.joints.first()).ok_or(StabilityError::NoPosture)?;
+        let first = references.first().and(self.joints.first()).ok_or(StabilityError::NoSample)?;
         let law = |controller: &C, k: usize, measured: &State<T, N>, memory: &[T]| {
             let mut controller = controller.with_memory(memory);
             let torque = controller.torque(model, references.get(k)?, measured).ok()?;
@@ -313,7 +313,7 @@ where
         for k in 0..samples {
             let after = period * lit((k + 1) as f64);
             for (deviation, logarithm) in deviations.iter_mut().zip(&mut logarithms) {
-                self.carry(k, deviation, law).ok_or(StabilityError::Singular { posture: k })?;
+                self.carry(k, deviation, law).ok_or(StabilityError::SingularAtSample { sample: k })?;
                 let size = self.size(deviation);
                 *logarithm += size.max(lit(TINY)).ln();
                 if !size.is_finite() || *logarithm > largest {

@@ -39,7 +39,8 @@ pub static EQUATIONS_OF_MOTION: Quantity = Quantity {
         "B(q), C(q, dq) and g(q) at one state, sharing their work.",
         "B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                        (Siciliano et al., eq. 7.42)",
         "the three terms as the functions of their own return them.",
-    ),
+    )
+    .with_springs("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U."),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let (b, c) = inertia_and_coriolis(pool, arm, plan);
         let g = gravity(pool, arm, plan);

@@ -32,6 +32,7 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
             "U(q) = - sum_i m_i g0' p_li                                       (Siciliano et al., eq. 7.36)",
             "an energy, J.",
         )
+        .with_springs("A spring of a joint adds 1/2 k_s (q_i - rest)².")
     },
     recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
     missing: Quantity::MISSING_WITHOUT_MASS,

@@ -23,6 +23,9 @@ pub static FRICTION: Quantity = Quantity {
         "Friction torque F(dq) on the left of the equation of motion: it has the sign of dq.",
         "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
+    )
+    .with_more_friction(
+        "Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.",
     ),
     recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {
         let rates = arm.symbols(pool, Symbol::Rate);

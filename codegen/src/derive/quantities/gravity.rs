@@ -31,6 +31,7 @@ pub static GRAVITY: Quantity = Quantity {
             "g(q) = dU/dq                                                      (Siciliano et al., eq. 7.39)",
             "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
         )
+        .with_springs("A spring of a joint adds k_s (q_i - rest) to g_i, and 1/2 k_s (q_i - rest)² to U.")
     },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| gravity(pool, arm, plan)),
     missing: Quantity::MISSING_WITHOUT_MASS,

@@ -24,7 +24,8 @@ pub static REGRESSOR: Quantity = Quantity {
         "B(q) ddqr + C(q, dq) dqr + F + g(q) = Y pi + tau_known             (Siciliano et al., Sects. 7.2.2 and 8.5.4)",
         "`y[joint][parameter]`, parameters in the order of {PARAMETER_NAMES}. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
-    ),
+    )
+    .with_more_friction("In F cubic friction is F_3 dq² dqr."),
     recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
