@@ -214,6 +214,8 @@ codes! {
         // Warnings.
         /// Principal moments that no body has.
         TriangleInequality Warning "triangle-inequality",
+        /// A tensor that no body has, taken as written since the file allows it.
+        InertiaAsWritten Warning "inertia-as-written",
         /// A parameter that nothing uses.
         UnusedParameter Warning "unused-parameter",
         /// A centre of mass, or the place of a rotor, where there is no mass.

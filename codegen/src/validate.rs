@@ -78,6 +78,8 @@ struct Context<'d> {
     diagnostics: &'d mut Diagnostics,
     /// Inertias of which only one moment is given, collected for a single warning.
     planar: Vec<(Span, String)>,
+    /// Whether tensors that no body has are taken as written.
+    inertia_as_written: bool,
 }
 
 impl Context<'_> {
@@ -103,7 +105,9 @@ fn validate(
         return None;
     }
     let parameters = Parameters::resolve(description, scalar, diagnostics);
-    let mut context = Context { source, evaluator: Evaluator::new(parameters, scalar), diagnostics, planar: Vec::new() };
+    let evaluator = Evaluator::new(parameters, scalar);
+    let inertia_as_written = allow::takes_inertia_as_written(&description.allow);
+    let mut context = Context { source, evaluator, diagnostics, planar: Vec::new(), inertia_as_written };
     let convention = description.convention.as_ref().map(|c| c.value);
     let gravity = description.gravity.as_ref().and_then(|g| context.polynomials(&g.value));
     let joints = joints(description, &mut context);

@@ -40,11 +40,22 @@ impl Values<'_> {
         if readable {
             let [xx, yy, zz, xy, xz, yz] = elements.each_ref().map(Decimal::exact);
             if let Some(reason) = impossible_inertia(&[xx, xy, yy, xz, yz, zz]) {
+                if self.inertia_as_written {
+                    self.impossible.push(called.to_owned());
+                    let message = format!("the inertia of {called} is impossible, and taken as written: {reason}");
+                    let help = "B(q) may not be positive definite: no controller and no simulation is to be trusted with it";
+                    self.report(Code::InertiaAsWritten, tensor, message, "", help);
+                    return self.written_body(mass, com, turn, elements);
+                }
                 let message = format!("the inertia of {called} is impossible: {reason}");
-                let help = "an inertia tensor about the centre of mass has no negative principal moment; ixy is the element -∫xy dm of the tensor, so check signs";
+                let help = "an inertia tensor about the centre of mass has no negative principal moment; ixy is the element -∫xy dm of the tensor, so check signs; `--inertia-as-written` takes it all the same";
                 self.report(Code::ImpossibleInertia, tensor, message, "", help);
             }
         }
+        self.written_body(mass, com, turn, elements)
+    }
+
+    fn written_body(&mut self, mass: Decimal, com: [Written; 3], turn: Turn, elements: &[Decimal; 6]) -> Body {
         let largest = elements[..3].iter().map(|x| x.value.abs()).fold(0.0, f64::max);
         let mut k = 0;
         let inertia = elements.each_ref().map(|element| {

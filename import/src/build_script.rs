@@ -73,6 +73,13 @@ impl Robot {
         self
     }
 
+    /// Tensors that no body has are taken as written, with a warning.
+    #[must_use]
+    pub fn inertia_as_written(mut self) -> Robot {
+        self.options.inertia_as_written = true;
+        self
+    }
+
     /// Imports the file and gives what generates its module: the description is written into `OUT_DIR` under the name of the file. Ends the
     /// build with the reason if that cannot be.
     pub fn imported(&self) -> build_script::Robot {

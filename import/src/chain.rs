@@ -76,6 +76,8 @@ pub(crate) struct Arm {
     pub(crate) locked: Vec<Lock>,
     /// Links that were given no mass distribution and are taken to have mass 0.
     pub(crate) massless: Vec<String>,
+    /// What has a tensor that no body has, taken as written.
+    pub(crate) impossible: Vec<String>,
     /// Joints of the base that do not move anything of the chain.
     pub(crate) left_out_branches: usize,
     /// Notes for the user.
@@ -86,7 +88,7 @@ pub(crate) struct Arm {
 struct Builder<'r> {
     tree: &'r Tree,
     format: &'r dyn Format,
-    locks: locks::Locks<'r>,
+    locks: locks::Locks,
     values: Values<'r>,
     /// Which joints lie on the chain.
     on_path: BTreeSet<usize>,
@@ -137,7 +139,8 @@ pub(crate) fn arm(
         return None;
     }
     format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, diagnostics);
-    let values = Values { source, diagnostics, snap: Snap::new(options.snap) };
+    let (snap, inertia_as_written) = (Snap::new(options.snap), options.inertia_as_written);
+    let values = Values { source, diagnostics, snap, inertia_as_written, impossible: Vec::new() };
     let on_path = path.iter().copied().collect();
     let mut builder =
         Builder { tree, format, locks, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
@@ -154,7 +157,7 @@ pub(crate) fn arm(
     let left_out_branches = on_base.flat_map(|link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint));
     let left_out_branches = left_out_branches.filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame).count();
     builder.values.warn_of_near_angles();
-    let Builder { values, locked, massless, .. } = builder;
+    let Builder { values: Values { snap, impossible, .. }, locked, massless, .. } = builder;
     let robot_name = options.name.clone().unwrap_or_else(|| identifier(&tree.name, &mut BTreeSet::new(), is_rust_name));
     Some(Arm {
         name: robot_name,
@@ -167,9 +170,10 @@ pub(crate) fn arm(
         gravity_offset: gravity.offset,
         rows,
         tool,
-        snap: values.snap,
+        snap,
         locked,
         massless,
+        impossible,
         left_out_branches,
         notes,
     })

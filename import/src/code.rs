@@ -72,6 +72,8 @@ codes! {
 
         /// A tensor element that the file does not give.
         MissingElementOfInertia Warning "incomplete-inertia",
+        /// A tensor that no body has, taken as written.
+        InertiaAsWritten Warning "inertia-as-written",
         /// A limit of 0, which is taken as unknown.
         ZeroLimit Warning "zero-limit",
         /// A decimal that is nearly a multiple of pi/12, and taken as written.

@@ -17,6 +17,8 @@ pub struct Options {
     pub snap: f64,
     /// Links without a mass distribution have mass 0.
     pub massless: bool,
+    /// Tensors that no body has are taken as written, with a warning, and the description allows them.
+    pub inertia_as_written: bool,
     /// What the rows of the description are; those of a file are `Urdf`, others are computed from them.
     pub convention: Convention,
 }
@@ -37,6 +39,7 @@ impl Default for Options {
             name: None,
             snap: Options::SNAP,
             massless: false,
+            inertia_as_written: false,
             convention: Convention::Urdf,
         }
     }

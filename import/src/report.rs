@@ -112,6 +112,9 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     if !arm.massless.is_empty() {
         lines.push(format!("links without mass: {}", names(arm.massless.iter().map(String::as_str).collect())));
     }
+    if !arm.impossible.is_empty() {
+        lines.push(format!("inertias that no body has, taken as written: those of {}", arm.impossible.join(", ")));
+    }
     if arm.left_out_branches > 0 {
         lines.push(format!("{} of the base left out: they do not move with the arm", counted(arm.left_out_branches, "branch")));
     }

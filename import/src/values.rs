@@ -14,6 +14,9 @@ pub(crate) struct Values<'r> {
     pub(crate) source: &'r Source,
     pub(crate) diagnostics: &'r mut Diagnostics,
     pub(crate) snap: Snap,
+    pub(crate) inertia_as_written: bool,
+    /// What has a tensor that no body has.
+    pub(crate) impossible: Vec<String>,
 }
 
 impl Values<'_> {

@@ -22,6 +22,9 @@ pub(crate) fn text(source: &Source, arm: &Arm, report: &Report) -> String {
     line(&format!("name: {}", arm.name));
     line("convention: urdf");
     line(&format!("gravity: [{}]", arm.gravity.join(", ")));
+    if !arm.impossible.is_empty() {
+        line("allow: [impossible-inertia]  # B(q) may not be positive definite: for kinematics and a look, not for control");
+    }
     line("joints:");
     for row in &arm.rows {
         joint(&mut line, source, arm, row);

@@ -30,6 +30,7 @@ fn options(text: &str) -> Options {
             Some(("lock", lock)) => options.lock.extend(lock.split_once('=').map(|(joint, value)| (joint.into(), value.into()))),
             Some(("convention", "standard")) => options.convention = Convention::Standard,
             None if option == "massless" => options.massless = true,
+            None if option == "inertia-as-written" => options.inertia_as_written = true,
             other => panic!("{other:?}"),
         }
     }

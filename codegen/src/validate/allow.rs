@@ -1,4 +1,4 @@
-//! `allow`: kinds of warnings that the file asks to be silent about.
+//! `allow`: kinds of warnings that the file asks to be silent about, and the one kind of an error that it may take for a warning.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::source::Spanned;
@@ -9,6 +9,7 @@ pub(super) fn check(names: &[Spanned<String>], diagnostics: &mut Diagnostics) ->
     let mut allowed = Vec::new();
     for name in names {
         match warning(&name.value) {
+            _ if name.value == Code::ImpossibleInertia.name() => {}
             Ok(()) => allowed.push(name.value.clone()),
             Err(help) => {
                 let message = format!("`allow` names no kind of warning: `{}`", crate::document::excerpt(&name.value));
@@ -17,6 +18,11 @@ pub(super) fn check(names: &[Spanned<String>], diagnostics: &mut Diagnostics) ->
         }
     }
     allowed
+}
+
+/// Whether a tensor that no body has is taken as written: what a vendor publishes can be looked at, though its B(q) need not be positive definite.
+pub(super) fn takes_inertia_as_written(names: &[Spanned<String>]) -> bool {
+    names.iter().any(|name| name.value == Code::ImpossibleInertia.name())
 }
 
 /// Whether this is the name of a kind of warning; what to do otherwise.

@@ -113,6 +113,12 @@ fn judge(description: &InertiaDescription, tensor: &[Number; 6], called: &str, c
         let name = element.map_or_else(|| "here".to_owned(), |e| format!("I{} is {}", INERTIA_ELEMENTS[e], text_of(&tensor[e])));
         let help = "an inertia tensor about the centre of mass has no negative principal moment; xy is the element -∫xy dm of the tensor, so check signs";
         let span = element.map_or(description.key, span_of);
+        if context.inertia_as_written {
+            let help = "B(q) may not be positive definite: no controller and no simulation is to be trusted with it";
+            let message = format!("the inertia of {called} is impossible, and taken as written: {reason}");
+            context.report(Code::InertiaAsWritten, span, message, name, help);
+            return;
+        }
         context.report(Code::ImpossibleInertia, span, format!("the inertia of {called} is impossible: {reason}"), name, help);
         return;
     }

@@ -24,14 +24,13 @@ pub(crate) struct Lock {
 }
 
 /// What the user holds.
-pub(crate) struct Locks<'r> {
+pub(crate) struct Locks {
     by_joint: BTreeMap<usize, Lock>,
-    _options: &'r [(String, String)],
 }
 
-impl<'r> Locks<'r> {
+impl Locks {
     /// The locks of the options; faults are reported.
-    pub(crate) fn new(tree: &Tree, options: &'r [(String, String)], diagnostics: &mut Diagnostics) -> Option<Locks<'r>> {
+    pub(crate) fn new(tree: &Tree, options: &[(String, String)], diagnostics: &mut Diagnostics) -> Option<Locks> {
         let mut by_joint = BTreeMap::new();
         let before = diagnostics.errors();
         for (name, text) in options {
@@ -61,7 +60,7 @@ impl<'r> Locks<'r> {
                 ),
             }
         }
-        (diagnostics.errors() == before).then_some(Locks { by_joint, _options: options })
+        (diagnostics.errors() == before).then_some(Locks { by_joint })
     }
 
     /// The lock of a joint.

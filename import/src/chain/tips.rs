@@ -13,7 +13,7 @@ use crate::Code;
 const NAMED: usize = 12;
 
 /// The only leaf with a moving joint above it, with notes; where several differ by fixed joints alone, the link of the last joint that moves.
-pub(super) fn only(tree: &Tree, base: usize, locks: &Locks<'_>, diagnostics: &mut Diagnostics) -> Option<(usize, Vec<String>)> {
+pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Diagnostics) -> Option<(usize, Vec<String>)> {
     // Leaves by the last joint above them that moves, in the order of the file.
     let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     let mut count: BTreeMap<usize, usize> = BTreeMap::new();

@@ -30,6 +30,9 @@ pub(crate) struct Choices {
     /// Links without a mass distribution have mass 0
     #[arg(long)]
     massless: bool,
+    /// Tensors that no body has are taken as written, with a warning; B(q) may not be positive definite
+    #[arg(long)]
+    inertia_as_written: bool,
     /// What the rows of the description are
     #[arg(long, value_enum, default_value = "urdf")]
     convention: To,
@@ -68,8 +71,8 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
         terminal::error("--name takes letters, digits and `_`, a letter first");
         return UNREADABLE;
     }
-    let Choices { base, tip, lock, name, snap, massless, convention } = choices;
-    let options = Options { base, tip, lock, name, snap, massless, convention: convention.into() };
+    let Choices { base, tip, lock, name, snap, massless, inertia_as_written, convention } = choices;
+    let options = Options { base, tip, lock, name, snap, massless, inertia_as_written, convention: convention.into() };
     let (imported, diagnostics) = armgen_import::import(&source, &options);
     let imported = match input::report_or_exit_code(&source, imported, &diagnostics, input::Warnings::Shown) {
         Ok(imported) => imported,
