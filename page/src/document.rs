@@ -131,7 +131,9 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 "##;
 
 const CHECK: &str = r#"<p>Paste postures of the real arm and the poses that were measured there, one a line: <code>q1 … qn x y z</code> or <code>q1 … qn x y z roll pitch yaw</code>, in the units chosen above.
-The page shows how far it is from each, and looks for the one mistake in the rows that explains them all.</p>
+x y z are those of the end effector in the base frame, orientations Rz(yaw) Ry(pitch) Rx(roll); other units convert what stands here.
+The page shows how far it is from each, and looks for the one mistake that explains them all: in a row a wrong sign, 90° or 180° too many or too few, a and d exchanged, a factor of 1000, a joint that counts the other way; the other convention; a tool left out. Wrong lengths and offsets of zero it does not look for.
+What remains is a root mean square of distances and of angles times the size of the arm; below a thousandth of that size the arm agrees.</p>
 <label for="measured">Measured postures and poses</label>
 <textarea id="measured" rows="4" spellcheck="false"></textarea>
 <div class="controls"><button type="button" id="measured-add">add the pose that is shown</button></div>
@@ -161,7 +163,7 @@ fn sliders(rows: &[Row]) -> String {
              <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span></div>"
         );
     }
-    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\">play</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"
+    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" aria-label=\"Sweep the joints one after the other\">play</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"
 }
 
 /// The source of a policy that is this very text.

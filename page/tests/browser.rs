@@ -254,13 +254,17 @@ fn a_planted_mistake_is_the_first_suspect() {
                  document.querySelectorAll('#arm .ghosts .solid').length > 10]; }})()"
     ));
     assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true]));
+    // With the wrist stretched the arm is singular whatever the other joints do, and the map says so instead of drawing noise.
     let drawn = tab.run(
-        "(async () => { for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
+        "(async () => { const map = document.getElementById('w-map'), said = () => document.getElementById('w-said').textContent; \
+         map.open = true; await new Promise((done) => setTimeout(done, 100)); const stretched = said().includes('singular whatever'); map.open = false; \
+         const q5 = document.getElementById('q5'); q5.value = '1'; q5.dispatchEvent(new Event('input', { bubbles: true })); \
+         for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
          for (const id of ['reach', 'w-map']) document.getElementById(id).open = true; await new Promise((done) => setTimeout(done, 300)); \
          return [document.querySelectorAll('#arm .ellipsoids ellipse').length, document.querySelectorAll('#reach svg').length, \
-                 document.getElementById('w-said').textContent.includes('det J changes its sign')]; })()",
+                 said().includes('det J changes its sign'), stretched]; })()",
     );
-    assert_eq!(drawn, serde_json::json!([2, 2, true]));
+    assert_eq!(drawn, serde_json::json!([2, 2, true, true]));
     tab.close(&file);
 }
 

@@ -68,16 +68,30 @@ export function check(data, state, picture) {
         }
     };
     field.addEventListener("input", update);
-    state.on("units", update);
+    // What was typed keeps its meaning when other units are chosen.
+    let typed = { ...units };
+    state.on("units", () => {
+        const chosen = { ...units };
+        Object.assign(units, typed);
+        const { measured, faults } = read(field.value, data.rows.length, fromUnit, kinds);
+        Object.assign(units, chosen);
+        typed = chosen;
+        if (measured.length > 0 && faults.length === 0) field.value = measured.map(written).join("");
+        update();
+    });
+    /** A line of the field. @param {import("./suspects.mjs").Measured} one */
+    const written = ({ q, position, frame }) => {
+        const numbers = [
+            ...q.map((x, i) => inUnit(x, kinds[i])),
+            ...position.map((x) => inUnit(x, "m")),
+            ...(frame ? rollPitchYaw(frame).map((x) => inUnit(x, "rad")) : []),
+        ];
+        return `${numbers.map((x) => exact(Number(x.toPrecision(8)))).join(" ")}\n`;
+    };
     byId("measured-add").addEventListener("click", () => {
         const { end } = picture.pose();
-        const line = [
-            ...state.q.map((q, i) => inUnit(q, kinds[i])),
-            ...[0, 1, 2].map((i) => inUnit(end[i][3], "m")),
-            ...rollPitchYaw(end).map((x) => inUnit(x, "rad")),
-        ];
-        const text = line.map((x) => exact(Number(x.toPrecision(8)))).join(" ");
-        field.value += `${field.value && !field.value.endsWith("\n") ? "\n" : ""}${text}\n`;
+        const line = written({ q: state.q, position: [0, 1, 2].map((i) => end[i][3]), frame: end });
+        field.value += (field.value && !field.value.endsWith("\n") ? "\n" : "") + line;
         update();
     });
     const placeholder = () => {

@@ -70,7 +70,7 @@ export function logs(data, state, picture) {
     const runs = [...document.querySelectorAll("details[data-log]")];
     if (runs.length === 0) return;
     const [time, value, play, said] = ["time", "time-value", "log-play", "playback-said"].map(byId);
-    /** @type {{log: Log, places: number[], trails: {path: number[][], kind: string}[], charts: any[]} | null} */
+    /** @type {{name: string, log: Log, places: number[], rates: number[], trails: {path: number[][], kind: string}[], charts: any[]} | null} */
     let active = null;
     const opened = new Map();
     let moving = 0;
@@ -82,6 +82,8 @@ export function logs(data, state, picture) {
         value.textContent = `${short(Number(t.toPrecision(5)))} s`;
         if (active.places.length > 0) {
             const q = active.places.map((place) => active?.log.columns[place][k]);
+            const rates = active.rates.map((place) => active?.log.columns[place][k] ?? 0);
+            if (rates.length > 0) state.dq = rates.map(Number);
             if (q.every((x) => x !== null)) state.move(q);
         }
         if (fromChart) return;
@@ -95,12 +97,16 @@ export function logs(data, state, picture) {
         const times = run.log.columns[0];
         time.min = String(times[0] ?? 0);
         time.max = String(times[times.length - 1] ?? 1);
-        said.textContent = run.places.length > 0 ? `The arm follows ${run.name}.` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
+        const held = run.rates.length > 0 ? "its q and dq; ddq is that of the fields" : "its q; dq and ddq are those of the fields";
+        said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take ${held}, and the parameters of the data sheet, whatever the run had.` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
         show(Number(times[0] ?? 0), false);
     };
     const layer = picture.layers.trail;
     picture.extras.push(() => {
-        if (!active) return;
+        if (!active) {
+            if (layer.firstChild) layer.replaceChildren();
+            return;
+        }
         const d = (path) => path.map((point, i) => `${i === 0 ? "M" : "L"}${picture.view.project(point).map((x) => x.toFixed(1)).join(" ")}`).join("");
         layer.replaceChildren(...active.trails.map(({ path, kind }) => svg("path", { class: kind, d: d(path) })));
     });
@@ -132,6 +138,7 @@ export function logs(data, state, picture) {
         moving = requestAnimationFrame(tick);
         return undefined;
     });
+    state.on("sweep", pause);
     time.addEventListener("input", () => {
         pause();
         show(time.valueAsNumber, false);
@@ -150,7 +157,7 @@ export function logs(data, state, picture) {
         for (const chart of run.charts) chart.destroy();
         run.trails = trails(run.log, run.places);
         if (over) run.trails.push(...trails(over.log, placesOf(over.log)).map(({ path, kind }) => ({ path, kind: `${kind} other` })));
-        run.charts = plots(run.log).map((plot) => chart(run.host, run.log, plot, run.name, run.follow, over));
+        run.charts = plots(run.log).map((plot) => chart(run.host, run.log, plot, run.name, over));
         choose(run);
     };
     const open = async (details) => {
@@ -167,12 +174,18 @@ export function logs(data, state, picture) {
         }
         if (packed === null) return;
         const log = await load(name);
-        // The cursor of one plot is that of all, and the arm follows it.
-        const follow = (chart) => {
-            const { left, idx } = chart.cursor;
-            if (active === run && idx !== null && idx !== undefined && left >= 0 && !moving) show(Number(log.columns[0][idx]), true);
-        };
-        const run = { name, log, places: placesOf(log), trails: [], charts: [], host: details.querySelector(".plots"), follow };
+        const ratesOf = data.rows.map((row) => log.names.indexOf(`dq_${row.name}`));
+        const rates = ratesOf.every((place) => place >= 0) ? ratesOf : [];
+        const run = { name, log, places: placesOf(log), rates, trails: [], charts: [], host: details.querySelector(".plots") };
+        // The arm goes to the time of a click; that the pointer passes over a plot moves its cursor alone.
+        run.host.addEventListener("click", (event) => {
+            const chart = run.charts.find((one) => one.over.contains(event.target));
+            const idx = chart?.cursor.idx;
+            if (idx === null || idx === undefined) return;
+            pause();
+            if (active !== run) choose(run);
+            show(Number(log.columns[0][idx]), true);
+        });
         opened.set(name, run);
         const others = Object.keys(data.runs).filter((other) => other !== name && data.runs[other].log !== null);
         if (others.length > 0) {
@@ -182,7 +195,25 @@ export function logs(data, state, picture) {
         }
         await draw(run, "");
     };
-    for (const details of runs) details.addEventListener("toggle", () => details.open && open(details));
+    for (const details of runs) {
+        details.addEventListener("toggle", () => {
+            if (details.open) open(details);
+            else if (active?.name === details.getAttribute("data-log")) leave();
+        });
+    }
+    const leave = () => {
+        pause();
+        active = null;
+        said.textContent = "No run is followed.";
+        picture.redraw();
+    };
+    // On paper the curves are those of the light theme.
+    for (const event of ["beforeprint", "afterprint"]) {
+        addEventListener(event, () => {
+            printing = event === "beforeprint";
+            for (const run of opened.values()) for (const chart of run?.charts ?? []) chart.redraw(false);
+        });
+    }
     state.on("theme", () => {
         for (const run of opened.values()) for (const chart of run?.charts ?? []) chart.redraw(false);
     });
@@ -217,16 +248,19 @@ function trails(log, places) {
     return all;
 }
 
+let printing = false;
+
 function isDark() {
+    if (printing) return false;
     const { theme } = document.documentElement.dataset;
     return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
 /**
- * @param {any} host @param {Log} log @param {any} plot @param {string} name @param {(chart: any) => void} follow
+ * @param {any} host @param {Log} log @param {any} plot @param {string} name
  * @param {{name: string, log: Log} | null} over
  */
-function chart(host, log, plot, name, follow, over) {
+function chart(host, log, plot, name, over) {
     const ink = () => (isDark() ? "#a9b5c1" : "#525d69");
     const grid = () => (isDark() ? "#2b343d" : "#dfe4e9");
     const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "11px sans-serif", labelFont: "12px sans-serif", labelSize: 18, size: 46 });
@@ -257,7 +291,6 @@ function chart(host, log, plot, name, follow, over) {
         cursor: { sync: { key: name } },
         series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
         axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
-        hooks: { setCursor: [follow] },
     };
     return new uPlot(options, [log.columns[0], ...values], host);
 }

@@ -58,6 +58,11 @@ export function mathml(node, options) {
     const mrow = (...children) => make(options, "mrow", {}, ...children);
     const parentheses = (inner) => mrow(mo("(", { stretchy: "false" }), inner, mo(")", { stretchy: "false" }));
     const factor = (inner) => (inner.kind === "sum" ? parentheses(mathml(inner, options)) : mathml(inner, options));
+    // What a power is taken of: cos q² would be the cosine of a square.
+    const base = (inner) => {
+        const alone = ["name", "number"].includes(inner.kind) || (inner.kind === "call" && inner.name === "sqrt");
+        return alone ? mathml(inner, options) : parentheses(mathml(inner, options));
+    };
     switch (node.kind) {
         case "sum": {
             const parts = [];
@@ -83,7 +88,7 @@ export function mathml(node, options) {
             return make(options, "mfrac", {}, line(above), lone);
         }
         case "power":
-            return make(options, "msup", {}, factor(node.base), mrow(...(node.exponent < 0 ? [mo("−", { form: "prefix" })] : []), make(options, "mn", {}, String(Math.abs(node.exponent)))));
+            return make(options, "msup", {}, base(node.base), mrow(...(node.exponent < 0 ? [mo("−", { form: "prefix" })] : []), make(options, "mn", {}, String(Math.abs(node.exponent)))));
         case "call": {
             if (node.name === "sqrt") return make(options, "msqrt", {}, mathml(node.argument, options));
             const name = make(options, "mi", {}, node.name === "atan" ? "arctan" : node.name);

@@ -26,7 +26,7 @@ export function numbers(data, state) {
         host.append(html("p", { class: "small" }, `The ${title} is left out: ${operations} operations. `, html("code", {}, `armgen generate ROBOT.yaml --functions ${name}`), " prints it."));
     }
     const update = () => {
-        for (const one of shown) if (one.element.open) one.update();
+        for (const one of shown) if (one.element.open || one.quantity.rows === 0) one.update();
     };
     state.on("motion", update);
     for (const one of shown) one.element.addEventListener("toggle", () => one.element.open && one.update());
@@ -119,8 +119,10 @@ function table(quantity) {
         cells.push({ td, value: NaN });
         return td;
     };
-    const head = html("summary", {}, html("b", {}, symbol), ` ${title}${unit ? `, ${unit}` : ""}`);
-    const element = html("details", { open: true, class: "quantity", "data-of": name }, head);
+    // A lone number stands on a line of its own, which nothing folds away.
+    const [whole, first] = rows === 0 ? ["div", "p"] : ["details", "summary"];
+    const head = html(first, {}, html("b", {}, symbol), ` ${title}${unit ? `, ${unit}` : ""}`);
+    const element = html(whole, { open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
         head.append(" = ", cell(0, 0), said);
     } else {

@@ -1,7 +1,7 @@
 /** Units, theme and print. */
 
-import { byId } from "./dom.mjs";
-import { units } from "./format.mjs";
+import { byId, html } from "./dom.mjs";
+import { short, units } from "./format.mjs";
 
 /** @param {import("./state.mjs").State} state */
 export function settings(state) {
@@ -36,4 +36,12 @@ export function settings(state) {
     });
     name();
     byId("print").addEventListener("click", () => window.print());
+    // Sliders are not printed: the posture that the numbers hold for is said in words.
+    const posture = html("p", { class: "print-only" });
+    byId("arm-pane").append(posture);
+    addEventListener("beforeprint", () => {
+        const list = (name, values) => `${name} = (${values.map((x) => short(x)).join(", ")})`;
+        const { q, dq, ddq } = state;
+        posture.textContent = `Posture: ${list("q", q)}, rates ${list("dq", dq)}, accelerations ${list("ddq", ddq)}, in rad, m and s.`;
+    });
 }

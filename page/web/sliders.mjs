@@ -76,6 +76,7 @@ export function player(data, state) {
     const reduced = matchMedia("(prefers-reduced-motion: reduce)");
     let stop = () => {};
     const play = () => {
+        state.changed("sweep");
         const home = state.q.slice();
         const begin = performance.now();
         const [each, joints] = [reduced.matches ? 4 : 3, data.rows.length];

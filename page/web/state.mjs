@@ -1,7 +1,7 @@
 /**
  * What is shown: the posture, rates and accelerations, and who has to know when they change.
  *
- * Kinds of changes: "motion" (q, dq or ddq), "units" (m or mm, rad or deg), "view".
+ * Kinds of changes: "motion" (q, dq or ddq), "units" (m or mm, rad or deg), "view", "sweep" (the joints begin to sweep), "theme".
  */
 
 export class State {

@@ -68,10 +68,19 @@ export function suspects(data) {
     data.rows.forEach((row, i) => {
         const name = `row ${i + 1} (${row.name})`;
         if (row.dh) {
+            /** Mistakes that are the same row are one suspect. */
+            const found = [];
             for (const [fault, words, dh] of mistaken(row.dh)) {
                 if (same(dh, row.dh)) continue;
+                const other = found.find((one) => same(one.dh, dh));
+                if (other) {
+                    other.suspect.words += `, or ${words}, which is the same`;
+                    continue;
+                }
                 const rows = arm.rows.map((other, k) => (k === i ? { ...row, dh } : other));
-                all.push({ row: i + 1, fault, words: `${name}: ${words}`, arm: { ...arm, rows } });
+                const suspect = { row: i + 1, fault, words: `${name}: ${words}`, arm: { ...arm, rows } };
+                found.push({ dh, suspect });
+                all.push(suspect);
             }
         }
         const signs = arm.signs.map((sign, k) => (k === i ? -sign : sign));
@@ -135,7 +144,8 @@ export function read(text, joints, convert, units) {
     const measured = [];
     const faults = [];
     text.split("\n").forEach((line, k) => {
-        const words = line.trim().split(/[\s,;]+/).filter((word) => word !== "");
+        // Brackets of a copied vector and what stands behind # mean nothing.
+        const words = line.replace(/#.*/, "").split(/[\s,;[\]()]+/).filter((word) => word !== "");
         if (words.length === 0) return;
         const numbers = words.map(Number);
         const wrong = words.find((_, i) => !Number.isFinite(numbers[i]));

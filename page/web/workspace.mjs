@@ -56,7 +56,7 @@ export function workspace(data, state, picture) {
     };
     details.addEventListener("toggle", draw);
     state.on("units", draw);
-    map(data, state);
+    map(data, state, picture);
 }
 
 /** The points from the side and from above. @param {number[][]} points */
@@ -114,7 +114,7 @@ function ellipsoids(data, state, picture) {
 }
 
 /** w of the task over two joints as brightness, where the determinant changes its sign as lines. */
-function map(data, state) {
+function map(data, state, picture) {
     const details = byId("w-map");
     const [first, second] = [byId("w-first"), byId("w-second")];
     if (data.rows.length < 2) {
@@ -147,6 +147,12 @@ function map(data, state) {
             }
         }
         const largest = Math.max(...values);
+        const scale = picture.arm.size ** data.task.length;
+        if (i === j || !(largest > 1e-12 * scale)) {
+            canvas.getContext("2d")?.clearRect(0, 0, SIDE, SIDE);
+            byId("w-said").textContent = i === j ? "Choose two different joints." : "w is 0 at all of these postures: the arm is singular whatever these two joints do. Move another joint.";
+            return;
+        }
         const context = canvas.getContext("2d");
         if (!context) return;
         const cell = SIDE / CELLS;
