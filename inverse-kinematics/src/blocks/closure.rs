@@ -152,6 +152,8 @@ impl Loop<'_> {
 
 /// Closes every solution of a loop to the last digits: for constructions that lose some on the way (block R with D = 2). Solutions with a
 /// joint that is free stay as they are. One that cannot be closed is none, and says `near`: it has been found for rounding alone.
+/// Where there is none and no block says by how much it missed, `miss` is the least residual of [`Loop::nearest`] from four postures; one that closes
+/// the loop all the same says `near`.
 pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
     let mut kept = Branches { all: found.all, ..Branches::new() };
     (kept.miss, kept.near, kept.continuum) = (found.miss, found.near, found.continuum);
@@ -166,6 +168,18 @@ pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
             branch.joints = closed.joints;
         }
         kept.add(branch);
+    }
+    if kept.count == 0 && !kept.near && !kept.continuum && !(kept.miss < Real::INFINITY) {
+        const STARTS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+        for first in 0..4 {
+            let mut joints = [[0.0; 2]; 6];
+            for (i, (joint, prismatic)) in joints.iter_mut().zip(closing.prismatic).enumerate() {
+                *joint = if prismatic { [0.0; 2] } else { STARTS[(first + i * i) % 4] };
+            }
+            let nearest = closing.nearest(&joints, 1.0);
+            kept.near |= nearest.residual <= CLOSED * closing.length;
+            kept.missed(nearest.residual);
+        }
     }
     *found = kept;
 }

@@ -124,6 +124,7 @@ fn within_reach(bracket: &impl Fn([Real; 2]) -> Frame, l1: Real, l2: Real) -> [R
 /// - `links`: La, L1, L2, L3, Lb, Lc; frames of any kind but for L1, L2. The result's joints are in the order a, 1, 2, 3, b, c.
 /// - At most 8 solutions; `signs`: two bits for qa and qb (bit 0 and bit 1 where each is block 1; else the number of the root), bit 2 elbow.
 /// - Axis c parallel to the three: qc free; one of its angles that leave the elbow within reach is given, if there is any. Elbow folded onto the shoulder: q1 free.
+/// - qb double and the elbow out of reach: `near`, since rounding has decided about qc.
 pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
     let [la, l1, l2, l3, lb, lc] = links;
     let mut found = Branches::new();
@@ -158,11 +159,14 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
         let (first, last) = (compose(l3, &joint_then(false, qb, lb)), compose(lc, &joint_then(false, qa, la)));
         let bracket = |qc: [Real; 2]| inverse(&compose(&first, &joint_then(false, qc, &last)));
         let (a1, a2) = (l1[0][3], l2[0][3]);
-        let qc = if qc.free { Turn { value: within_reach(&bracket, a1.abs(), a2.abs()), ..qc } } else { qc };
+        // Where two solutions for qb meet, axes c and of the three are parallel up to rounding, which then decides about qc.
+        let open = qc.free || solution.double && qc.miss > 0.0;
+        let qc = if open { Turn { value: within_reach(&bracket, a1.abs(), a2.abs()), ..qc } } else { qc };
         let m = bracket(qc.value);
         let (s1, s2) = (if a1 < 0.0 { -1.0 } else { 1.0 }, if a2 < 0.0 { -1.0 } else { 1.0 });
         let arm = two_links(a1.abs(), a2.abs(), [m[0][3], m[1][3]], noise, solution.error * lengths);
         found.missed(arm.miss);
+        found.near |= solution.double && arm.count == 0;
         for (i, (shoulder, elbow)) in arm.shoulder.iter().zip(&arm.elbow).enumerate().take(arm.count) {
             // A negative length is a positive one turned by pi; the second link is seen through Rx(0 or pi).
             let q1 = [s1 * shoulder[0], s1 * shoulder[1]];
