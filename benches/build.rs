@@ -15,7 +15,7 @@ fn main() {
     for robot in ["scara4", "puma560", "ur5", "panda7"] {
         for (trig, suffix) in [(Trig::Libm, "libm"), (Trig::Fast, "fast")] {
             let module = format!("{robot}_{suffix}");
-            Robot::new(format!("../robots/{robot}.yaml")).trig(trig).file_stem(&module).generate();
+            Robot::new(format!("../robots/{robot}.yaml")).trig(trig).file_stem(&module).inverse_kinematics().generate();
             let text = std::fs::read_to_string(out.join(format!("{module}.rs"))).expect("it was just written");
             let functions = of_module(&text);
             common = Some(match common {

@@ -60,11 +60,12 @@ def main():
         count = operations(robot)
         rows = [["function", "mul", "add", "pairs", "instr. libm", "fast", "ns libm", "fast"]]
         for function in dict.fromkeys(f for r, _, f in [*counted, *timed] if r == robot):
-            entry = count[function]
-            rows.append([f"`{function}`", *(str(entry[k]) for k in ("mul", "add", "sincos")),
+            # Inverse kinematics has loops: no number of operations.
+            entry = count.get(function, {})
+            rows.append([f"`{function}`", *(str(entry.get(k, "-")) for k in ("mul", "add", "sincos")),
                          *(number(counted, (robot, t, function), "{}") for t in ("libm", "fast")),
                          *(number(timed, (robot, t, function), "{:.1f}") for t in ("libm", "fast"))])
-        rows[1:] = sorted(rows[1:], key=lambda row: list(count).index(row[0].strip("`")))
+        rows[1:] = sorted(rows[1:], key=lambda row: [*count, "inverse_kinematics"].index(row[0].strip("`")))
         parts.append(f"### {robot}\n\n{table(rows)}")
     text = "\n\n".join(parts)
     print(text)

@@ -25,6 +25,14 @@ const BATCHES: [(&str, &str, Trig, Scalar, usize); 4] = [
     ("../robots/ur5.yaml", "ur5_batch", Trig::Libm, Scalar::F64, 4),
 ];
 
+/// The robots that are emitted with inverse kinematics.
+const POSTURES: [(&str, Scalar); 4] = [
+    ("../robots/scara4.yaml", Scalar::F64),
+    ("../robots/scara4.yaml", Scalar::F32),
+    ("../robots/puma560.yaml", Scalar::F64),
+    ("../robots/ur5.yaml", Scalar::F64),
+];
+
 fn main() {
     let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("a build script has it"));
     let mut modules = String::new();
@@ -57,6 +65,12 @@ fn main() {
     }
     // An arm without mass, for `tests/kinematics_alone.rs`.
     Robot::new("data/kinematics_alone.yaml").generate();
+    // With inverse kinematics, for `tests/postures.rs`.
+    for (robot, scalar) in POSTURES {
+        let stem = Path::new(robot).file_stem().expect("a file's name").to_string_lossy();
+        let stem = format!("postures_{stem}_{}", if scalar == Scalar::F64 { "f64" } else { "f32" });
+        Robot::new(robot).scalar(scalar).file_stem(stem).inverse_kinematics().generate();
+    }
     // With functions for many states, for `tests/batches.rs`.
     let mut batches = String::new();
     for (robot, module, trig, scalar, lanes) in BATCHES {

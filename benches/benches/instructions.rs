@@ -3,7 +3,7 @@
 // What gungraun makes of the functions has no documentation.
 #![allow(missing_docs)]
 
-use armgen_benches::{cases, functions, Case, State};
+use armgen_benches::{cases, functions, solvers, Case, Solver, State};
 use gungraun::{library_benchmark, library_benchmark_group, main};
 
 fn case(robot: &str, trig: &str, function: &str) -> (Case, State) {
@@ -30,5 +30,20 @@ macro_rules! counted {
     };
 }
 
+fn solver(robot: &str) -> (Solver, [[f64; 4]; 4]) {
+    let found = solvers().into_iter().find(|solver| solver.robot == robot).expect("a robot with a construction");
+    (found, (found.pose)(&State::number(7)))
+}
+
+#[library_benchmark]
+#[bench::scara4_libm(solver("scara4"))]
+#[bench::puma560_libm(solver("puma560"))]
+#[bench::ur5_libm(solver("ur5"))]
+fn inverse_kinematics((solver, pose): (Solver, [[f64; 4]; 4])) {
+    (solver.call)(&pose);
+}
+
+library_benchmark_group!(name = solved; benchmarks = inverse_kinematics);
+
 functions!(counted);
-main!(library_benchmark_groups = emitted);
+main!(library_benchmark_groups = emitted, solved);

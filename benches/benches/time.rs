@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use armgen_benches::{cases, State};
+use armgen_benches::{cases, solvers, State};
 use criterion::Criterion;
 
 #[path = "../../codegen/tests/sines/emitted.rs"]
@@ -47,6 +47,16 @@ fn main() {
             bencher.iter(|| {
                 (case.call)(&states[next]);
                 next = (next + 1) % states.len();
+            });
+        });
+    }
+    for solver in solvers() {
+        let poses: Vec<[[f64; 4]; 4]> = states.iter().map(solver.pose).collect();
+        criterion.bench_function(&format!("{}/libm/inverse_kinematics", solver.robot), |bencher| {
+            let mut next = 0;
+            bencher.iter(|| {
+                (solver.call)(&poses[next]);
+                next = (next + 1) % poses.len();
             });
         });
     }

@@ -80,6 +80,43 @@ robots! {
     panda7_fast "panda7" "fast";
 }
 
+/// All postures at a pose of one robot.
+#[derive(Clone, Copy)]
+pub struct Solver {
+    /// The robot's file in `robots/`, without its ending.
+    pub robot: &'static str,
+    /// The pose at a state.
+    pub pose: fn(&State) -> [[f64; 4]; 4],
+    /// Finds all postures at it and drops them.
+    pub call: fn(&[[f64; 4]; 4]),
+}
+
+macro_rules! solvers {
+    ($($module:ident $robots:ident $robot:literal;)*) => {
+        $(#[allow(dead_code, missing_docs, unreachable_pub)]
+        mod $module {
+            include!(concat!(env!("OUT_DIR"), "/", stringify!($module), ".rs"));
+        })*
+
+        /// The inverse kinematics of every robot here that has a construction.
+        pub fn solvers() -> Vec<Solver> {
+            vec![$(Solver {
+                robot: $robot,
+                pose: |state| $robots::direct_kinematics(part(&state.q)),
+                call: |pose| {
+                    black_box($module::inverse_kinematics(black_box(pose)));
+                },
+            }),*]
+        }
+    };
+}
+
+solvers! {
+    scara4_libm_ik scara4_libm "scara4";
+    puma560_libm_ik puma560_libm "puma560";
+    ur5_libm_ik ur5_libm "ur5";
+}
+
 fn part<const N: usize>(all: &[f64; 7]) -> &[f64; N] {
     all.first_chunk().expect("no robot here has more than seven joints")
 }

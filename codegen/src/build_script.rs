@@ -151,8 +151,9 @@ impl Robot {
         self
     }
 
-    /// Writes `robot_ik.rs` too: all joint variables that reach a pose. It goes into a module of its own; for an arm without a construction it
-    /// says why in a comment and holds nothing else.
+    /// Writes `robot_ik.rs` too: all joint variables that reach a pose. It goes into a module of its own, `robot_ik` beside the module that
+    /// takes in `robot.rs` and `robot_runtime.rs`: there the implementation of the runtime's trait `InverseKinematics` looks for it.
+    /// For an arm without a construction it says why in a comment and holds nothing else, and the trait is not implemented.
     #[must_use]
     pub fn inverse_kinematics(mut self) -> Robot {
         self.inverse_kinematics = true;
@@ -217,8 +218,17 @@ impl Robot {
         let out = std::env::var_os("OUT_DIR").map(PathBuf::from).ok_or(BuildError::NoOutDir)?;
         let own = || self.description.file_stem().map_or("robot".into(), |s| s.to_string_lossy().into_owned());
         let stem = self.stem.clone().unwrap_or_else(own);
-        let all_solutions = self.inverse_kinematics.then(|| (format!("{stem}_ik.rs"), generated.inverse_kinematics()));
-        let mut files = vec![(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), generated.runtime)];
+        let ik = crate::validate::module_name(&format!("{stem}_ik"));
+        let mut all_solutions = Vec::new();
+        let mut runtime = generated.runtime.clone();
+        if self.inverse_kinematics {
+            all_solutions.push((format!("{stem}_ik.rs"), generated.inverse_kinematics()));
+            runtime = generated.runtime_with_inverse_kinematics(&ik);
+            if let (true, Some(face)) = (self.c_abi, generated.inverse_kinematics_for_c()) {
+                all_solutions.extend([(format!("{stem}_ik.h"), face.header), (format!("{stem}_ik_c.rs"), face.wrappers)]);
+            }
+        }
+        let mut files = vec![(format!("{stem}.rs"), generated.module), (format!("{stem}_runtime.rs"), runtime)];
         if self.c_abi {
             files.extend([(format!("{stem}.h"), generated.c.header), (format!("{stem}_c.rs"), generated.c.wrappers)]);
         }

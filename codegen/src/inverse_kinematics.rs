@@ -59,6 +59,8 @@ pub struct Choice {
     pub bit: u32,
     /// The names of its ways; more than two where they are the roots of an equation.
     pub ways: Vec<String>,
+    /// What tells the ways apart.
+    pub meaning: String,
 }
 
 /// A construction and the arrangement of the loop that it is called with.

@@ -54,6 +54,7 @@ pub mod suggest;
 pub mod validate;
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 pub use catalogue::Absent;
 pub use derive::Model;
@@ -61,6 +62,7 @@ use diagnostic::Diagnostics;
 use emit::c::CFace;
 use emit::{Language, Notes, Origin};
 use exact::Number;
+use inverse_kinematics::InverseKinematics;
 pub use kinds::Scalar;
 use manipulator::Manipulator;
 pub use pass::{Pass, Passes};
@@ -88,6 +90,8 @@ pub struct Generated {
     notes: Notes,
     /// The arm that they are of.
     manipulator: Manipulator,
+    /// Its construction, once it has been asked for.
+    construction: OnceLock<Result<InverseKinematics, String>>,
 }
 
 impl Generated {
@@ -126,7 +130,32 @@ impl Generated {
     /// The module of inverse kinematics, `robot_ik.rs`: all joint variables that reach a pose. It stands alone, in a module of its own. For an
     /// arm that has no construction it holds a comment that says why.
     pub fn inverse_kinematics(&self) -> String {
-        emit::rust::print_inverse_kinematics(&self.program, &inverse_kinematics::of(&self.manipulator), &self.origin)
+        emit::rust::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
+    }
+
+    /// Whether the arm has a construction.
+    pub fn has_inverse_kinematics(&self) -> bool {
+        self.construction().is_ok()
+    }
+
+    /// `robot_runtime.rs` where inverse kinematics stands in a module beside the robot's that is called `ik`: with the trait
+    /// `InverseKinematics`. Without it where the arm has no construction, or the module not all functions that the other traits need.
+    pub fn runtime_with_inverse_kinematics(&self, ik: &str) -> String {
+        self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, self.construction(), ik)
+    }
+
+    /// The face of `robot_ik.rs` for C: `robot_ik.h`, and `robot_ik_c.rs` to be included beside it; none where the arm has no construction.
+    pub fn inverse_kinematics_for_c(&self) -> Option<CFace> {
+        emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
+    }
+
+    /// What follows in `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` beside.
+    pub fn inverse_kinematics_test(&self, file: &str) -> String {
+        emit::rust::print_inverse_kinematics_test(&self.program, self.construction(), file)
+    }
+
+    fn construction(&self) -> &Result<InverseKinematics, String> {
+        self.construction.get_or_init(|| inverse_kinematics::of(&self.manipulator))
     }
 }
 
@@ -151,6 +180,7 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         origin,
         notes: Notes::default(),
         manipulator: model.manipulator,
+        construction: OnceLock::new(),
     };
     (Some(generated), diagnostics)
 }

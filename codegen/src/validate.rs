@@ -46,7 +46,7 @@ pub use allow::warning;
 pub use bodies::impossible_inertia;
 pub use equations::{product_out_of_range, values_leave_the_scalar};
 use evaluate::Evaluator;
-pub use names::{is_free_name, is_rust_name};
+pub use names::{is_free_name, is_rust_name, module_name};
 pub use nominal::NominalValues;
 use parameters::Parameters;
 pub use places::{JointPlaces, Occurrence, Places, Role};

@@ -21,6 +21,7 @@ mod message;
 pub mod clik;
 pub mod control;
 
+pub mod inverse_kinematics;
 pub mod linalg;
 pub mod manipulability;
 pub mod orientation;

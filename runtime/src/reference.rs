@@ -18,6 +18,13 @@ impl<T: RealField + Copy> Pose<T> {
         Self { position: frame.fixed_view::<3, 1>(0, 3).into_owned(), rotation: frame.fixed_view::<3, 3>(0, 0).into_owned() }
     }
 
+    /// The homogeneous transformation of the pose.
+    pub fn frame(&self) -> Matrix4<T> {
+        let mut frame = self.rotation.to_homogeneous();
+        frame.fixed_view_mut::<3, 1>(0, 3).copy_from(&self.position);
+        frame
+    }
+
     /// The pose of `robot` at `q`.
     pub fn of<R: Kinematics<N, Real = T>, const N: usize>(robot: &R, q: &SVector<T, N>) -> Self {
         Self::from_frame(&robot.direct_kinematics(q))

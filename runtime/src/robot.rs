@@ -1,5 +1,5 @@
-//! The traits of a robot: `Kinematics`, `Dynamics` and `Regressor`, each extending the one before it, and one for each function that not
-//! every robot has.
+//! The traits of a robot: `Kinematics`, `Dynamics` and `Regressor`, each extending the one before it, `InverseKinematics`, and one for each
+//! function that not every robot has.
 //!
 //! The emitted module of a robot comes with implementations of these traits (feature `runtime` of the crate that holds it):
 //! a unit struct for the nominal robot, and `WithParameters` for the same robot with parameters chosen at run time.
@@ -15,9 +15,11 @@
 //! with `g` on the left: the torque that holds the arm at rest is `tau = g(q)`.
 //! "The book" is Siciliano, Sciavicco, Villani, Oriolo, *Robotics: Modelling, Planning and Control*.
 
+mod postures;
 #[rustfmt::skip] // it is written by a test
 mod single;
 
+pub use postures::{InverseKinematics, Posture, Postures, Verdict};
 pub use single::*;
 
 use nalgebra::{Matrix4, RealField, SMatrix, SVector, Scalar};

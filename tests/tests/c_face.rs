@@ -33,6 +33,11 @@ mod robot {
     include!("robot_c.rs");
 }
 
+mod robot_ik {
+    include!("robot_ik.rs");
+    include!("robot_ik_c.rs");
+}
+
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     loop {}
@@ -63,7 +68,7 @@ fn declared(header: &str) -> Vec<&str> {
     starts.map(|line| line.trim_end_matches('(').rsplit(' ').next().unwrap()).collect()
 }
 
-/// Builds the library in a folder of its own, and runs tests/c/check.c against it.
+/// Builds the library in a folder of its own, and runs tests/c/check.c and tests/c/check_ik.c against it.
 #[track_caller]
 fn check(robot: &str, scalar: Scalar, folder: &str) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
@@ -76,6 +81,10 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
     write("src/robot.rs", &generated.module);
     write("src/robot_c.rs", &generated.c.wrappers);
     write("robot.h", &generated.c.header);
+    let inverse_kinematics = generated.inverse_kinematics_for_c().expect("the SCARA has a construction");
+    write("src/robot_ik.rs", &generated.inverse_kinematics());
+    write("src/robot_ik_c.rs", &inverse_kinematics.wrappers);
+    write("robot_ik.h", &inverse_kinematics.header);
     // Every function that the header declares has to be there to be linked, whether check.c calls it or not.
     let functions = declared(&generated.c.header);
     assert_eq!(functions.len(), generated.module.lines().filter(|line| line.starts_with("pub fn ")).count());
@@ -92,9 +101,15 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
         .args(["target/release/librobot.a", "-lm"])
         .current_dir(&folder));
     run(&mut Command::new(folder.join("check")));
+    run(Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-I.", "-o", "check_ik"])
+        .arg(root().join("tests/c/check_ik.c").canonicalize().unwrap())
+        .args(["target/release/librobot.a", "-lm"])
+        .current_dir(&folder));
+    run(&mut Command::new(folder.join("check_ik")));
     // C++ reads the same header.
     if Command::new("c++").arg("--version").output().is_ok() {
-        write("header.cpp", "#include \"robot.h\"\n");
+        write("header.cpp", "#include \"robot.h\"\n#include \"robot_ik.h\"\n");
         run(Command::new("c++").args(["-Wall", "-Wextra", "-Werror", "-fsyntax-only", "header.cpp"]).current_dir(&folder));
     }
 }
@@ -111,7 +126,9 @@ fn unsafe_is_confined_and_explained() {
     for robot in ["scara.yaml", "ur5.yaml"] {
         let generated = generated(robot, Scalar::F64);
         assert!(!generated.module.contains("unsafe") && !generated.runtime.contains("unsafe"));
-        let lines: Vec<&str> = generated.c.wrappers.lines().collect();
+        assert!(!generated.inverse_kinematics().contains("unsafe"));
+        let wrappers = generated.c.wrappers.clone() + &generated.inverse_kinematics_for_c().expect("a construction").wrappers;
+        let lines: Vec<&str> = wrappers.lines().collect();
         let blocks = lines.iter().enumerate().filter(|(_, line)| line.contains("unsafe {"));
         for (at, line) in blocks {
             assert!(lines[at - 1].trim_start().starts_with("// SAFETY: "), "line {}: {line}", at + 1);

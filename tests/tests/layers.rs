@@ -55,6 +55,7 @@ const RUNTIME: Layers = &[
     ("robot", &[]),
     ("orientation", &["linalg"]),
     ("reference", &["linalg", "robot"]),
+    ("inverse_kinematics", &["linalg", "reference", "robot"]),
     ("task", &["orientation", "reference"]),
     ("manipulability", &["linalg", "robot", "task"]),
     ("trajectory", &["linalg", "orientation", "reference"]),

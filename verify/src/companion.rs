@@ -291,6 +291,28 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     Ok(text)
 }
 
+/// What follows in the companion of a module with inverse kinematics: `inverse_kinematics_error_bound`, how far an exact solution is from joint
+/// variables. A comment for an arm whose task has not as many rows as it has joints: nothing can be inverted there.
+pub fn of_inverse_kinematics(module: &Module) -> String {
+    let sizes = module.sizes();
+    if sizes.m != sizes.n {
+        return "\n// There is no `inverse_kinematics_error_bound`: the task has not as many rows as the arm has joints.\n"
+            .into();
+    }
+    let needed = ["direct_kinematics", "link_frames", "geometric_jacobian"];
+    if needed.iter().any(|name| module.program(name).is_none()) {
+        return format!(
+            "\n// There is no `inverse_kinematics_error_bound`: the module was generated without one of {}.\n",
+            needed.join(", ")
+        );
+    }
+    let root = match module.real {
+        Float::F64 => "libm::sqrt",
+        Float::F32 => "libm::sqrtf",
+    };
+    include_str!("companion/inverse_kinematics.rs.txt").replace("{root}", root)
+}
+
 fn argument(argument: Argument) -> &'static str {
     match argument {
         Argument::Pi => "pi",

@@ -247,6 +247,11 @@ pub fn companion(generated: &Generated, import: &str) -> Result<String, String> 
     companion::companion(&Module::read(&generated.module)?, &Claims::from_numbers(&generated.constants), import)
 }
 
+/// What follows in the companion where inverse kinematics is emitted too: see [`companion::of_inverse_kinematics`].
+pub fn companion_of_inverse_kinematics(generated: &Generated) -> Result<String, String> {
+    Ok(companion::of_inverse_kinematics(&Module::read(&generated.module)?))
+}
+
 fn fill(report: &mut Report, prepared: &Prepared) {
     let Prepared { module, checker } = prepared;
     report.scalar = match module.real {

@@ -167,6 +167,34 @@ fn the_companion_returns_the_same_bounds() {
     }
 }
 
+/// The companion's bound of inverse kinematics, compiled: posture q has the pose T(q) but for rounding, so the bound at a point beside q is
+/// at least its distance from q, and not much more; at singular postures and far from q it is infinite.
+#[test]
+fn the_bound_of_inverse_kinematics_holds() {
+    for (name, scalar) in [("puma560", Scalar::F64), ("scara", Scalar::F64), ("scara", Scalar::F32)] {
+        let (text, module, claims, _) = robot(name, scalar);
+        let companion = companion(&module, &claims, "use super::robot::*;").expect("a companion");
+        let companion = companion + &armgen_verify::companion::of_inverse_kinematics(&module);
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("solutions").join(name);
+        std::fs::create_dir_all(folder.join("src")).expect("a folder");
+        let write = |file: &str, text: &str| std::fs::write(folder.join(file), text).expect("written");
+        write("Cargo.toml", "[package]\nname = \"solutions\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n");
+        write("src/robot.rs", &text);
+        write("src/robot_bounds.rs", &companion);
+        write("src/main.rs", include_str!("common/solution_bounds.rs.txt"));
+        let output = Command::new(env!("CARGO"))
+            .args(["run", "--offline", "--quiet"])
+            .current_dir(&folder)
+            .env("CARGO_TARGET_DIR", folder.join("target"))
+            .env("RUSTFLAGS", "-D warnings")
+            .output()
+            .expect("cargo runs");
+        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        println!("{name}: {printed}");
+        assert!(output.status.success(), "{name}: {printed}{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
 /// Sizes that are joined are the larger ones, counts are added.
 #[test]
 fn what_is_seen_in_parts_is_seen_of_the_whole() {

@@ -6,10 +6,12 @@
 mod batch;
 mod bindings;
 mod header;
+mod inverse_kinematics;
 mod standalone;
 mod syntax;
 
 use self::header::macro_of;
+pub use self::inverse_kinematics::print_inverse_kinematics;
 use super::origin::{Notes, Origin};
 use crate::catalogue::Quantity;
 use crate::program::Module;

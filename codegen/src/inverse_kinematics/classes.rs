@@ -17,10 +17,62 @@ pub struct Regional {
     pub closed: bool,
     /// At most so many solutions.
     pub most: usize,
-    /// What its signs choose between, from bit 0 on: a name, or none for the four roots of an equation.
-    choices: &'static [&'static str],
+    /// What its signs choose between, from bit 0 on: none for the four roots of an equation.
+    choices: &'static [(Pair, Sign)],
     /// What makes it hold, with `{1}`, `{2}`, `{3}` for the joints.
     because: &'static str,
+}
+
+/// The names of two ways.
+type Pair = [&'static str; 2];
+
+const SHOULDER: Pair = ["shoulder left", "shoulder right"];
+const ELBOW: Pair = ["elbow up", "elbow down"];
+const WRIST: Pair = ["wrist not flipped", "wrist flipped"];
+const TURN: Pair = ["turn left", "turn right"];
+const SLIDE: Pair = ["slide far", "slide near"];
+
+/// What is positive in the first of two ways, and negative in the second; joints by their places in the case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sign {
+    /// a sin q - b cos q for the joint's equation a cos q + b sin q = d: the root w of block 1.
+    Root(usize),
+    /// The sine of the angle from the first link to the second: block 4.
+    Links,
+    /// The root of the equation for the joint's length.
+    Length(usize),
+}
+
+impl Sign {
+    fn meaning(self, joints: &[usize]) -> String {
+        let joint = |place: usize| joints.get(place - 1).copied().unwrap_or_default();
+        match self {
+            Sign::Root(place) => {
+                let q = joint(place);
+                format!("the sign of a sin q{q} - b cos q{q} in the equation a cos q{q} + b sin q{q} = d of the block that gives q{q}")
+            }
+            Sign::Links => {
+                "the sign of the sine of the angle from the first link to the second, about the first of the two axes".into()
+            }
+            Sign::Length(place) => format!("the sign of the root in the quadratic equation for q{}", joint(place)),
+        }
+    }
+}
+
+/// A choice between two ways.
+fn two(bit: u32, ways: Pair, meaning: String) -> Choice {
+    Choice { bit, ways: ways.map(String::from).to_vec(), meaning }
+}
+
+/// A choice between the four roots of an equation on a circle.
+fn four(joint: usize) -> Choice {
+    let ways = (1..=4).map(|root| format!("root {root} of q{joint}")).collect();
+    Choice { bit: 0, ways, meaning: format!("the number of the root of the equation for q{joint}, anticlockwise from 0") }
+}
+
+/// The two ways of the wrist.
+fn wrist(bit: u32, joint: usize) -> Choice {
+    two(bit, WRIST, format!("the sign of sin q{joint}"))
 }
 
 const TURNING: &str = "regional";
@@ -32,54 +84,79 @@ fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: bool) -> Option<Re
     let case = |function, text, closed, most, choices, because| Some(Regional { function, text, closed, most, choices, because });
     if !constant {
         return match kinds {
-            [false, false, false] => {
-                case("regional_general", TURNING, false, 4, &[] as &[&str], "no two axes of {1} {2} {3} related for every pose")
-            }
+            [false, false, false] => case(
+                "regional_general",
+                TURNING,
+                false,
+                4,
+                &[] as &[(Pair, Sign)],
+                "no two axes of {1} {2} {3} related for every pose",
+            ),
             _ => None,
         };
     }
     let meet = |f: &Frame| is_zero(&f[0][3]);
     match kinds {
-        [false, false, false] if is_parallel(b) && !meet(b) && !is_parallel(a) => {
-            case("regional_elbow", TURNING, true, 4, &["shoulder", "elbow"], "axes {2} and {3} are parallel")
-        }
-        [false, false, false] if meet(a) && !is_parallel(a) && !(is_parallel(b) && meet(b)) => {
-            case("regional_crossing", TURNING, true, 4, &["elbow", "shoulder"], "axes {1} and {2} intersect")
-        }
+        [false, false, false] if is_parallel(b) && !meet(b) && !is_parallel(a) => case(
+            "regional_elbow",
+            TURNING,
+            true,
+            4,
+            &[(SHOULDER, Sign::Root(1)), (ELBOW, Sign::Links)],
+            "axes {2} and {3} are parallel",
+        ),
+        [false, false, false] if meet(a) && !is_parallel(a) && !(is_parallel(b) && meet(b)) => case(
+            "regional_crossing",
+            TURNING,
+            true,
+            4,
+            &[(ELBOW, Sign::Root(3)), (SHOULDER, Sign::Root(2))],
+            "axes {1} and {2} intersect",
+        ),
         [false, false, false] if !is_parallel(a) && !is_parallel(b) && !meet(b) => {
             case("regional_general", TURNING, false, 4, &[], "axes {1}, {2} and {3} neither are parallel nor intersect")
         }
-        [true, false, false] if is_parallel(b) && !meet(b) && !is_right(a) => {
-            case("regional_slide_elbow", ONE_SLIDE, true, 2, &["elbow"], "joint {1} slides, axes {2} and {3} are parallel")
-        }
+        [true, false, false] if is_parallel(b) && !meet(b) && !is_right(a) => case(
+            "regional_slide_elbow",
+            ONE_SLIDE,
+            true,
+            2,
+            &[(ELBOW, Sign::Links)],
+            "joint {1} slides, axes {2} and {3} are parallel",
+        ),
         [true, false, false] if is_right(a) && !(is_parallel(b) && meet(b)) => case(
             "regional_slide_across",
             ONE_SLIDE,
             true,
             4,
-            &["elbow", "shoulder"],
+            &[(ELBOW, Sign::Root(3)), (SHOULDER, Sign::Root(2))],
             "joint {1} slides at right angles to axis {2}",
         ),
         [true, false, false] if !is_parallel(b) && !is_right(a) => {
             case("regional_slide", ONE_SLIDE, false, 4, &[], "joint {1} slides")
         }
-        [false, true, false] if is_parallel(&compose(a, b)) && !is_right(a) => {
-            case("regional_mid_slide_elbow", ONE_SLIDE, true, 2, &["elbow"], "joint {2} slides, axes {1} and {3} are parallel")
-        }
+        [false, true, false] if is_parallel(&compose(a, b)) && !is_right(a) => case(
+            "regional_mid_slide_elbow",
+            ONE_SLIDE,
+            true,
+            2,
+            &[(ELBOW, Sign::Links)],
+            "joint {2} slides, axes {1} and {3} are parallel",
+        ),
         [false, true, false] if is_right(a) => case(
             "regional_mid_slide_across",
             ONE_SLIDE,
             true,
             4,
-            &["elbow", "slide"],
+            &[(ELBOW, Sign::Root(3)), (SLIDE, Sign::Length(2))],
             "joint {2} slides at right angles to axis {1}",
         ),
         [false, true, false] => case("regional_mid_slide", ONE_SLIDE, false, 4, &[], "joint {2} slides"),
         [true, true, false] if !is_parallel(a) => {
-            case("regional_plane_then_turn", SLIDES, true, 2, &["turn"], "joints {1} and {2} slide")
+            case("regional_plane_then_turn", SLIDES, true, 2, &[(TURN, Sign::Root(3))], "joints {1} and {2} slide")
         }
         [true, false, true] if !(is_parallel(a) && is_parallel(b)) => {
-            case("regional_slide_turn_slide", SLIDES, true, 2, &["turn"], "joints {1} and {3} slide")
+            case("regional_slide_turn_slide", SLIDES, true, 2, &[(TURN, Sign::Root(2))], "joints {1} and {3} slide")
         }
         [true, true, true] if spans_space(a, b) => case("regional_slides", SLIDES, true, 1, &[], "joints {1}, {2} and {3} slide"),
         _ => None,
@@ -97,14 +174,10 @@ impl Regional {
     /// Its choices as bits of the branch.
     fn choices(&self, joints: &[usize]) -> Vec<Choice> {
         if self.most == 4 && self.choices.is_empty() {
-            let ways = (1..=4).map(|root| format!("root {root} of q{}", joints[2])).collect();
-            return vec![Choice { bit: 0, ways }];
+            return vec![four(joints[2])];
         }
-        let two = |(bit, name): (usize, &&str)| Choice {
-            bit: bit as u32,
-            ways: vec![format!("{name} first"), format!("{name} second")],
-        };
-        self.choices.iter().enumerate().map(two).collect()
+        let choice = |(bit, (ways, sign)): (usize, &(Pair, Sign))| two(bit as u32, *ways, sign.meaning(joints));
+        self.choices.iter().enumerate().map(choice).collect()
     }
 
     fn because(&self, joints: &[usize]) -> String {
@@ -183,7 +256,7 @@ fn spherical_triple(chain: &Chain, closed: bool) -> Option<Class> {
         let because = case.because(&joints);
         let class = format!("spherical triple (axes {} through one point), {because}", listed(&joints[3..]));
         let mut choices = case.choices(&joints);
-        choices.push(Choice { bit: 2, ways: vec!["wrist not flipped".into(), "wrist flipped".into()] });
+        choices.push(wrist(2, joints[4]));
         Some(Class { construction: Construction::SphericalTriple(way, case), class, most: 2 * case.most, choices })
     })
 }
@@ -205,16 +278,16 @@ fn three_parallel(chain: &Chain) -> Option<Class> {
         if let Some([x, y]) = pair {
             class += &format!(", axes {} and {} intersect or are parallel", x.min(y), x.max(y));
         }
-        let two = |bit, names: [String; 2]| Choice { bit, ways: names.to_vec() };
-        let mut choices = if pair.is_some() {
-            vec![
-                two(0, ["shoulder first".into(), "shoulder second".into()]),
-                two(1, ["wrist first".into(), "wrist second".into()]),
-            ]
-        } else {
-            vec![Choice { bit: 0, ways: (1..=4).map(|root| format!("root {root} of q{}", joints[0])).collect() }]
+        // The equation that is free of the other joint comes first.
+        let (first, last) = ((SHOULDER, Sign::Root(1)), (WRIST, Sign::Root(5)));
+        let mut choices = match pair {
+            None => vec![four(joints[0])],
+            Some(_) => {
+                let [(x, one), (y, other)] = if bc { [first, last] } else { [last, first] };
+                vec![two(0, x, one.meaning(&joints)), two(1, y, other.meaning(&joints))]
+            }
         };
-        choices.push(two(2, ["elbow first".into(), "elbow second".into()]));
+        choices.push(two(2, ELBOW, Sign::Links.meaning(&joints)));
         Some(Class { construction: Construction::ThreeParallel(way, pair.is_none()), class, most: 8, choices })
     })
 }
@@ -269,7 +342,7 @@ fn three_prismatic(chain: &Chain) -> Option<Class> {
             "three prismatic joints (joints {})",
             listed(&(0..6).filter(|p| way.prismatic[*p]).map(|p| joints[p]).collect::<Vec<_>>())
         );
-        let choices = vec![Choice { bit: 0, ways: vec!["wrist not flipped".into(), "wrist flipped".into()] }];
+        let choices = vec![wrist(0, joints[r2])];
         Some(Class { construction: Construction::ThreePrismatic(way, [r1, r2, r3]), class, most: 2, choices })
     })
 }

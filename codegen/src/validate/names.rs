@@ -94,6 +94,16 @@ pub fn is_rust_name(name: &str) -> bool {
     !name.contains('#') && !KEYWORDS.contains(&name) && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
 }
 
+/// The name of the module of Rust for a file with this stem.
+pub fn module_name(stem: &str) -> String {
+    // No keyword begins and ends so, whatever the letter between.
+    let fits = |c: &char| is_rust_name(&format!("x{c}x"));
+    let name: String = stem.chars().map(|c| if fits(&c) { c } else { '_' }).collect();
+    // A digit in front, or a keyword.
+    let others = [format!("_{name}"), format!("{name}_")];
+    [name].into_iter().chain(others).find(|name| is_rust_name(name)).unwrap_or_else(|| "robot".into())
+}
+
 /// Whether a joint or a parameter may be called so.
 pub fn is_free_name(name: &str) -> bool {
     is_rust_name(name) && reserved(name).is_none()
@@ -116,6 +126,13 @@ mod tests {
     #[track_caller]
     fn check(name: &str, free: bool) {
         assert_eq!(reserved(name).is_none() && is_rust_name(name), free, "{name}");
+    }
+
+    #[test]
+    fn modules_are_named_after_their_files() {
+        for (stem, name) in [("scara", "scara"), ("my-robot.v2", "my_robot_v2"), ("2r", "_2r"), ("fn", "_fn"), ("", "robot")] {
+            assert_eq!(module_name(stem), name);
+        }
     }
 
     #[test]

@@ -20,15 +20,26 @@ fn main() {
                 (Scalar::F32, Trig::Fast, "f32_fast"),
             ] {
                 let name = format!("{robot}_{ending}");
-                Robot::new(path).scalar(scalar).trig(trig).file_stem(&name).generate();
+                Robot::new(path).scalar(scalar).trig(trig).file_stem(&name).inverse_kinematics().generate();
                 let module = fs::read_to_string(out.join(format!("{name}.rs"))).expect("the module was just written");
                 let runtime = fs::read_to_string(out.join(format!("{name}_runtime.rs"))).expect("it was written with it");
                 let texts = armgen_bare_calls::calls(&module) + &armgen_bare_calls::method_calls(&runtime);
                 fs::write(out.join(format!("{name}_calls.rs")), texts).expect("OUT_DIR can be written");
                 let include = |file: String| format!("    include!(concat!(env!(\"OUT_DIR\"), \"/{file}.rs\"));\n");
+                // One of inverse kinematics does for both trigonometries: it has its own.
+                let postures = fs::read_to_string(out.join(format!("{name}_ik.rs"))).expect("it was written with it");
+                let has_postures = trig == Trig::Libm && postures.contains("pub fn inverse_kinematics(");
                 let files = [name.clone(), format!("{name}_runtime"), format!("{name}_calls")].map(include).concat();
-                modules +=
-                    &format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{files}}}\n");
+                let mut module = |name: &str, files: &str| {
+                    modules += &format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{files}}}\n");
+                };
+                module(&name, &files);
+                if postures.contains("pub fn inverse_kinematics(") {
+                    module(&format!("{name}_ik"), &include(format!("{name}_ik")));
+                }
+                if has_postures {
+                    calls += &format!("    runtime::every_posture(&{name}::Nominal);\n    postures!({name}_ik);\n");
+                }
                 calls += &format!(
                     "    let (v, p) = (core::hint::black_box([0.5; {name}::DOF]), core::hint::black_box([0.5; {name}::PARAMETERS]));\n    \
                      let arguments = {name}::Arguments {{ q: v, dq: v, ddq: v, dqr: v, ddqr: v, tau: v, pi: p }};\n    \

@@ -53,13 +53,16 @@ pub(crate) struct Beside {
     /// robot.test.mjs, test_robot.py, robotTest.m in other languages
     #[arg(long, conflicts_with_all = ["batch", "functions"])]
     tests: bool,
-    /// Write a companion beside it, robot_bounds.rs: how far rounding can have taken each function's entries at a state
+    /// Write a companion beside it, robot_bounds.rs: how far rounding can have taken each function's entries at a state; with
+    /// --ik also how far an exact solution is from joint variables
     #[arg(long, conflicts_with = "batch")]
     bounds: bool,
-    /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is
+    /// Write the implementation of the runtime's traits beside it, robot_runtime.rs, to be included where robot.rs is; with
+    /// --ik that of InverseKinematics too, which looks for the module robot_ik beside the module robot
     #[arg(long)]
     runtime: bool,
-    /// Write the C interface beside it: robot.h, and robot_c.rs to be included where robot.rs is
+    /// Write the C interface beside it: robot.h, and robot_c.rs to be included where robot.rs is; with --ik robot_ik.h and
+    /// robot_ik_c.rs too
     #[arg(long)]
     c_abi: bool,
     /// Write a library of C and its module beside robot.py: robot_native.c and robot_native.py, for arrays of NumPy
@@ -254,15 +257,6 @@ fn unfit(
     }
 }
 
-/// The Rust module name for a file with this stem.
-fn module_name(stem: &str) -> String {
-    let fits = |c: &char| validate::is_rust_name(&format!("a{c}"));
-    let name: String = stem.chars().map(|c| if fits(&c) { c } else { '_' }).collect();
-    // A digit in front, or a keyword.
-    let others = [format!("_{name}"), format!("{name}_")];
-    [name].into_iter().chain(others).find(|name| validate::is_rust_name(name)).unwrap_or_else(|| "robot".into())
-}
-
 /// All files to write, or why none is written.
 fn files(
     source: &Source,
@@ -312,19 +306,33 @@ fn files(
                 armgen_verify::test_kit_in(source, ModuleText { language, text: &text }, &taken_in)
             }
         })?;
-        files.push((out.with_file_name(file), tests));
+        let inverse_kinematics = match beside.ik {
+            true => generated.inverse_kinematics_test(&format!("{stem}_ik.rs")),
+            false => String::new(),
+        };
+        files.push((out.with_file_name(file), tests + &inverse_kinematics));
     }
-    let all_solutions = if beside.ik { generated.inverse_kinematics() } else { String::new() };
     if beside.bounds {
-        let companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", module_name(&stem)))?;
+        let mut companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", validate::module_name(&stem)))?;
+        if beside.ik && generated.has_inverse_kinematics() {
+            companion += &armgen_verify::companion_of_inverse_kinematics(&generated)?;
+        }
         files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));
     }
     if beside.runtime {
-        files.push((out.with_file_name(format!("{stem}_runtime.rs")), generated.runtime.clone()));
+        let runtime = match beside.ik {
+            true => generated.runtime_with_inverse_kinematics(&validate::module_name(&format!("{stem}_ik"))),
+            false => generated.runtime.clone(),
+        };
+        files.push((out.with_file_name(format!("{stem}_runtime.rs")), runtime));
     }
     if beside.c_abi {
         files.push((out.with_extension("h"), generated.c.header.clone()));
         files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers.clone()));
+        if let Some(face) = beside.ik.then(|| generated.inverse_kinematics_for_c()).flatten() {
+            files.push((out.with_file_name(format!("{stem}_ik.h")), face.header));
+            files.push((out.with_file_name(format!("{stem}_ik_c.rs")), face.wrappers));
+        }
     }
     if beside.native {
         let native = generated.native();
@@ -332,7 +340,7 @@ fn files(
         files.push((out.with_file_name(format!("{stem}_native.c")), native.c));
     }
     if beside.ik {
-        files.push((out.with_file_name(format!("{stem}_ik.rs")), all_solutions));
+        files.push((out.with_file_name(format!("{stem}_ik.rs")), generated.inverse_kinematics()));
     }
     // The module first.
     let module = match language {

@@ -5,6 +5,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::literal::literal;
+use super::runtime::is_implemented;
 use super::signature::usize_literal;
 use super::{format, head};
 use crate::emit::origin::Origin;
@@ -23,6 +24,87 @@ pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematic
             head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(module, found)
         }
     }
+}
+
+/// The implementation of the runtime's trait, to follow those of the other traits: it names the module of inverse kinematics, which stands
+/// beside that of the robot, by its name. Nothing for an arm that has no construction, nor for a module without the kinematics that the trait
+/// builds on.
+pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKinematics, String>, ik: &str) -> String {
+    let Some(found) = found.as_ref().ok().filter(|_| is_implemented(module, "Kinematics")) else { return String::new() };
+    let signs = found.choices.iter().filter(|choice| choice.ways.len() == 2).fold(0u16, |signs, choice| signs | 1 << choice.bit);
+    let signs = Literal::u16_unsuffixed(signs);
+    let ik = format_ident!("{ik}");
+    let robot = quote!(armgen_runtime::robot);
+    let implementation = |of: TokenStream| {
+        quote! {
+            impl #robot::InverseKinematics<DOF, { super::#ik::MAX_SOLUTIONS }> for #of {
+                fn inverse_kinematics(
+                    &self,
+                    pose: &armgen_runtime::nalgebra::Matrix4<Real>,
+                ) -> #robot::Postures<Real, DOF, { super::#ik::MAX_SOLUTIONS }> {
+                    postures(pose)
+                }
+                fn branch_signs(&self) -> u16 {
+                    #signs
+                }
+                fn turns(&self) -> [bool; DOF] {
+                    JOINT_IS_REVOLUTE
+                }
+                fn position_limits(&self) -> [[Real; 2]; DOF] {
+                    POSITION_LIMITS
+                }
+            }
+        }
+    };
+    let nominal = implementation(quote!(Nominal));
+    let with_parameters = is_implemented(module, "Dynamics").then(|| implementation(quote!(WithParameters)));
+    let text = quote! {
+        #nominal
+        #with_parameters
+
+        /// The postures that the module of inverse kinematics finds, in the runtime's types. No parameter enters them.
+        fn postures(
+            pose: &armgen_runtime::nalgebra::Matrix4<Real>,
+        ) -> #robot::Postures<Real, DOF, { super::#ik::MAX_SOLUTIONS }> {
+            let t = core::array::from_fn(|i| core::array::from_fn(|j| pose[(i, j)]));
+            let found = super::#ik::inverse_kinematics(&t);
+            #robot::Postures {
+                verdict: match found.verdict {
+                    super::#ik::Verdict::Complete => #robot::Verdict::Complete,
+                    super::#ik::Verdict::Unreachable => #robot::Verdict::Unreachable,
+                    super::#ik::Verdict::NearDouble => #robot::Verdict::NearDouble,
+                    super::#ik::Verdict::Continuum => #robot::Verdict::Continuum,
+                    super::#ik::Verdict::Invalid => #robot::Verdict::Invalid,
+                },
+                miss: found.miss,
+                count: found.count,
+                all: found.all.map(|solution| #robot::Posture {
+                    q: armgen_runtime::nalgebra::SVector::from(solution.q),
+                    branch: solution.branch,
+                    double: solution.double,
+                    free: solution.free,
+                }),
+            }
+        }
+    };
+    "\n".to_owned() + &format(text)
+}
+
+/// The tests of inverse kinematics, to follow those of the module in `robot_test.rs`: `file` is that of the module of inverse kinematics. Nothing
+/// for an arm that has no construction.
+pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKinematics, String>, file: &str) -> String {
+    let Ok(found) = found else { return String::new() };
+    // Units of rounding times a condition that most random postures have.
+    let (near, far) = match module.scalar {
+        Scalar::F64 => ("1e-9", "1e-5"),
+        Scalar::F32 => ("2e-3", "0.1"),
+    };
+    let columns = if found.target == Target::Position { "3.." } else { "0.." };
+    include_str!("inverse_kinematics_test.rs.txt")
+        .replace("{file}", &format!("{file:?}"))
+        .replace("{near}", near)
+        .replace("{far}", far)
+        .replace("{columns}", columns)
 }
 
 /// What stands before the module of the blocks.
@@ -92,6 +174,7 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
     });
     let branches = branches(found);
     let count = usize_literal(branches.len());
+    let meanings = meanings(found);
     let loops = match &found.construction {
         Construction::SphericalTriple(way, _)
         | Construction::ThreeParallel(way, _)
@@ -118,8 +201,7 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
         pub const DOF: usize = #dof;
         /// At most so many postures reach a pose, where they are finitely many.
         pub const MAX_SOLUTIONS: usize = #most;
-        /// What a solution's `branch` says, by its number; empty where no solution has it. First and second are the ways in the order of the
-        /// building blocks; none for an arm whose solutions are ordered by their angles.
+        #(#[doc = #meanings])*
         pub const BRANCHES: [&str; #count] = [#(#branches),*];
         /// Whether a joint slides.
         const PRISMATIC: [bool; DOF] = [#(#prismatic),*];
@@ -131,8 +213,30 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
     }
 }
 
+/// The documentation of `BRANCHES`: what each bit says.
+pub(in crate::emit) fn meanings(found: &InverseKinematics) -> Vec<String> {
+    if found.choices.is_empty() {
+        return vec![
+            " The names of branches: none, for the solutions are ordered by their joint variables, and `branch` is 0.".into()
+        ];
+    }
+    let mut lines = vec![
+        " What a solution's `branch` says, by its number; empty where no solution has it. A bit is 0 in the first of its ways, where the sign".into(),
+        " that is named is positive (angles as the loop has them: with the `offsets` of `LOOP`):".into(),
+        String::new(),
+    ];
+    for choice in &found.choices {
+        let bits = match choice.ways.len() {
+            2 => format!("bit {}", choice.bit),
+            _ => format!("bits {} and {}", choice.bit, choice.bit + 1),
+        };
+        lines.push(format!(" - {bits}, {}: {}.", choice.ways.join(", "), choice.meaning));
+    }
+    lines
+}
+
 /// The names of the branches by number.
-fn branches(found: &InverseKinematics) -> Vec<String> {
+pub(in crate::emit) fn branches(found: &InverseKinematics) -> Vec<String> {
     let Some(last) = found.choices.last() else { return Vec::new() };
     let bits = |ways: usize| ways.next_power_of_two().trailing_zeros();
     let all = 1usize << (last.bit + bits(last.ways.len()));

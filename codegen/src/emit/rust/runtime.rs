@@ -83,7 +83,7 @@ pub(super) fn lacking(module: &Module) -> Vec<(&'static str, Vec<String>)> {
 }
 
 /// Whether a basic trait and those that it builds on are implemented.
-fn is_implemented(module: &Module, interface: &str) -> bool {
+pub(super) fn is_implemented(module: &Module, interface: &str) -> bool {
     let lacking = lacking(module);
     let needed = BASIC.into_iter().take_while(|name| *name != interface).chain([interface]);
     needed.into_iter().all(|name| lacking.iter().all(|(other, _)| *other != name))

@@ -72,7 +72,8 @@ pub fn method_calls(runtime: &str) -> String {
 fn implementation_calls(implementation: &syn::ItemImpl) -> Option<impl quote::ToTokens> {
     let (path, _) = implementation.trait_.as_ref()?;
     let name = &path.segments.last()?.ident;
-    if path.segments.first()?.ident != "armgen_runtime" {
+    // Inverse kinematics takes a pose: it is called by hand.
+    if path.segments.first()?.ident != "armgen_runtime" || name == "InverseKinematics" {
         return None;
     }
     let own = &implementation.self_ty;

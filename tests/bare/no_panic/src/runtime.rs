@@ -11,12 +11,13 @@ use armgen_runtime::{
     control::{
         Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits,
     },
+    inverse_kinematics::follow,
     linalg::{self, Damping, RightInverse},
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
     orientation,
     reference::{JointReference, OperationalReference, Pose, State},
-    robot::{array, matrix, Dynamics, Kinematics, Regressor},
+    robot::{array, matrix, Dynamics, InverseKinematics, Kinematics, Postures, Regressor},
     task::{Row, Task},
     trajectory::{
         JointSegment, JointTrajectory, Law, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, Turn,
@@ -43,6 +44,20 @@ fn time() -> Duration {
 
 fn keep<V>(value: V) {
     black_box(value);
+}
+
+/// All postures of a robot, and a branch of them along a path.
+#[inline(never)]
+pub(crate) fn every_posture<R, const N: usize, const K: usize>(robot: &R)
+where
+    R: InverseKinematics<N, K>,
+{
+    let pose = Pose { position: vector::<R::Real, 3>(), rotation: matrix(&black_box([numbers::<R::Real, 3>(); 3])) };
+    let postures = InverseKinematics::inverse_kinematics(robot, &Pose::frame(&pose));
+    keep(Postures::as_slice(&postures).len());
+    keep((InverseKinematics::branch_signs(robot), InverseKinematics::turns(robot), InverseKinematics::position_limits(robot)));
+    keep(InverseKinematics::unwrapped(robot, &vector(), &vector()));
+    keep(follow(robot, |_| black_box(pose), &vector(), black_box(9), |s, q| keep((s, *q))));
 }
 
 /// Calls every public function that runs on a microcontroller, for one robot and task.

@@ -1,0 +1,180 @@
+//! The C face of inverse kinematics: a header of its own, and wrappers that stand beside `robot_ik.rs`.
+//!
+//! Solutions cross as structs of one layout on both sides (`repr(C)`): numbers of the scalar, and 32 bits for everything else.
+
+use super::header::{comment, macros_of};
+use super::{prefix, CFace};
+use crate::emit::documentation::Block;
+use crate::emit::origin::Origin;
+use crate::emit::rust;
+use crate::inverse_kinematics::InverseKinematics;
+use crate::kinds::Scalar;
+use crate::program::Module;
+
+/// The verdicts in the order of their numbers, and what C is told of each.
+const VERDICTS: [(&str, &str); 5] = [
+    ("Complete", "all solutions are listed"),
+    ("Unreachable", "there is none; `miss` says by how much the construction missed"),
+    ("NearDouble", "the rounding of t decides about some"),
+    ("Continuum", "some joints can move while the end effector stays"),
+    ("Invalid", "an entry of t is not finite, or its rotation none"),
+];
+
+/// The C face of inverse kinematics; nothing where the arm has no construction.
+pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematics, String>, origin: &Origin) -> Option<CFace> {
+    let found = found.as_ref().ok()?;
+    Some(CFace { header: header(module, found, origin), wrappers: wrappers(module, origin) })
+}
+
+fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String {
+    let robot = prefix(module);
+    let upper = macros_of(&robot);
+    let said = |lines: &[String]| comment(&[Block::Verbatim(lines.to_vec())], &|_| String::new());
+    let real = match module.scalar {
+        Scalar::F64 => "double",
+        Scalar::F32 => "float",
+    };
+    let (dof, most) = (module.joints.len(), found.most);
+    let mut text = said(&origin.head(&[format!("Inverse kinematics: {}; at most {most} solutions.", found.class)]));
+    text += &format!("#ifndef ARMGEN_{upper}_IK_H\n#define ARMGEN_{upper}_IK_H\n\n#include <stdint.h>\n\n");
+    text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
+    text += &said(&["At most so many postures reach a pose, where they are finitely many.".into()]);
+    text += &format!("#define {upper}_MAX_SOLUTIONS {most}\n\n");
+    text += &said(&["What is known of the solutions, `verdict`:".into()]);
+    for (number, (name, means)) in VERDICTS.iter().enumerate() {
+        text += &format!("#define {upper}_{} {number} /* {means} */\n", spelled(name));
+    }
+    let branches = rust::branches(found);
+    if !branches.is_empty() {
+        let names = branches.iter().map(|name| format!("    \"{name}\"")).collect::<Vec<_>>().join(", \\\n");
+        text += "\n";
+        text += &said(&rust::meanings(found).iter().map(|line| line.trim().to_owned()).collect::<Vec<_>>());
+        text += &format!("#define {upper}_BRANCHES {{ \\\n{names}}}\n");
+    }
+    text += &format!(
+        "\n/* One posture. */\ntypedef struct {{\n    {real} q[{dof}]; /* joint variables: angles in (-pi, pi], rad; lengths, m */\n    \
+         uint32_t branch; /* which of the construction's ways leads here */\n    \
+         uint32_t is_double; /* 1: two solutions meet here */\n    \
+         uint32_t free; /* bit i: joint i + 1 can move while the end effector stays */\n}} {robot}_solution;\n\n\
+         /* All postures at a pose. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
+         {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
+         {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"
+    );
+    text += &said(&[format!(
+        "All joint variables that take the end effector to t, its pose in the base frame, T = (R p; 0 1) by rows, lengths in {}.",
+        "m; the last row is not read"
+    )]);
+    text += &format!("void {robot}_inverse_kinematics(\n    const {real} t[4][4],\n    {robot}_solutions *solutions);\n\n");
+    text +=
+        &said(&["Those of the postures that are within the limits of the joints, angles moved by whole turns into them.".into()]);
+    text += &format!("void {robot}_within_limits(\n    const {robot}_solutions *solutions,\n    {robot}_solutions *within);\n\n");
+    text += &said(&[
+        "The index of the posture whose largest difference from q is smallest, angles modulo whole turns; -1 if there is none."
+            .into(),
+    ]);
+    text += &format!("int32_t {robot}_nearest_to(\n    const {robot}_solutions *solutions,\n    const {real} q[{dof}]);\n");
+    text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+}
+
+/// A name of Rust as one of a macro: `NearDouble` as `NEAR_DOUBLE`.
+fn spelled(name: &str) -> String {
+    let mut text = String::new();
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && !text.is_empty() {
+            text.push('_');
+        }
+        text.push(c.to_ascii_uppercase());
+    }
+    text
+}
+
+fn wrappers(module: &Module, origin: &Origin) -> String {
+    let robot = prefix(module);
+    let mut numbers = String::new();
+    let mut verdicts = String::new();
+    for (number, (name, _)) in VERDICTS.iter().enumerate() {
+        numbers += &format!("        Verdict::{name} => {number},\n");
+        if number + 1 < VERDICTS.len() {
+            verdicts += &format!("        {number} => Verdict::{name},\n");
+        }
+    }
+    rust::head(origin, &[])
+        + &format!(
+            r#"// For C. Each wrapper believes what its declaration in the header says of its pointers.
+
+/// One posture, as C has it.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct CSolution {{
+    q: [Real; DOF],
+    branch: u32,
+    is_double: u32,
+    free: u32,
+}}
+
+/// All postures at a pose, as C has them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct CSolutions {{
+    verdict: u32,
+    count: u32,
+    miss: Real,
+    all: [CSolution; MAX_SOLUTIONS],
+}}
+
+fn to_c(solutions: &Solutions) -> CSolutions {{
+    let verdict = match solutions.verdict {{
+{numbers}    }};
+    let all = solutions.all.map(|s| CSolution {{ q: s.q, branch: u32::from(s.branch), is_double: u32::from(s.double), free: s.free }});
+    CSolutions {{ verdict, count: solutions.count as u32, miss: solutions.miss, all }}
+}}
+
+/// What C wrote may say anything: a count that is too large counts as all, a verdict that is none as `Invalid`.
+fn from_c(solutions: &CSolutions) -> Solutions {{
+    let verdict = match solutions.verdict {{
+{verdicts}        _ => Verdict::Invalid,
+    }};
+    let all = solutions.all.map(|s| Solution {{ q: s.q, branch: s.branch as u16, double: s.is_double != 0, free: s.free }});
+    Solutions {{ verdict, count: (solutions.count as usize).min(MAX_SOLUTIONS), miss: solutions.miss, all }}
+}}
+
+/// [`inverse_kinematics`] for C.
+///
+/// # Safety
+/// `t` leads to four rows of four numbers, `solutions` to memory for the struct, both aligned.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn {robot}_inverse_kinematics(t: *const [[Real; 4]; 4], solutions: *mut CSolutions) {{
+    // SAFETY: the caller promises that t points to such an array; nothing is written meanwhile.
+    let value = unsafe {{ inverse_kinematics(&*t) }};
+    // SAFETY: the caller promises that there is memory for the result.
+    unsafe {{ solutions.write(to_c(&value)) }}
+}}
+
+/// [`Solutions::within_limits`] for C.
+///
+/// # Safety
+/// Both pointers lead to the struct, aligned; they may lead to the same one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn {robot}_within_limits(solutions: *const CSolutions, within: *mut CSolutions) {{
+    // SAFETY: the caller promises that the pointer leads to the struct, all of it written.
+    let value = unsafe {{ from_c(&*solutions) }}.within_limits();
+    // SAFETY: the caller promises that there is memory for the result.
+    unsafe {{ within.write(to_c(&value)) }}
+}}
+
+/// [`Solutions::nearest_to`] for C: an index, -1 for none.
+///
+/// # Safety
+/// `solutions` leads to the struct, `q` to as many numbers as there are joints, both aligned.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn {robot}_nearest_to(solutions: *const CSolutions, q: *const [Real; DOF]) -> i32 {{
+    // SAFETY: the caller promises that the pointer leads to the struct, all of it written.
+    let value = unsafe {{ from_c(&*solutions) }};
+    // SAFETY: the caller promises that q points to an array of this length.
+    let nearest = value.nearest_to(unsafe {{ &*q }});
+    let place = nearest.and_then(|nearest| value.as_slice().iter().position(|solution| core::ptr::eq(solution, nearest)));
+    place.map_or(-1, |place| place as i32)
+}}
+"#
+        )
+}

@@ -1,0 +1,83 @@
+//! All postures that reach a pose, for robots whose inverse kinematics has a construction.
+
+use super::Kinematics;
+use nalgebra::{ComplexField, Matrix4, RealField, SVector};
+
+/// What is known of all the postures at a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// These are all; a change of the pose by its rounding keeps their number.
+    Complete,
+    /// There is none.
+    Unreachable,
+    /// A change of the pose by its own rounding could change their number; two that have met are listed once, as `double`.
+    NearDouble,
+    /// Some joints can move while the end effector stays.
+    Continuum,
+    /// The pose has an entry that is not finite, or no rotation.
+    Invalid,
+}
+
+/// One posture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Posture<T, const N: usize> {
+    /// Joint variables: angles in (-pi, pi], rad; lengths, m.
+    pub q: SVector<T, N>,
+    /// Which of the construction's ways leads here, as `BRANCHES` of the emitted module names them.
+    pub branch: u16,
+    /// Two postures meet here.
+    pub double: bool,
+    /// Bit i: joint i + 1 can move while the end effector stays.
+    pub free: u32,
+}
+
+/// All postures at a pose, at most `K`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Postures<T, const N: usize, const K: usize> {
+    /// What is known of them.
+    pub verdict: Verdict,
+    /// Where there is none: by how much the construction missed. A hint for people, not a bound; otherwise 0.
+    pub miss: T,
+    /// How many there are.
+    pub count: usize,
+    /// The postures; those from `count` on say nothing.
+    pub all: [Posture<T, N>; K],
+}
+
+impl<T, const N: usize, const K: usize> Postures<T, N, K> {
+    /// The postures, in the order of their branches; without branches in that of their joint variables.
+    pub fn as_slice(&self) -> &[Posture<T, N>] {
+        self.all.get(..self.count).unwrap_or(&self.all)
+    }
+}
+
+/// Inverse kinematics of an arm with `N` joints: all joint variables that reach a pose, at most `K` where they are finitely many.
+///
+/// Emitted by `armgen generate --ik --runtime`, and by build scripts with `inverse_kinematics()`.
+pub trait InverseKinematics<const N: usize, const K: usize>: Kinematics<N> {
+    /// All q with T_e(q) = `pose`, the pose of the end effector in the base frame, in the rows that the task asks for; lengths in m. Limits are not
+    /// looked at.
+    fn inverse_kinematics(&self, pose: &Matrix4<Self::Real>) -> Postures<Self::Real, N, K>;
+
+    /// The bits of a posture's `branch` that are signs: they stay as long as no singular posture is passed. The others number the roots of an
+    /// equation.
+    fn branch_signs(&self) -> u16;
+
+    /// Whether a joint turns, so that a whole turn more is the same posture.
+    fn turns(&self) -> [bool; N];
+
+    /// Lowest and highest joint variable, rad or m; infinite where the description gives none.
+    fn position_limits(&self) -> [[Self::Real; 2]; N];
+
+    /// The whole turns nearest to `near` added to the angles of `q`.
+    fn unwrapped(&self, q: &SVector<Self::Real, N>, near: &SVector<Self::Real, N>) -> SVector<Self::Real, N> {
+        let turn = <Self::Real as RealField>::two_pi();
+        let mut unwrapped = *q;
+        for ((x, y), turns) in unwrapped.iter_mut().zip(near.iter()).zip(self.turns()) {
+            if turns {
+                *x += turn * ((*y - *x) / turn).round();
+            }
+        }
+        unwrapped
+    }
+}
