@@ -10,7 +10,9 @@ use armgen_codegen::source::Span;
 use crate::number::Decimal;
 use crate::pose::Turn;
 
-/// Lengths up to this, m, and products of inertia up to this part of the largest moment are rounding.
+/// Lengths up to this, m, are rounding, as `armgen check` takes them for it: less than an atom.
+const SHORTEST: f64 = 1e-9;
+/// Products of inertia up to this part of the largest moment, and components of unit quaternions up to this, are rounding.
 const DUST: f64 = 1e-14;
 /// Angles as near to a multiple as this, rad, are mentioned where they are taken as written.
 const NEAR: f64 = 2e-3;
@@ -204,7 +206,7 @@ impl Snap {
 
     /// A length.
     pub(crate) fn length(&mut self, length: &Decimal) -> Written {
-        if self.tolerance > 0.0 && !length.is_zero() && length.value.abs() <= DUST {
+        if self.tolerance > 0.0 && !length.is_zero() && length.value.abs() <= SHORTEST {
             return self.take(length, "0".into(), 0.0, length.value.abs());
         }
         Written::as_is(length)
@@ -338,6 +340,17 @@ mod tests {
         angle("1e-6", 2e-5, "0", 0);
         angle("1e-4", 2e-5, "1e-4", 0);
         angle("0.7", 2e-5, "0.7", 0);
+    }
+
+    #[test]
+    fn lengths_below_that_of_an_atom_are_nothing() {
+        for (word, tolerance, taken) in [("-4.65661e-10", 2e-5, "0"), ("4.65661e-10", 0.0, "4.65661e-10"), ("2e-9", 2e-5, "2e-9")]
+        {
+            let mut snap = Snap::new(tolerance);
+            let written = snap.length(&read(word));
+            assert_eq!((written.text.as_str(), snap.snapped.len()), (taken, usize::from(taken == "0")), "{word}");
+            assert!(snap.snapped.iter().all(|s| s.offset >= 4.65661e-10), "what is left out counts");
+        }
     }
 
     #[track_caller]

@@ -203,7 +203,7 @@ impl Format for Urdf<'_, '_> {
             axis,
             axis_offset,
             position,
-            velocity: values.largest(velocity, "velocity", name),
+            velocity: values.largest_velocity(velocity, name),
             effort: values.largest(effort, "effort", name),
             viscous: values.coefficient(viscous, name),
             coulomb: values.coefficient(coulomb, name),

@@ -125,6 +125,28 @@ impl Values<'_> {
         None
     }
 
+    /// A largest velocity; a hundred, a thousand and so on, which files give where none is known, are taken as unknown, too.
+    ///
+    /// A URDF cannot leave the velocity out. No joint turns at 100 rad/s or slides at 100 m/s, and of limits in degrees few are such numbers.
+    pub(crate) fn largest_velocity(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
+        let value = self.largest(value, "velocity", joint)?;
+        let mut power = 100.0;
+        while power < value.value {
+            power *= 10.0;
+        }
+        if power != value.value {
+            return Some(value);
+        }
+        let message = format!(
+            "the velocity limit of joint `{}` is {}, which no joint reaches: it is taken as unknown",
+            shown(joint),
+            value.text
+        );
+        let help = "give the largest rate in rad/s, or m/s; URDFs have such a number where none is known";
+        self.report(Code::PlaceholderLimit, value.span, message, "left out", help);
+        None
+    }
+
     /// A coefficient of friction; 0 is none.
     pub(crate) fn coefficient(&mut self, value: Option<Decimal>, joint: &str) -> Option<Decimal> {
         let help = "friction takes energy from the arm, so its coefficient is at least 0";

@@ -5,8 +5,8 @@
 //! | kind | warns of | since |
 //! |---|---|---|
 //! | `implausible-reach` | a length beyond 30 m | the longest arms, of space stations and concrete pumps, have links of some 10 m; 0.05 m written in mm is 50 |
-//! | `implausible-mass` | masses of more than 2000 kg per cubic reach | industrial arms have 3 to 80; a solid cube of that side made of light alloy has 2700 |
-//! | `outlying-mass` | a link of five times the mass of all others together | the heaviest links of arms have about half of the whole |
+//! | `implausible-mass` | masses of more than 2000 kg per cube of what the arm spans | industrial arms have 3 to 80; a solid cube of that side made of light alloy has 2700 |
+//! | `outlying-mass` | a link of five times the mass of all others together, unless its inertia is that of a body of such a mass: that of a ball less dense than light alloy | the heaviest links of arms have about half of the whole; a torso below a head has more, but its inertia says so, too, and a slip of ten in a mass makes the ball 316 times as dense |
 //! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link |
 //! | `implausible-inertia` | a radius of gyration above what the link spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
 //! | `implausible-density` | an inertia below half of that of a lead ball of the link's mass | of all bodies of one mass and density a ball has the least |
@@ -14,7 +14,7 @@
 //! | `reflected-rotor` | a rotor that weighs more at its joint, ratio² I, than three times the whole arm at its reach | gears are chosen to match |
 //! | `inverted-ratio` | a ratio below 1/5 | gears of arms slow down: rotor speed over joint speed is at least 1 |
 //! | `implausible-gravity` | a size that no planet or moon of a lander has, to 2 in 100 | tables of planets |
-//! | `implausible-velocity` | a limit beyond 40 rad/s or 20 m/s | the fastest wrists of packing robots turn at 35 |
+//! | `implausible-velocity` | a limit beyond 60 rad/s or 20 m/s | the fastest wrists of packing robots turn at 35, legs without much of a gear at 52; the slowest arms make 60 degrees per second |
 //! | `active-friction` | friction that drives the joint somewhere below its velocity limit | friction takes energy; fits to noisy measurements do not know that |
 //! | `dust` | a length or an angle that is not 0 but below 1e-9 | less than the size of an atom at any reach; exact equations carry it along |
 
@@ -29,11 +29,12 @@ const LONGEST: f64 = 30.0;
 const MASS_PER_CUBE: f64 = 2000.0;
 const OUTLYING: f64 = 5.0;
 const LEAD: f64 = 11_340.0;
+const LIGHT_ALLOY: f64 = 2700.0;
 const OF_LEAD_BALL: f64 = 0.5;
 const HEAVY_PART: f64 = 0.05;
 const REFLECTED: f64 = 3.0;
 const LEAST_RATIO: f64 = 0.2;
-const FASTEST_TURN: f64 = 40.0;
+const FASTEST_TURN: f64 = 60.0;
 const FASTEST_SLIDE: f64 = 20.0;
 const DUST: f64 = 1e-9;
 /// Shorter arms, m, are those of examples: nothing follows from their size.
@@ -174,6 +175,35 @@ fn gravity(description: &RobotDescription, context: &mut Context<'_>) {
     context.report(Code::ImplausibleGravity, gravity.span, message, "its size", help);
 }
 
+/// How far the bodies of a link lie from its frame, m: each as far beyond its centre of mass as that is from the frame.
+fn extent(link: &BodyDescription, context: &mut Context<'_>) -> f64 {
+    let mut size = |value: &Value| number(value, context).powi(2);
+    let twice_com = |body: &BodyDescription, size: &mut dyn FnMut(&Value) -> f64| {
+        2.0 * body.com.as_ref().map_or(0.0, |com| com.value.iter().map(size).sum::<f64>().sqrt())
+    };
+    let mut farthest = twice_com(link, &mut size);
+    for other in &link.attached {
+        let origins = other.origin.iter().flat_map(|pose| &pose.elements).filter_map(|element| element.xyz.as_ref());
+        let mut there = twice_com(&other.body, &mut size);
+        origins.for_each(|xyz| there += xyz.value.iter().map(&mut size).sum::<f64>().sqrt());
+        farthest = farthest.max(there);
+    }
+    farthest
+}
+
+/// The largest of xx, yy and zz, kg m²; 0 where there is no tensor.
+fn largest_moment(link: &BodyDescription, context: &mut Context<'_>) -> f64 {
+    let Some(inertia) = &link.inertia else { return 0.0 };
+    let [xx, _, yy, _, _, zz] = &inertia.elements;
+    [xx, yy, zz].into_iter().map(|value| number(value, context)).fold(0.0, f64::max)
+}
+
+/// The density, kg/m³, of the ball with this mass and moment of inertia; infinite without one.
+fn density_of_ball(mass: f64, inertia: f64) -> f64 {
+    // 2/5 m r².
+    mass / (4.0 / 3.0 * std::f64::consts::PI * (2.5 * inertia.max(0.0) / mass).powf(1.5))
+}
+
 impl Arm<'_> {
     /// Whether masses are doubted: then nothing follows from them.
     fn check_masses(&self, context: &mut Context<'_>) -> bool {
@@ -186,18 +216,21 @@ impl Arm<'_> {
         };
         let span = written(expression, context);
         let (mass, called) = (self.masses[heaviest], call(heaviest, &self.joints[heaviest]));
-        if self.reach > SMALL_REACH && total > MASS_PER_CUBE * self.reach.powi(3) {
+        let size =
+            self.reach + self.joints.last().and_then(|joint| joint.link.as_ref()).map_or(0.0, |link| extent(link, context));
+        if self.reach > SMALL_REACH && total > MASS_PER_CUBE * size.powi(3) {
             let message = format!(
                 "the links weigh {} kg, on an arm of {} m: more than solid metal; the heaviest is the link of joint {called}",
                 short(total),
-                short(self.reach)
+                short(size)
             );
             let help = format!("masses are in kg, lengths in m; if this is in g, write {}", short(mass / 1e3));
             context.report(Code::ImplausibleMass, span, message, "in g?", help);
             return true;
         }
         let with_mass = self.masses.iter().filter(|mass| **mass > 0.0).count();
-        if with_mass > 2 && mass > OUTLYING * (total - mass) {
+        let inertia = self.joints[heaviest].link.as_ref().map_or(0.0, |link| largest_moment(link, context));
+        if with_mass > 2 && mass > OUTLYING * (total - mass) && density_of_ball(mass, inertia) > LIGHT_ALLOY {
             let message = format!(
                 "the link of joint {called} weighs {} kg, {} times as much as all others together",
                 short(mass),
@@ -248,9 +281,7 @@ impl Arm<'_> {
             }
             return;
         };
-        let elements: Vec<f64> = inertia.elements.iter().map(|value| number(value, context)).collect();
-        let [xx, _, yy, _, _, zz] = elements[..] else { return };
-        let largest = xx.max(yy).max(zz);
+        let largest = largest_moment(link, context);
         if largest <= 0.0 {
             return;
         }

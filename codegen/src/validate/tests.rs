@@ -419,6 +419,35 @@ fn published_arms_are_plausible() {
     assert_eq!(warned("tests/data/stanford.yaml"), [Code::ImplausibleCom.name(); 3]);
 }
 
+/// Warnings of the values of an arm of three joints 0.05 m apart, whose links weigh 2, 1 and `last` kg.
+#[track_caller]
+fn check_values(last: &str, codes: &[Code]) {
+    let joint = |name: &str, link: &str| {
+        format!("  - {{name: {name}, type: revolute, a: 0, alpha: pi/2, d: 0.05, theta: 0, limits: {{velocity: 52.4}}, link: {link}}}\n")
+    };
+    let ball = |mass: u8| format!("{{mass: {mass}, inertia: {{xx: 0.01, yy: 0.01, zz: 0.01}}}}");
+    let joints = [joint("j1", &ball(2)), joint("j2", &ball(1)), joint("j3", last)].concat();
+    let source =
+        Source::new("robot.yaml", format!("name: torso\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{joints}"));
+    let (_, diagnostics) = read(&source);
+    let found: Vec<_> = diagnostics.iter().map(|d| d.code.name()).collect();
+    assert_eq!(found, codes.iter().map(|code| code.name()).collect::<Vec<_>>(), "{}", diagnostics.render(&source, Colour::Never));
+}
+
+/// A torso above its hips: most of the mass, beyond the last frame, and with the inertia of what it is. The same mass without that is a
+/// slip, of a point or of a unit.
+#[test]
+fn a_heavy_last_link_is_doubted_where_its_inertia_or_its_size_does_not_bear_it() {
+    let torso = |mass: u32, far: f64, moment: f64| {
+        format!("{{mass: {mass}, com: [0, 0, {far}], inertia: {{xx: {moment}, yy: {moment}, zz: {moment}}}}}")
+    };
+    check_values(&torso(17, 0.15, 0.3), &[]);
+    check_values(&torso(17, 0.15, 0.03), &[Code::OutlyingMass]);
+    check_values("{mass: 17, com: [0, 0, 0.15], inertia: {}}", &[Code::OutlyingMass]);
+    check_values(&torso(17000, 0.15, 300.0), &[Code::ImplausibleMass]);
+    check_values(&torso(17, 0.01, 0.3), &[Code::ImplausibleMass]);
+}
+
 #[test]
 fn warnings_can_be_allowed() {
     let text = arm(&[("gravity: [0, 0, -9.81]", "gravity: [0, 0, -981]")]);
