@@ -13,8 +13,9 @@
 //! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only those combinations are
 //! states that are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
-//! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model ([`Settle`]). A start from
-//! another estimate is a transient, not a verdict ([`analyse_start`]).
+//! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model, and a law with neither
+//! rests off its reference, as far as its error makes up for the model ([`Settle`], [`Rest`]). A start from another estimate is a
+//! transient, not a verdict ([`analyse_start`]).
 //!
 //! What this proves: that small deviations from rest die away at these postures. It proves nothing of a motion, in which
 //! Y(q, dq, dq_r, ddq_r) excites what rest does not, and nothing of a start far from the truth. That is what a [`Rehearsal`] looks at.
@@ -39,15 +40,17 @@
 //! ```
 
 mod delay;
+mod difference;
 mod eigenvalues;
 mod error;
 mod exponential;
 mod feedback;
 mod motion;
+mod rest;
 mod sampled_loop;
 
 pub use delay::Delay;
 pub use error::StabilityError;
-pub use feedback::{Feedback, Linearise, Settle};
+pub use feedback::{Feedback, Linearise, Rest, Settle};
 pub use motion::{Growth, Motion, ReferenceLost, Rehearsal, Rehearse, Weights};
 pub use sampled_loop::{analyse, analyse_start, Report, SampledLoop, StablePeriod};

@@ -225,11 +225,11 @@ fn deviations_in_motion_grow_by_the_eigenvalues() {
         })
         .collect();
     let start = State { q: joints[0].q, dq: joints[0].dq };
-    let rehearsal = Rehearsal { plant: &Mass, joints: &joints, start, period: h, delay: Delay::NONE };
+    let rehearsal = Rehearsal { plant: &FREE, joints: &joints, start, period: h, delay: Delay::NONE };
     // |z|^2 = 1 + k_P h^2/2 - k_D h where the eigenvalues are complex.
     for (k_p, k_d) in [(1e4f64, 6.0f64), (1e4, 4.0), (400.0, 0.6)] {
         let controller = InverseDynamics::new([k_p], [k_d]).unwrap();
-        let motion = rehearsal.of(&Mass, &controller, &joints).unwrap();
+        let motion = rehearsal.of(&FREE, &controller, &joints).unwrap();
         let rate = (1.0 + k_p * h * h / 2.0 - k_d * h).ln() / 2.0 / h;
         println!("{motion:?} {rate}");
         close("rate", motion.growth.rate, rate, 0.05 * rate.abs());
@@ -238,17 +238,22 @@ fn deviations_in_motion_grow_by_the_eigenvalues() {
     }
     let late = Rehearsal { delay: Delay::samples(3), ..rehearsal.clone() };
     let controller = InverseDynamics::new([2000.0], [20.0]).unwrap();
-    assert!(!rehearsal.of(&Mass, &controller, &joints).unwrap().diverges());
-    assert!(late.of(&Mass, &InverseDynamics::new([1e5], [400.0]).unwrap(), &joints).unwrap().diverges());
+    assert!(!rehearsal.of(&FREE, &controller, &joints).unwrap().diverges());
+    assert!(late.of(&FREE, &InverseDynamics::new([1e5], [400.0]).unwrap(), &joints).unwrap().diverges());
     let nothing = Rehearsal { joints: &[], ..rehearsal.clone() };
-    assert_eq!(nothing.of(&Mass, &controller, &[]), Err(StabilityError::NoSample));
+    assert_eq!(nothing.of(&FREE, &controller, &[]), Err(StabilityError::NoSample));
     let never = Rehearsal { period: 0.0, ..rehearsal };
-    assert_eq!(never.of(&Mass, &controller, &joints), Err(StabilityError::Period));
+    assert_eq!(never.of(&FREE, &controller, &joints), Err(StabilityError::Period));
 }
 
-/// A point mass on a line, without friction.
+/// A point mass of 2 kg on a line, without friction, held back by a force and a spring.
 #[derive(Clone, Debug)]
-struct Mass;
+struct Mass {
+    force: f64,
+    stiffness: f64,
+}
+
+const FREE: Mass = Mass { force: 0.0, stiffness: 0.0 };
 
 impl armgen_runtime::robot::Kinematics<1> for Mass {
     type Real = f64;
@@ -275,8 +280,8 @@ impl Dynamics<1> for Mass {
     fn coriolis_matrix(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>) -> SMatrix<f64, 1, 1> {
         SMatrix::zeros()
     }
-    fn gravity(&self, _: &SVector<f64, 1>) -> SVector<f64, 1> {
-        SVector::zeros()
+    fn gravity(&self, q: &SVector<f64, 1>) -> SVector<f64, 1> {
+        vector![self.force] + q * self.stiffness
     }
     fn friction(&self, _: &SVector<f64, 1>) -> SVector<f64, 1> {
         SVector::zeros()
@@ -288,17 +293,17 @@ impl Dynamics<1> for Mass {
             gravity: self.gravity(q),
         }
     }
-    fn inverse_dynamics(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>, ddq: &SVector<f64, 1>) -> SVector<f64, 1> {
-        ddq * 2.0
+    fn inverse_dynamics(&self, q: &SVector<f64, 1>, _: &SVector<f64, 1>, ddq: &SVector<f64, 1>) -> SVector<f64, 1> {
+        ddq * 2.0 + self.gravity(q)
     }
-    fn forward_dynamics(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>, tau: &SVector<f64, 1>) -> SVector<f64, 1> {
-        tau / 2.0
+    fn forward_dynamics(&self, q: &SVector<f64, 1>, _: &SVector<f64, 1>, tau: &SVector<f64, 1>) -> SVector<f64, 1> {
+        (tau - self.gravity(q)) / 2.0
     }
     fn kinetic_energy(&self, _: &SVector<f64, 1>, dq: &SVector<f64, 1>) -> f64 {
         dq[0] * dq[0]
     }
-    fn potential_energy(&self, _: &SVector<f64, 1>) -> f64 {
-        0.0
+    fn potential_energy(&self, q: &SVector<f64, 1>) -> f64 {
+        self.force * q[0] + 0.5 * self.stiffness * q[0] * q[0]
     }
 }
 
@@ -306,7 +311,7 @@ impl Dynamics<1> for Mass {
 fn a_sampled_mass_has_the_eigenvalues_of_the_closed_form() {
     // z^2 - (2 - k_P h^2/2 - k_D h) z + (1 + k_P h^2/2 - k_D h) = 0, stable while k_P h < 2 k_D and k_D h < 2.
     let loop_of =
-        |k_p: f64, k_d: f64| SampledLoop::new(&Mass, &Mass, &InverseDynamics::new([k_p], [k_d]).unwrap(), &vector![0.0]).unwrap();
+        |k_p: f64, k_d: f64| SampledLoop::new(&FREE, &FREE, &InverseDynamics::new([k_p], [k_d]).unwrap(), &vector![0.0]).unwrap();
     for (k_p, k_d, h) in [(100.0f64, 5.0f64, 1e-2f64), (1e4, 200.0, 1e-3), (1e3, 1.0, 1e-3)] {
         let (b, c) = (2.0 - k_p * h * h / 2.0 - k_d * h, 1.0 + k_p * h * h / 2.0 - k_d * h);
         let disc = b * b - 4.0 * c;
@@ -319,10 +324,40 @@ fn a_sampled_mass_has_the_eigenvalues_of_the_closed_form() {
     close("limit by the velocity gain", limit, 2.0 / 50.0, 1e-7);
 }
 
+/// 2 K_P (q_d - q) = f + k q, where the gains hold the spring; nowhere where it pushes more than they do.
+#[test]
+fn a_law_without_an_integral_rests_off_its_reference() {
+    let [k_p, k_d] = [[100.0], [20.0]];
+    let of = |plant: &Mass| {
+        analyse(plant, &FREE, &InverseDynamics::new(k_p, k_d).unwrap(), &[vector![0.3]], 1e-3, Delay::NONE).unwrap()
+    };
+    for (force, stiffness) in [(40.0, 6.0), (-400.0, 60.0), (10.0, -150.0)] {
+        let report = of(&Mass { force, stiffness });
+        let q = (200.0 * 0.3 - force) / (200.0 + stiffness);
+        close("offset", report.offset, f64::abs(0.3 - q), 1e-8);
+        assert!(report.adrift.is_none() && report.is_stable(), "{report:?}");
+    }
+    let report = of(&Mass { force: 1.0, stiffness: -300.0 });
+    assert_eq!((report.adrift, report.is_stable()), (Some(0), false));
+    // Of two postures it is the second that is not held: this force alone holds the mass at the first.
+    let pushed = Mass { force: 90.0, stiffness: -300.0 };
+    let law = PdGravity::new([250.0], k_d).unwrap();
+    let report = analyse(&pushed, &FREE, &law, &[vector![0.3], vector![0.4]], 1e-3, Delay::NONE).unwrap();
+    assert_eq!(report.adrift, Some(1));
+    close("offset", report.offset, 0.0, 1e-12);
+
+    // Beyond its boundary layer the robust law adds rho, whatever the error: 2 (K_P e + rho) = f, and K_P alone is its stiffness.
+    let (rho, force) = (5.0, 40.0);
+    let robust = Robust::new(k_p, k_d, [1.0], [1.0], BoundaryLayer { rho, epsilon: 1e-6 }).unwrap();
+    let report = analyse(&Mass { force, stiffness: 0.0 }, &FREE, &robust, &[vector![0.3]], 1e-3, Delay::NONE).unwrap();
+    close("offset beyond the layer", report.offset, (force / 2.0 - rho) / k_p[0], 1e-8);
+    close("radius beyond the layer", report.radius, of(&Mass { force, stiffness: 0.0 }).radius, 1e-7);
+}
+
 #[test]
 fn every_sample_of_delay_counts() {
     // Nearly without stiffness v_{n+1} = v_n - k_D h v_{n-d}, stable while k_D h < 2 cos(d pi / (2 d + 1)) (Levin, May, 1976).
-    let sampled = SampledLoop::new(&Mass, &Mass, &InverseDynamics::new([1e-4], [50.0]).unwrap(), &vector![0.0]).unwrap();
+    let sampled = SampledLoop::new(&FREE, &FREE, &InverseDynamics::new([1e-4], [50.0]).unwrap(), &vector![0.0]).unwrap();
     for d in 0..=10usize {
         let expected = 2.0 * (d as f64 * std::f64::consts::PI / (2 * d + 1) as f64).cos() / 50.0;
         let StablePeriod::UpTo(limit) = sampled.largest_stable_period(1e-3, Delay::samples(d)).unwrap() else { panic!("{d}") };

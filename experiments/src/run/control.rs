@@ -403,7 +403,10 @@ where
             // Two decimals, more where these would say 1.00.
             let radius = report.radius;
             let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
-            said.push(format!("unstable at rest: spectral radius {radius}; {holds}"));
+            said.push(match report.adrift {
+                Some(_) => "cannot rest on its path: the gains do not hold what the model leaves out".to_owned(),
+                None => format!("unstable at rest: spectral radius {radius}; {holds}"),
+            });
         }
         let seconds = |t: f64| number((t * 1e4).round() / 1e4);
         if let Some(motion) = report.motion.filter(Motion::diverges) {

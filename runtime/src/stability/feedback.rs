@@ -4,6 +4,7 @@
 //! At rest C dq is of second order and drops out, so the derivatives are B, F and dg/dq of the model. B and F come from the model
 //! exactly; dg/dq by central differences of g, the only approximation (to the square of their step, cube root of epsilon).
 
+use super::{difference::derivative, rest::rest};
 use crate::{
     control::{Adaptive, InverseDynamics, OperationalSpace, PdGravity, Robust},
     linalg::{lit, RightInverse},
@@ -38,6 +39,17 @@ impl<T: RealField + Copy, const N: usize> Feedback<T, N> {
     }
 }
 
+/// A law where the arm rests under it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest<T, const N: usize> {
+    /// Where it rests; the reference itself where there is no such posture.
+    pub q: SVector<T, N>,
+    /// Whether it can rest: the error that makes up for the model does not grow without bound on the way to the plant.
+    pub is_held: bool,
+    /// The feedback about `q`.
+    pub feedback: Feedback<T, N>,
+}
+
 /// A controller that can be linearised at rest.
 pub trait Linearise<R: Dynamics<N>, const N: usize> {
     /// Its feedback about the posture `q`, with the reference at rest there; `None` where the law is singular.
@@ -47,10 +59,10 @@ pub trait Linearise<R: Dynamics<N>, const N: usize> {
 /// A controller that can be linearised where the arm can rest under it.
 ///
 /// Rest asks the torque of the plant's gravity: estimates are then the parameters of the plant (the bound of their projection where that
-/// excludes them; frozen ones stay), and integrals are what makes up for the model.
+/// excludes them; frozen ones stay), integrals are what makes up for the model, and a law with neither rests off its reference.
 pub trait Settle<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>: Linearise<R, N> {
-    /// Its feedback about rest at `q`; `None` where the law is singular.
-    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>>;
+    /// Its feedback about rest under the reference `q`; `None` where the law is singular.
+    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>>;
 }
 
 /// y = B_m^-1 (g - g_m), `m` for the model: the acceleration that the law must add at rest for the plant's gravity g.
@@ -60,22 +72,6 @@ fn offset<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
     q: &SVector<R::Real, N>,
 ) -> Option<SVector<R::Real, N>> {
     Some(model.inertia_matrix(q).cholesky()?.solve(&(plant.gravity(q) - model.gravity(q))))
-}
-
-/// Jacobian of `f` at `x` by central differences.
-pub(crate) fn derivative<T: RealField + Copy, const N: usize>(
-    x: &SVector<T, N>,
-    f: impl Fn(&SVector<T, N>) -> SVector<T, N>,
-) -> SMatrix<T, N, N> {
-    let h = T::default_epsilon().cbrt();
-    let mut jacobian = SMatrix::<T, N, N>::zeros();
-    for i in 0..N {
-        let (mut low, mut high) = (*x, *x);
-        low[i] -= h;
-        high[i] += h;
-        jacobian.set_column(i, &((f(&high) - f(&low)) / (high[i] - low[i])));
-    }
-    jacobian
 }
 
 /// Viscous friction F_v, column by column: F(2 e_i) - F(e_i), in which Coulomb friction cancels, less 7/12 of the second difference
@@ -103,15 +99,29 @@ fn rows_scaled<T: RealField + Copy, const R: usize, const N: usize>(k: &SVector<
     SMatrix::from_fn(|i, j| k[i] * m[(i, j)])
 }
 
+/// Of u = B y + n about the posture `q`, with dy/dq = -`k_p`, dy/dv = -`k_d`, and y = `y` at rest.
 fn inverse_dynamics<R: Dynamics<N>, const N: usize>(
     model: &R,
     q: &SVector<R::Real, N>,
-    k_p: &SVector<R::Real, N>,
-    k_d: &SVector<R::Real, N>,
+    y: &SVector<R::Real, N>,
+    [k_p, k_d]: [SMatrix<R::Real, N, N>; 2],
 ) -> Feedback<R::Real, N> {
     let b = model.inertia_matrix(q);
-    let dg = derivative(q, |q| model.gravity(q));
-    Feedback::without_memory(dg - columns_scaled(&b, k_p), viscous(model) - columns_scaled(&b, k_d))
+    let dg = derivative(q, |q| model.gravity(q) + model.inertia_matrix(q) * y);
+    Feedback::without_memory(dg - b * k_p, viscous(model) - b * k_d)
+}
+
+/// Where a law rests whose torque at rest is g^ + `held`, and its feedback there.
+fn rest_off<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
+    plant: &P,
+    model: &R,
+    reference: &SVector<R::Real, N>,
+    held: impl Fn(&SVector<R::Real, N>) -> SVector<R::Real, N>,
+    feedback: impl Fn(&SVector<R::Real, N>) -> Feedback<R::Real, N>,
+) -> Rest<R::Real, N> {
+    let found = rest(reference, held, |q| plant.gravity(q) - model.gravity(q));
+    let q = found.unwrap_or(*reference);
+    Rest { q, is_held: found.is_some(), feedback: feedback(&q) }
 }
 
 impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for PdGravity<R::Real, N> {
@@ -121,40 +131,67 @@ impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for PdGravity<R::Real, N> {
     }
 }
 
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for PdGravity<R::Real, N> {
+    fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        let feedback = self.linearise(model, reference)?;
+        let held = |q: &SVector<R::Real, N>| self.k_p.component_mul(&(reference - q));
+        Some(rest_off(plant, model, reference, held, |q| self.linearise(model, q).unwrap_or_else(|| feedback.clone())))
+    }
+}
+
 impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for InverseDynamics<R::Real, N> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
-        Some(inverse_dynamics(model, q, &self.k_p, &self.k_d))
+        Some(self.about(model, q, &SVector::zeros()))
     }
 }
 
-impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for PdGravity<R::Real, N> {
-    fn settle(&self, _: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
-        self.linearise(model, q)
+impl<T: RealField + Copy, const N: usize> InverseDynamics<T, N> {
+    /// The feedback at rest at `q`, the reference `e` from there.
+    fn about<R: Dynamics<N, Real = T>>(&self, model: &R, q: &SVector<T, N>, e: &SVector<T, N>) -> Feedback<T, N> {
+        let gains = [SMatrix::from_diagonal(&self.k_p), SMatrix::from_diagonal(&self.k_d)];
+        inverse_dynamics(model, q, &self.k_p.component_mul(e), gains)
     }
 }
 
-/// At rest B^ y holds the arm, y the same at all times; so B^ y joins the derivative by q.
-macro_rules! settle_with_offset {
-    ($controller:ident) => {
-        impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for $controller<R::Real, N> {
-            fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
-                let mut feedback = self.linearise(model, q)?;
-                let y = offset(plant, model, q)?;
-                feedback.position += derivative(q, |q| model.inertia_matrix(q) * y);
-                Some(feedback)
-            }
-        }
-    };
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for InverseDynamics<R::Real, N> {
+    fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        let held = |q: &SVector<R::Real, N>| model.inertia_matrix(q) * self.k_p.component_mul(&(reference - q));
+        Some(rest_off(plant, model, reference, held, |q| self.about(model, q, &(reference - q))))
+    }
 }
 
-settle_with_offset!(InverseDynamics);
-settle_with_offset!(Robust);
-
-/// Inside the boundary layer, where the law is linear: the added term raises the gains to K_P + rho/eps Q12 and K_D + rho/eps Q22.
+/// Inside the boundary layer the added term is linear and raises the gains to K_P + rho/eps Q12 and K_D + rho/eps Q22.
 impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for Robust<R::Real, N> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
-        let slope = self.layer.rho / self.layer.epsilon;
-        Some(inverse_dynamics(model, q, &(self.k_p + self.q.q12 * slope), &(self.k_d + self.q.q22 * slope)))
+        Some(self.about(model, q, &SVector::zeros()))
+    }
+}
+
+impl<T: RealField + Copy, const N: usize> Robust<T, N> {
+    /// y at rest, the reference `e` from there, and dw/dz: rho/eps 1 inside the layer, rho/|z| (1 - z z'/|z|²) outside.
+    fn at_rest(&self, e: &SVector<T, N>) -> (SVector<T, N>, SMatrix<T, N, N>) {
+        let z = self.q.q12.component_mul(e);
+        let size = z.norm();
+        let slope = self.layer.rho / size.max(self.layer.epsilon);
+        let mut along = SMatrix::identity();
+        if size > self.layer.epsilon {
+            along -= z * z.transpose() / (size * size);
+        }
+        (self.k_p.component_mul(e) + z * slope, along * slope)
+    }
+
+    /// The feedback at rest at `q`, the reference `e` from there.
+    fn about<R: Dynamics<N, Real = T>>(&self, model: &R, q: &SVector<T, N>, e: &SVector<T, N>) -> Feedback<T, N> {
+        let (y, slope) = self.at_rest(e);
+        let gain = |linear, added| SMatrix::from_diagonal(linear) + columns_scaled(&slope, added);
+        inverse_dynamics(model, q, &y, [gain(&self.k_p, &self.q.q12), gain(&self.k_d, &self.q.q22)])
+    }
+}
+
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for Robust<R::Real, N> {
+    fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        let held = |q: &SVector<R::Real, N>| model.inertia_matrix(q) * self.at_rest(&(reference - q)).0;
+        Some(rest_off(plant, model, reference, held, |q| self.about(model, q, &(reference - q))))
     }
 }
 
@@ -192,8 +229,9 @@ where
     P: Regressor<N, K>,
     R: Regressor<N, K, Real = P::Real>,
 {
-    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
-        self.at_rest(&plant.parameters()).linearise(model, q)
+    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        let feedback = self.at_rest(&plant.parameters()).linearise(model, q)?;
+        Some(Rest { q: *q, is_held: true, feedback })
     }
 }
 
@@ -241,13 +279,13 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
     }
 }
 
-/// At rest B^ J^+ K_I int holds the arm, J^+ K_I int = y; it joins the derivative by q.
+/// At rest B^ J^+ K_I int holds the arm, J^+ K_I int = y; it joins the derivative by q. Rows without an integral count as held, too.
 impl<P, R, const N: usize, const M: usize> Settle<P, R, N> for OperationalSpace<R::Real, N, M>
 where
     P: Dynamics<N>,
     R: Dynamics<N, Real = P::Real>,
 {
-    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
         let mut feedback = self.linearise(model, q)?;
         let a = self.task.jacobian(&model.geometric_jacobian(q)) * offset(plant, model, q)?;
         let torque = |q: &SVector<R::Real, N>| {
@@ -255,6 +293,6 @@ where
             inverse.map_or_else(SVector::zeros, |inverse| model.inertia_matrix(q) * inverse.solve(&a))
         };
         feedback.position += derivative(q, torque);
-        Some(feedback)
+        Some(Rest { q: *q, is_held: true, feedback })
     }
 }

@@ -2,10 +2,11 @@
 
 use super::{
     delay::Delay,
+    difference::derivative,
     eigenvalues,
     error::StabilityError,
     exponential::exponential,
-    feedback::{derivative, viscous, Feedback, Linearise, Settle},
+    feedback::{viscous, Feedback, Linearise, Settle},
     motion::Motion,
 };
 use crate::{linalg::lit, robot::Dynamics};
@@ -31,14 +32,18 @@ pub struct Report<T> {
     pub posture: usize,
     /// Up to which sampling period the loop is stable at all postures.
     pub period: StablePeriod<T>,
+    /// How far from its reference the arm rests, at most over all postures and joints, rad or m.
+    pub offset: T,
+    /// Index of the first posture near which the arm cannot rest: the gains do not hold what the model leaves out.
+    pub adrift: Option<usize>,
     /// The loop in motion, where it was asked for.
     pub motion: Option<Motion<T>>,
 }
 
 impl<T: RealField + Copy> Report<T> {
-    /// Whether the loop is stable at rest, at all postures.
+    /// Whether the arm can rest at all postures, and the loop is stable there.
     pub fn is_stable(&self) -> bool {
-        self.radius < T::one()
+        self.radius < T::one() && self.adrift.is_none()
     }
 
     /// Whether it is stable at rest and, where that is known, does not diverge in motion.
@@ -55,14 +60,16 @@ pub struct SampledLoop<T, const N: usize> {
     friction: SMatrix<T, N, N>,
     mobility: SMatrix<T, N, N>,
     feedback: Feedback<T, N>,
+    /// How far from its reference the arm rests; `None` where it cannot rest.
+    offset: Option<T>,
 }
 
 /// Bisections: a tenth halved twenty times is below the millionth that ends them.
 const TRIALS: usize = 30;
 
 impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
-    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest at `q`: with the memories of the controller
-    /// where the arm can rest.
+    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest under the reference `q`: with the memories of
+    /// the controller where the arm can rest, and off the reference where the law has none.
     ///
     /// # Errors
     /// [`StabilityError::Singular`] or [`StabilityError::Inertia`], for posture 0.
@@ -72,7 +79,9 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         R: Dynamics<N, Real = T>,
         C: Settle<P, R, N> + ?Sized,
     {
-        Self::with_feedback(plant, controller.settle(plant, model, q), q)
+        let rest = controller.settle(plant, model, q).ok_or(StabilityError::Singular { posture: 0 })?;
+        let offset = rest.is_held.then(|| (rest.q - q).amax());
+        Ok(Self { offset, ..Self::with_feedback(plant, rest.feedback, &rest.q)? })
     }
 
     /// The same about the memories that the controller has at present, from which the arm may set out: what the loop does until its
@@ -86,19 +95,24 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         R: Dynamics<N, Real = T>,
         C: Linearise<R, N> + ?Sized,
     {
-        Self::with_feedback(plant, controller.linearise(model, q), q)
+        Self::with_feedback(plant, controller.linearise(model, q).ok_or(StabilityError::Singular { posture: 0 })?, q)
     }
 
     fn with_feedback<P: Dynamics<N, Real = T>>(
         plant: &P,
-        feedback: Option<Feedback<T, N>>,
+        feedback: Feedback<T, N>,
         q: &SVector<T, N>,
     ) -> Result<Self, StabilityError> {
-        let feedback = feedback.ok_or(StabilityError::Singular { posture: 0 })?;
         let inertia = plant.inertia_matrix(q).cholesky().ok_or(StabilityError::Inertia { posture: 0 })?;
         let mobility = inertia.inverse();
         let dg = derivative(q, |q| plant.gravity(q));
-        Ok(Self { stiffness: -(mobility * dg), friction: -(mobility * viscous(plant)), mobility, feedback })
+        Ok(Self {
+            stiffness: -(mobility * dg),
+            friction: -(mobility * viscous(plant)),
+            mobility,
+            feedback,
+            offset: Some(T::zero()),
+        })
     }
 
     /// The matrix of the whole loop, states (δq, T_s δv, m, the torques on their way, the next one first).
@@ -268,6 +282,7 @@ fn worst_of<T: RealField + Copy, const N: usize>(
     delay: Delay,
 ) -> Result<Report<T>, StabilityError> {
     let mut worst: Option<(T, usize)> = None;
+    let (mut offset, mut adrift) = (T::zero(), None);
     let mut loops = Vec::with_capacity(postures.len());
     for (posture, q) in postures.iter().enumerate() {
         let sampled = at(q).map_err(|error| match error {
@@ -278,6 +293,10 @@ fn worst_of<T: RealField + Copy, const N: usize>(
         let radius = sampled.spectral_radius(period, delay)?;
         if worst.is_none_or(|(before, _)| radius > before) {
             worst = Some((radius, posture));
+        }
+        match sampled.offset {
+            Some(distance) => offset = offset.max(distance),
+            None => adrift = adrift.or(Some(posture)),
         }
         loops.push(sampled);
     }
@@ -293,5 +312,5 @@ fn worst_of<T: RealField + Copy, const N: usize>(
             limit = sampled.largest_stable_period(bound, delay)?;
         }
     }
-    Ok(Report { radius, posture, period: limit, motion: None })
+    Ok(Report { radius, posture, period: limit, offset, adrift, motion: None })
 }

@@ -22,6 +22,8 @@ const SECONDS: f64 = 4.0;
 struct Found {
     /// The spectral radius at rest.
     rest: f64,
+    /// Whether it is said to be stable at rest.
+    stable: bool,
     /// Whether it is said to diverge in motion.
     grows: bool,
     /// Whether the simulated run is lost.
@@ -74,14 +76,14 @@ where
         |sample| largest = largest.max((swing.at(sample.time.as_secs_f64()).q - sample.state.q).amax()),
     );
     let grows = report.motion.is_some_and(|motion| motion.diverges());
-    Found { rest: report.radius, grows, lost: end.is_err() || largest > LOST, largest }
+    Found { rest: report.radius, stable: report.is_stable(), grows, lost: end.is_err() || largest > LOST, largest }
 }
 
 fn main() {
     let (mut all, mut agree) = (0, 0);
     let mut line = |what: String, found: Found| {
-        let Found { rest, grows, lost, largest } = found;
-        let (said, is) = (rest < 1.0 && !grows, !lost);
+        let Found { rest, stable, grows, lost, largest } = found;
+        let (said, is) = (stable && !grows, !lost);
         let word = |holds: bool| if holds { "holds" } else { "diverges" };
         all += 1;
         agree += usize::from(said == is);
