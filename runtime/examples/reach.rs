@@ -22,7 +22,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
 
     // A sixth of the error is closed at every step; damping begins where the manipulability falls below 0.02.
     let period = 1e-3;
-    let algorithm = DampedLeastSquares::new([0.15 / period; 4], Damping::new(0.02, 0.05)?)?;
+    let algorithm = DampedLeastSquares::new([0.15 / period; 4], Damping::below(0.02).at_most(0.05)?)?;
     let limits = JointLimits::rates([100.0; 4])?.with_range([-3.0, -2.5, 0.0, -3.0], [3.0, 2.5, 0.5, 3.0])?;
     let clik = Clik::new(task, algorithm, period, limits, [1e-5; 4])?;
 

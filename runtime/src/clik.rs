@@ -26,7 +26,7 @@
 //! /// Joint variables that bring the end effector to a position, if there are any near `from`.
 //! fn reach<R: Kinematics<6, Real = f64>>(robot: &R, goal: &Pose<f64>, from: &SVector<f64, 6>) -> Result<Option<SVector<f64, 6>>, ClikError> {
 //!     let task = Task::new([Row::X, Row::Y, Row::Z]).expect("no row stands twice");
-//!     let damping = Damping::new(0.02, 0.05).expect("positive numbers");
+//!     let damping = Damping::below(0.02).at_most(0.05).expect("positive numbers");
 //!     let law = DampedLeastSquares::new([150.0; 3], damping).expect("positive numbers");
 //!     let limits = JointLimits::rates([100.0; 6]).expect("positive numbers");
 //!     let clik = Clik::new(task, law, 1e-3, limits, [1e-5; 3]).expect("positive numbers");

@@ -9,7 +9,7 @@ mod right_inverse;
 mod singular;
 
 pub use lyapunov::{diagonal_lyapunov, LyapunovBlocks};
-pub use right_inverse::{Damping, DampingError, RightInverse, Solution};
+pub use right_inverse::{Damping, DampingBelow, DampingError, RightInverse, Solution};
 pub use singular::{left_singular, LeftSingular};
 
 use nalgebra::{RealField, SMatrix, SVector};

@@ -85,7 +85,7 @@ fn operational_space_controllers() {
     let controller = |k_i| OperationalSpace::new(ghost::task(), [1e4; 4], [200.0; 4], [k_i; 4], 1e-3).unwrap();
     let limits = TorqueLimits::new([30.0, 15.0, 120.0, 2.0]).unwrap();
     let null_space = NullSpace::new([10.0; 4], [10.0; 4], [0.0; 4]).unwrap();
-    let damping = Damping::new(0.03, 0.1).unwrap();
+    let damping = Damping::below(0.03).at_most(0.1).unwrap();
     let mut plain = controller(0.0);
     let mut full = controller(1e5)
         .with_damping(damping)
@@ -111,7 +111,7 @@ fn clik() {
     let robot = ghost::nominal();
     let limits =
         JointLimits::rates([3.0, 3.0, 1.0, 6.0]).unwrap().with_range([-3.0, -2.6, 0.0, -6.0], [3.0, 2.6, 0.45, 6.0]).unwrap();
-    let damping = Damping::new(0.03, 0.1).unwrap();
+    let damping = Damping::below(0.03).at_most(0.1).unwrap();
     let relaxed = Task::new([Row::Y, Row::Z, Row::Rz]).unwrap();
     let inverse = Clik::new(ghost::task(), JacobianInverse::new([50.0; 4]).unwrap(), 1e-3, limits, [1e-6; 4]).unwrap();
     let transpose = Clik::new(ghost::task(), JacobianTranspose::new([50.0; 4]).unwrap(), 1e-3, limits, [1e-6; 4]).unwrap();

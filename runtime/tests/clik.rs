@@ -134,7 +134,7 @@ fn second_order_consistent_with_the_hold() {
 }
 
 fn damped() -> DampedLeastSquares<f64, 4> {
-    DampedLeastSquares::new([50.0; 4], Damping::new(0.03, 0.1).unwrap()).unwrap()
+    DampedLeastSquares::new([50.0; 4], Damping::below(0.03).at_most(0.1).unwrap()).unwrap()
 }
 
 fn bounded() -> JointLimits<f64, 4> {
@@ -147,7 +147,7 @@ fn goal(q: [f64; 4]) -> Pose<f64> {
 
 #[test]
 fn the_damped_inverse_is_the_inverse_away_from_singularities() {
-    let algorithm = DampedLeastSquares::new([500.0, 500.0, 700.0, 2.0], Damping::new(0.03, 0.1).unwrap()).unwrap();
+    let algorithm = DampedLeastSquares::new([500.0, 500.0, 700.0, 2.0], Damping::below(0.03).at_most(0.1).unwrap()).unwrap();
     check(follow(ghost::task(), algorithm).0, [5.2370e-7, 1.0831e-6, 7.2115e-7, 7.5480e-5]);
 }
 
@@ -196,7 +196,10 @@ fn errors() {
     assert_eq!(clik.step(&robot, &vector![0.1, 1.0, 0.1, 0.0], &lost).unwrap_err(), ClikError::ReferenceNotFinite);
     let second = ghost::second_order(Integration::HoldConsistent);
     assert_eq!(second.step(&robot, &State::at_rest(singular), &rest).unwrap_err(), ClikError::Singular);
-    assert!(second.with_damping(Damping::new(0.03, 0.1).unwrap()).step(&robot, &State::at_rest(singular), &rest).is_ok());
+    assert!(second
+        .with_damping(Damping::below(0.03).at_most(0.1).unwrap())
+        .step(&robot, &State::at_rest(singular), &rest)
+        .is_ok());
 }
 
 #[test]

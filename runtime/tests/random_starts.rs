@@ -58,7 +58,7 @@ proptest! {
     #[test]
     fn damped_least_squares(start in posture(), goal in goal()) {
         let robot = ghost::nominal();
-        let algorithm = DampedLeastSquares::new([20.0; 4], Damping::new(0.03, 0.1).unwrap()).unwrap();
+        let algorithm = DampedLeastSquares::new([20.0; 4], Damping::below(0.03).at_most(0.1).unwrap()).unwrap();
         let clik = Clik::new(ghost::task(), algorithm, 1e-3, limits(), [1e-6; 4]).unwrap();
         let reference = OperationalReference::at_rest(goal);
         let mut q = start;
@@ -123,7 +123,7 @@ proptest! {
         let bound = [60.0, 30.0, 300.0, 10.0];
         let mut controller = OperationalSpace::new(ghost::task(), [100.0; 4], [20.0; 4], [10.0; 4], 1e-3)
             .unwrap()
-            .with_damping(Damping::new(0.05, 0.2).unwrap())
+            .with_damping(Damping::below(0.05).at_most(0.2).unwrap())
             .with_torque_limits(TorqueLimits::new(bound).unwrap());
         let reference = OperationalReference::at_rest(goal);
         let mut plant = Plant::new(&arm, State { q: start, dq: dq.into() }, Integrator::RungeKutta4 { substeps: 2 });

@@ -149,7 +149,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
                 Box::new(PseudoInverse::new(gains, *k_0, Climb(objective.as_deref())).map_err(refused)?)
             }
             Algorithm::DampedLeastSquares { damping, threshold } => {
-                let damping = Damping::new(*threshold, *damping).map_err(|error| error.to_string())?;
+                let damping = Damping::below(*threshold).at_most(*damping).map_err(|error| error.to_string())?;
                 Box::new(DampedLeastSquares::new(gains, damping).map_err(refused)?)
             }
         };

@@ -37,7 +37,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     /// A posture where the path begins: the first that is found from `near`, or from points that fill the limits evenly, the middle first.
     fn on_the_path(&self, near: Option<&[f64]>, sampling: &Sampling) -> Result<SVector<f64, N>, String> {
         let refused = |error: &dyn std::fmt::Display| format!("there is no start on the path: {error}");
-        let damping = Damping::new(DAMPING.0, DAMPING.1).map_err(|error| refused(&error))?;
+        let damping = Damping::below(DAMPING.0).at_most(DAMPING.1).map_err(|error| refused(&error))?;
         let algorithm = DampedLeastSquares::new([PART; M], damping).map_err(|error| refused(&error))?;
         let limits = self.limits().map_err(|error| refused(&error))?;
         let clik = Clik::new(self.task, algorithm, 1.0, limits, [TOLERANCE; M]).map_err(|error| refused(&error))?;

@@ -130,19 +130,34 @@ pub struct Solution<T, const N: usize> {
     pub damped: bool,
 }
 
-impl<T: RealField + Copy> Damping<T> {
-    /// `threshold` is w_0 in the units of w, `factor` is lambda_0 in the units of a singular value of J.
+/// The threshold of a [`Damping`] whose factor is still to be given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct DampingBelow<T> {
+    threshold: T,
+}
+
+impl<T: RealField + Copy> DampingBelow<T> {
+    /// Damping of at most `factor`, lambda_0 in the units of a singular value of J, which it reaches where w = 0.
     ///
     /// # Errors
-    /// Where one of them is not positive and finite.
-    pub fn new(threshold: T, factor: T) -> Result<Self, DampingError> {
+    /// Where threshold or factor is not positive and finite.
+    pub fn at_most(self, factor: T) -> Result<Damping<T>, DampingError> {
+        let threshold = self.threshold;
         if !(threshold > T::zero() && threshold.is_finite()) {
             return Err(DampingError::Threshold);
         }
         if !(factor > T::zero() && factor.is_finite()) {
             return Err(DampingError::Factor);
         }
-        Ok(Self { threshold, factor })
+        Ok(Damping { threshold, factor })
+    }
+}
+
+impl<T: RealField + Copy> Damping<T> {
+    /// Damping where w is below `threshold`, w_0 in the units of w: `Damping::below(0.02).at_most(0.05)`.
+    pub fn below(threshold: T) -> DampingBelow<T> {
+        DampingBelow { threshold }
     }
 
     /// The threshold w_0 below which damping is at work.
@@ -195,7 +210,7 @@ mod tests {
 
     #[test]
     fn damping_bounds_the_solution() {
-        let damping = Damping::new(0.1, 0.05).unwrap();
+        let damping = Damping::below(0.1).at_most(0.05).unwrap();
         let v = Vector2::new(0.3, -0.7);
         for w in [1.0, 0.2, 0.05, 1e-3, 1e-9, 0.0] {
             let j = Matrix2x3::new(1.0, 0.0, 0.0, 0.0, w, 0.0);

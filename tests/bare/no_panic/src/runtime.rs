@@ -115,7 +115,7 @@ fn algebra<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M
         keep((RightInverse::solve(&inverse, &vector()), RightInverse::matrix(&inverse)));
         keep((RightInverse::null_space(&inverse, &vector()), RightInverse::volume(&inverse)));
     }
-    if let Ok(damping) = Damping::new(number(), number()) {
+    if let Ok(damping) = Damping::below(number()).at_most(number()) {
         keep((Damping::threshold(&damping), Damping::solve(&damping, j, &vector())));
     }
     keep(linalg::left_singular(j));
@@ -222,7 +222,7 @@ fn inverse_kinematics<R, const N: usize, const M: usize, const P: usize>(
 {
     let Ok(limits) = JointLimits::rates(numbers()) else { return };
     let Ok(limits) = JointLimits::with_range(limits, numbers(), numbers()) else { return };
-    let Ok(damping) = Damping::new(number(), number()) else { return };
+    let Ok(damping) = Damping::below(number()).at_most(number()) else { return };
     follow(robot, task, limits, JacobianInverse::new(numbers()), state, reference);
     follow(robot, task, limits, JacobianTranspose::new(numbers()), state, reference);
     follow(robot, task, limits, DampedLeastSquares::new(numbers(), damping), state, reference);
@@ -310,7 +310,7 @@ fn controllers<R, const N: usize, const M: usize, const P: usize>(
     }
     let operational = OperationalSpace::new(task, numbers(), numbers(), numbers(), number());
     let operational = operational.and_then(|operational| OperationalSpace::with_integral_limit(operational, numbers()));
-    if let (Ok(mut operational), Ok(damping)) = (operational, Damping::new(number(), number())) {
+    if let (Ok(mut operational), Ok(damping)) = (operational, Damping::below(number()).at_most(number())) {
         keep((OperationalSpace::torque(&mut operational, robot, reference, state), *OperationalSpace::integral(&operational)));
         keep(Controller::torque(&mut operational, robot, reference, state));
         let mut damped = OperationalSpace::with_torque_limits(OperationalSpace::with_damping(operational, damping), limits);
