@@ -1,18 +1,21 @@
 //! Every quantity of an arm as people read it: plain text, LaTeX, JSON.
 //!
-//! A quantity is one matrix; a vector has one column, a scalar one entry, the frames of the links are one matrix each. Its entries are
-//! closed forms, sums of sines and cosines of integer combinations of the joint angles, wherever these stay short:
+//! A quantity is one matrix; a vector has one column, a scalar one entry, the frames of the links are one matrix each. It has up to three
+//! forms: the closed form, whose entries are sums of sines and cosines of integer combinations of the joint angles, where no reciprocal
+//! and no more than 300 terms stand in one,
 //!
 //! ```text
 //! b11 = 10*cos(q2) + 10763/500
 //! ```
 //!
-//! A quantity with an entry that is too long, or with a reciprocal as in forward dynamics, is shown as numbered steps instead, each using
-//! earlier ones only. Nothing is ever left out.
+//! and numbered steps, each using earlier ones only, of the recursion over the links as it stands and with the operations saved that the
+//! emitted function saves. A closed form that fits a table is shown as one, else the form with the fewest characters, unless another is
+//! asked for. Nothing is ever left out.
 //!
 //! ```text
-//! show.rs        which quantities, and their derivations
+//! show.rs        which quantities, their derivations and forms
 //! show/steps.rs  an expression as numbered steps
+//! show/lines.rs  long formulas in several lines
 //! show/json.rs   for programs
 //! show/text.rs   for a terminal
 //! show/latex.rs  for a paper
@@ -20,6 +23,7 @@
 
 mod json;
 mod latex;
+mod lines;
 mod steps;
 mod text;
 
@@ -36,6 +40,8 @@ use crate::derive::{
     self,
     determinant::{Factor, Zeros},
 };
+use crate::pass::Passes;
+use crate::program::optimise;
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -64,6 +70,27 @@ pub enum Reading {
     Nominal,
     /// The names under `parameters`, where they enter linearly, by products or by powers.
     Symbolic,
+}
+
+/// Which of the forms of a quantity is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// The closed form where it fits a table; else the one with the fewest characters.
+    #[default]
+    Shortest,
+    /// The closed form where there is one, whatever its length; else steps.
+    Closed,
+    /// Numbered steps.
+    Steps,
+}
+
+/// How quantities are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Style {
+    /// Which form.
+    pub form: Form,
+    /// Constants as decimals of so many digits, 1 to 17; none: exactly.
+    pub digits: Option<u8>,
 }
 
 /// Quantities of one arm.
@@ -98,6 +125,8 @@ pub struct Shown {
     pub parameters: Vec<String>,
     /// Of the determinant: its factors, and where each is zero.
     pub factors: Option<Vec<Factor>>,
+    /// Digits of constants; none: exactly.
+    pub digits: Option<u8>,
 }
 
 /// The entries of a quantity.
@@ -169,12 +198,17 @@ fn element_of(quantity: &Quantity) -> Option<catalogue::Element> {
 }
 
 impl Sheet {
-    /// The quantities asked for, each once, in the order of asking.
+    /// The quantities asked for, each once, in the order of asking: each in its shortest form, with exact constants.
     pub fn new(model: &Model, items: &[Item], reading: Reading) -> Sheet {
+        Sheet::in_style(model, items, reading, Style::default())
+    }
+
+    /// The same in another style.
+    pub fn in_style(model: &Model, items: &[Item], reading: Reading, style: Style) -> Sheet {
         let mut seen = BTreeSet::new();
         let mut sheet = Sheet { robot: model.manipulator.name.clone(), quantities: Vec::new(), absent: Vec::new() };
         for &item in items {
-            match shown(model, item, reading) {
+            match shown(model, item, reading, style) {
                 Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),
                 Err(reason) => sheet.absent.push(Absent { function: item.name(), reason }),
             }
@@ -190,9 +224,35 @@ impl Shown {
         matches!(self.content, Content::Closed(_))
     }
 
+    fn printer(&self, notation: Notation) -> Printer<'_> {
+        Printer { notation, parameters: &self.parameters, digits: self.digits }
+    }
+
+    /// Whether it is a matrix of closed forms that fits a table.
+    fn is_table(&self) -> bool {
+        self.table(&self.formulas(Notation::Text)).is_some()
+    }
+
+    /// How many characters the steps and the entries take, spaces apart; of a symmetric matrix those of the upper half.
+    fn length(&self) -> usize {
+        let Formulas { steps, entries } = self.formulas(Notation::Text);
+        let symmetric = self.is_symmetric();
+        let shown = |k: &usize| !symmetric || k / self.columns <= k % self.columns;
+        let entries = (0..entries.len()).filter(shown).map(|k| entries[k].as_str()).filter(|entry| *entry != "0");
+        // What stands around a formula is a name and an equals sign.
+        let count = |text: &str| text.chars().filter(|c| *c != ' ').count();
+        steps.iter().map(|(name, formula)| name.len() + count(formula) + 5).chain(entries.map(|entry| count(entry) + 8)).sum()
+    }
+
+    /// The same with the content that is the shortest, the first of equals.
+    fn with_shortest(self, contents: impl IntoIterator<Item = Content>) -> Shown {
+        let all = contents.into_iter().map(|content| Shown { content, ..self.clone() });
+        all.min_by_key(Shown::length).unwrap_or(self)
+    }
+
     /// The entries as formulas.
     pub fn formulas(&self, notation: Notation) -> Formulas {
-        let printer = Printer { notation, parameters: &self.parameters };
+        let printer = self.printer(notation);
         match &self.content {
             Content::Closed(forms) => {
                 Formulas { steps: Vec::new(), entries: forms.iter().map(|form| printer.form(form)).collect() }
@@ -203,7 +263,7 @@ impl Shown {
 
     /// The factors of the determinant in one notation, and where each is zero.
     pub fn factors(&self, notation: Notation) -> Option<Vec<(String, &Zeros)>> {
-        let printer = Printer { notation, parameters: &self.parameters };
+        let printer = self.printer(notation);
         let factors = self.factors.as_ref()?;
         Some(factors.iter().map(|factor| (printer.form(&factor.form), &factor.zeros)).collect())
     }
@@ -263,39 +323,46 @@ impl Shown {
 }
 
 /// The matrices of an item, or why there is none.
-fn shown(model: &Model, item: Item, reading: Reading) -> Result<Vec<Shown>, String> {
+fn shown(model: &Model, item: Item, reading: Reading, style: Style) -> Result<Vec<Shown>, String> {
     let view = match (item, reading) {
         (Item::With(_), _) => View::Vector(&model.parameters),
         (_, Reading::Nominal) => View::Nominal,
         (_, Reading::Symbolic) => View::Symbolic,
     };
     let missing = |quantity: &Quantity, with| (quantity.missing)(model, with).map_or(Ok(()), Err);
+    let parameters = match item {
+        Item::With(_) => model.parameters.entries.iter().map(|entry| entry.name.clone()).collect(),
+        _ => model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+    };
+    let names = Names { parameters, style };
     Ok(match item {
-        Item::Determinant => vec![determinant(model, view)?],
+        Item::Determinant => vec![determinant(model, view, &names)?],
         Item::Plain(quantity) => {
             missing(quantity, false)?;
             let of_names = [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
             let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
-            parts(model, quantity, quantity.name, &derivation.unwrap_or_else(|| quantity.by_recursion(model, view)))
+            parts(model, quantity, quantity.name, &derivation.unwrap_or_else(|| quantity.by_recursion(model, view)), &names)
         }
         Item::Element(quantity, i) => {
             missing(quantity, false)?;
-            let all = parts(model, quantity, quantity.name, &quantity.by_recursion(model, view));
+            let all = parts(model, quantity, quantity.name, &quantity.by_recursion(model, view), &names);
             all.into_iter().skip(i).take(1).collect()
         }
         Item::With(quantity) => {
             missing(quantity, true)?;
-            let mut all = parts(model, quantity, &quantity.function_name(true), &quantity.by_recursion(model, view));
-            for shown in &mut all {
-                shown.parameters = model.parameters.entries.iter().map(|entry| entry.name.clone()).collect();
-            }
-            all
+            parts(model, quantity, &quantity.function_name(true), &quantity.by_recursion(model, view), &names)
         }
     })
 }
 
+/// What symbols are called, and how quantities are shown.
+struct Names {
+    parameters: Vec<String>,
+    style: Style,
+}
+
 /// The matrices of a quantity: of each part of its result, or of each element of a list.
-fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation) -> Vec<Shown> {
+fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation, names: &Names) -> Vec<Shown> {
     let sizes = model.sizes();
     let mut entries = derivation.entries.as_slice();
     let mut all = Vec::new();
@@ -309,13 +376,13 @@ fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation
                 all.extend(own.chunks(size).enumerate().map(|(i, entries)| {
                     let i = i + 1;
                     let symbol = [format!("{}_{i}(q)", element.letter), format!("{}_{{{i}}}(q)", element.letter)];
-                    matrix(model, part, format!("{}_{i}", element.name), symbol, of(entries))
+                    matrix(model, part, format!("{}_{i}", element.name), symbol, of(entries), names)
                 }));
             }
             None => {
                 let Typeset { text, latex } = part.symbol;
                 let name = if part.name == ResultPart::RESULT { name.to_owned() } else { format!("{name}_{}", part.name) };
-                all.push(matrix(model, part, name, [text.into(), latex.into()], of(own)));
+                all.push(matrix(model, part, name, [text.into(), latex.into()], of(own), names));
             }
         }
     }
@@ -323,9 +390,11 @@ fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation
 }
 
 /// The determinant with its factors; its closed form if that is not too long.
-fn determinant(model: &Model, view: View<'_>) -> Result<Shown, String> {
+fn determinant(model: &Model, view: View<'_>, names: &Names) -> Result<Shown, String> {
     let found = derive::determinant::determinant(model, view)?;
-    Ok(Shown {
+    let closed = found.form.filter(|form| form.len() <= CLOSED_FORM_TERMS).map(|form| vec![form]);
+    let derivation = Derivation { pool: found.pool, entries: vec![found.value], method: "minors", parallel: Vec::new() };
+    let shown = Shown {
         name: DETERMINANT.into(),
         symbol: ["det J(q)".into(), "\\det J(q)".into()],
         letter: ["det J", "\\det J"],
@@ -333,44 +402,49 @@ fn determinant(model: &Model, view: View<'_>) -> Result<Shown, String> {
         columns: 1,
         column_names: None,
         factors: (!found.factors.is_empty()).then_some(found.factors),
-        content: match found.form {
-            Some(form) if form.len() <= CLOSED_FORM_TERMS => Content::Closed(vec![form]),
-            _ => Content::Program(Box::new(Derivation {
-                pool: found.pool,
-                entries: vec![found.value],
-                method: "minors",
-                parallel: Vec::new(),
-            })),
-        },
-        parameters: names(model),
-    })
+        content: Content::Closed(Vec::new()),
+        parameters: names.parameters.clone(),
+        digits: names.style.digits,
+    };
+    Ok(in_form(shown, closed, derivation, names.style.form))
 }
 
-fn names(model: &Model) -> Vec<String> {
-    model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect()
-}
-
-fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], derivation: Derivation) -> Shown {
+fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], derivation: Derivation, names: &Names) -> Shown {
     let sizes = model.sizes();
     let columns_of = match part.columns() {
         Length::Parameters => Some(&model.parameters),
         Length::BaseParameters => Some(model.base_parameters()),
         _ => None,
     };
-    Shown {
+    let closed = if names.style.form == Form::Steps { None } else { derivation.closed_forms() };
+    let shown = Shown {
         name,
         symbol,
         letter: [part.letter.text, part.letter.latex],
         rows: part.rows().of(&sizes),
         columns: part.columns().of(&sizes),
         column_names: columns_of.map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
-        content: match derivation.closed_forms() {
-            Some(forms) => Content::Closed(forms),
-            None => Content::Program(Box::new(derivation)),
-        },
-        parameters: names(model),
+        content: Content::Closed(Vec::new()),
+        parameters: names.parameters.clone(),
         factors: None,
+        digits: names.style.digits,
+    };
+    in_form(shown, closed, derivation, names.style.form)
+}
+
+/// The quantity with its content in a form.
+fn in_form(shown: Shown, closed: Option<Vec<NormalForm>>, derivation: Derivation, form: Form) -> Shown {
+    let closed = closed.filter(|_| form != Form::Steps).map(Content::Closed);
+    if let Some(content) = &closed {
+        let shown = Shown { content: content.clone(), ..shown.clone() };
+        if form == Form::Closed || shown.is_table() {
+            return shown;
+        }
     }
+    let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, Passes::NONE);
+    let fewer = Derivation { pool, entries, ..derivation.clone() };
+    let steps = [derivation, fewer].map(|derivation| Content::Program(Box::new(derivation)));
+    shown.with_shortest(closed.into_iter().chain(steps))
 }
 
 /// Y or the known rest with all names of the description as symbols: Y_k = ∂tau/∂name_k, and the rest is tau - Y pi.
@@ -413,36 +487,6 @@ fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> 
 
 fn is_number(text: &str) -> bool {
     !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit())
-}
-
-/// Breaks a formula in front of the plus and minus signs of its outermost sum, into pieces of at most `width` as `measure` counts it;
-/// a single term may be longer.
-fn break_sum(formula: &str, width: usize, measure: &dyn Fn(&str) -> usize) -> Vec<String> {
-    let mut terms: Vec<&str> = Vec::new();
-    let (mut depth, mut start) = (0i32, 0);
-    for (at, c) in formula.char_indices() {
-        match c {
-            '(' | '{' | '[' => depth += 1,
-            ')' | '}' | ']' => depth -= 1,
-            ' ' if depth == 0 && (formula[at..].starts_with(" + ") || formula[at..].starts_with(" - ")) => {
-                terms.push(&formula[start..at]);
-                start = at + 1;
-            }
-            _ => {}
-        }
-    }
-    terms.push(&formula[start..]);
-    let mut lines: Vec<String> = Vec::new();
-    for term in terms {
-        match lines.last_mut() {
-            Some(line) if measure(line) + 1 + measure(term) <= width => {
-                line.push(' ');
-                line.push_str(term);
-            }
-            _ => lines.push(term.to_string()),
-        }
-    }
-    lines
 }
 
 #[cfg(test)]

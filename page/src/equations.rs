@@ -5,7 +5,7 @@
 use std::fmt::Write;
 
 use armgen_codegen::catalogue::Absent;
-use armgen_codegen::show::{Item, Reading, Sheet, Shown};
+use armgen_codegen::show::{Form, Item, Reading, Sheet, Shown, Style};
 use armgen_codegen::Model;
 use serde_json::{json, Map, Value};
 
@@ -36,8 +36,10 @@ struct Quantity {
 
 impl Equations {
     pub(crate) fn new(model: &Model) -> Equations {
-        let nominal = Sheet::new(model, &Item::all(), Reading::Nominal);
-        let symbolic = Sheet::new(model, &Item::all(), Reading::Symbolic);
+        // Closed forms wherever there are some: a page folds them up.
+        let closed = Style { form: Form::Closed, digits: None };
+        let [nominal, symbolic] =
+            [Reading::Nominal, Reading::Symbolic].map(|reading| Sheet::in_style(model, &Item::all(), reading, closed));
         let of = |shown: &Shown| {
             let other = symbolic.quantities.iter().find(|other| other.name == shown.name);
             quantity(&nominal.robot, shown, other)

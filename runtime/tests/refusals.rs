@@ -212,7 +212,8 @@ fn a_singular_start_is_an_error_without_damping_and_named_with_it() {
     assert_eq!(plain.clone().torque(&model, &goal, &singular).err(), Some(ControlError::Singular));
     let limits = TorqueLimits::new([60.0, 30.0, 250.0, 10.0]).unwrap();
     let null_space = NullSpace::new([0.0; 4], [5.0; 4], [0.0; 4]).unwrap();
-    let mut damped = plain.with_damping(Damping::below(0.05).at_most(0.2).unwrap()).with_torque_limits(limits).with_null_space(null_space);
+    let mut damped =
+        plain.with_damping(Damping::below(0.05).at_most(0.2).unwrap()).with_torque_limits(limits).with_null_space(null_space);
     let first = damped.torque(&model, &goal, &singular).unwrap();
     assert!(first.damped);
     let mut plant = Plant::new(&arm, singular, Integrator::RungeKutta4 { substeps: 1 });

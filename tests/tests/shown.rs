@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use armgen_codegen::catalogue::{self, ResultPart, Sizes};
-use armgen_codegen::show::{Item, Reading, Sheet};
+use armgen_codegen::show::{Form, Item, Reading, Sheet, Style};
 use armgen_codegen::{source::Source, validate, Model};
 use armgen_tests::formula;
 use armgen_tests::functions::{Arguments, Functions};
@@ -103,11 +103,13 @@ fn check(what: &str, text: &str) {
     let variables =
         state_names(&[("q", &a.q), ("dq", &a.dq), ("ddq", &a.ddq), ("dqr", &a.dqr), ("ddqr", &a.ddqr), ("tau", &tau)]);
     let items: Vec<Item> = Item::names().iter().flat_map(|name| Item::named(name, dof)).collect();
-    for reading in [Reading::Nominal, Reading::Symbolic] {
-        let json = Sheet::new(&model, &items, reading).json();
+    let forms = [Form::Shortest, Form::Closed, Form::Steps];
+    for (reading, form) in [Reading::Nominal, Reading::Symbolic].into_iter().flat_map(|reading| forms.map(|form| (reading, form)))
+    {
+        let json = Sheet::in_style(&model, &items, reading, Style { form, digits: None }).json();
         let shown = Shown::read(&serde_json::from_str(&json).expect("JSON")).unwrap_or_else(|error| panic!("{what}: {error}"));
         for quantity in &shown.quantities {
-            let what = format!("{what}: {} ({reading:?})", quantity.name);
+            let what = format!("{what}: {} ({reading:?}, {form:?})", quantity.name);
             let of = if quantity.name.ends_with("_with") { &arguments } else { &described };
             let mut names = variables.clone();
             names.extend(of.iter().cloned());

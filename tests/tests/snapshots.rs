@@ -14,7 +14,7 @@ use armgen_codegen::derive::parameters::View;
 use armgen_codegen::program::Cost;
 use armgen_codegen::ring::field::Element;
 use armgen_codegen::schedule::{module, Options};
-use armgen_codegen::show::{Item, Reading, Sheet};
+use armgen_codegen::show::{Form, Item, Reading, Sheet, Style};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Model;
@@ -96,7 +96,7 @@ fn closed_forms() {
             if model.manipulator.parameters.is_empty() { &[Reading::Nominal] } else { &[Reading::Nominal, Reading::Symbolic] };
         for &reading in readings {
             writeln!(text, "---- {reading:?} ----\n").expect("text");
-            let mut sheet = Sheet::new(&model, &Item::all(), reading);
+            let mut sheet = Sheet::in_style(&model, &Item::all(), reading, Style { form: Form::Closed, digits: None });
             let (closed, programs) = std::mem::take(&mut sheet.quantities).into_iter().partition(|shown| shown.is_closed());
             sheet.quantities = closed;
             text += &sheet.text();

@@ -22,7 +22,8 @@ fn shown(reading: Reading) -> Value {
         Reading::Nominal => show::Reading::Nominal,
         Reading::Symbolic => show::Reading::Symbolic,
     };
-    let sheet = show::Sheet::new(&model, &show::Item::all(), reading);
+    let sheet =
+        show::Sheet::in_style(&model, &show::Item::all(), reading, show::Style { form: show::Form::Closed, digits: None });
     serde_json::from_str(&sheet.json()).expect("what is printed is JSON")
 }
 

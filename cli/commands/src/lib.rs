@@ -22,6 +22,7 @@ use std::process::ExitCode;
 
 use armgen_codegen::emit::Language;
 use armgen_codegen::pass::Pass;
+use armgen_codegen::show::{Form, Style};
 use armgen_codegen::source::Source;
 use armgen_experiments::run::Arm;
 use clap::builder::styling::{AnsiColor, Styles};
@@ -91,12 +92,13 @@ Exit codes: 0 valid (perhaps with warnings), 1 faulty (with --strict also: warni
         #[arg(long, value_name = "KIND", value_parser = kind_of_warning)]
         allow: Vec<String>,
     },
-    /// Show the equations in closed form, or as numbered steps where they are long
+    /// Show the equations in closed form, or as numbered steps where these are shorter
     #[command(after_help = "Examples:
   armgen show robot.yaml                                  everything
   armgen show robot.yaml inertia_matrix gravity           B(q) and g(q)
   armgen show robot.yaml inertia_matrix --symbolic        with the names under `parameters`
   armgen show robot.yaml determinant                      where the task's Jacobian is singular
+  armgen show robot.yaml gravity --form steps --digits 4  numbered steps, constants as decimals
   armgen show robot.yaml --format latex > equations.tex   for a document with amsmath
 
 A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), one frame as `link_frame_2`, or `determinant`.")]
@@ -110,6 +112,12 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
         /// Print the names of parameters instead of their values
         #[arg(long)]
         symbolic: bool,
+        /// Which form of the equations
+        #[arg(long, value_enum, default_value_t = ShowForm::Shortest)]
+        form: ShowForm,
+        /// Constants as decimals of so many digits instead of exactly
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=17))]
+        digits: Option<u8>,
         /// Form of the output
         #[arg(long, value_enum, default_value_t = ShowFormat::Text)]
         format: ShowFormat,
@@ -298,6 +306,27 @@ Exit codes: 0 all as expected, 1 a result is outside its expectation or a file i
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ShowForm {
+    /// The closed form where it fits a table, else whichever has the fewest characters
+    Shortest,
+    /// Sums of sines and cosines of joint angles; steps where these are too long
+    Closed,
+    /// Numbered steps
+    Steps,
+}
+
+impl ShowForm {
+    fn style(self, digits: Option<u8>) -> Style {
+        let form = match self {
+            ShowForm::Shortest => Form::Shortest,
+            ShowForm::Closed => Form::Closed,
+            ShowForm::Steps => Form::Steps,
+        };
+        Style { form, digits }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ShowFormat {
     /// For a terminal
     Text,
@@ -347,7 +376,9 @@ pub fn run(built: &dyn Arm, description: &str) -> ExitCode {
     let arguments = Arguments::parse();
     let code = match arguments.command {
         Command::Check { files, strict, allow } => commands::check::run(&files, &commands::check::Doubts { strict, allow }),
-        Command::Show { file, quantities, symbolic, format } => commands::show::run(&file, &quantities, symbolic, format),
+        Command::Show { file, quantities, symbolic, form, digits, format } => {
+            commands::show::run(&file, &quantities, symbolic, form.style(digits), format)
+        }
         Command::Generate { file, out, choices, beside } => commands::generate::run(&file, out.as_deref(), &choices, &beside),
         Command::Import { file, choices, results } => import::run(&file, choices, &results),
         Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),

@@ -93,7 +93,9 @@ pub fn determinant(model: &Model, view: View<'_>) -> Result<Determinant, String>
     let manipulator = &model.manipulator;
     let (rows, joints) = (manipulator.task.len(), manipulator.dof());
     if rows != joints {
-        return Err(format!("the task has {rows} rows and the arm {joints} joints: its Jacobian is not square"));
+        return Err(format!(
+            "the task has {rows} rows and the arm {joints} joints: its Jacobian is not square; see `manipulability`"
+        ));
     }
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, manipulator, view);
@@ -328,7 +330,7 @@ fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
 
 /// Values of a joint variable in both notations, each as `print` gives it.
 fn at(print: impl Fn(&Printer<'_>) -> String) -> Zeros {
-    Zeros::Of([Notation::Text, Notation::Latex].map(|notation| print(&Printer { notation, parameters: &[] })))
+    Zeros::Of([Notation::Text, Notation::Latex].map(|notation| print(&Printer { notation, parameters: &[], digits: None })))
 }
 
 /// Where a factor in one variable is zero.

@@ -25,6 +25,8 @@ pub struct Printer<'a> {
     pub notation: Notation,
     /// Names of parameters, by index.
     pub parameters: &'a [String],
+    /// Constants as decimals of so many digits, 1 to 17; none: exactly.
+    pub digits: Option<u8>,
 }
 
 impl Printer<'_> {
@@ -129,11 +131,14 @@ impl Printer<'_> {
             // A constant of several terms joins the sum term by term, each with its own sign.
             return self.constant(sum, coefficient);
         }
-        let negative = coefficient.leads_negative();
+        let negative = match self.digits {
+            Some(_) => coefficient.to_f64() < 0.0,
+            None => coefficient.leads_negative(),
+        };
         let size = if negative { -coefficient } else { coefficient.clone() };
         if !size.is_one() {
             let text = self.number(&size);
-            parts.insert(0, if size.terms().count() > 1 { format!("({text})") } else { text });
+            parts.insert(0, if self.digits.is_none() && size.terms().count() > 1 { format!("({text})") } else { text });
         }
         sum.push(negative, &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
     }
@@ -150,6 +155,13 @@ impl Printer<'_> {
     }
 
     fn constant(&self, sum: &mut Sum, number: &Number) {
+        if let Some(digits) = self.digits {
+            let value = number.to_f64();
+            if value != 0.0 {
+                sum.push(value < 0.0, &self.decimal(value.abs(), digits));
+            }
+            return;
+        }
         for (monomial, coefficient) in number.terms() {
             let size = coefficient.clone().abs();
             let mut parts: Vec<String> = Vec::new();
@@ -165,6 +177,28 @@ impl Printer<'_> {
                 parts.push(if *power == 1 { name } else { self.power(&name, *power) });
             }
             sum.push(coefficient.is_negative(), &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
+        }
+    }
+
+    /// A decimal of so many digits, without zeros at its end: an integer or a fraction from 1e-4 on, else with a power of ten.
+    fn decimal(&self, value: f64, digits: u8) -> String {
+        let digits = usize::from(digits.clamp(1, 17));
+        let scientific = format!("{value:.*e}", digits - 1);
+        let (mantissa, power) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+        let exponent: i32 = power.parse().unwrap_or(0);
+        let plain = |text: &str| match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text.to_owned(),
+        };
+        if (-4..digits.max(6) as i32).contains(&exponent) {
+            let rounded: f64 = scientific.parse().unwrap_or(value);
+            return plain(&format!("{rounded:.*}", (digits as i32 - 1 - exponent).max(0) as usize));
+        }
+        let mantissa = plain(mantissa);
+        match self.notation {
+            Notation::Text => format!("{mantissa}e{exponent}"),
+            Notation::Latex if mantissa == "1" => format!("10^{{{exponent}}}"),
+            Notation::Latex => format!("{mantissa} \\cdot 10^{{{exponent}}}"),
         }
     }
 

@@ -1,6 +1,7 @@
 //! For programs: `{"robot", "quantities": [{"name", "symbol", "rows", "columns", "entries", "form", "steps"}]}`.
 //!
-//! `entries` are plain formulas by rows; `form` is `closed`, or `program`, and then `steps` are pairs of name and formula.
+//! `entries` are plain formulas by rows; `form` is `closed`, or `program`, and then `steps` are pairs of name and formula, none where an
+//! entry alone is shorter with its factors.
 //! The determinant also has `factors`, whose product it is, and `singular`, where each is zero: null where more than one joint decides.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};

@@ -5,12 +5,15 @@
 use crate::catalogue::Absent;
 use std::fmt::Write;
 
-use super::{break_sum, Formulas, Sheet, Shown};
+use super::lines::{broken, measure};
+use super::{Formulas, Sheet, Shown};
 use crate::derive::determinant::Zeros;
 use crate::ring::print::Notation;
 
-/// Width of a displayed line, in characters as [`measure`] counts them.
-const WIDTH: usize = 70;
+/// Width of a displayed line, pt: that of the class `article` is 345.
+const WIDTH: usize = 330;
+/// What a line begins with where it is not the first of its formula, pt.
+const INDENT: usize = 14;
 
 /// A `bmatrix` of amsmath has at most so many columns.
 const MATRIX_COLUMNS: usize = 10;
@@ -39,14 +42,14 @@ impl Shown {
             Some(matrix) => format!("\\[\n  {} = {matrix}\n\\]\n", self.symbol[1]),
             None => self.aligned(&formulas),
         };
-        body + &self.latex_factors()
+        self.latex_factors() + &body
     }
 
     /// The factors of the determinant, and where they are zero.
     fn latex_factors(&self) -> String {
         let mut lines = Vec::new();
         for (factor, zeros) in self.factors(Notation::Latex).unwrap_or_default() {
-            lines.extend(break_sum(&factor, WIDTH, &measure).into_iter().map(|piece| format!("& {piece}")));
+            lines.extend(broken(&factor, Notation::Latex, WIDTH - INDENT).into_iter().map(|piece| format!("& {piece}")));
             lines.push(match zeros {
                 Zeros::Of([_, latex]) => format!("&\\qquad\\text{{zero at }} {latex}"),
                 _ => format!("&\\qquad\\text{{{}}}", zeros.sentence()),
@@ -55,13 +58,17 @@ impl Shown {
         if lines.is_empty() {
             return String::new();
         }
-        format!("with the factors\n\\[\n  \\begin{{aligned}}\n    {}\n  \\end{{aligned}}\n\\]\n", lines.join(" \\\\\n    "))
+        let symbol = &self.symbol[1];
+        let lines = lines.join(" \\\\\n    ");
+        format!("\\noindent ${symbol}$ is the product of\n\\[\n  \\begin{{aligned}}\n    {lines}\n  \\end{{aligned}}\n\\]\nmultiplied out:\n")
     }
 
     /// The whole matrix, if it fits.
     fn matrix(&self, formulas: &Formulas) -> Option<String> {
+        let measure = measure(Notation::Latex);
         let widths = (0..self.columns).map(|j| formulas.entries.iter().skip(j).step_by(self.columns).map(|e| measure(e)).max());
-        let width: usize = widths.map(|w| w.unwrap_or(0) + 2).sum();
+        // Columns are 10 pt apart, and the symbol stands before them.
+        let width = widths.map(|w| w.unwrap_or(0) + 10).sum::<usize>() + measure(&self.symbol[1]) + 24;
         if !self.is_closed() || width > WIDTH || self.columns > MATRIX_COLUMNS || self.column_names.is_some() {
             return None;
         }
@@ -90,8 +97,10 @@ impl Shown {
         let notes: Vec<&str> =
             [(symmetric, "symmetric"), (zeros, "other entries 0")].iter().filter(|(holds, _)| *holds).map(|(_, n)| *n).collect();
         let mut lines: Vec<String> = Vec::new();
+        // Formulas stand behind the longest of the names.
+        let names = all.iter().map(|(name, _)| measure(Notation::Latex)(name)).max().unwrap_or(0) + 14;
         for (name, formula) in &all {
-            for (k, piece) in break_sum(formula, WIDTH, &measure).iter().enumerate() {
+            for (k, piece) in broken(formula, Notation::Latex, WIDTH.saturating_sub(names + INDENT)).iter().enumerate() {
                 lines.push(match k {
                     0 => format!("{name} &= {piece}"),
                     _ => format!("&\\quad {piece}"),
@@ -133,28 +142,4 @@ impl Shown {
             _ => indexed(format!("{},{}", row + 1, column + 1)),
         }
     }
-}
-
-/// About how many characters a formula is wide: a command is one, a name of a function three; a fraction is as wide as its parts.
-fn measure(formula: &str) -> usize {
-    let mut count = 0;
-    let mut rest = formula;
-    while let Some(c) = rest.chars().next() {
-        rest = &rest[c.len_utf8()..];
-        match c {
-            '\\' => {
-                let end = rest.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(rest.len());
-                count += match &rest[..end] {
-                    "sin" | "cos" => 3,
-                    "" | "left" | "right" | "frac" | "dot" | "ddot" => 0,
-                    "operatorname" | "mathit" | "mathcal" => 0,
-                    _ => 1,
-                };
-                rest = &rest[end..];
-            }
-            '{' | '}' | '_' | '^' | ' ' => {}
-            _ => count += 1,
-        }
-    }
-    count
 }

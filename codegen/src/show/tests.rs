@@ -69,7 +69,7 @@ fn no_name_means_two_things() {
         let sheet = sheet(&text, &[name], Reading::Symbolic);
         let shown = &sheet.quantities[0];
         // In LaTeX an index may belong to the name or follow it.
-        let printer = Printer { notation: Notation::Latex, parameters: &shown.parameters };
+        let printer = Printer { notation: Notation::Latex, parameters: &shown.parameters, digits: None };
         let names = (0..shown.parameters.len()).map(|i| printer.symbol(Symbol::Parameter(i as u16)));
         let steps = shown.formulas(Notation::Latex).steps.into_iter().map(|(name, _)| name);
         let entries = (0..shown.rows).flat_map(|i| (0..shown.columns).map(move |j| (i, j)));
@@ -119,14 +119,21 @@ fn zeros_of_a_determinant_are_told_as_far_as_one_joint_decides() {
 fn latex_names_and_numbers() {
     let text = sheet(PENDULUM, &["gravity", "kinetic_energy"], Reading::Symbolic).latex();
     assert!(text.contains("g(q) = \\frac{981}{100}"), "{text}");
-    assert!(text.contains("\\frac{1}{200}"), "{text}");
+    assert!(text.contains("\\frac{1}{100} + m"), "{text}");
 }
 
 #[test]
 fn sums_break_at_their_outermost_signs() {
-    let measure = |s: &str| s.chars().count();
-    assert_eq!(break_sum("a + (b + c)*d - e", 12, &measure), ["a", "+ (b + c)*d", "- e"]);
-    assert_eq!(break_sum("a + b", 80, &measure), ["a + b"]);
+    let broken = |formula, width| lines::broken(formula, Notation::Text, width);
+    assert_eq!(broken("a + (b + c)*d - e", 12), ["a", "+ (b + c)*d", "- e"]);
+    assert_eq!(broken("a + b", 80), ["a + b"]);
+    // Where no outermost sign is near enough: between factors, then within parentheses, however deep.
+    assert_eq!(broken("aaaa*bbbb*cccc + d", 9), ["aaaa*bbbb", "*cccc + d"]);
+    assert_eq!(broken("a*(bbbb + cc*(dddd + eeee))", 9), ["a*(bbbb", "+ cc", "*(dddd", "+ eeee))"]);
+    let latex = |formula, width| lines::broken(formula, Notation::Latex, width);
+    // Braces are one thing, and \\left is not parted from \\right.
+    assert_eq!(latex("\\frac{a + b}{c} + d", 20), ["\\frac{a + b}{c}", "+ d"]);
+    assert_eq!(latex("aaa\\,\\left(b + c\\right)", 22), ["aaa", "\\cdot \\bigl(b", "+ c\\bigr)"]);
 }
 
 #[test]
@@ -137,8 +144,79 @@ fn a_determinant_that_does_not_exist_says_why() {
         sheet.absent,
         [Absent {
             function: "determinant".into(),
-            reason: "the task has 6 rows and the arm 1 joints: its Jacobian is not square".into()
+            reason: "the task has 6 rows and the arm 1 joints: its Jacobian is not square; see `manipulability`".into()
         }]
     );
-    assert_eq!(sheet.text(), "determinant: the task has 6 rows and the arm 1 joints: its Jacobian is not square\n");
+    assert!(sheet.text().starts_with("determinant: the task has 6 rows"), "{}", sheet.text());
+}
+
+const TWO_LINKS: &str = "
+name: two_links
+convention: standard
+gravity: [0, -9.81, 0]
+task: [x, y]
+joints:
+  - {name: j1, type: revolute, a: 1/2, alpha: 0, d: 0, theta: 0, link: {mass: 3, com: [-1/4, 0, 0], inertia: {zz: 0.01}}}
+  - {name: j2, type: revolute, a: 1/3, alpha: 0, d: 0, theta: 0, link: {mass: 2, com: [-1/7, 0, 0], inertia: {zz: 0.01}}}
+";
+
+fn in_style(text: &str, name: &str, style: Style) -> Shown {
+    let model = Model::new(validate::read(&Source::new("test.yaml", text)).0.expect("valid").0);
+    Sheet::in_style(&model, &Item::named(name, model.manipulator.dof()), Reading::Nominal, style).quantities.remove(0)
+}
+
+#[test]
+fn the_shortest_form_is_no_longer_than_the_others() {
+    let mut kinds = BTreeSet::new();
+    for item in Item::all() {
+        let name = item.name();
+        let of = |form| in_style(TWO_LINKS, &name, Style { form, digits: None });
+        let (shortest, closed, steps) = (of(Form::Shortest), of(Form::Closed), of(Form::Steps));
+        match closed.is_table() {
+            true => assert!(shortest.is_closed(), "{name}"),
+            false => assert_eq!(shortest.length(), closed.length().min(steps.length()), "{name}"),
+        }
+        assert!(!steps.is_closed(), "{name}");
+        kinds.insert((closed.is_closed(), shortest.is_closed()));
+    }
+    // Closed forms that are the shortest, those that are not, and functions without one.
+    assert_eq!(kinds.into_iter().collect::<Vec<_>>(), [(false, false), (true, false), (true, true)]);
+}
+
+#[test]
+fn constants_have_as_many_digits_as_asked_for() {
+    let text = |digits| {
+        in_style(TWO_LINKS, "gravity", Style { form: Form::Closed, digits: Some(digits) }).formulas(Notation::Text).entries
+    };
+    assert_eq!(text(3), ["3.74*cos(q1 + q2) + 17.2*cos(q1)", "3.74*cos(q1 + q2)"]);
+    assert_eq!(text(6)[1], "3.73714*cos(q1 + q2)");
+    let printer = |notation| Printer { notation, parameters: &[], digits: Some(3) };
+    let shown = |notation, numerator: i64, denominator: i64| {
+        let number =
+            crate::exact::Number::from(crate::exact::Rational::from(numerator) / crate::exact::Rational::from(denominator));
+        printer(notation).number(&number)
+    };
+    for (numerator, denominator, text, latex) in [
+        (1, 1, "1", "1"),
+        (-2, 3, "-0.667", "-0.667"),
+        (99_999, 100, "1000", "1000"),
+        (1, 30_000, "3.33e-5", "3.33 \\cdot 10^{-5}"),
+        (1, 1_000_000, "1e-6", "10^{-6}"),
+        (123_456_789, 1, "1.23e8", "1.23 \\cdot 10^{8}"),
+        (123_456, 1, "123000", "123000"),
+    ] {
+        assert_eq!(
+            (shown(Notation::Text, numerator, denominator), shown(Notation::Latex, numerator, denominator)),
+            (text.into(), latex.into())
+        );
+    }
+}
+
+#[test]
+fn a_determinant_begins_with_its_factors() {
+    let shown = in_style(TWO_LINKS, "determinant", Style::default());
+    assert_eq!(
+        shown.text(),
+        "determinant: det J(q), the product of\n  factor  1/6*sin(q2)\n          zero at q2 = 0 mod pi\nmultiplied out\n  det J = 1/6*sin(q2)\n"
+    );
 }

@@ -3,7 +3,8 @@
 use crate::catalogue::Absent;
 use std::fmt::Write;
 
-use super::{break_sum, Formulas, Sheet, Shown};
+use super::lines::broken;
+use super::{Formulas, Sheet, Shown};
 use crate::ring::print::Notation;
 
 /// Lines are at most so long where a formula can be broken.
@@ -19,24 +20,25 @@ impl Sheet {
 }
 
 impl Shown {
-    fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         let formulas = self.formulas(Notation::Text);
         let mut text = format!("{}: {}", self.name, self.symbol[0]);
         match (self.rows, self.columns) {
             (1, 1) => {}
             (rows, columns) => write!(text, ", {rows} x {columns}").expect("writing to a string"),
         }
-        if !self.is_closed() {
+        let factors = self.text_factors();
+        if !factors.is_empty() {
+            text = format!("{text}, the product of\n{factors}multiplied out");
+        }
+        if !formulas.steps.is_empty() {
             let count = formulas.steps.len();
             write!(text, ", in {count} {}", if count == 1 { "step" } else { "steps" }).expect("writing to a string");
         }
-        let table =
-            (self.is_closed() && self.columns > 1 && self.column_names.is_none()).then(|| self.table(&formulas)).flatten();
-        let body = match table {
+        match self.table(&formulas) {
             Some(table) => text + "\n" + &table,
             None => self.lines(text, &formulas),
-        };
-        body + &self.text_factors()
+        }
     }
 
     /// The factors of the determinant, and where they are zero.
@@ -44,7 +46,7 @@ impl Shown {
         let mut text = String::new();
         for (factor, zeros) in self.factors(Notation::Text).unwrap_or_default() {
             const INDENT: usize = 10;
-            let pieces = break_sum(&factor, WIDTH - INDENT, &|s| s.chars().count());
+            let pieces = broken(&factor, Notation::Text, WIDTH - INDENT);
             let factor = pieces.join(&format!("\n{:INDENT$}", ""));
             writeln!(text, "  factor  {factor}\n{:INDENT$}{}", "", zeros.sentence()).expect("writing to a string");
         }
@@ -52,7 +54,10 @@ impl Shown {
     }
 
     /// The whole matrix, if it fits.
-    fn table(&self, formulas: &Formulas) -> Option<String> {
+    pub(super) fn table(&self, formulas: &Formulas) -> Option<String> {
+        if !self.is_closed() || self.columns == 1 || self.column_names.is_some() {
+            return None;
+        }
         let rows: Vec<&[String]> = formulas.entries.chunks(self.columns).collect();
         let widths: Vec<usize> = (0..self.columns).map(|j| rows.iter().map(|row| row[j].len()).max().unwrap_or(0)).collect();
         if widths.iter().sum::<usize>() + 3 * self.columns > WIDTH {
@@ -93,7 +98,7 @@ impl Shown {
         let width = all.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
         for (name, formula) in all {
             let indent = width + 5;
-            let pieces = break_sum(formula, WIDTH.saturating_sub(indent), &|s| s.chars().count());
+            let pieces = broken(formula, Notation::Text, WIDTH.saturating_sub(indent));
             let separator = format!("\n{:indent$}", "");
             writeln!(text, "  {name:<width$} = {}", pieces.join(&separator)).expect("writing to a string");
         }

@@ -3,19 +3,22 @@
 use armgen_codegen::catalogue::Absent;
 use std::path::Path;
 
-use armgen_codegen::show::{Item, Reading, Sheet};
+use armgen_codegen::show::{Item, Reading, Sheet, Style};
 use armgen_codegen::suggest::did_you_mean;
 use armgen_codegen::Model;
 
 use crate::{input, terminal, ShowFormat, UNREADABLE};
 
-pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: ShowFormat) -> u8 {
+pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, style: Style, format: ShowFormat) -> u8 {
     let model = match input::model(file) {
         Ok(model) => model,
         Err(code) => return code,
     };
     if quantities.iter().any(|name| name.replace('-', "_") == INVERSE_KINEMATICS) {
-        return inverse_kinematics(&model, quantities.len() > 1 || symbolic || format != ShowFormat::Text);
+        return inverse_kinematics(
+            &model,
+            quantities.len() > 1 || symbolic || style != Style::default() || format != ShowFormat::Text,
+        );
     }
     let items = match items(&model, quantities) {
         Ok(items) => items,
@@ -24,7 +27,7 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, format: Sh
             return UNREADABLE;
         }
     };
-    let sheet = Sheet::new(&model, &items, if symbolic { Reading::Symbolic } else { Reading::Nominal });
+    let sheet = Sheet::in_style(&model, &items, if symbolic { Reading::Symbolic } else { Reading::Nominal }, style);
     if format == ShowFormat::Json && !quantities.is_empty() {
         for Absent { function: name, reason } in &sheet.absent {
             terminal::note(&format!("{name}: {reason}"));
