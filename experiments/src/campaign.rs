@@ -74,11 +74,11 @@ impl<'a> Job<'a> {
         OutputFile { name: format!("{}.csv", self.experiment.name), text: self.record.csv() }
     }
 
-    /// The lines of the table; a run that ended early is one of them, unless an expectation is about `lost_at`.
+    /// The lines of the table; a run that ended early is one of them, unless an expectation is about `lost_at` or `branch_ends_at`.
     pub fn lines(&self) -> Vec<Line> {
         let expect = &self.experiment.expect;
         let mut lines: Vec<Line> = expect.iter().map(|expectation| judge(expectation, &self.record)).collect();
-        let accounted = expect.iter().any(|e| e.channel.quantity == Quantity::LostAt);
+        let accounted = expect.iter().any(|e| matches!(e.channel.quantity, Quantity::LostAt | Quantity::BranchEndsAt));
         if let Some(ended) = self.record.ended.as_ref().filter(|_| !accounted) {
             lines.push(Line::unmet("runs to the end", ended.clone(), "yes"));
         }
@@ -89,7 +89,7 @@ impl<'a> Job<'a> {
     fn effort(&self) -> u64 {
         match &self.experiment.body {
             Body::Postures(_) => 0,
-            Body::Path(_) => 1,
+            Body::Path(_) | Body::Branch(_) => 1,
             Body::Clik(_) => 2,
             Body::Control(run) => 10 * u64::from(run.substeps),
         }

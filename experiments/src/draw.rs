@@ -54,6 +54,7 @@ pub fn experiment(experiment: &Experiment, record: &Record, robot: &Robot) -> Ve
             figure("_profiles", path::profiles(title, record)),
         ],
         Body::Clik(run) => vec![figure("", run::clik(title, run, record, robot))],
+        Body::Branch(_) => vec![figure("", run::branch(title, record, robot))],
         Body::Control(run) => vec![
             figure("", run::control(title, run, record, robot)),
             figure("_trace", path::plan(title, &run.sampling.motion, record, Some("traced"))),

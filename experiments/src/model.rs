@@ -13,7 +13,8 @@ mod unit;
 pub use channel::{Channel, JointQuantity, PostureQuantity, Quantity};
 pub use expectation::{Expectation, Take, Target};
 pub use experiment::{
-    Algorithm, AlgorithmKind, Body, ClikRun, ControlRun, Experiment, Noise, Posture, Postures, ReferenceGains, Sampling, Start,
+    Algorithm, AlgorithmKind, Body, BranchRun, ClikRun, ControlRun, Experiment, Noise, Posture, Postures, ReferenceGains,
+    Sampling, Start,
 };
 pub use law::{Adaptation, EstimateBounds, Gain, Law, LawKind, Per};
 pub use motion::{Motion, Sheet, Trajectory};

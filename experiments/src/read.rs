@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! values.rs        numbers, durations, lists and words under their keys
-//! postures.rs path.rs clik.rs control.rs expectation.rs     one part of a file each
+//! postures.rs path.rs clik.rs branch.rs control.rs expectation.rs     one part of a file each
 //! code.rs          kinds of faults
 //! ```
 //!
 //! Absent from here on: YAML, wrong lengths, gains that are not positive, paths that cannot be planned, quantities that do not exist.
 
+mod branch;
 mod clik;
 mod code;
 mod control;
@@ -107,7 +108,7 @@ fn other_robot(root: &Node, robot: &Robot) -> Option<String> {
     }
 }
 
-const KEYS: [Key; 18] = [
+const KEYS: [Key; 19] = [
     required("robot", "robot: scara"),
     required("title", "title: Inverse dynamics along a line"),
     required("expect", "expect:` and below it one `- {quantity: ..., ...}"),
@@ -121,6 +122,7 @@ const KEYS: [Key; 18] = [
     optional("duration"),
     optional("task"),
     optional("clik"),
+    optional("branch"),
     optional("controller"),
     optional("reference"),
     optional("load"),
@@ -149,6 +151,7 @@ impl Reader<'_> {
                 "duration",
                 "task",
                 "clik",
+                "branch",
                 "controller",
                 "reference",
                 "load",
@@ -160,6 +163,11 @@ impl Reader<'_> {
         }
         self.out_of_place(fields, &["plane", "grid"], "only an experiment with `postures` has them");
         let sampling = self.sampling(fields, paths);
+        if fields.has("branch") {
+            let others = ["clik", "controller", "task", "reference", "load", "sensor", "simulation"];
+            self.out_of_place(fields, &others, "`branch` follows a posture, and knows no dynamics");
+            return self.branch(fields, sampling).map(Body::Branch);
+        }
         match (fields.has("clik"), fields.has("controller")) {
             (true, true) => {
                 let message = "an experiment has `clik` or `controller`, not both";
@@ -168,7 +176,7 @@ impl Reader<'_> {
             }
             (false, false) => {
                 let moving = ["start", "task", "reference", "load", "sensor", "simulation"];
-                self.out_of_place(fields, &moving, "a path without `clik` or `controller` is only planned");
+                self.out_of_place(fields, &moving, "a path without `clik`, `branch` or `controller` is only planned");
                 sampling.map(Body::Path)
             }
             (true, false) => {

@@ -4,13 +4,15 @@
 //! instance.rs      one robot: its data, its functions, and the runs compiled for it
 //! look.rs          what can be seen before anything moves
 //! start.rs         where a run begins
-//! postures.rs clik.rs control.rs      one kind of run each; path.rs needs no robot
+//! solver.rs        the inverse kinematics of a robot, where it has one
+//! postures.rs clik.rs branch.rs control.rs      one kind of run each; path.rs needs no robot
 //! demonstration.rs for a robot without experiments: from posture to posture within its limits
 //! ```
 //!
 //! [`Arm`] separates generic code from the rest: the runs behind it are generic over the robot and its numbers of joints, rows and parameters, and are compiled
 //! where an [`Instance`] is made; whoever holds an `Arm` is compiled without the robot.
 
+mod branch;
 mod clik;
 mod control;
 mod demonstration;
@@ -18,9 +20,11 @@ mod instance;
 mod look;
 mod path;
 mod postures;
+mod solver;
 mod start;
 
 pub use instance::{Functions, Instance};
+pub use solver::{Probe, Solver, Solves, SolvesNot};
 
 use crate::model::{Experiment, Record, Robot};
 

@@ -2,6 +2,6 @@
 
 fn main() {
     for robot in ["../../robots/scara.yaml", "robots/ur10.yaml", "robots/ur10_load.yaml"] {
-        armgen_codegen::build_script::Robot::new(robot).generate();
+        armgen_codegen::build_script::Robot::new(robot).inverse_kinematics().generate();
     }
 }

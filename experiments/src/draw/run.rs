@@ -68,16 +68,29 @@ fn shown(panels: impl IntoIterator<Item = Panel>) -> Vec<Panel> {
     panels.into_iter().filter(|panel| !panel.series.is_empty()).collect()
 }
 
+/// The joint variables of all joints.
+fn all_joints(record: &Record, robot: &Robot) -> Panel {
+    let mut joints = Panel::over_time("joint variables", "q", "rad, m");
+    for (i, joint) in robot.joints.iter().enumerate() {
+        joints.add(&joint.name, record.series(Quantity::Joint(JointQuantity::Position, i)));
+    }
+    joints
+}
+
+/// Joint variables and w along a branch.
+pub(super) fn branch(title: &str, record: &Record, robot: &Robot) -> String {
+    let mut w = Panel::over_time("manipulability", "w", &unit_of_w(&robot.task, robot));
+    w.add("", record.series(Quantity::Manipulability));
+    figure(title, &[all_joints(record, robot), w], 2, SIZE)
+}
+
 /// Errors of the followed rows, joint variables, w.
 pub(super) fn clik(title: &str, run: &ClikRun, record: &Record, robot: &Robot) -> String {
     let mut errors = Panel { log: true, ..Panel::over_time("errors of the task", "|e|", "m, rad") };
     for row in error_rows(record) {
         errors.add(&row.to_string(), absolute(record.series(Quantity::TaskError(row))));
     }
-    let mut joints = Panel::over_time("joint variables", "q", "rad, m");
-    for (i, joint) in robot.joints.iter().enumerate() {
-        joints.add(&joint.name, record.series(Quantity::Joint(JointQuantity::Position, i)));
-    }
+    let joints = all_joints(record, robot);
     let units = [unit_of_w(&robot.task, robot), unit_of_w(&run.rows, robot)];
     let mut w = Panel::over_time("manipulability", "w", if units[0] == units[1] { &units[0] } else { "SI" });
     w.add("whole task", record.series(Quantity::Manipulability));

@@ -68,6 +68,10 @@ pub enum Quantity {
     RateLimitedAt,
     /// The end of the path.
     EndsAt,
+    /// How many postures reach the first pose of the path.
+    PosturesAtStart,
+    /// When the branch ends that is followed; the end of the path if it does not.
+    BranchEndsAt,
     /// The largest miss of a stop.
     Stops,
     /// The least distance to the end of the segment of this index, a via point.
@@ -201,6 +205,8 @@ impl Channel {
             Quantity::LostAt => ("lost_at".into(), Unit::Second),
             Quantity::RateLimitedAt => ("rate_limited_at".into(), Unit::Second),
             Quantity::EndsAt => ("ends_at".into(), Unit::Second),
+            Quantity::PosturesAtStart => ("postures_at_start".into(), Unit::None),
+            Quantity::BranchEndsAt => ("branch_ends_at".into(), Unit::Second),
             Quantity::Stops => ("stops".into(), Unit::Metre),
             Quantity::Via(segment) => (format!("via_{}", segment + 1), Unit::Metre),
             Quantity::Posture(of, i) => (format!("{}.{}", i + 1, of.name()), of.unit()),

@@ -31,6 +31,8 @@ pub enum Body {
     Path(Sampling),
     /// Closed-loop inverse kinematics along a path.
     Clik(ClikRun),
+    /// One posture of all that inverse kinematics finds, along a path.
+    Branch(BranchRun),
     /// A controller along a path.
     Control(ControlRun),
 }
@@ -88,6 +90,15 @@ pub struct ClikRun {
     pub algorithm: Algorithm,
     /// One per row.
     pub gains: Vec<f64>,
+}
+
+/// A branch of inverse kinematics that is followed along a path.
+#[derive(Clone, Debug)]
+pub struct BranchRun {
+    /// The path.
+    pub sampling: Sampling,
+    /// The posture that is followed.
+    pub start: Start,
 }
 
 /// The algorithms of inverse kinematics by their names.
@@ -236,6 +247,10 @@ impl Body {
                 quantities.extend([Quantity::Manipulability, Quantity::FollowedManipulability]);
                 quantities.extend((run.algorithm == Algorithm::Transpose).then_some(Quantity::LoopGain));
             }
+            Body::Branch(_) => {
+                quantities.extend(joints(JointQuantity::Position));
+                quantities.push(Quantity::Manipulability);
+            }
             Body::Control(run) => {
                 quantities.extend(joints(JointQuantity::Position).chain(joints(JointQuantity::Error)));
                 quantities.extend(robot.task.iter().copied().map(Quantity::TaskError));
@@ -261,6 +276,7 @@ impl Body {
             }
             Body::Clik(run) if matches!(run.algorithm, Algorithm::SecondOrder { .. }) => Vec::new(),
             Body::Clik(_) => vec![Quantity::RateLimitedAt],
+            Body::Branch(_) => vec![Quantity::PosturesAtStart, Quantity::BranchEndsAt],
             Body::Control(_) => {
                 vec![
                     Quantity::SpectralRadius,
@@ -289,6 +305,7 @@ impl Body {
             Body::Postures(_) => None,
             Body::Path(sampling) => Some(sampling),
             Body::Clik(run) => Some(&run.sampling),
+            Body::Branch(run) => Some(&run.sampling),
             Body::Control(run) => Some(&run.sampling),
         }
     }

@@ -4,7 +4,7 @@ use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::robot::Regressor;
 use armgen_runtime::task::{Row, Task};
 
-use super::{path, Arm, Demonstration, Run, Unprepared};
+use super::{path, Arm, Demonstration, Run, Solver, Unprepared};
 use crate::model::{Body, Experiment, Robot};
 
 /// A robot of `N` joints, `M` rows of the task and `P` parameters: `R` as described, `W` with other parameters.
@@ -14,6 +14,7 @@ pub struct Instance<R, W, const N: usize, const M: usize, const P: usize> {
     pub(super) nominal: R,
     pub(super) with_parameters: fn([f64; P]) -> W,
     pub(super) task: Task<M>,
+    pub(super) solver: Option<Solver<N>>,
 }
 
 /// What the runs ask of a robot: what every implementation of an emitted module in f64 has.
@@ -34,7 +35,13 @@ impl<R, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, 
     pub fn new(robot: Robot, task: [usize; M], nominal: R, with_parameters: fn([f64; P]) -> W) -> Self {
         let task = Task::from_indices(task).expect("the description has been checked: no row stands twice");
         let robot = Robot { task: task.rows().to_vec(), ..robot };
-        Instance { robot, nominal, with_parameters, task }
+        Instance { robot, nominal, with_parameters, task, solver: None }
+    }
+
+    /// The same with inverse kinematics, where the robot has it.
+    #[must_use]
+    pub fn solved_by(self, solver: Option<Solver<N>>) -> Self {
+        Instance { solver, ..self }
     }
 
     /// Joint variables of a file.
@@ -67,6 +74,7 @@ where
             Body::Postures(postures) => Box::new(Unprepared(move || self.judge_postures(postures, body.numbers(&self.robot)))),
             Body::Path(sampling) => Box::new(Unprepared(move || path::run(sampling, body, &self.robot))),
             Body::Clik(run) => Box::new(Unprepared(move || self.follow(run, body))),
+            Body::Branch(run) => self.prepare_branch(run, body)?,
             Body::Control(run) => self.prepare_control(run, experiment)?,
         })
     }
@@ -102,5 +110,11 @@ macro_rules! instance {
             emitted::Nominal,
             |parameters| emitted::WithParameters { parameters },
         )
+        .solved_by({
+            // One of the two has the method.
+            #[allow(unused_imports)]
+            use $crate::run::{Solves, SolvesNot};
+            (&$crate::run::Probe::of(&emitted::Nominal)).solver()
+        })
     }};
 }

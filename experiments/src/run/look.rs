@@ -26,6 +26,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     pub(super) fn look(&self, experiment: &Experiment) -> Vec<String> {
         let (sampling, start) = match &experiment.body {
             Body::Clik(run) => (&run.sampling, &run.start),
+            Body::Branch(run) => (&run.sampling, &run.start),
             Body::Control(run) => (&run.sampling, &run.start),
             Body::Postures(_) | Body::Path(_) => return Vec::new(),
         };

@@ -12,6 +12,13 @@ pub mod scara {
     include!(concat!(env!("OUT_DIR"), "/scara_runtime.rs"));
 }
 
+/// Its inverse kinematics.
+#[allow(missing_docs)]
+#[rustfmt::skip]
+pub mod scara_ik {
+    include!(concat!(env!("OUT_DIR"), "/scara_ik.rs"));
+}
+
 /// A UR10 with the standard parameters of all links.
 #[allow(missing_docs)]
 #[rustfmt::skip]
@@ -20,12 +27,26 @@ pub mod ur10 {
     include!(concat!(env!("OUT_DIR"), "/ur10_runtime.rs"));
 }
 
+/// Its inverse kinematics.
+#[allow(missing_docs)]
+#[rustfmt::skip]
+pub mod ur10_ik {
+    include!(concat!(env!("OUT_DIR"), "/ur10_ik.rs"));
+}
+
 /// A UR10 with a load that is its only parameter.
 #[allow(missing_docs)]
 #[rustfmt::skip]
 pub mod ur10_load {
     include!(concat!(env!("OUT_DIR"), "/ur10_load.rs"));
     include!(concat!(env!("OUT_DIR"), "/ur10_load_runtime.rs"));
+}
+
+/// Its inverse kinematics.
+#[allow(missing_docs)]
+#[rustfmt::skip]
+pub mod ur10_load_ik {
+    include!(concat!(env!("OUT_DIR"), "/ur10_load_ik.rs"));
 }
 
 /// The UR10 with a load.

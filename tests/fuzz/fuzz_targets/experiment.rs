@@ -26,6 +26,7 @@ fn run(experiment: &Experiment, arm: &dyn Arm) {
         Body::Postures(_) => true,
         Body::Path(sampling) => is_short(sampling),
         Body::Clik(run) => is_short(&run.sampling),
+        Body::Branch(run) => is_short(&run.sampling),
         Body::Control(run) => is_short(&run.sampling) && run.substeps <= 8,
     };
     if short {
