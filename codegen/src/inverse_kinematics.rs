@@ -18,7 +18,7 @@ use crate::exact::Number;
 use crate::kinds::{JointKind, TaskRow};
 use crate::manipulator::Manipulator;
 
-pub use chain::Arrangement;
+pub use chain::{Arrangement, Given};
 pub use classes::Regional;
 pub use frame::Frame;
 
@@ -50,6 +50,8 @@ pub struct InverseKinematics {
     pub choices: Vec<Choice>,
     /// A length of the arm's size, m.
     pub length: Number,
+    /// The joint whose value is given, of an arm with one more than the target asks for.
+    pub given: Option<Given>,
 }
 
 /// One choice between the ways of a construction.
@@ -83,9 +85,33 @@ pub enum Construction {
 /// How all solutions of an arm are found, or why there is no function for that.
 pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     let chain = Chain::of(manipulator)?;
-    let target = target(manipulator, &chain)?;
     let length = size(&chain);
+    if chain.joints.len() == 7 && target(manipulator, &chain) == Ok(Target::Pose) {
+        return redundant(&chain, &length);
+    }
+    let target = target(manipulator, &chain)?;
     classes::classify(&completed(chain, target), target, length)
+}
+
+/// Seven joints and a pose: the last one is given, or the first one where that leaves a cheaper class.
+fn redundant(chain: &Chain, length: &Number) -> Result<InverseKinematics, String> {
+    let with = |joint: usize| {
+        let (rest, given) = chain.without(joint);
+        let mut found = classes::classify(&rest, Target::Pose, length.clone())?;
+        found.class += &format!("; q{} is given", joint + 1);
+        found.given = Some(given);
+        Ok::<_, String>(found)
+    };
+    let last = with(chain.joints.len() - 1);
+    if last.as_ref().is_ok_and(|found| !matches!(found.construction, Construction::General(_))) {
+        return last;
+    }
+    let first = with(0);
+    match (&last, &first) {
+        (Ok(_), Ok(found)) if matches!(found.construction, Construction::General(_)) => last,
+        (_, Ok(_)) => first,
+        _ => last,
+    }
 }
 
 /// The target that the rows of the task make.

@@ -43,6 +43,8 @@
 //! | P R P | directions not always parallel | `regional_slide_turn_slide` | 2 |
 //! | P P P | directions span space | `regional_slides` | 1 |
 //!
+//! Seven joints and a pose: [`Given`](f64::Given) takes the first or the last joint, whose value is given, off the pose, and puts it back into solutions.
+//!
 //! If the pose is in L1 or L2, only `regional_general`, `regional_slide` and `regional_mid_slide` hold for all poses.
 //! [`polish`](f64::polish) takes the digits back that block R with D = 2 loses; `three_parallel` wants it where neither axes b and c nor a and c
 //! intersect or are parallel.
@@ -88,6 +90,7 @@ macro_rules! blocks {
         include!("blocks/two_slides.rs");
         include!("blocks/arrangement.rs");
         include!("blocks/general.rs");
+        include!("blocks/given.rs");
     };
 }
 

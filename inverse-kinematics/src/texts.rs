@@ -47,5 +47,6 @@ texts! {
     "two_slides" needs ["closure", "circle_roots", "branches", "samples"],
     "arrangement" needs ["frame", "branches"],
     "general" needs ["determinant", "arrangement"],
+    "given" needs ["frame", "branches"],
     "solutions" needs ["frame", "angles", "branches"],
 }

@@ -119,6 +119,7 @@ const VERIFY: Layers = &[
     ("companion", &["claims", "contract", "enclosure", "float", "program", "ranges", "reader"]),
     ("residual", &["arithmetic", "claims", "element", "enclosure", "float", "program", "ranges", "reader"]),
     ("seed", &["claims", "enclosure", "equations", "formula", "program", "reader", "stream"]),
+    ("inverse_kinematics", &["arithmetic", "check", "element", "enclosure", "equations", "float", "formula", "stream"]),
     (
         "bounds",
         &[

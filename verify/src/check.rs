@@ -128,6 +128,24 @@ pub(crate) enum Check {
     Work,
     /// Certificates: the bits of a power.
     Powers,
+    /// Inverse kinematics: limits of the joints.
+    Limits,
+    /// Inverse kinematics: numbers of the loop are those of the arm.
+    LoopNumbers,
+    /// Inverse kinematics: the loop closes.
+    Loop,
+    /// Inverse kinematics: the construction may be called with the loop.
+    Class,
+    /// Inverse kinematics: the room for solutions.
+    MostSolutions,
+    /// Inverse kinematics: as many branches as solutions at random poses.
+    Branches,
+    /// Inverse kinematics: solutions reach the pose.
+    Reached,
+    /// Inverse kinematics: where solutions meet, that is said.
+    Meeting,
+    /// Inverse kinematics: as many solutions as there are.
+    Counts,
 }
 
 impl Check {

@@ -59,6 +59,7 @@ pub mod identities;
 #[doc(hidden)]
 pub mod influence;
 mod interval;
+pub mod inverse_kinematics;
 #[doc(hidden)]
 pub mod program;
 #[doc(hidden)]

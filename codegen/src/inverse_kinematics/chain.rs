@@ -37,6 +37,21 @@ pub(super) struct Chain {
     pub(super) normals: Vec<Normal>,
     /// From axis n to the end effector.
     pub(super) tool: Frame,
+    /// The number in the arm of the first joint, from 0.
+    pub(super) first: usize,
+}
+
+/// A joint at one end of the arm whose value is given. Documented with the block `given`.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// Its number in the arm, from 0.
+    pub joint: usize,
+    /// Whether it slides.
+    pub prismatic: bool,
+    /// From the joint before it, or the base.
+    pub before: Frame,
+    /// To the joint behind it, or the end effector.
+    pub after: Frame,
 }
 
 /// One way round the loop: its constants, the pose left open. Documented with the block `arrangement`.
@@ -58,6 +73,8 @@ pub struct Arrangement {
     pub backward: bool,
     /// What the loop's joint values have more than the arm's: (cos theta, sin theta), or (d, 0).
     pub offsets: Vec<[Number; 2]>,
+    /// The number in the arm of joint 0, which is not 0 where the first joint is given.
+    pub(super) first: usize,
 }
 
 fn frame(manipulator: &Manipulator, placement: &Placement) -> Frame {
@@ -98,7 +115,31 @@ impl Chain {
             }
         }
         let tool = compose(&frame(manipulator, &joint(manipulator.tip).link_frame), &frame(manipulator, &manipulator.tool.frame));
-        Ok(Chain { base, joints, normals, tool })
+        Ok(Chain { base, joints, normals, tool, first: 0 })
+    }
+
+    /// The arm without its first or last joint, whose value is given.
+    pub(super) fn without(&self, joint: usize) -> (Chain, Given) {
+        let mut rest = self.clone();
+        let own = |joint: &Joint| compose(&turn_about_z(&joint.theta), &slide_along_z(&joint.d));
+        let given = |joint: usize, before: &Frame, after: Frame| Given {
+            joint,
+            prismatic: self.joints[joint].prismatic,
+            before: compose(before, &own(&self.joints[joint])),
+            after,
+        };
+        if joint == 0 {
+            rest.first += 1;
+            rest.joints.remove(0);
+            let normal = rest.normals.remove(0).frame(false);
+            rest.base = identity();
+            (rest, given(0, &self.base, normal))
+        } else {
+            rest.joints.pop();
+            let normal = rest.normals.pop().map_or(identity(), |normal| normal.frame(false));
+            rest.tool = identity();
+            (rest, given(self.joints.len() - 1, &normal, self.tool.clone()))
+        }
     }
 
     /// A prismatic joint beyond the last, along its axis.
@@ -166,6 +207,7 @@ impl Chain {
             backward,
             offsets: order.iter().map(|joint| offset(&self.joints[*joint])).collect(),
             order,
+            first: self.first,
         }
     }
 

@@ -192,7 +192,7 @@ impl Regional {
 impl Arrangement {
     /// The numbers of its joints in the arm, from 1.
     fn joints(&self) -> Vec<usize> {
-        self.order.iter().map(|joint| joint + 1).collect()
+        self.order.iter().map(|joint| joint + self.first + 1).collect()
     }
 
     fn kinds(&self) -> [bool; 3] {
@@ -224,7 +224,7 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
         format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
     };
     let Class { construction, class, most, choices } = found.ok_or_else(none)?;
-    Ok(InverseKinematics { target, construction, class, most, choices, length })
+    Ok(InverseKinematics { target, construction, class, most, choices, length, given: None })
 }
 
 /// A class that fits.

@@ -12,6 +12,10 @@ impl InverseKinematics {
             Target::Planar => "given the position and the turn about the parallel axes, of T = (R p; 0 1)",
             Target::Position => "given the position p",
         };
+        let target = match &self.given {
+            None => target.to_owned(),
+            Some(given) => format!("{target} and q{}", given.joint + 1),
+        };
         let mut text = format!("inverse_kinematics: {}, at most {} solutions\n  {target}\n", self.class, self.most);
         let (steps, singular) = self.steps();
         let last = steps.len();
@@ -112,11 +116,11 @@ impl InverseKinematics {
 
 /// The numbers of the joints in the order of the loop, from 1.
 fn numbers<const N: usize>(way: &Arrangement) -> [usize; N] {
-    std::array::from_fn(|place| way.order[place] + 1)
+    std::array::from_fn(|place| way.order[place] + way.first + 1)
 }
 
 fn listed(way: &Arrangement) -> String {
-    way.order.iter().map(|joint| (joint + 1).to_string()).collect::<Vec<_>>().join(" ")
+    way.order.iter().map(|joint| (joint + way.first + 1).to_string()).collect::<Vec<_>>().join(" ")
 }
 
 fn read(way: &Arrangement) -> String {

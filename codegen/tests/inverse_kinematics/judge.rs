@@ -15,7 +15,7 @@ impl Random {
 
 /// Thousands of random postures: each among those found at its pose, each found one right, counts even, branches named.
 macro_rules! check {
-    ($module:ident, $ik:ident, $columns:expr) => {{
+    ($module:ident, $ik:ident, $columns:expr, $solve:expr) => {{
         use $ik::{Real, Verdict, DOF};
         let single = Real::EPSILON > 1e-10;
         let general = $ik::BRANCHES.is_empty();
@@ -28,7 +28,7 @@ macro_rules! check {
                 (if turns { random.between(-3.14, 3.14) } else { random.between(-0.5, 0.5) }) as Real
             });
             let t = $module::direct_kinematics(&q);
-            let found = $ik::inverse_kinematics(&t);
+            let found = $solve(&t, q[DOF - 1]);
             assert!(found.verdict != Verdict::Invalid && found.verdict != Verdict::Unreachable, "{:?}", found);
             assert!(found.count <= $ik::MAX_SOLUTIONS);
             for solution in found.as_slice() {
@@ -64,10 +64,10 @@ macro_rules! check {
         assert!(complete * 100 >= poses * if single { 60 } else { 97 }, "{}: {complete}", stringify!($module));
         let mut t = $module::direct_kinematics(&[0.3; DOF]);
         t[0][3] = Real::NAN;
-        assert_eq!($ik::inverse_kinematics(&t).verdict, Verdict::Invalid);
+        assert_eq!($solve(&t, 0.3).verdict, Verdict::Invalid);
         let mut t = $module::direct_kinematics(&[0.3; DOF]);
         (t[0][3], t[1][3]) = (1e3, 1e3);
-        let far = $ik::inverse_kinematics(&t);
+        let far = $solve(&t, 0.3);
         // A general arm may say that it is not certain; slides have no end.
         if $module::JOINT_IS_REVOLUTE.iter().all(|turns| *turns) && !general {
             assert!(far.verdict == Verdict::Unreachable && far.count == 0, "{:?}", far);
@@ -77,17 +77,19 @@ macro_rules! check {
 
 /// The reference poses of a file: every listed posture found, none beside those, the verdict as listed.
 macro_rules! reference {
-    ($module:ident, $ik:ident, $file:expr) => {{
+    ($module:ident, $ik:ident, $file:expr, $solve:expr) => {{
         use $ik::{Real, Verdict, DOF};
         let text = std::fs::read_to_string($file).expect("a file of reference poses");
         let numbers = |text: &str| -> Vec<f64> { text.split(' ').map(|word| word.parse().expect("a number")).collect() };
         // (verdicts, kind, pose, postures with sigma, whether two have met)
         let mut poses: Vec<(String, Vec<f64>, Vec<(Vec<f64>, f64)>, bool)> = vec![];
+        let mut redundancies: Vec<Real> = vec![];
         for line in text.lines() {
             let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
             match key {
                 "pose" => poses.push((rest.to_owned(), vec![], vec![], false)),
                 "t" => poses.last_mut().expect("a pose").1 = numbers(rest),
+                "redundancy" => redundancies.push(rest.parse().expect("a number")),
                 "met" => poses.last_mut().expect("a pose").3 = true,
                 "q" => {
                     let (q, sigma) = rest.split_once(" sigma ").expect("a posture with its sigma");
@@ -97,12 +99,12 @@ macro_rules! reference {
             }
         }
         assert!(poses.len() > 20);
-        for (head, t, postures, met) in &poses {
+        for (number, (head, t, postures, met)) in poses.iter().enumerate() {
             let mut pose = [[0.0 as Real; 4]; 4];
             for (i, entry) in t.iter().enumerate() {
                 pose[i / 4][i % 4] = *entry;
             }
-            let found = $ik::inverse_kinematics(&pose);
+            let found = $solve(&pose, redundancies.get(number).copied().unwrap_or(0.0));
             let mut words = head.split(' ');
             let kind = words.next().expect("a kind");
             let said = format!("{:?}", found.verdict);

@@ -312,6 +312,17 @@ fn files(
         };
         files.push((out.with_file_name(file), tests + &inverse_kinematics));
     }
+    if beside.ik && beside.verify {
+        let all_solutions = generated.inverse_kinematics();
+        let poses = armgen_verify::inverse_kinematics::POSES;
+        let report = with_spinner("verifying", || armgen_verify::inverse_kinematics::verify(source, &all_solutions, poses));
+        if let Some(fault) = report.faults.first() {
+            return Err(format!(
+                "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
+            ));
+        }
+        terminal::note(&report.summary());
+    }
     if beside.bounds {
         let mut companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", validate::module_name(&stem)))?;
         if beside.ik && generated.has_inverse_kinematics() {

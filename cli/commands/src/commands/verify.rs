@@ -5,7 +5,9 @@ use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
 
 use armgen_codegen::emit::{camel, Language};
+use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
+use armgen_verify::inverse_kinematics;
 use armgen_verify::reader::{matlab, ModuleText};
 use armgen_verify::report::Report;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -28,6 +30,9 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     let language = if module.is_dir() { Some(Language::Matlab) } else { language.or_else(by_extension) }.unwrap_or_default();
     let source = input::source(description)?;
     let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
+    if inverse_kinematics::is_one(text.text()) {
+        return postures(&source, module, text.text());
+    }
     let beside = certificate_beside(module);
     let certificate = match beside.exists() {
         true => Some(Certificate::from_json(input::written(&beside)?.text()).map_err(|error| {
@@ -68,6 +73,20 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
         "`armgen generate {description}{language} --out {module} --verify` writes module and certificate again"
     ));
     Err(FAULTY)
+}
+
+/// A module of inverse kinematics.
+fn postures(source: &Source, module: &Path, text: &str) -> Result<u8, u8> {
+    input::manipulator(source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
+    let report = with_spinner("verifying", || inverse_kinematics::verify(source, text, inverse_kinematics::POSES));
+    let code = terminal::print(&format!("{report}\n"));
+    match report.faults.first() {
+        None => Ok(code),
+        Some(fault) => {
+            terminal::error(&format!("{}: {fault}", module.display()));
+            Err(FAULTY)
+        }
+    }
 }
 
 /// The line that a fault is of, and the fault without it: the line that the reader gives, or where the function or constant begins.

@@ -108,10 +108,11 @@ pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKine
 }
 
 /// What stands before the module of the blocks.
-fn exported(_found: &InverseKinematics) -> TokenStream {
+fn exported(found: &InverseKinematics) -> TokenStream {
+    let redundancy = found.given.as_ref().map(|_| quote!(inverse_kinematics_redundancy,));
     quote! {
         #[allow(unused_imports)]
-        pub use self::all_solutions::{inverse_kinematics, Real, Solution, Solutions, Verdict, BRANCHES, DOF, MAX_SOLUTIONS};
+        pub use self::all_solutions::{inverse_kinematics, #redundancy Real, Solution, Solutions, Verdict, BRANCHES, DOF, MAX_SOLUTIONS};
     }
 }
 
@@ -123,7 +124,7 @@ fn solver(module: &Module, found: &InverseKinematics) -> String {
     text += &format(constants(module, found));
     text.push('\n');
     text += &format(function(module.scalar, found));
-    for block in needed(module.scalar, &found.construction) {
+    for block in needed(module.scalar, found) {
         text.push('\n');
         text += block.source;
     }
@@ -131,13 +132,14 @@ fn solver(module: &Module, found: &InverseKinematics) -> String {
 }
 
 /// The texts that a construction needs, each after those that it needs itself.
-fn needed(scalar: Scalar, construction: &Construction) -> Vec<&'static Text> {
+fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
     let scalar = match scalar {
         Scalar::F64 => "scalar_f64",
         Scalar::F32 => "scalar_f32",
     };
     let mut names = vec![scalar, "arrangement", "solutions"];
-    match construction {
+    names.extend(found.given.as_ref().map(|_| "given"));
+    match &found.construction {
         Construction::SphericalTriple(_, case) => {
             names.extend(["spherical_triple", case.text]);
             names.extend((!case.closed).then_some("closure"));
@@ -196,6 +198,14 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
         }
     };
     let length = literal(&found.length, scalar);
+    let given = found.given.as_ref().map(|given| {
+        let (joint, prismatic) = (usize_literal(given.joint), given.prismatic);
+        let (before, after) = (frame(&given.before, scalar), frame(&given.after, scalar));
+        quote! {
+            /// The joint whose value is given.
+            const GIVEN: Given = Given { joint: #joint, prismatic: #prismatic, before: #before, after: #after };
+        }
+    });
     quote! {
         /// Number of joints.
         pub const DOF: usize = #dof;
@@ -210,6 +220,7 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
         /// The arm's largest length, m.
         const LENGTH: Real = #length;
         #loops
+        #given
     }
 }
 
@@ -296,12 +307,16 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         quote!([#(#kinds),*])
     };
     let polish = quote!(polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, length: LENGTH }););
+    let conclusion = match found.given {
+        None => quote!(conclude(&found, false)),
+        Some(_) => quote!(conclude(&GIVEN.with::<6, DOF, 8>(&found, value), false)),
+    };
     let in_order = quote! {
         let count = found.count;
         for branch in found.all.iter_mut().take(count) {
             *branch = LOOP.of_arm(branch);
         }
-        conclude(&found, false)
+        #conclusion
     };
     let body = match &found.construction {
         Construction::SphericalTriple(way, case) => {
@@ -351,6 +366,9 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
                 #in_order
             }
         }
+        Construction::General(_) if found.given.is_some() => quote! {
+            conclude(&GIVEN.with::<6, DOF, 16>(&general_arm(&LOOPS, &t, LENGTH), value), true)
+        },
         Construction::General(_) => quote! {
             conclude(&general_arm(&LOOPS, &t, LENGTH), true)
         },
@@ -370,6 +388,16 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
             };
             (given, " `Invalid`: the position is not finite.")
         }
+        Target::Pose if found.given.is_some() => {
+            let given = quote! {
+                if !is_pose(t) || !redundancy.is_finite() {
+                    return Solutions::none(Verdict::Invalid);
+                }
+                let value = GIVEN.value(redundancy);
+                let t: Frame = GIVEN.rest(value, &[x, y, z]);
+            };
+            (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6, or the redundancy is not finite.")
+        }
         Target::Pose | Target::Planar => {
             let given = quote! {
                 if !is_pose(t) {
@@ -381,10 +409,25 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         }
     };
     let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
+    let argument = found.given.as_ref().map(|_| quote!(redundancy: Real));
+    let (about, redundancy) = found.given.as_ref().map_or((None, None), |given| {
+        let joint = usize_literal(given.joint);
+        let number = given.joint + 1;
+        let unit = if given.prismatic { "m" } else { "rad" };
+        let about = format!(" `redundancy`: the joint variable q{number}, {unit}.");
+        let function = quote! {
+            /// The `redundancy` of a posture, with which `inverse_kinematics` finds it again.
+            pub fn inverse_kinematics_redundancy(q: &[Real; DOF]) -> Real {
+                q[#joint]
+            }
+        };
+        (Some(quote!(#[doc = #about])), Some(function))
+    });
     quote! {
         /// All joint variables q with direct_kinematics(q) = t.
         ///
         #[doc = #target]
+        #about
         ///
         /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
         /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
@@ -396,10 +439,12 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         /// its root.
         ///
         #[doc = #class]
-        pub fn inverse_kinematics(t: &[[Real; 4]; 4]) -> Solutions {
+        pub fn inverse_kinematics(t: &[[Real; 4]; 4], #argument) -> Solutions {
             let [x, y, z, _] = *t;
             #given
             #body
         }
+
+        #redundancy
     }
 }

@@ -1,0 +1,414 @@
+//! Certificates of emitted inverse kinematics: whether a module `robot_ik.rs` finds all solutions.
+//!
+//! 1. *Text*: every building block is byte for byte the tested one, every number the float nearest to its exact value, the function a call of a construction.
+//!    With these exact values the loop closes, J1 L1 ... Jn Ln = 1, at random points of prime fields; the construction may be called with it.
+//! 2. *Generic completeness*: at random poses in prime fields the equations have as many solutions as the construction has branches.
+//! 3. *Counts*: at rational poses the number of real solutions is known by Sturm's theorem, and the module as it stands there, run in double
+//!    precision, returns so many.
+//!
+//! Classes are not decided here: the exact values are claims of the generator, and what a construction asks of its loop is tested on them.
+//! The solutions are counted with equations, arrangements and an algebra of their own (`forms`, `quotient`), which know no classes.
+
+mod chain;
+mod class;
+mod counts;
+mod forms;
+mod modular;
+mod points;
+mod polynomials;
+mod quotient;
+mod run;
+mod sturm;
+mod text;
+
+use std::fmt;
+
+use armgen_codegen::inverse_kinematics::{self as generator, Construction as Generated};
+use armgen_codegen::kinds::Scalar;
+use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::source::Source;
+use armgen_codegen::validate;
+use sha2::{Digest, Sha256};
+
+use crate::check::Check;
+use crate::element::Element;
+use crate::enclosure::Float;
+use crate::equations::arm::{formula, Arm};
+use crate::equations::pose::Pose;
+use crate::equations::state::State;
+use crate::float::Arguments;
+use crate::formula::Formula;
+use crate::stream::Stream;
+use chain::Chain;
+use counts::{Count, Counter, RationalPose, Way};
+use points::{posture, Constants, Loop};
+use run::Verdict;
+use text::{Construction, Text};
+
+/// Whether a text is a module of inverse kinematics.
+pub fn is_one(text: &str) -> bool {
+    text.contains("\nmod all_solutions {\n") || text.contains("\n// There is no `inverse_kinematics`: ")
+}
+
+/// So many rational poses are counted.
+pub const POSES: usize = 64;
+
+/// What was found of a module of inverse kinematics.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Name of the robot.
+    pub robot: String,
+    /// `f64` or `f32`.
+    pub scalar: &'static str,
+    /// The module says that the arm has no construction.
+    pub absent: bool,
+    /// At most so many solutions, as the module says.
+    pub most: usize,
+    /// So many numbers are the floats nearest to their exact values.
+    pub numbers: usize,
+    /// Solutions at random poses, complex ones too, and the joints in the order in which the loop was read for that, from 1.
+    pub generic: Option<(usize, Vec<usize>)>,
+    /// Rational poses at which the module returns as many solutions as there are.
+    pub equal: usize,
+    /// Of these, poses without a solution.
+    pub unreachable: usize,
+    /// Rational poses at which it says that it does not know.
+    pub near: usize,
+    /// Of these, poses at which solutions do meet.
+    pub singular: usize,
+    /// Rational poses at which solutions are not finitely many, or their number was not found.
+    pub undecided: usize,
+    /// Why nothing was counted, where that is so.
+    pub uncounted: Option<String>,
+    /// What is wrong.
+    pub faults: Vec<String>,
+}
+
+impl Report {
+    /// Whether nothing is wrong.
+    pub fn passed(&self) -> bool {
+        self.faults.is_empty()
+    }
+
+    /// What a report that passed comes to, in a line.
+    pub fn summary(&self) -> String {
+        let poses = self.equal + self.near + self.undecided;
+        match (&self.generic, &self.uncounted) {
+            _ if self.absent => "there is no construction for inverse kinematics".into(),
+            (Some((solutions, _)), None) => {
+                format!(
+                    "inverse kinematics: {solutions} solutions at random poses, counts of {} of {poses} rational poses proved",
+                    self.equal
+                )
+            }
+            (Some((solutions, _)), Some(reason)) => {
+                format!("inverse kinematics: {solutions} solutions at random poses; not counted at rational poses: {reason}")
+            }
+            (None, reason) => format!("inverse kinematics: solutions are not counted: {}", reason.as_deref().unwrap_or("")),
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "robot {}, inverse kinematics, {}", self.robot, self.scalar)?;
+        if self.absent {
+            return write!(f, "the module says that there is no construction: nothing to verify");
+        }
+        if self.numbers > 0 {
+            writeln!(f, "building blocks are the tested ones, {} numbers equal the description, the loop closes", self.numbers)?;
+        }
+        if let Some((solutions, order)) = &self.generic {
+            let order: Vec<String> = order.iter().map(ToString::to_string).collect();
+            writeln!(
+                f,
+                "{solutions} solutions at random poses, counted with the loop read as {}; the module has room for {}",
+                order.join(" "),
+                self.most
+            )?;
+        }
+        match &self.uncounted {
+            Some(reason) => writeln!(f, "not counted at rational poses: {reason}")?,
+            None if self.equal + self.near > 0 => writeln!(
+                f,
+                "{} rational poses counted by Sturm's theorem: {} equal, {} of them without a solution; {} said to be near a double solution, {} of them rightly; {} more not counted, where a joint can be free",
+                self.equal + self.near,
+                self.equal,
+                self.unreachable,
+                self.near,
+                self.singular,
+                self.undecided
+            )?,
+            None => {}
+        }
+        match self.faults.first() {
+            None => write!(f, "verified"),
+            Some(fault) => write!(f, "not verified: {fault}"),
+        }
+    }
+}
+
+/// Verifies the text of a module of inverse kinematics against the text of its description, with counts at so many rational poses.
+pub fn verify(source: &Source, text: &str, poses: usize) -> Report {
+    let mut report = Report::default();
+    let (read, diagnostics) = validate::read_for(source, Scalar::F64);
+    let Some((manipulator, _)) = read else {
+        report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
+        return report;
+    };
+    report.robot.clone_from(&manipulator.name);
+    if let Err(fault) = fill(&mut report, &manipulator, source, text, poses) {
+        report.faults.push(fault);
+    }
+    report
+}
+
+fn fill(report: &mut Report, manipulator: &Manipulator, source: &Source, text: &str, poses: usize) -> Result<(), String> {
+    let Some(module) = Text::read(text)? else {
+        report.absent = true;
+        return Ok(());
+    };
+    report.scalar = module.real.name();
+    report.most = module.most;
+    let seed: [u8; 32] = Sha256::new().chain_update(source.text()).chain_update([0]).chain_update(text).finalize().into();
+    let mut stream = Stream::of(seed);
+    let claims = claims(manipulator)?;
+    report.numbers = numbers(&module, manipulator, &claims)?;
+    let all: Vec<Formula> = claims.loops.iter().flatten().chain(&claims.given).cloned().collect();
+    let constants = Constants::of(manipulator, &all)?;
+    let most = construction(&module, manipulator, &constants, &claims, &mut stream)?;
+    if module.most != most && Check::MostSolutions.is_made() {
+        return Err(format!("MAX_SOLUTIONS: {} where the construction has {most}", module.most));
+    }
+    // Arrangements that the module does not use.
+    let given = module.given.as_ref().map(|given| given.joint);
+    let joints = module.dof - usize::from(given.is_some());
+    let point = !module.rotation;
+    let mut ways = Way::all(joints, point);
+    if module.construction == Construction::General {
+        ways.retain(|way| !module.loops.iter().any(|used| used.order == way.order(joints)));
+    }
+    let generic = match counts::generic(manipulator, &constants, (&ways, given), &mut stream) {
+        Ok(generic) => generic,
+        Err(reason) => {
+            report.uncounted = Some(reason);
+            return Ok(());
+        }
+    };
+    report.generic = Some((
+        generic.solutions,
+        generic.way.order(joints).iter().map(|joint| joint + 1 + usize::from(given == Some(0))).collect(),
+    ));
+    let branches =
+        if module.branches.is_empty() { module.most } else { module.branches.iter().filter(|b| !b.is_empty()).count() };
+    let lost = if module.branches.is_empty() { generic.solutions > module.most } else { generic.solutions != branches };
+    if lost && Check::Branches.is_made() {
+        return Err(format!("BRANCHES: {branches} of them, and there are {} solutions at a random pose", generic.solutions));
+    }
+    if !constants.are_fractions() {
+        report.uncounted = Some("constants of the arm are no fractions".into());
+        return Ok(());
+    }
+    if module.real != Float::F64 {
+        report.uncounted = Some("the module is in single precision".into());
+        return Ok(());
+    }
+    let length = module.length.parse().unwrap_or(1.0);
+    let poses = RationalPose::some(module.dof, poses, length, &mut stream);
+    let arm = constants.arm.map(&|number| Float::F64.nearest(number).unwrap_or(0.0));
+    let mut counter = Counter::new(manipulator, &constants, generic, stream);
+    for (number, pose) in poses.iter().enumerate() {
+        let count = counter.at(pose)?;
+        let exact = pose.exact(&constants);
+        let rounded = exact.each_ref().map(|row| row.each_ref().map(|entry| Float::F64.nearest(entry).unwrap_or(0.0)));
+        let redundancy = given.map_or(0.0, |joint| {
+            let (n, d) = pose.values[joint];
+            let x = n as f64 / d as f64;
+            if module.prismatic[joint] {
+                x
+            } else {
+                2.0 * libm::atan(x)
+            }
+        });
+        let outcome = run::run(&module, &rounded, redundancy).ok_or("the function cannot be run")?;
+        judge(report, count, &outcome, &misses(&arm, &outcome, &rounded, module.rotation, manipulator))
+            .map_err(|fault| format!("inverse_kinematics: at rational pose {} {fault}", number + 1))?;
+    }
+    Ok(())
+}
+
+/// Exact values of the numbers of loops, in order: the generator's, which need no trust.
+struct Claims {
+    loops: Vec<Vec<Formula>>,
+    given: Vec<Formula>,
+    length: Formula,
+}
+
+fn claims(manipulator: &Manipulator) -> Result<Claims, String> {
+    let found = generator::of(manipulator).map_err(|reason| format!("the arm has no construction: {reason}"))?;
+    let ways = match &found.construction {
+        Generated::SphericalTriple(way, _)
+        | Generated::ThreeParallel(way, _)
+        | Generated::ParallelTurns(way, _)
+        | Generated::Position(way, _)
+        | Generated::ThreePrismatic(way, _) => vec![way],
+        Generated::General(ways) => ways.iter().collect(),
+    };
+    let numbers = |way: &&generator::Arrangement| {
+        let frames = way.links.iter().chain([&way.before, &way.after]).flatten().flatten();
+        frames.chain(way.offsets.iter().flatten()).map(formula).collect()
+    };
+    let given = found.given.iter().flat_map(|given| [&given.before, &given.after]).flatten().flatten().map(formula).collect();
+    Ok(Claims { loops: ways.iter().map(numbers).collect(), given, length: formula(&found.length) })
+}
+
+/// Whether all numbers are the floats nearest to what is claimed, or to the description; how many there are.
+fn numbers(module: &Text, manipulator: &Manipulator, claims: &Claims) -> Result<usize, String> {
+    let nearest = |text: &str, exact: &Formula| {
+        module.real.read(text.trim_start_matches('-')).is_some_and(|value| {
+            let value = if text.starts_with('-') { -value } else { value };
+            module.real.is_nearest(value, exact)
+        })
+    };
+    let mut count = 1;
+    if module.dof != manipulator.joints.len() {
+        return Err(format!("DOF: {} where the arm has {} joints", module.dof, manipulator.joints.len()));
+    }
+    for (i, joint) in manipulator.joints.iter().enumerate() {
+        if module.prismatic[i] != (joint.kind == armgen_codegen::kinds::JointKind::Prismatic) {
+            return Err(format!("PRISMATIC: joint {} is of the other kind", i + 1));
+        }
+        for (side, infinite) in ["Real::NEG_INFINITY", "Real::INFINITY"].into_iter().enumerate() {
+            let text = module.limits[2 * i + side].as_str();
+            let right = match &joint.limits.position {
+                None => text == infinite,
+                Some(limits) => nearest(text, &formula(&limits[side])),
+            };
+            if !right && Check::Limits.is_made() {
+                return Err(format!("POSITION_LIMITS: {text} is not what the description says of joint {}", i + 1));
+            }
+            count += 1;
+        }
+    }
+    if !nearest(&module.length, &claims.length) && Check::LoopNumbers.is_made() {
+        return Err(format!("LENGTH: {} is not the float nearest to {}", module.length, claims.length));
+    }
+    let loops = module.loops.iter().map(|way| &way.numbers).zip(&claims.loops);
+    for (texts, claimed) in loops.chain(module.given.iter().map(|given| (&given.numbers, &claims.given))) {
+        if texts.len() != claimed.len() {
+            return Err("LOOP: the loop has another number of joints than the arm".into());
+        }
+        for (text, exact) in texts.iter().zip(claimed) {
+            if !nearest(text, exact) && Check::LoopNumbers.is_made() {
+                return Err(format!("LOOP: {text} is not the float nearest to {exact}"));
+            }
+            count += 1;
+        }
+    }
+    Ok(count)
+}
+
+/// The most solutions that the construction has; the loop closes and the construction may be called with it at random points.
+fn construction(
+    module: &Text,
+    manipulator: &Manipulator,
+    constants: &Constants,
+    claims: &Claims,
+    stream: &mut Stream,
+) -> Result<usize, String> {
+    let mut most = 0;
+    for _ in 0..2 {
+        let mut field = constants.field(stream)?;
+        let chain = Chain::of(manipulator, &field).ok_or("a constant of the description divides by zero")?;
+        let mut posture = posture(&chain, &mut field);
+        let mut pose = chain.pose(&posture);
+        let mut kinds = chain.slides.clone();
+        if let Some(given) = &module.given {
+            let value = posture.remove(given.joint);
+            if kinds.remove(given.joint) != given.prismatic {
+                return Err("GIVEN: the joint is of the other kind".into());
+            }
+            pose = points::rest(given, &claims.given, &field, value, &pose).ok_or("a constant of the loop divides by zero")?;
+        }
+        for (way, numbers) in module.loops.iter().zip(&claims.loops) {
+            let closed = Loop::of(way, numbers, &field).ok_or("a constant of the loop divides by zero")?;
+            if !closed.closes(way, &kinds, &posture, &pose) && Check::Loop.is_made() {
+                return Err("LOOP: it is not the loop of this arm".into());
+            }
+            match class::most(&module.construction, way, &closed) {
+                Ok(found) => most = found,
+                Err(fault) if Check::Class.is_made() => return Err(fault),
+                Err(_) => most = module.most,
+            }
+        }
+    }
+    Ok(most)
+}
+
+/// How far each solution is from the pose.
+fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], rotation: bool, manipulator: &Manipulator) -> Vec<f64> {
+    use armgen_codegen::kinds::TaskRow;
+    let rows = [TaskRow::X, TaskRow::Y, TaskRow::Z].map(|row| manipulator.task.contains(&row));
+    let miss = |joints: &Vec<[f64; 2]>| {
+        let zeros = vec![0.0; joints.len()];
+        let arguments = Arguments {
+            pi: Vec::new(),
+            q: joints.iter().map(|value| value[0]).collect(),
+            dq: zeros.clone(),
+            ddq: zeros.clone(),
+            dqr: zeros.clone(),
+            ddqr: zeros.clone(),
+            tau: zeros.clone(),
+        };
+        let angles = joints.iter().map(|[c, s]| (*s, *c)).collect();
+        let tool = Pose::new(arm, &State::of(arguments, angles, zeros, [0.0, 1.0])).tool;
+        let mut most = 0.0f64;
+        for i in 0..3 {
+            for j in 0..4 {
+                let (found, counts) = if j == 3 { (tool.origin[i], rows[i]) } else { (tool.rotation[i][j], rotation) };
+                if counts {
+                    most = most.max(found.minus(&pose[i][j]).abs());
+                }
+            }
+        }
+        most
+    };
+    outcome.solutions.iter().map(miss).collect()
+}
+
+/// A solution of a pose with lengths of some metres is right to this, m or rad.
+const RIGHT: f64 = 1e-8;
+
+/// Whether what the module returns at a pose fits what is proved of it.
+fn judge(report: &mut Report, count: Count, outcome: &run::Outcome, misses: &[f64]) -> Result<(), String> {
+    let found = outcome.solutions.len();
+    let certain = matches!(outcome.verdict, Verdict::Complete | Verdict::Unreachable);
+    if certain && misses.iter().any(|miss| *miss > RIGHT) && Check::Reached.is_made() {
+        return Err("a solution does not reach it".into());
+    }
+    let Count::Finite(roots) = count else {
+        report.undecided += 1;
+        return Ok(());
+    };
+    if roots.multiple > 0 {
+        if certain && Check::Meeting.is_made() {
+            return Err(format!("solutions meet, and the module says {:?}", outcome.verdict));
+        }
+        report.near += 1;
+        report.singular += 1;
+        return Ok(());
+    }
+    if !certain {
+        report.near += 1;
+        return Ok(());
+    }
+    if found != roots.real && Check::Counts.is_made() {
+        return Err(format!("there are {} solutions, and the module returns {found}", roots.real));
+    }
+    report.equal += 1;
+    report.unreachable += usize::from(found == 0);
+    Ok(())
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

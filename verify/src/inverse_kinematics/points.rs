@@ -1,0 +1,125 @@
+//! An arm's constants in prime fields, and what the text claims of its loop.
+
+use std::cell::RefCell;
+
+use armgen_codegen::manipulator::Manipulator;
+
+use super::chain::Chain;
+use super::modular::{Frame, Modulus};
+use super::text::{Arrangement, Given};
+use crate::arithmetic::plain::Plain;
+use crate::arithmetic::prime::Prime;
+use crate::arithmetic::roots::dependent;
+use crate::arithmetic::Arithmetic;
+use crate::equations::arm::Arm;
+use crate::formula::{Atoms, Dependent, Formula};
+use crate::stream::Stream;
+
+/// The description's numbers as formulas, and the roots and angles in them.
+pub(super) struct Constants {
+    pub(super) arm: Arm<Formula>,
+    atoms: Atoms,
+    dependent: Dependent,
+}
+
+impl Constants {
+    /// Of the arm, and others.
+    pub(super) fn of(manipulator: &Manipulator, others: &[Formula]) -> Result<Constants, String> {
+        let arm = Arm::nominal(&Plain, manipulator).and_then(|nominal| Arm::new(&Plain, manipulator, &nominal));
+        let arm = arm.ok_or("the description divides by zero")?;
+        let all = RefCell::new(others.to_vec());
+        arm.map(&|number| {
+            all.borrow_mut().push(number.clone());
+            0.0
+        });
+        let atoms = Atoms::of(all.borrow().iter());
+        let dependent = dependent(&atoms)?;
+        Ok(Constants { arm, atoms, dependent })
+    }
+
+    /// Whether there are no roots, no angles and no pi.
+    pub(super) fn are_fractions(&self) -> bool {
+        self.atoms.roots.is_empty() && self.atoms.angles.is_empty()
+    }
+
+    /// A field with a random prime.
+    pub(super) fn field(&self, stream: &mut Stream) -> Result<Prime, String> {
+        Prime::new(stream, &self.atoms, &self.dependent).ok_or_else(|| "there are too many independent roots".into())
+    }
+}
+
+/// A random posture: (c, s) or (d, 0).
+pub(super) fn posture(chain: &Chain, field: &mut Prime) -> Vec<[u64; 2]> {
+    let m = chain.modulus;
+    let mut value = |slides: &bool| {
+        if *slides {
+            return [m.of(field.draw().value()), 0];
+        }
+        let (s, c) = field.draw_angle();
+        [m.of(c.value()), m.of(s.value())]
+    };
+    chain.slides.iter().map(&mut value).collect()
+}
+
+/// The pose that the other joints have to reach where one at an end of the arm has a value: its frames are claimed.
+pub(super) fn rest(given: &Given, numbers: &[Formula], field: &Prime, value: [u64; 2], pose: &Frame) -> Option<Frame> {
+    let m = Modulus::new(field.prime());
+    let numbers: Option<Vec<u64>> = numbers.iter().map(|x| Some(m.of(field.constant(x)?.value()))).collect();
+    let numbers = numbers?;
+    let frame = |at: usize| -> Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
+    let moved = m.joint(given.prismatic, [0, 0, m.one], value);
+    let back = m.inverse_frame(&m.compose(&m.compose(&frame(0), &moved), &frame(12)));
+    Some(if given.joint == 0 { m.compose(&back, pose) } else { m.compose(pose, &back) })
+}
+
+/// A loop with its exact numbers in a field.
+pub(super) struct Loop {
+    pub(super) modulus: Modulus,
+    pub(super) links: Vec<Frame>,
+    before: Frame,
+    after: Frame,
+    offsets: Vec<[u64; 2]>,
+}
+
+impl Loop {
+    /// Of the exact numbers of a text's loop, in their order.
+    pub(super) fn of(way: &Arrangement, numbers: &[Formula], field: &Prime) -> Option<Loop> {
+        let modulus = Modulus::new(field.prime());
+        let numbers: Option<Vec<u64>> = numbers.iter().map(|x| Some(modulus.of(field.constant(x)?.value()))).collect();
+        let numbers = numbers?;
+        let joints = way.order.len();
+        let frame = |at: usize| -> Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
+        let offset = |i: usize| [numbers[12 * joints + 24 + 2 * i], numbers[12 * joints + 24 + 2 * i + 1]];
+        Some(Loop {
+            modulus,
+            links: (0..joints).map(|i| frame(12 * i)).collect(),
+            before: frame(12 * joints),
+            after: frame(12 * joints + 12),
+            offsets: (0..joints).map(offset).collect(),
+        })
+    }
+
+    /// Whether J1 L1 ... Jn Ln = 1 at a posture of the arm and its pose. Joints that the arm has not are at 0.
+    pub(super) fn closes(&self, way: &Arrangement, kinds: &[bool], posture: &[[u64; 2]], pose: &Frame) -> bool {
+        let m = self.modulus;
+        let x = if way.backward { *pose } else { m.inverse_frame(pose) };
+        let open = m.compose(&self.before, &m.compose(&x, &self.after));
+        let mut product = m.identity();
+        for (place, joint) in way.order.iter().enumerate() {
+            let slides = way.prismatic[place];
+            if kinds.get(*joint).is_some_and(|kind| *kind != slides) {
+                return false;
+            }
+            let [c, s] = posture.get(*joint).copied().unwrap_or(if slides { [0, 0] } else { [m.one, 0] });
+            let [a, b] = self.offsets[place];
+            let value = if slides {
+                [m.plus(c, a), 0]
+            } else {
+                [m.minus(m.times(c, a), m.times(s, b)), m.plus(m.times(s, a), m.times(c, b))]
+            };
+            let link = if place == way.open { &open } else { &self.links[place] };
+            product = m.compose(&m.compose(&product, &m.joint(slides, [0, 0, m.one], value)), link);
+        }
+        product == m.identity()
+    }
+}

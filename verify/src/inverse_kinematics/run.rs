@@ -1,0 +1,160 @@
+//! A module's function as the text has it, run in double precision: its constants as read, its building blocks as compiled here, byte for byte the
+//! same.
+
+use armgen_inverse_kinematics::f64 as block;
+
+use super::text::{self, Construction, Text};
+
+/// What is known of the solutions, as the module says it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Complete,
+    Unreachable,
+    NearDouble,
+    Continuum,
+}
+
+/// What the function returns: for each solution the joints' (cos q, sin q) or (q, 0).
+#[derive(Clone, Debug)]
+pub(super) struct Outcome {
+    pub(super) verdict: Verdict,
+    pub(super) solutions: Vec<Vec<[f64; 2]>>,
+}
+
+type Case = fn(&block::Frame, &block::Frame, block::Vector, block::Vector) -> block::Branches<3, 4>;
+
+fn case(name: &str) -> Option<Case> {
+    Some(match name {
+        "regional_elbow" => block::regional_elbow,
+        "regional_crossing" => block::regional_crossing,
+        "regional_general" => block::regional_general,
+        "regional_slide_elbow" => block::regional_slide_elbow,
+        "regional_slide_across" => block::regional_slide_across,
+        "regional_slide" => block::regional_slide,
+        "regional_mid_slide_elbow" => block::regional_mid_slide_elbow,
+        "regional_mid_slide_across" => block::regional_mid_slide_across,
+        "regional_mid_slide" => block::regional_mid_slide,
+        "regional_plane_then_turn" => block::regional_plane_then_turn,
+        "regional_slide_turn_slide" => block::regional_slide_turn_slide,
+        "regional_slides" => block::regional_slides,
+        _ => return None,
+    })
+}
+
+fn arrangement<const J: usize>(way: &text::Arrangement) -> Option<block::Arrangement<J>> {
+    let numbers: Option<Vec<f64>> = way.numbers.iter().map(|x| x.parse().ok()).collect();
+    let numbers = numbers.filter(|_| way.order.len() == J)?;
+    let frame = |at: usize| -> block::Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
+    Some(block::Arrangement {
+        order: std::array::from_fn(|i| way.order[i]),
+        prismatic: std::array::from_fn(|i| way.prismatic[i]),
+        links: std::array::from_fn(|i| frame(12 * i)),
+        open: way.open,
+        before: frame(12 * J),
+        after: frame(12 * J + 12),
+        backward: way.backward,
+        offsets: std::array::from_fn(|i| [numbers[12 * J + 24 + 2 * i], numbers[12 * J + 25 + 2 * i]]),
+    })
+}
+
+/// As the text `solutions` concludes.
+fn concluded<const J: usize, const N: usize>(text: &Text, found: &block::Branches<J, N>) -> Outcome {
+    let dof = text.dof - usize::from(text.given.is_some());
+    let (mut near, mut continuum) = (found.near, found.continuum);
+    let mut solutions = Vec::new();
+    for branch in found.found() {
+        let joints: Vec<[f64; 2]> = branch.joints.iter().take(dof).copied().collect();
+        if !joints.iter().flatten().all(|x| x.is_finite()) || solutions.len() == text.most {
+            near = true;
+            continue;
+        }
+        near |= branch.double;
+        continuum |= branch.free & ((1 << dof) - 1) != 0;
+        solutions.push(joints);
+    }
+    let verdict = match (continuum, near, solutions.is_empty()) {
+        (true, ..) => Verdict::Continuum,
+        (_, true, _) => Verdict::NearDouble,
+        (_, _, false) => Verdict::Complete,
+        _ => Verdict::Unreachable,
+    };
+    Outcome { verdict, solutions }
+}
+
+fn in_order<const J: usize, const N: usize>(
+    text: &Text,
+    way: &block::Arrangement<J>,
+    mut found: block::Branches<J, N>,
+) -> Outcome {
+    let count = found.count;
+    for branch in found.all.iter_mut().take(count) {
+        *branch = way.of_arm(branch);
+    }
+    concluded(text, &found)
+}
+
+/// What the function returns at a pose; `None` if its text cannot be run.
+///
+/// - `redundancy`: the value of the joint that is given, where there is one.
+pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outcome> {
+    let Some(given) = &text.given else { return of_rest(text, t) };
+    let numbers: Option<Vec<f64>> = given.numbers.iter().map(|x| x.parse().ok()).collect();
+    let numbers = numbers?;
+    let frame = |at: usize| -> block::Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
+    let joint = block::Given { joint: given.joint, prismatic: given.prismatic, before: frame(0), after: frame(12) };
+    let value = joint.value(redundancy);
+    let mut outcome = of_rest(text, &joint.rest(value, t))?;
+    for solution in &mut outcome.solutions {
+        solution.insert(given.joint, value);
+    }
+    Some(outcome)
+}
+
+/// The same of the joints that are not given.
+fn of_rest(text: &Text, t: &block::Frame) -> Option<Outcome> {
+    let length: f64 = text.length.parse().ok()?;
+    let first = &text.loops[0];
+    Some(match &text.construction {
+        Construction::General => {
+            let ways = [arrangement::<6>(first)?, arrangement::<6>(&text.loops[1])?];
+            concluded(text, &block::general_arm(&ways, t, length))
+        }
+        Construction::SphericalTriple { kinds, case: name, polished } => {
+            let (way, kinds) = (arrangement::<6>(first)?, [kinds[0], kinds[1], kinds[2]]);
+            let links = way.links_at(t);
+            let mut found = block::spherical_triple(&links, kinds, case(name)?);
+            if *polished {
+                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, length });
+            }
+            in_order(text, &way, found)
+        }
+        Construction::ThreeParallel { polished } => {
+            let way = arrangement::<6>(first)?;
+            let links = way.links_at(t);
+            let mut found = block::three_parallel(&links);
+            if *polished {
+                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, length });
+            }
+            in_order(text, &way, found)
+        }
+        Construction::ParallelTurns { kinds, case: name } => {
+            let way = arrangement::<4>(first)?;
+            in_order(text, &way, block::parallel_turns(&way.links_at(t), [kinds[0], kinds[1], kinds[2]], case(name)?))
+        }
+        Construction::ThreePrismatic { turning } => {
+            let way = arrangement::<6>(first)?;
+            in_order(text, &way, block::three_prismatic(&way.links_at(t), [turning[0], turning[1], turning[2]]))
+        }
+        Construction::Position { case: name } => {
+            let way = arrangement::<3>(first)?;
+            let (a, b) = (way.links[0], way.links[1]);
+            let position = block::column(t, 3);
+            let (from, to) = if way.backward {
+                (block::transform(&way.before, position), block::column(&block::inverse(&way.after), 3))
+            } else {
+                (block::column(&way.before, 3), block::transform(&block::inverse(&way.after), position))
+            };
+            in_order(text, &way, case(name)?(&a, &b, from, to))
+        }
+    })
+}

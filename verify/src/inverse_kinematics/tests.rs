@@ -1,0 +1,228 @@
+//! Modules that are right, and modules that are not.
+
+use armgen_codegen::schedule::{Options, Selection};
+
+use super::*;
+
+fn module(text: &str) -> (Source, String) {
+    let source = Source::new("robot.yaml", text);
+    let functions = Selection::named(["direct_kinematics"]).expect("a function");
+    let (generated, _) = armgen_codegen::generate(&source, &Options { functions, ..Options::default() });
+    let ik = generated.expect("a valid robot").inverse_kinematics();
+    (source, ik)
+}
+
+fn robot(name: &str) -> (Source, String) {
+    let path = format!("{}/../robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    module(&std::fs::read_to_string(path).expect("a robot of the project"))
+}
+
+#[test]
+fn robots_are_verified() {
+    for (name, solutions) in [("scara", 2), ("scara4", 2), ("puma560", 8), ("ur5", 8), ("panda7", 8)] {
+        let (source, text) = robot(name);
+        let now = std::time::Instant::now();
+        let report = verify(&source, &text, 16);
+        println!("{report}\n{:?}", now.elapsed());
+        assert!(report.passed(), "{report}");
+        assert_eq!(report.generic.as_ref().map(|generic| generic.0), Some(solutions), "{report}");
+        assert!(report.uncounted.is_none() && report.equal >= 8 && report.unreachable >= 2, "{report}");
+    }
+}
+
+/// A description from rows (kind, a, alpha, d, theta).
+fn description(task: &str, rows: &[[&str; 5]]) -> String {
+    let joint = |(i, [kind, a, alpha, d, theta]): (usize, &[&str; 5])| {
+        format!(
+            "  - {{name: j{}, type: {}, a: {a}, alpha: {alpha}, d: {d}, theta: {theta}, \
+             link: {{mass: 1, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n",
+            i + 1,
+            if *kind == "P" { "prismatic" } else { "revolute" }
+        )
+    };
+    let joints: String = rows.iter().enumerate().map(joint).collect();
+    format!("name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\n{task}\njoints:\n{joints}")
+}
+
+/// One arm of each class, with constants that are fractions where they can be.
+fn made_up() -> Vec<(&'static str, usize, String)> {
+    let (o, q, minus) = ("0", "pi/2", "-pi/2");
+    let arm = |name, solutions, task: &str, rows: &[[&str; 5]]| (name, solutions, description(task, rows));
+    vec![
+        arm("planar", 2, "task: [x, y, rz]", &[["R", "0.5", o, o, o], ["R", "0.4", o, o, o], ["R", "0.2", o, o, o]]),
+        arm("planar position", 2, "task: [x, y]", &[["R", "0.5", o, o, o], ["R", "0.4", o, "0.1", o]]),
+        arm(
+            "position",
+            4,
+            "task: [x, y, z]",
+            &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["R", "0.35", o, "0.05", o]],
+        ),
+        arm(
+            "offset shoulder",
+            8,
+            "",
+            &[
+                ["R", "0.1", q, "0.3", o],
+                ["R", "0.4", o, "0.1", o],
+                ["R", "0.02", minus, "0.1", o],
+                ["R", o, q, "0.4", o],
+                ["R", o, minus, o, o],
+                ["R", o, o, "0.1", o],
+            ],
+        ),
+        arm(
+            "three axes unrelated",
+            8,
+            "",
+            &[
+                ["R", "0.2", q, "0.3", o],
+                ["R", "0.4", minus, "0.1", o],
+                ["R", "0.1", q, "0.05", o],
+                ["R", o, q, "0.35", o],
+                ["R", o, minus, o, o],
+                ["R", "0.02", o, "0.1", o],
+            ],
+        ),
+        arm(
+            "parallel",
+            8,
+            "",
+            &[
+                ["R", "0.15", q, "0.3", o],
+                ["R", "0.4", "pi", "0.1", o],
+                ["R", "0.35", o, "0.05", o],
+                ["R", "0.12", q, "0.1", o],
+                ["R", "0.07", minus, "0.2", o],
+                ["R", "0.02", o, "0.1", o],
+            ],
+        ),
+        arm(
+            "track",
+            8,
+            "",
+            &[
+                ["P", "0.1", q, "0.2", o],
+                ["R", "0.4", q, "0.1", o],
+                ["R", "0.1", q, "0.05", o],
+                ["R", o, q, "0.35", o],
+                ["R", o, minus, o, o],
+                ["R", o, o, "0.1", o],
+            ],
+        ),
+        arm(
+            "gantry",
+            2,
+            "",
+            &[
+                ["P", "0.1", q, "0.2", q],
+                ["P", o, q, "0.1", q],
+                ["P", "0.1", q, "0.05", o],
+                ["R", "0.05", q, "0.35", o],
+                ["R", "0.03", minus, "0.02", o],
+                ["R", o, o, "0.1", o],
+            ],
+        ),
+        arm(
+            "general",
+            16,
+            "",
+            &[
+                ["R", "0.15", q, "0.3", o],
+                ["R", "0.4", minus, "0.1", o],
+                ["R", "0.35", q, "0.05", o],
+                ["R", "0.12", minus, "0.1", o],
+                ["R", "0.07", q, "0.2", o],
+                ["R", "0.02", o, "0.1", o],
+            ],
+        ),
+    ]
+}
+
+#[test]
+fn arms_of_each_class_are_verified() {
+    for (name, solutions, text) in made_up() {
+        let (source, text) = module(&text);
+        let now = std::time::Instant::now();
+        let report = verify(&source, &text, 8);
+        println!("{name}: {report}\n{:?}", now.elapsed());
+        assert!(report.passed(), "{name}: {report}");
+        if let Some((found, _)) = &report.generic {
+            assert_eq!(*found, solutions, "{name}: {report}");
+        }
+    }
+}
+
+/// Constants with roots and angles: the number of solutions at random poses is known all the same.
+#[test]
+fn arms_with_any_angles_are_verified() {
+    let rows = [
+        ["R", "0.15", "pi/3", "0.3", "0.1"],
+        ["R", "0.4", "-1.1", "0.1", "0"],
+        ["R", "0.35", "0.8", "0.05", "0.3"],
+        ["R", "0", "pi/4", "0.1", "0"],
+        ["R", "0", "-1.2", "0", "0.2"],
+        ["R", "0.02", "0.3", "0.1", "0"],
+    ];
+    let (source, text) = module(&description("", &rows));
+    let report = verify(&source, &text, 8);
+    assert!(report.passed() && report.uncounted.is_some(), "{report}");
+    assert_eq!(report.generic.as_ref().map(|generic| generic.0), Some(8), "{report}");
+}
+
+/// Texts that cannot be read: blocks that are not the tested ones, and what stands beside them.
+#[test]
+fn other_texts_are_refused() {
+    let (source, text) = robot("puma560");
+    let fault = |old: &str, new: &str| {
+        assert!(text.contains(old), "{old}");
+        verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
+    };
+    // A sign, a lost branch, a degenerate case that is dropped.
+    let why = "is not the tested one";
+    assert!(fault("x * along - y * w, y * along + x * w", "x * along + y * w, y * along + x * w").contains(why));
+    assert!(fault("found.count = 2;", "found.count = 1;").contains(why));
+    assert!(fault("found.free = true;", "").contains(why));
+    assert!(fault("conclude(&found, false)\n}", "conclude(&found, true)\n}").contains("should stand where"));
+    assert!(fault("    if !is_pose(t) {", "    if false {").contains("should stand where"));
+    assert!(fault("    backward: false", "    backward: true").contains("not the loop of this arm"));
+    assert!(fault("\nmod all_solutions {", "\nmod others {").contains("should stand where"));
+}
+
+type Fault<'a> = &'a dyn Fn() -> Option<String>;
+
+/// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.
+pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<'_>)) {
+    use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached};
+    let (_, _, shoulder) = made_up().remove(3);
+    let (source, text) = module(&shoulder);
+    let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
+        assert!(text.contains(old), "{old}");
+        let trick = text.replacen(old, new, 1);
+        peel(new, layers, &|| verify(&source, &trick, 6).faults.pop());
+    };
+    edited("[Real::NEG_INFINITY, Real::INFINITY]", "[Real::NEG_INFINITY, 3.0]", &[(Limits, "POSITION_LIMITS: 3.0 is not what")]);
+    edited("0.4]", "0.41]", &[(LoopNumbers, "0.41 is not the float nearest to 2/5"), (Reached, "a solution does not reach it")]);
+    edited(
+        "order: [0, 1, 2,",
+        "order: [0, 2, 1,",
+        &[(Loop, "not the loop of this arm"), (Reached, "a solution does not reach it")],
+    );
+    edited(
+        "], regional_elbow",
+        "], regional_crossing",
+        &[(Class, "`regional_crossing` does not hold"), (Reached, "a solution does not reach it")],
+    );
+    edited(
+        "MAX_SOLUTIONS: usize = 8",
+        "MAX_SOLUTIONS: usize = 9",
+        &[(MostSolutions, "MAX_SOLUTIONS: 9 where the construction has 8")],
+    );
+    edited("\"shoulder first, elbow first, wrist flipped\"", "\"\"", &[(Branches, "BRANCHES: 7 of them, and there are 8")]);
+    // A count off by one; a double solution that is passed over.
+    let roots = |real, multiple| Count::Finite(super::sturm::Roots { distinct: 8, real, multiple });
+    let eight = run::Outcome { verdict: Verdict::Complete, solutions: vec![vec![]; 8] };
+    let judged = |count| judge(&mut Report::default(), count, &eight, &[0.0; 8]).err();
+    assert_eq!(judged(roots(8, 0)), None);
+    peel("7 for 8", &[(Counts, "there are 7 solutions, and the module returns 8")], &|| judged(roots(7, 0)));
+    peel("two have met", &[(Meeting, "and the module says Complete")], &|| judged(roots(7, 1)));
+}

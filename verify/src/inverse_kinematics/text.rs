@@ -1,0 +1,424 @@
+//! The text of a module of inverse kinematics, read: its constants, its construction, and whether the rest is what it has to be.
+//!
+//! Comments and blanks say nothing. What is left must be the head that exports, constants, one function whose body is that of a
+//! construction, and building blocks, each byte for byte the one that this program has, compiles and tests.
+
+use armgen_inverse_kinematics::texts::TEXTS;
+
+/// A constant's value.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Value {
+    /// A number as it stands there, with its sign.
+    Number(String),
+    Bool(bool),
+    /// Anything else that is one word or text.
+    Word(String),
+    List(Vec<Value>),
+    Fields(Vec<(String, Value)>),
+}
+
+/// A loop as the text has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Arrangement {
+    pub(super) order: Vec<usize>,
+    pub(super) prismatic: Vec<bool>,
+    pub(super) open: usize,
+    pub(super) backward: bool,
+    /// All its numbers as they stand in the text: links, before, after, offsets.
+    pub(super) numbers: Vec<String>,
+}
+
+/// A joint whose value is given.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Given {
+    pub(super) joint: usize,
+    pub(super) prismatic: bool,
+    /// Its numbers as they stand in the text: before, after.
+    pub(super) numbers: Vec<String>,
+}
+
+/// What the function calls.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Construction {
+    SphericalTriple { kinds: Vec<bool>, case: String, polished: bool },
+    ThreeParallel { polished: bool },
+    ParallelTurns { kinds: Vec<bool>, case: String },
+    Position { case: String },
+    ThreePrismatic { turning: Vec<usize> },
+    General,
+}
+
+/// A module's text.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    pub(super) real: crate::enclosure::Float,
+    pub(super) dof: usize,
+    pub(super) most: usize,
+    pub(super) branches: Vec<String>,
+    pub(super) prismatic: Vec<bool>,
+    pub(super) limits: Vec<String>,
+    pub(super) length: String,
+    pub(super) loops: Vec<Arrangement>,
+    pub(super) construction: Construction,
+    pub(super) given: Option<Given>,
+    /// Whether the function asks for a rotation, not for a position alone.
+    pub(super) rotation: bool,
+}
+
+/// Code without comments and blanks, texts as they are, and without commas before brackets that close.
+fn squeezed(text: &str) -> String {
+    let mut all = String::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("//") {
+            continue;
+        }
+        let mut quoted = false;
+        for c in line.chars() {
+            quoted ^= c == '"';
+            if quoted || !c.is_whitespace() {
+                if matches!(c, ')' | ']' | '}') && !quoted && all.ends_with(',') {
+                    all.pop();
+                }
+                all.push(c);
+            }
+        }
+    }
+    all
+}
+
+struct Reader<'a> {
+    rest: &'a str,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, text: &str) -> bool {
+        let rest = self.rest.strip_prefix(text);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    fn expect(&mut self, text: &str) -> Result<(), String> {
+        if self.take(text) {
+            return Ok(());
+        }
+        let found: String = self.rest.chars().take(60).collect();
+        Err(format!("`{text}` should stand where there is `{found}`"))
+    }
+
+    fn until(&mut self, end: char) -> Result<&'a str, String> {
+        let (found, rest) = self.rest.split_once(end).ok_or_else(|| format!("`{end}` is missing"))?;
+        self.rest = rest;
+        Ok(found)
+    }
+
+    fn value(&mut self) -> Result<Value, String> {
+        if self.take("[") {
+            let mut list = Vec::new();
+            while !self.take("]") {
+                list.push(self.value()?);
+                self.take(",");
+            }
+            return Ok(Value::List(list));
+        }
+        if self.take("\"") {
+            return Ok(Value::Word(self.until('"')?.to_owned()));
+        }
+        let end = self.rest.find([',', ']', ';', '{', '}', ')']).ok_or("a value does not end")?;
+        let word = &self.rest[..end];
+        self.rest = &self.rest[end..];
+        if self.take("{") {
+            let mut fields = Vec::new();
+            while !self.take("}") {
+                let name = self.until(':')?.to_owned();
+                fields.push((name, self.value()?));
+                self.take(",");
+            }
+            return Ok(Value::Fields(fields));
+        }
+        let digits = word.strip_prefix('-').unwrap_or(word);
+        Ok(match word {
+            "" => return Err("a value is missing".into()),
+            "true" | "false" => Value::Bool(word == "true"),
+            _ if digits.starts_with(|c: char| c.is_ascii_digit()) => Value::Number(word.to_owned()),
+            _ => Value::Word(word.to_owned()),
+        })
+    }
+
+    fn constant(&mut self, name: &str, kind: &str) -> Result<Value, String> {
+        self.expect(&format!("const{name}:{kind}="))?;
+        let value = self.value()?;
+        self.expect(";")?;
+        Ok(value)
+    }
+}
+
+impl Value {
+    fn list(&self) -> Result<&[Value], String> {
+        match self {
+            Value::List(list) => Ok(list),
+            other => Err(format!("{other:?} is no list")),
+        }
+    }
+
+    fn bool(&self) -> Result<bool, String> {
+        match self {
+            Value::Bool(value) => Ok(*value),
+            other => Err(format!("{other:?} is neither true nor false")),
+        }
+    }
+
+    fn count(&self) -> Result<usize, String> {
+        match self {
+            Value::Number(digits) => digits.parse().map_err(|_| format!("{digits} is no count")),
+            other => Err(format!("{other:?} is no count")),
+        }
+    }
+
+    /// All its numbers and words.
+    fn leaves(&self, leaves: &mut Vec<String>) {
+        match self {
+            Value::Number(text) | Value::Word(text) => leaves.push(text.clone()),
+            Value::Bool(value) => leaves.push(value.to_string()),
+            Value::List(list) => list.iter().for_each(|value| value.leaves(leaves)),
+            Value::Fields(fields) => fields.iter().for_each(|(_, value)| value.leaves(leaves)),
+        }
+    }
+}
+
+fn bools(value: &Value) -> Result<Vec<bool>, String> {
+    value.list()?.iter().map(Value::bool).collect()
+}
+
+fn counts(value: &Value) -> Result<Vec<usize>, String> {
+    value.list()?.iter().map(Value::count).collect()
+}
+
+fn arrangement(value: &Value) -> Result<Arrangement, String> {
+    const NAMES: [&str; 8] = ["order", "prismatic", "links", "open", "before", "after", "backward", "offsets"];
+    let Value::Fields(fields) = value else { return Err("a loop is no `Arrangement`".into()) };
+    if !fields.iter().map(|(name, _)| name.trim_start_matches("Arrangement")).eq(NAMES) {
+        return Err("a loop has not the fields of `Arrangement`".into());
+    }
+    let field = |i: usize| &fields[i].1;
+    let mut numbers = Vec::new();
+    [2, 4, 5, 7].iter().for_each(|i| field(*i).leaves(&mut numbers));
+    let found = Arrangement {
+        order: counts(field(0))?,
+        prismatic: bools(field(1))?,
+        open: field(3).count()?,
+        backward: field(6).bool()?,
+        numbers,
+    };
+    let joints = found.order.len();
+    let whole = found.prismatic.len() == joints && found.numbers.len() == 14 * joints + 24 && found.open < joints;
+    let mut sorted = found.order.clone();
+    sorted.sort_unstable();
+    if whole && sorted.into_iter().eq(0..joints) {
+        Ok(found)
+    } else {
+        Err("a loop's lists are not as long as it has joints, or its order is none".into())
+    }
+}
+
+fn given(value: &Value) -> Result<Given, String> {
+    let Value::Fields(fields) = value else { return Err("a joint is not `Given`".into()) };
+    if !fields.iter().map(|(name, _)| name.as_str()).eq(["joint", "prismatic", "before", "after"]) {
+        return Err("a joint has not the fields of `Given`".into());
+    }
+    let mut numbers = Vec::new();
+    fields[2..].iter().for_each(|(_, value)| value.leaves(&mut numbers));
+    let found = Given { joint: fields[0].1.count()?, prismatic: fields[1].1.bool()?, numbers };
+    if found.numbers.len() == 24 {
+        Ok(found)
+    } else {
+        Err("the frames of a joint have not twelve numbers each".into())
+    }
+}
+
+const EXPORT: &str = "#[allow(unused_imports)]pubuseself::all_solutions::{inverse_kinematics,";
+const HEAD: &str = "Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};\
+                    #[allow(dead_code,unreachable_pub,clippy::all,clippy::pedantic)]#[rustfmt::skip]modall_solutions{";
+const BEGIN: &str = "pubfninverse_kinematics(t:&[[Real;4];4])->Solutions{let[x,y,z,_]=*t;";
+const BEGIN_GIVEN: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;\
+                           if!is_pose(t)||!redundancy.is_finite(){returnSolutions::none(Verdict::Invalid);}\
+                           letvalue=GIVEN.value(redundancy);lett:Frame=GIVEN.rest(value,&[x,y,z]);";
+const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}lett:Frame=[x,y,z];";
+const POSITION: &str =
+    "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
+const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,length:LENGTH});";
+const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
+const CONCLUDED: &str = "conclude(&found,false)}";
+const CONCLUDED_GIVEN: &str = "conclude(&GIVEN.with::<6,DOF,8>(&found,value),false)}";
+
+/// The function from behind its check of the arguments.
+fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<Construction, String> {
+    let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
+    if reader.take(if given {
+        "conclude(&GIVEN.with::<6,DOF,16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}"
+    } else {
+        "conclude(&general_arm(&LOOPS,&t,LENGTH),true)}"
+    }) {
+        return Ok(Construction::General);
+    }
+    let construction = if reader.take("letlinks=LOOP.links_at(&t);letmutfound=spherical_triple(&links,") {
+        let kinds = bools(&reader.value()?)?;
+        reader.expect(",")?;
+        let case = name(reader, ')')?;
+        reader.expect(";")?;
+        Construction::SphericalTriple { kinds, case, polished: reader.take(POLISH) }
+    } else if reader.take("letlinks=LOOP.links_at(&t);letmutfound=three_parallel(&links);") {
+        Construction::ThreeParallel { polished: reader.take(POLISH) }
+    } else if reader.take("letmutfound=parallel_turns(&LOOP.links_at(&t),") {
+        let kinds = bools(&reader.value()?)?;
+        reader.expect(",")?;
+        let case = name(reader, ')')?;
+        reader.expect(";")?;
+        Construction::ParallelTurns { kinds, case }
+    } else if reader.take("letmutfound=three_prismatic(&LOOP.links_at(&t),") {
+        let turning = counts(&reader.value()?)?;
+        reader.expect(");")?;
+        Construction::ThreePrismatic { turning }
+    } else {
+        reader.expect("let[a,b,_]=LOOP.links;letmutfound=")?;
+        let case = name(reader, '(')?;
+        reader.expect(if loops.first().is_some_and(|way| way.backward) {
+            "&a,&b,transform(&LOOP.before,position),column(&inverse(&LOOP.after),3));"
+        } else {
+            "&a,&b,column(&LOOP.before,3),transform(&inverse(&LOOP.after),position));"
+        })?;
+        Construction::Position { case }
+    };
+    reader.expect(IN_ORDER)?;
+    reader.expect(if given { CONCLUDED_GIVEN } else { CONCLUDED })?;
+    Ok(construction)
+}
+
+impl Text {
+    /// Reads a module; `None`: it says that the arm has no construction. What stands there and has to be something else is said.
+    pub(super) fn read(text: &str) -> Result<Option<Text>, String> {
+        if text.lines().all(|line| line.is_empty() || line.starts_with("// ")) {
+            return Ok(None);
+        }
+        let (mut code, mut blocks) = text.split_once("\n}\n").ok_or("there is no function")?;
+        if text.contains("pub fn inverse_kinematics_redundancy(") {
+            let more = blocks.split_once("\n}\n").ok_or("there is no second function")?.0.len();
+            (code, blocks) = (&text[..code.len() + 3 + more], &blocks[more + 3..]);
+        }
+        let blocks = taken(blocks)?;
+        let real = match (blocks.contains(&"scalar_f64"), blocks.contains(&"scalar_f32")) {
+            (true, false) => crate::enclosure::Float::F64,
+            (false, true) => crate::enclosure::Float::F32,
+            _ => return Err("there is not one block of the scalar".into()),
+        };
+        // The bracket that ends the function.
+        let code = squeezed(code) + "}";
+        let mut reader = Reader { rest: &code };
+        reader.expect(EXPORT)?;
+        let redundant = reader.take("inverse_kinematics_redundancy,");
+        reader.expect(HEAD)?;
+        reader.expect("pub")?;
+        let dof = reader.constant("DOF", "usize")?.count()?;
+        reader.expect("pub")?;
+        let most = reader.constant("MAX_SOLUTIONS", "usize")?.count()?;
+        reader.expect("pubconstBRANCHES:[&str;")?;
+        let number: usize = reader.until(']')?.parse().map_err(|_| "BRANCHES has no length")?;
+        reader.expect("=")?;
+        let mut branches = Vec::new();
+        reader.value()?.leaves(&mut branches);
+        reader.expect(";")?;
+        let prismatic = bools(&reader.constant("PRISMATIC", "[bool;DOF]")?)?;
+        let mut limits = Vec::new();
+        reader.constant("POSITION_LIMITS", "[[Real;2];DOF]")?.leaves(&mut limits);
+        let mut length = Vec::new();
+        reader.constant("LENGTH", "Real")?.leaves(&mut length);
+        let loops = if reader.take("constLOOPS:[Arrangement<6>;2]=") {
+            let ways = reader.value()?;
+            ways.list()?.iter().map(arrangement).collect::<Result<Vec<_>, String>>()?
+        } else {
+            reader.expect("constLOOP:Arrangement<")?;
+            let joints = reader.until('>')?.to_owned();
+            reader.expect("=")?;
+            let way = arrangement(&reader.value()?)?;
+            if way.order.len().to_string() != joints {
+                return Err("LOOP has not as many joints as it says".into());
+            }
+            vec![way]
+        };
+        reader.expect(";")?;
+        let mut joint = None;
+        if redundant {
+            reader.expect("constGIVEN:Given=Given")?;
+            joint = Some(given(&reader.value()?)?);
+            reader.expect(";")?;
+            reader.expect(BEGIN_GIVEN)?;
+        } else {
+            reader.expect(BEGIN)?;
+        }
+        let rotation = redundant || reader.take(ROTATION);
+        if !rotation {
+            reader.expect(POSITION)?;
+        }
+        let construction = body(&mut reader, &loops, redundant)?;
+        if let Some(joint) = &joint {
+            if joint.joint >= dof || joint.joint != 0 && joint.joint + 1 != dof {
+                return Err("GIVEN: the joint is neither the first nor the last".into());
+            }
+            reader.expect(&format!("pubfninverse_kinematics_redundancy(q:&[Real;DOF])->Real{{q[{}]}}", joint.joint))?;
+        }
+        if !reader.rest.is_empty() {
+            return Err("something stands behind the function".into());
+        }
+        let whole = branches.len() == number && prismatic.len() == dof && limits.len() == 2 * dof && length.len() == 1;
+        let loops_fit = match construction {
+            Construction::General => loops.len() == 2 && loops.iter().all(|way| way.order.len() == 6),
+            _ => loops.len() == 1 && loops[0].order.len() + usize::from(redundant) >= dof,
+        };
+        if !(whole && loops_fit) {
+            return Err("the lists of constants have not the lengths that they should".into());
+        }
+        Ok(Some(Text {
+            real,
+            dof,
+            most,
+            branches,
+            prismatic,
+            limits,
+            length: length.remove(0),
+            loops,
+            construction,
+            given: joint,
+            rotation,
+        }))
+    }
+}
+
+/// The names of the blocks that stand in a text, each as it is here, and nothing else.
+fn taken(text: &str) -> Result<Vec<&'static str>, String> {
+    let mut rest = text;
+    let mut names = Vec::new();
+    for block in TEXTS {
+        if let Some(behind) = rest.strip_prefix('\n').and_then(|rest| rest.strip_prefix(block.source)) {
+            rest = behind;
+            names.push(block.name);
+        }
+    }
+    if rest != "}\n" {
+        let differs = |block: &&armgen_inverse_kinematics::texts::Text| {
+            let first = block.source.lines().next().unwrap_or("");
+            rest.trim_start_matches('\n').starts_with(first)
+        };
+        return Err(match TEXTS.iter().find(differs) {
+            Some(block) => {
+                let same = block.source.lines().zip(rest.trim_start_matches('\n').lines()).take_while(|(x, y)| x == y).count();
+                format!("building block `{}` is not the tested one, from its line {} on", block.name, same + 1)
+            }
+            None => "what stands there is no building block".into(),
+        });
+    }
+    for block in TEXTS.iter().filter(|block| names.contains(&block.name)) {
+        if let Some(need) = block.needs.iter().find(|need| !names.contains(*need)) {
+            return Err(format!("building block `{}` needs `{need}`", block.name));
+        }
+    }
+    Ok(names)
+}
