@@ -12,7 +12,7 @@ mod reader;
 
 use crate::diagnostic::Diagnostics;
 use crate::document::{yaml, Expression};
-use crate::kinds::{JointKind, TaskRow};
+use crate::kinds::{JointKind, Target, TaskRow};
 use crate::source::{Source, Span, Spanned};
 
 /// A value that may have been unreadable.
@@ -41,6 +41,8 @@ pub struct RobotDescription {
     pub task: Option<Spanned<Vec<Spanned<TaskRow>>>>,
     /// The regressor's columns. The span is the key's.
     pub regressor: Option<Spanned<RegressorDescription>>,
+    /// What inverse kinematics is asked for.
+    pub inverse_kinematics: PosturesDescription,
     /// Kinds of warnings that are meant as they are.
     pub allow: Vec<Spanned<String>>,
 }
@@ -227,6 +229,15 @@ pub enum RotationDescription {
     AxisAngle(Spanned<[Value; 3]>, Expression),
     /// The directions of the x and y axes, the second made perpendicular to the first.
     XyAxes(Spanned<[Value; 6]>),
+}
+
+/// What inverse kinematics is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct PosturesDescription {
+    /// What it reaches.
+    pub target: Option<Spanned<Target>>,
+    /// The joint whose value is given.
+    pub given: Option<Spanned<String>>,
 }
 
 /// The choice of the regressor's columns.

@@ -195,6 +195,10 @@ codes! {
         UnknownTaskRow Error "unknown-task-row",
         /// A task row named twice.
         DuplicateTaskRow Error "duplicate-task-row",
+        /// A target of inverse kinematics that does not exist.
+        UnknownTarget Error "unknown-target",
+        /// `given` names no joint.
+        UnknownGivenJoint Error "unknown-given-joint",
         /// A list that must name something names nothing.
         EmptyList Error "empty-list",
         /// `regressor` lists a name that `parameters` does not define.

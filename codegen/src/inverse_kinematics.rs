@@ -15,6 +15,7 @@ mod general;
 mod steps;
 
 use crate::exact::Number;
+pub use crate::kinds::Target;
 use crate::kinds::{JointKind, TaskRow};
 use crate::manipulator::Manipulator;
 
@@ -23,17 +24,6 @@ pub use classes::Regional;
 pub use frame::Frame;
 
 use chain::Chain;
-
-/// What a target fixes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// The pose of the end effector.
-    Pose,
-    /// Its position and the turn about the arm's axes, which are all parallel.
-    Planar,
-    /// Its position.
-    Position,
-}
 
 /// How all solutions of an arm are found.
 #[derive(Clone, Debug)]
@@ -86,15 +76,22 @@ pub enum Construction {
 pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     let chain = Chain::of(manipulator)?;
     let length = size(&chain);
-    if chain.joints.len() == 7 && target(manipulator, &chain) == Ok(Target::Pose) {
-        return redundant(&chain, &length);
+    let given = manipulator.inverse_kinematics.given;
+    if (chain.joints.len() == 7 || given.is_some()) && target(manipulator, &chain) == Ok(Target::Pose) {
+        return redundant(&chain, &length, given.map(|joint| joint.0 as usize));
+    }
+    if given.is_some() {
+        return Err("a joint is given where no joint is too many".into());
     }
     let target = target(manipulator, &chain)?;
     classes::classify(&completed(chain, target), target, length)
 }
 
-/// Seven joints and a pose: the last one is given, or the first one where that leaves a cheaper class.
-fn redundant(chain: &Chain, length: &Number) -> Result<InverseKinematics, String> {
+/// Seven joints and a pose: the joint that the description says is given, or the last one, or the first one where that leaves a cheaper class.
+fn redundant(chain: &Chain, length: &Number, given: Option<usize>) -> Result<InverseKinematics, String> {
+    if chain.joints.len() != 7 {
+        return Err("a joint is given where no joint is too many".into());
+    }
     let with = |joint: usize| {
         let (rest, given) = chain.without(joint);
         let mut found = classes::classify(&rest, Target::Pose, length.clone())?;
@@ -102,6 +99,11 @@ fn redundant(chain: &Chain, length: &Number) -> Result<InverseKinematics, String
         found.given = Some(given);
         Ok::<_, String>(found)
     };
+    match given {
+        Some(joint) if joint == 0 || joint + 1 == chain.joints.len() => return with(joint),
+        Some(joint) => return Err(format!("the joint that is given is the first or the last one, not joint {}", joint + 1)),
+        None => {}
+    }
     let last = with(chain.joints.len() - 1);
     if last.as_ref().is_ok_and(|found| !matches!(found.construction, Construction::General(_))) {
         return last;
@@ -117,10 +119,19 @@ fn redundant(chain: &Chain, length: &Number) -> Result<InverseKinematics, String
 /// The target that the rows of the task make.
 fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
     let rows = |rows: [TaskRow; 3]| rows.map(|row| manipulator.task.contains(&row));
-    let linear = rows([TaskRow::X, TaskRow::Y, TaskRow::Z]);
-    let angular = rows([TaskRow::Rx, TaskRow::Ry, TaskRow::Rz]);
+    let mut linear = rows([TaskRow::X, TaskRow::Y, TaskRow::Z]);
+    let mut angular = rows([TaskRow::Rx, TaskRow::Ry, TaskRow::Rz]);
+    let wanted = manipulator.inverse_kinematics.target;
+    match wanted {
+        Some(Target::Pose) => (linear, angular) = ([true; 3], [true; 3]),
+        Some(Target::Position) => angular = [false; 3],
+        Some(Target::Planar) | None => {}
+    }
     let count = |rows: [bool; 3]| rows.into_iter().filter(|row| *row).count();
     let axis = angular.iter().position(|row| *row);
+    if wanted == Some(Target::Planar) && count(angular) != 1 {
+        return Err("a planar target asks for a task with one angular row".into());
+    }
     match (count(linear), count(angular), axis) {
         (3, 3, _) => Ok(Target::Pose),
         (3, 0, _) if chain.joints.len() == 3 => Ok(Target::Position),

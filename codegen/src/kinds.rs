@@ -22,6 +22,17 @@ pub enum JointKind {
     Prismatic,
 }
 
+/// What inverse kinematics is asked to reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The pose of the end effector.
+    Pose,
+    /// Its position and the turn about the arm's axes, which are all parallel.
+    Planar,
+    /// Its position.
+    Position,
+}
+
 /// A row of the operational space: rows of the geometric Jacobian in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TaskRow {

@@ -22,6 +22,15 @@ use crate::kinds::{JointKind, ParameterId, TaskRow};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
 
+/// What inverse kinematics is asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Postures {
+    /// The target; without it, what `task` says.
+    pub target: Option<crate::kinds::Target>,
+    /// The joint whose value is given where there is one too many.
+    pub given: Option<LinkId>,
+}
+
 /// A valid robot arm.
 #[derive(Clone, Debug)]
 pub struct Manipulator {
@@ -43,6 +52,8 @@ pub struct Manipulator {
     pub task: Vec<TaskRow>,
     /// What the regressor's columns are.
     pub regressor: RegressorChoice,
+    /// What inverse kinematics is asked for.
+    pub inverse_kinematics: Postures,
 }
 
 /// A named quantity of the file.

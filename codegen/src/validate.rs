@@ -115,6 +115,7 @@ fn validate(
     let payload = description.payload.as_ref().map(|p| bodies::part(p, Some(Pose::identity()), "the payload", &mut context));
     let task = choices::task(description, context.diagnostics);
     let regressor = choices::regressor(description, &mut context);
+    let inverse_kinematics = choices::inverse_kinematics(description, context.diagnostics);
     bodies::warn_of_planar(&mut context);
     // What could not be read may use any name.
     if complete {
@@ -142,6 +143,7 @@ fn validate(
         },
         task,
         regressor: regressor?,
+        inverse_kinematics,
     };
     if manipulator.is_massless() {
         // There are no torques that a regressor could be of.

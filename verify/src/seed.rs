@@ -140,7 +140,8 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
 /// The numbers of a description and how they hang together.
 fn of_description(manipulator: &Manipulator) -> Hash {
     let mut arm = Description(Parts::of("description"));
-    let Manipulator { name: _, parameters, gravity, joints, tip, tool, payload, task, regressor } = manipulator;
+    let Manipulator { name: _, parameters, gravity, joints, tip, tool, payload, task, regressor, inverse_kinematics: _ } =
+        manipulator;
     parameters.iter().for_each(|parameter| arm.number(&parameter.nominal));
     arm.polynomials(gravity);
     for joint in joints {

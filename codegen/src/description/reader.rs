@@ -3,14 +3,14 @@
 use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
-    LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, RegressorDescription,
-    RobotDescription, RotationDescription, SpringDescription, Value, INERTIA_ELEMENTS,
+    LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
+    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, required, Fields, Key, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::document::Expression;
-use crate::kinds::{JointKind, TaskRow};
+use crate::kinds::{JointKind, Target, TaskRow};
 use crate::source::{Source, Span, Spanned};
 
 const ROBOT: &[Key] = &[
@@ -24,6 +24,7 @@ const ROBOT: &[Key] = &[
     optional("payload"),
     optional("task"),
     optional("regressor"),
+    optional("inverse_kinematics"),
     optional("allow"),
 ];
 const JOINT: &[Key] = &[
@@ -53,6 +54,7 @@ const URDF_JOINT: &[Key] = &[
     optional("spring"),
     optional("armature"),
 ];
+const INVERSE_KINEMATICS: &[Key] = &[optional("target"), optional("given")];
 const LIMITS: &[Key] = &[optional("position"), optional("velocity"), optional("effort")];
 const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia"), optional("attached")];
 const ATTACHED: &[Key] =
@@ -113,6 +115,10 @@ impl Reader<'_> {
             payload: fields.get("payload").and_then(|(key, node)| self.body(node, key, "`payload`", PAYLOAD)),
             task: fields.get("task").and_then(|(key, node)| self.task(node, key)),
             regressor: fields.get("regressor").and_then(|(key, node)| self.regressor(node, key)),
+            inverse_kinematics: fields
+                .get("inverse_kinematics")
+                .and_then(|(key, node)| self.inverse_kinematics(node, key))
+                .unwrap_or_default(),
             allow: fields.get("allow").map_or_else(Vec::new, |(key, node)| self.allow(node, key)),
         }
     }
@@ -310,6 +316,16 @@ impl Reader<'_> {
         let rows =
             items.iter().filter_map(|item| self.choice(item, item.span, "a row of `task`", &words, Code::UnknownTaskRow, help));
         Some(Spanned::new(rows.collect(), key))
+    }
+
+    fn inverse_kinematics(&mut self, node: &Node, key: Span) -> Option<PosturesDescription> {
+        let fields = self.mapping(node, "`inverse_kinematics`", key, INVERSE_KINEMATICS)?;
+        let words = [("pose", Target::Pose), ("position", Target::Position), ("planar", Target::Planar)];
+        let help = "`pose`: of the end effector; `position`: of its origin; `planar`: the rows of `task`, one of them angular";
+        let target =
+            fields.get("target").and_then(|(key, node)| self.choice(node, key, "target", &words, Code::UnknownTarget, help));
+        let given = fields.get("given").and_then(|(key, node)| self.word(node, key, "given"));
+        Some(PosturesDescription { target, given })
     }
 
     fn allow(&mut self, node: &Node, key: Span) -> Vec<Spanned<String>> {

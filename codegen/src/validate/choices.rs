@@ -1,4 +1,4 @@
-//! Task and regressor: rows and names, each at most once, each known.
+//! Task, regressor and inverse kinematics: rows and names, each at most once, each known.
 
 use super::number::text_of;
 use super::{Context, FirstSeen};
@@ -6,7 +6,7 @@ use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::excerpt;
 use crate::kinds::TaskRow;
-use crate::manipulator::RegressorChoice;
+use crate::manipulator::{LinkId, Postures, RegressorChoice};
 use crate::suggest::did_you_mean;
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
@@ -31,6 +31,28 @@ pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics
         }
     }
     rows
+}
+
+/// What inverse kinematics is asked for.
+pub(super) fn inverse_kinematics(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Postures {
+    let asked = &description.inverse_kinematics;
+    let mut postures = Postures { target: asked.target.as_ref().map(|target| target.value), given: None };
+    let Some(given) = &asked.given else { return postures };
+    // What is wrong with the joints has been said.
+    let Some(joints) = &description.joints else { return postures };
+    let names: Vec<&str> = joints.value.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
+    let place = joints.value.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == given.value));
+    postures.given = place.and_then(|place| u32::try_from(place).ok()).map(LinkId);
+    if postures.given.is_none() {
+        let shown = excerpt(&given.value);
+        let message = format!("`given` names `{shown}`, which is no joint");
+        let help = match did_you_mean(&given.value, &names) {
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None => "name the first or the last joint of an arm with one joint too many, or leave the key out".into(),
+        };
+        diagnostics.push(Diagnostic::new(Code::UnknownGivenJoint, given.span, message, "unknown joint", help));
+    }
+    postures
 }
 
 /// The regressor's columns, as far as they can be judged without the equations.

@@ -141,7 +141,7 @@ fn sequence(p: &[IBig]) -> Vec<Vec<IBig>> {
 pub(super) fn roots(p: &[IBig]) -> Roots {
     let all = sequence(p);
     let changes = |at_minus: bool| {
-        let sign = |q: &Vec<IBig>| q.last().is_some_and(Signed::is_negative) != (at_minus && q.len() % 2 == 0);
+        let sign = |q: &Vec<IBig>| q.last().is_some_and(Signed::is_negative) != (at_minus && q.len().is_multiple_of(2));
         all.windows(2).filter(|pair| sign(&pair[0]) != sign(&pair[1])).count()
     };
     let real = changes(true) - changes(false);

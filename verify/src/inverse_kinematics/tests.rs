@@ -198,31 +198,27 @@ pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<
     let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
         assert!(text.contains(old), "{old}");
         let trick = text.replacen(old, new, 1);
-        peel(new, layers, &|| verify(&source, &trick, 6).faults.pop());
+        peel(new, layers, &|| verify(&source, &trick, 0).faults.pop());
     };
     edited("[Real::NEG_INFINITY, Real::INFINITY]", "[Real::NEG_INFINITY, 3.0]", &[(Limits, "POSITION_LIMITS: 3.0 is not what")]);
-    edited("0.4]", "0.41]", &[(LoopNumbers, "0.41 is not the float nearest to 2/5"), (Reached, "a solution does not reach it")]);
-    edited(
-        "order: [0, 1, 2,",
-        "order: [0, 2, 1,",
-        &[(Loop, "not the loop of this arm"), (Reached, "a solution does not reach it")],
-    );
-    edited(
-        "], regional_elbow",
-        "], regional_crossing",
-        &[(Class, "`regional_crossing` does not hold"), (Reached, "a solution does not reach it")],
-    );
+    edited("0.4]", "0.41]", &[(LoopNumbers, "0.41 is not the float nearest to 2/5")]);
+    edited("order: [0, 1, 2,", "order: [0, 2, 1,", &[(Loop, "not the loop of this arm")]);
+    edited("], regional_elbow", "], regional_crossing", &[(Class, "`regional_crossing` does not hold")]);
     edited(
         "MAX_SOLUTIONS: usize = 8",
         "MAX_SOLUTIONS: usize = 9",
         &[(MostSolutions, "MAX_SOLUTIONS: 9 where the construction has 8")],
     );
-    edited("\"shoulder first, elbow first, wrist flipped\"", "\"\"", &[(Branches, "BRANCHES: 7 of them, and there are 8")]);
-    // A count off by one; a double solution that is passed over.
+    let labels = &text[text.find("pub const BRANCHES").expect("branches")..];
+    let label = format!("\"{}\"", labels.split('"').nth(1).expect("a label"));
+    edited(&label, "\"\"", &[(Branches, "BRANCHES: 7 of them, and there are 8")]);
+    // Solutions beside the pose; a count off by one; a double solution that is passed over.
     let roots = |real, multiple| Count::Finite(super::sturm::Roots { distinct: 8, real, multiple });
     let eight = run::Outcome { verdict: Verdict::Complete, solutions: vec![vec![]; 8] };
-    let judged = |count| judge(&mut Report::default(), count, &eight, &[0.0; 8]).err();
+    let missed = |count, miss| judge(&mut Report::default(), count, &eight, &[miss; 8]).err();
+    let judged = |count| missed(count, 0.0);
     assert_eq!(judged(roots(8, 0)), None);
+    peel("0.001 m beside", &[(Reached, "a solution does not reach it")], &|| missed(roots(8, 0), 0.001));
     peel("7 for 8", &[(Counts, "there are 7 solutions, and the module returns 8")], &|| judged(roots(7, 0)));
     peel("two have met", &[(Meeting, "and the module says Complete")], &|| judged(roots(7, 1)));
 }
