@@ -1,0 +1,58 @@
+//! Runs that begin on their path, and how hard they ask the joints to work.
+
+mod common;
+
+use armgen_experiments::campaign::Job;
+use armgen_experiments::model::{JointQuantity, Quantity};
+use common::{experiment, folder, text_of};
+
+const START: &str = "start: [-1.3913099976180494, 2.0650786546949544, 0.4, 0.673768657076905]";
+
+/// `adaptive_a.yaml`, a moment of it, begun as this says.
+fn text(start: &str) -> String {
+    let text = text_of(&folder(), "adaptive_a.yaml");
+    let (head, _) = text.split_once("expect:").expect("expectations");
+    assert!(head.contains(START) && head.contains("duration: 22"));
+    let head = head.replace(START, start).replace("duration: 22", "duration: 0.1");
+    head + "expect:\n  - {quantity: eq_quill, peak: [0, 0.1], at_most: 0.1}\n"
+}
+
+/// The tip is where the path is, at once; of two postures that reach it, the one on the side that is asked for.
+#[test]
+fn a_start_from_the_path_is_on_the_path() {
+    let arm = armgen_experiment_tests::scara();
+    let begin = |start: &str| {
+        let experiment = experiment("start.yaml", &text(start), arm.robot());
+        let mut job = Job::new(&experiment, &*arm);
+        job.run();
+        let of = |quantity| job.record().values(quantity)[0];
+        for row in &arm.robot().task {
+            let off = of(Quantity::TaskError(*row));
+            assert!(off.abs() < 1e-8, "{start}: {off}");
+        }
+        assert!(job.lines().iter().all(|line| line.met), "{start}: {:?}", job.lines());
+        of(Quantity::Joint(JointQuantity::Position, 1))
+    };
+    begin("start: {from: path}");
+    let (above, below) =
+        (begin("start: {from: path, near: [-1.4, 2, 0.4, 0.7]}"), begin("start: {from: path, near: [0.7, -2, 0.4, 0.7]}"));
+    assert!((above - 2.065).abs() < 1e-3 && (above + below).abs() < 1e-6, "{above} {below}");
+}
+
+/// The peaks that stand beside the limits are those of the log.
+#[test]
+fn peaks_are_the_largest_of_what_is_logged() {
+    let arm = armgen_experiment_tests::scara();
+    let experiment = experiment("peaks.yaml", &text("start: {from: path}"), arm.robot());
+    let mut job = Job::new(&experiment, &*arm);
+    job.run();
+    assert_eq!(job.record().peaks.len(), 4);
+    for (i, peak) in job.record().peaks.iter().enumerate() {
+        let efforts = job.record().values(Quantity::Joint(JointQuantity::Effort, i));
+        assert_eq!(peak.effort, efforts.iter().fold(0.0f64, |a, x| a.max(x.abs())), "{i}");
+        // No sample is farther from the one before it than the largest rate allows, and it is about that for one of them.
+        let q = job.record().values(Quantity::Joint(JointQuantity::Position, i));
+        let fastest = q.windows(2).fold(0.0f64, |a, two| a.max((two[1] - two[0]).abs())) / 1e-3;
+        assert!(peak.rate > 0.0 && (peak.rate / fastest - 1.0).abs() < 0.1, "{i}: {} {fastest}", peak.rate);
+    }
+}
