@@ -44,7 +44,7 @@ use crate::pass::Passes;
 use crate::program::optimise;
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
-use crate::ring::{ExprId, Pool, Symbol};
+use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 use crate::Model;
 
 /// What can be asked for by name.
@@ -441,10 +441,31 @@ fn in_form(shown: Shown, closed: Option<Vec<NormalForm>>, derivation: Derivation
             return shown;
         }
     }
+    let derivation = without_turn(derivation);
     let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, Passes::NONE);
     let fewer = Derivation { pool, entries, ..derivation.clone() };
     let steps = [derivation, fewer].map(|derivation| Content::Program(Box::new(derivation)));
     shown.with_shortest(closed.into_iter().chain(steps))
+}
+
+/// The same without the constant angle that the last link may be rotated by: its sine and cosine are constants that people can read.
+fn without_turn(derivation: Derivation) -> Derivation {
+    let Some(turn) = derivation.pool.field().turn().cloned() else { return derivation };
+    let mut pool = Pool::new(derivation.pool.field().clone());
+    let entries = derivation.pool.substitute_into(&mut pool, &derivation.entries, &|pool, symbol| {
+        let plain = |sum: AngleSum| AngleSum { turned: false, ..sum };
+        let (sum, is_sine) = match symbol {
+            Symbol::SineOf(sum) if sum.turned => (plain(sum), true),
+            Symbol::CosineOf(sum) if sum.turned => (plain(sum), false),
+            _ => return pool.symbol(symbol),
+        };
+        let (s, c) = (pool.symbol(Symbol::SineOf(sum)), pool.symbol(Symbol::CosineOf(sum)));
+        let (sine, cosine) = (pool.constant(&turn.sine), pool.constant(&turn.cosine));
+        let (first, second) =
+            if is_sine { (pool.mul(s, cosine), pool.mul(c, sine)) } else { (pool.mul(c, cosine), -pool.mul(s, sine)) };
+        pool.add(first, second)
+    });
+    Derivation { pool, entries, ..derivation }
 }
 
 /// Y or the known rest with all names of the description as symbols: Y_k = ∂tau/∂name_k, and the rest is tau - Y pi.
