@@ -31,7 +31,8 @@ fn main() {
                 let has_postures = trig == Trig::Libm && postures.contains("pub fn inverse_kinematics(");
                 let files = [name.clone(), format!("{name}_runtime"), format!("{name}_calls")].map(include).concat();
                 let mut module = |name: &str, files: &str| {
-                    modules += &format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{files}}}\n");
+                    modules +=
+                        &format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{files}}}\n");
                 };
                 module(&name, &files);
                 if postures.contains("pub fn inverse_kinematics(") {

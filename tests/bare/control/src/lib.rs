@@ -21,8 +21,8 @@ pub use armgen_runtime::{nalgebra::SVector, reference::JointReference};
 use armgen_runtime::{
     clik::{ClikError, Integration, JointLimits, SecondOrder},
     control::{Adaptive, ControlError},
-    settings::SettingError,
     reference::{OperationalReference, State},
+    settings::SettingError,
     task::{Row, Task, TaskError},
     trajectory::PlanError,
 };

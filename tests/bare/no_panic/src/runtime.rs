@@ -9,10 +9,11 @@ use armgen_runtime::{
         Manipulability, NoObjective, Objective, PseudoInverse, SecondOrder,
     },
     control::{
-        Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust, TorqueLimits,
+        Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
+        TorqueLimits,
     },
     inverse_kinematics::follow,
-    linalg::{self, Damping, RightInverse},
+    linalg::{self, Damping, DampingBelow, RightInverse},
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
     orientation,
@@ -222,7 +223,7 @@ fn inverse_kinematics<R, const N: usize, const M: usize, const P: usize>(
 {
     let Ok(limits) = JointLimits::rates(numbers()) else { return };
     let Ok(limits) = JointLimits::with_range(limits, numbers(), numbers()) else { return };
-    let Ok(damping) = Damping::below(number()).at_most(number()) else { return };
+    let Ok(damping) = DampingBelow::at_most(Damping::below(number()), number()) else { return };
     follow(robot, task, limits, JacobianInverse::new(numbers()), state, reference);
     follow(robot, task, limits, JacobianTranspose::new(numbers()), state, reference);
     follow(robot, task, limits, DampedLeastSquares::new(numbers(), damping), state, reference);
