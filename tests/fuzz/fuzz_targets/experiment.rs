@@ -32,7 +32,7 @@ fn run(experiment: &Experiment, arm: &dyn Arm) {
     if short {
         let mut job = Job::new(experiment, arm);
         job.run();
-        assert!(!job.log().1.is_empty());
+        assert!(!job.log().text.is_empty());
         assert!(job.lines().len() >= experiment.expect.len());
     }
 }

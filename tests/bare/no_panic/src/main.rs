@@ -17,9 +17,10 @@ mod runtime;
 
 /// All postures of a pose that the optimiser knows nothing of, and what can be asked of them.
 macro_rules! postures {
-    ($module:ident) => {{
+    ($module:ident $(, $redundancy:ident)?) => {{
         use core::hint::black_box;
-        let found = black_box($module::inverse_kinematics(&black_box([[0.5; 4]; 4])));
+        $(black_box($module::$redundancy(&black_box([0.5; $module::DOF])));)?
+        let found = black_box($module::inverse_kinematics(&black_box([[0.5; 4]; 4]) $(, $module::$redundancy(&black_box([0.5; $module::DOF])))?));
         black_box((found.within_limits(), found.nearest_to(&black_box([0.5; $module::DOF])), found.as_slice().len()));
     }};
 }

@@ -12,7 +12,7 @@ use armgen_runtime::{
         Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
         TorqueLimits,
     },
-    inverse_kinematics::follow,
+    inverse_kinematics::follow as follow_posture,
     linalg::{self, Damping, DampingBelow, RightInverse},
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
@@ -58,7 +58,7 @@ where
     keep(Postures::as_slice(&postures).len());
     keep((InverseKinematics::branch_signs(robot), InverseKinematics::turns(robot), InverseKinematics::position_limits(robot)));
     keep(InverseKinematics::unwrapped(robot, &vector(), &vector()));
-    keep(follow(robot, |_| black_box(pose), &vector(), black_box(9), |s, q| keep((s, *q))));
+    keep(follow_posture(robot, |_| black_box(pose), &vector(), black_box(9), |s, q| keep((s, *q))));
 }
 
 /// Calls every public function that runs on a microcontroller, for one robot and task.
