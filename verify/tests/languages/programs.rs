@@ -1,6 +1,7 @@
 //! The programs that run a module in its language: every function over all states of a file, its results into a file each.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
 
@@ -25,9 +26,8 @@ pub(crate) fn rust(folder: &Path, robot: &Robot, generated: &Generated) {
     }
     main += "fn main() {\n    let states = States::read();\n";
     for function in &robot.functions {
-        let argument = |(argument, start): &(Argument, usize)| {
-            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
-            format!("state[{start}..{}].try_into().expect(\"an argument\")", start + length)
+        let argument = |(_, place): &(Argument, Range<usize>)| {
+            format!("state[{}..{}].try_into().expect(\"an argument\")", place.start, place.end)
         };
         let arguments: Vec<String> = function.arguments.iter().map(argument).collect();
         let name = &function.name;
@@ -62,9 +62,9 @@ pub(crate) fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Eff
     main += "    fseek(states, 0, SEEK_END);\n    size = ftell(states);\n    rewind(states);\n    all = (real *)malloc((size_t)size);\n";
     main +=
         "    if (fread(all, 1, (size_t)size, states) != (size_t)size) return 1;\n    end = all + (size_t)size / sizeof(real);\n";
-    let length = robot.parameters + 6 * robot.dof;
+    let length = robot.numbers_of_state();
     for function in &robot.functions {
-        let mut arguments: Vec<String> = function.arguments.iter().map(|(_, start)| format!("x + {start}")).collect();
+        let mut arguments: Vec<String> = function.arguments.iter().map(|(_, place)| format!("x + {}", place.start)).collect();
         let mut at = 0;
         let number = function.results.len() == 1 && function.results[0].1.is_empty();
         for (_, array, entries) in function.results.iter().filter(|_| !number) {
@@ -119,7 +119,7 @@ pub(crate) fn c(folder: &Path, robot: &Robot, generated: &Generated, effort: Eff
 /// The functions of the header for many states at a time.
 pub(crate) fn batch(folder: &Path, robot: &Robot, generated: &Generated, effort: Effort) -> Vec<String> {
     let name: String = robot.name.clone();
-    let length = robot.parameters + 6 * robot.dof;
+    let length = robot.numbers_of_state();
     let mut main = String::from("#include <stdio.h>\n#include <stdlib.h>\n#include \"batch.h\"\n\n");
     let _ = writeln!(main, "typedef {name}_real real;\n\nstatic real *all;\nstatic size_t states;\n\n");
     main += "static real *some(size_t from, size_t count)\n{\n    real *part = (real *)malloc((states * count + 1) * sizeof(real));\n    size_t k, i;\n";
@@ -135,9 +135,8 @@ pub(crate) fn batch(folder: &Path, robot: &Robot, generated: &Generated, effort:
     for function in &robot.functions {
         let mut arguments = vec!["states".to_string()];
         main += "    {\n";
-        for (argument, start) in &function.arguments {
-            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
-            let _ = writeln!(main, "        real *in_{} = some({start}, {length});", argument.name());
+        for (argument, place) in &function.arguments {
+            let _ = writeln!(main, "        real *in_{} = some({}, {});", argument.name(), place.start, place.len());
             arguments.push(format!("in_{}", argument.name()));
         }
         for (part, _, entries) in &function.results {
@@ -190,12 +189,9 @@ pub(crate) fn javascript(folder: &Path, robot: &Robot, generated: &Generated) ->
          Array.isArray(r) ? r.flat(Infinity) : Object.values(r).flat(Infinity);\n\
          const write = (name, results) => fs.writeFileSync(`${process.argv[3]}/${name}`, new Uint8Array(Float64Array.from(results).buffer));\nlet results;\n",
     );
-    let length = robot.parameters + 6 * robot.dof;
+    let length = robot.numbers_of_state();
     for function in &robot.functions {
-        let of_argument = |(argument, start): &(Argument, usize)| {
-            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
-            format!("all.subarray(x + {start}, x + {})", start + length)
-        };
+        let of_argument = |(_, place): &(Argument, Range<usize>)| format!("all.subarray(x + {}, x + {})", place.start, place.end);
         let arguments: Vec<String> = function.arguments.iter().map(of_argument).collect();
         let camel = camel(&function.name);
         let _ = writeln!(main, "results = [];\nfor (let x = 0; x < all.length; x += {length}) {{");
@@ -212,7 +208,7 @@ pub(crate) fn javascript(folder: &Path, robot: &Robot, generated: &Generated) ->
 /// The module in Python, by NumPy, all states at once.
 pub(crate) fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec<String> {
     let Some(python) = numpy() else { return Vec::new() };
-    let length = robot.parameters + 6 * robot.dof;
+    let length = robot.numbers_of_state();
     let mut main = format!(
         "import sys\nimport warnings\nimport numpy as np\nimport robot\n\nwarnings.simplefilter(\"ignore\")\n\
          all = np.fromfile(sys.argv[1], dtype=robot.DTYPE).reshape(-1, {length})\n\n\n\
@@ -221,10 +217,7 @@ pub(crate) fn python(folder: &Path, robot: &Robot, generated: &Generated) -> Vec
          np.concatenate([np.reshape(part, (len(all), -1)) for part in parts], axis=1).tofile(sys.argv[2] + \"/\" + name)\n\n\n"
     );
     for function in &robot.functions {
-        let of_argument = |(argument, start): &(Argument, usize)| {
-            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
-            format!("all[:, {start}:{}]", start + length)
-        };
+        let of_argument = |(_, place): &(Argument, Range<usize>)| format!("all[:, {}:{}]", place.start, place.end);
         let arguments: Vec<String> = function.arguments.iter().map(of_argument).collect();
         let _ = writeln!(main, "write(\"{0}\", robot.{0}({1}))", function.name, arguments.join(", "));
     }
@@ -254,16 +247,13 @@ pub(crate) fn octave(folder: &Path, robot: &Robot, generated: &Generated) -> Vec
     if !there("octave-cli", "octave") {
         return Vec::new();
     }
-    let length = robot.parameters + 6 * robot.dof;
+    let length = robot.numbers_of_state();
     let mut main = format!(
         "function main()\n    file = fopen('states', 'r');\n    x = fread(file, [{length}, Inf], 'double');\n    fclose(file);\n"
     );
     let mut run = String::new();
     for function in &robot.functions {
-        let of_argument = |(argument, start): &(Argument, usize)| {
-            let length = if *argument == Argument::Pi { robot.parameters } else { robot.dof };
-            format!("x({}:{}, :)", start + 1, start + length)
-        };
+        let of_argument = |(_, place): &(Argument, Range<usize>)| format!("x({}:{}, :)", place.start + 1, place.end);
         let arguments: Vec<String> = function.arguments.iter().map(of_argument).collect();
         let results: Vec<String> = (1..=function.results.len()).map(|k| format!("r{k}")).collect();
         let call = format!("robot.{}({})", camel(&function.name), arguments.join(", "));

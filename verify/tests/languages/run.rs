@@ -1,5 +1,6 @@
 //! Modules run beside the one in Rust, over the same states from a file; results are compared in bits.
 
+use std::ops::Range;
 use std::path::Path;
 
 use armgen_codegen::emit::Language;
@@ -22,10 +23,10 @@ pub(crate) enum Effort {
     Full,
 }
 
-/// A function, its arguments with the place where each begins in a state, and its results with their number of entries.
+/// A function, its arguments with their places in a state, and its results with their number of entries.
 pub(crate) struct Called {
     pub(crate) name: String,
-    pub(crate) arguments: Vec<(Argument, usize)>,
+    pub(crate) arguments: Vec<(Argument, Range<usize>)>,
     pub(crate) results: Vec<(String, Array, usize)>,
 }
 
@@ -33,8 +34,8 @@ pub(crate) struct Called {
 pub(crate) struct Robot {
     pub(crate) name: String,
     pub(crate) scalar: Scalar,
-    pub(crate) dof: usize,
-    pub(crate) parameters: usize,
+    dof: usize,
+    parameters: usize,
     sizes: Sizes,
     pub(crate) functions: Vec<Called>,
 }
@@ -48,22 +49,23 @@ impl Robot {
         let Constant::Text(name) = &module.constants["NAME"] else { panic!("a robot has a name") };
         let (dof, parameters) = (integer("DOF"), integer("PARAMETERS"));
         let sizes = Sizes { n: dof, p: parameters, b: integer("BASE_PARAMETERS"), m: integer("TASK_ROWS") };
+        let of_joints = |k: usize| parameters + k * dof..parameters + (k + 1) * dof;
         let called = |(name, program): (&str, &armgen_verify::program::Program)| {
             let promise = Promise::of(name).expect("a known function").0;
-            let start = |argument: Argument| match argument {
-                Argument::Pi => 0,
-                Argument::Q => parameters,
-                Argument::Dq => parameters + dof,
-                Argument::Ddq => parameters + 2 * dof,
-                Argument::Dqr => parameters + 3 * dof,
-                Argument::Ddqr => parameters + 4 * dof,
-                Argument::Tau => parameters + 5 * dof,
+            let place = |argument: Argument| match argument {
+                Argument::Pi => 0..parameters,
+                Argument::Q => of_joints(0),
+                Argument::Dq => of_joints(1),
+                Argument::Ddq => of_joints(2),
+                Argument::Dqr => of_joints(3),
+                Argument::Ddqr => of_joints(4),
+                Argument::Tau => of_joints(5),
             };
             let places = promise.returned.places(&sizes);
             let entries = |part: &str| places.iter().filter(|place| promise.returned.part_of(place).0 == part).count();
             Called {
                 name: name.into(),
-                arguments: program.arguments.iter().map(|&a| (a, start(a))).collect(),
+                arguments: program.arguments.iter().map(|&a| (a, place(a))).collect(),
                 results: promise
                     .returned
                     .named()
@@ -81,7 +83,7 @@ impl Robot {
         let range = if self.scalar == Scalar::F64 { 6500.0 } else { 30.0 };
         let mut bytes = Vec::new();
         for state in 0..count {
-            for i in 0..self.parameters + 6 * self.dof {
+            for i in 0..self.numbers_of_state() {
                 let unit = (stream.bits() >> 11) as f64 / (1u64 << 53) as f64;
                 let signed = 2.0 * unit - 1.0;
                 let position = (self.parameters..self.parameters + self.dof).contains(&i);
@@ -101,6 +103,11 @@ impl Robot {
             }
         }
         bytes
+    }
+
+    /// How many numbers a state has: the parameters, and six vectors of the joints.
+    pub(crate) fn numbers_of_state(&self) -> usize {
+        self.parameters + 6 * self.dof
     }
 
     pub(crate) fn dimension(&self, length: Length) -> usize {
