@@ -26,11 +26,13 @@ const BATCHES: [(&str, &str, Trig, Scalar, usize); 4] = [
 ];
 
 /// The robots that are emitted with inverse kinematics.
-const POSTURES: [(&str, Scalar); 4] = [
+const POSTURES: [(&str, Scalar); 6] = [
     ("../robots/scara4.yaml", Scalar::F64),
     ("../robots/scara4.yaml", Scalar::F32),
     ("../robots/puma560.yaml", Scalar::F64),
     ("../robots/ur5.yaml", Scalar::F64),
+    ("../robots/panda7.yaml", Scalar::F64),
+    ("data/iiwa14.yaml", Scalar::F64),
 ];
 
 fn main() {

@@ -236,7 +236,7 @@ pub enum RotationDescription {
 pub struct PosturesDescription {
     /// What it reaches.
     pub target: Option<Spanned<Target>>,
-    /// The joint whose value is given.
+    /// The joint whose value is given, or `swivel`.
     pub given: Option<Spanned<String>>,
 }
 

@@ -17,7 +17,7 @@ mod steps;
 use crate::exact::Number;
 pub use crate::kinds::Target;
 use crate::kinds::{JointKind, TaskRow};
-use crate::manipulator::Manipulator;
+use crate::manipulator::{GivenBeside, Manipulator};
 
 pub use chain::{Arrangement, Given};
 pub use classes::Regional;
@@ -40,8 +40,17 @@ pub struct InverseKinematics {
     pub choices: Vec<Choice>,
     /// A length of the arm's size, m.
     pub length: Number,
-    /// The joint whose value is given, of an arm with one more than the target asks for.
-    pub given: Option<Given>,
+    /// What is given beside the pose of an arm with one joint more than that asks for.
+    pub redundancy: Option<Redundancy>,
+}
+
+/// What is given beside the pose of an arm with one joint more than that asks for.
+#[derive(Clone, Debug)]
+pub enum Redundancy {
+    /// The value of a joint.
+    Joint(Box<Given>),
+    /// The swivel angle of the elbow about the line from shoulder to wrist, rad. Documented with the block `shoulder_elbow_wrist`.
+    Swivel,
 }
 
 /// One choice between the ways of a construction.
@@ -68,6 +77,8 @@ pub enum Construction {
     ThreePrismatic(Arrangement, [usize; 3]),
     /// The position that three joints reach.
     Position(Arrangement, Regional),
+    /// Shoulder and wrist of three joints each about axes through a point, a joint between them; the swivel angle is given.
+    ShoulderElbowWrist(Arrangement),
     /// Six joints of no class: two arrangements of the determinant.
     General(Box<[Arrangement; 2]>),
 }
@@ -78,41 +89,80 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     let length = size(&chain);
     let given = manipulator.inverse_kinematics.given;
     if (chain.joints.len() == 7 || given.is_some()) && target(manipulator, &chain) == Ok(Target::Pose) {
-        return redundant(&chain, &length, given.map(|joint| joint.0 as usize));
+        return redundant(&chain, &length, given);
     }
     if given.is_some() {
-        return Err("a joint is given where no joint is too many".into());
+        return Err(NOTHING_TOO_MANY.into());
     }
     let target = target(manipulator, &chain)?;
     classes::classify(&completed(chain, target), target, length)
 }
 
-/// Seven joints and a pose: the joint that the description says is given, or the last one, or the first one where that leaves a cheaper class.
-fn redundant(chain: &Chain, length: &Number, given: Option<usize>) -> Result<InverseKinematics, String> {
-    if chain.joints.len() != 7 {
-        return Err("a joint is given where no joint is too many".into());
+const NOTHING_TOO_MANY: &str = "`given` is for arms with one joint more than the target asks for";
+
+/// Seven joints and a pose: what the description says is given; else the swivel angle where there is one, or the joint that leaves the cheapest
+/// class, of those that do the last one, joints at the ends of the arm before those between.
+fn redundant(chain: &Chain, length: &Number, given: Option<GivenBeside>) -> Result<InverseKinematics, String> {
+    let joints = chain.joints.len();
+    if joints != 7 {
+        return Err(NOTHING_TOO_MANY.into());
     }
     let with = |joint: usize| {
         let (rest, given) = chain.without(joint);
         let mut found = classes::classify(&rest, Target::Pose, length.clone())?;
         found.class += &format!("; q{} is given", joint + 1);
-        found.given = Some(given);
+        // A joint between two others belongs to the loop.
+        found.redundancy = given
+            .or_else(|| found.loops().first().and_then(|way| way.given.clone()))
+            .map(|given| Redundancy::Joint(Box::new(given)));
         Ok::<_, String>(found)
     };
     match given {
-        Some(joint) if joint == 0 || joint + 1 == chain.joints.len() => return with(joint),
-        Some(joint) => return Err(format!("the joint that is given is the first or the last one, not joint {}", joint + 1)),
+        Some(GivenBeside::Joint(joint)) => return with(joint.0 as usize),
+        Some(GivenBeside::Swivel) => {
+            let none = "there is no swivel angle: the first three and the last three of seven joints do not turn about axes through one point each";
+            return classes::shoulder_elbow_wrist(chain, length).ok_or(none.into());
+        }
         None => {}
     }
-    let last = with(chain.joints.len() - 1);
-    if last.as_ref().is_ok_and(|found| !matches!(found.construction, Construction::General(_))) {
-        return last;
+    if let Some(found) = classes::shoulder_elbow_wrist(chain, length) {
+        return Ok(found);
     }
-    let first = with(0);
-    match (&last, &first) {
-        (Ok(_), Ok(found)) if matches!(found.construction, Construction::General(_)) => last,
-        (_, Ok(_)) => first,
-        _ => last,
+    let general = |found: &Result<InverseKinematics, String>| {
+        found.as_ref().is_ok_and(|found| matches!(found.construction, Construction::General(_)))
+    };
+    let ends = [with(joints - 1), with(0)];
+    let closed = |found: &&Result<InverseKinematics, String>| found.is_ok() && !general(found);
+    if let Some(found) = ends.iter().find(closed) {
+        return found.clone();
+    }
+    if let Some(found) = (1..joints - 1).rev().map(with).find(Result::is_ok) {
+        return found;
+    }
+    let [last, first] = ends;
+    last.or(first)
+}
+
+impl InverseKinematics {
+    /// The loops that the construction reads.
+    pub fn loops(&self) -> &[Arrangement] {
+        match &self.construction {
+            Construction::SphericalTriple(way, _)
+            | Construction::ThreeParallel(way, _)
+            | Construction::ParallelTurns(way, _)
+            | Construction::Position(way, _)
+            | Construction::ThreePrismatic(way, _)
+            | Construction::ShoulderElbowWrist(way) => std::slice::from_ref(way),
+            Construction::General(ways) => ways.as_slice(),
+        }
+    }
+
+    /// The joint whose value is given, where one is.
+    pub fn given(&self) -> Option<&Given> {
+        match &self.redundancy {
+            Some(Redundancy::Joint(given)) => Some(given),
+            _ => None,
+        }
     }
 }
 

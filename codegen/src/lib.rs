@@ -133,32 +133,25 @@ impl Generated {
         emit::rust::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }
 
-    /// Whether the arm has a construction that asks for a pose alone, as all that is written beside its module does.
-    pub fn has_inverse_kinematics(&self) -> bool {
-        self.of_pose_alone().is_ok()
+    /// Whether the arm has a construction, and one that asks for a pose alone.
+    pub fn has_inverse_kinematics_of_pose_alone(&self) -> bool {
+        self.construction().as_ref().is_ok_and(|found| found.redundancy.is_none())
     }
 
     /// `robot_runtime.rs` where inverse kinematics stands in a module beside the robot's that is called `ik`: with the trait
-    /// `InverseKinematics`. Without it where the arm has no construction, or the module not all functions that the other traits need.
+    /// `InverseKinematics`, or `RedundantInverseKinematics` for an arm with a joint too many. Without it where the arm has no construction, or the module not all functions that the other traits need.
     pub fn runtime_with_inverse_kinematics(&self, ik: &str) -> String {
-        self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, &self.of_pose_alone(), ik)
+        self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, self.construction(), ik)
     }
 
     /// The face of `robot_ik.rs` for C: `robot_ik.h`, and `robot_ik_c.rs` to be included beside it; none where the arm has no construction.
     pub fn inverse_kinematics_for_c(&self) -> Option<CFace> {
-        emit::c::print_inverse_kinematics(&self.program, &self.of_pose_alone(), &self.origin)
+        emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }
 
     /// What follows in `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` beside.
     pub fn inverse_kinematics_test(&self, file: &str) -> String {
-        emit::rust::print_inverse_kinematics_test(&self.program, &self.of_pose_alone(), file)
-    }
-
-    fn of_pose_alone(&self) -> Result<InverseKinematics, String> {
-        match self.construction() {
-            Ok(found) if found.given.is_some() => Err("the value of a joint is given with the pose".into()),
-            found => found.clone(),
-        }
+        emit::rust::print_inverse_kinematics_test(&self.program, self.construction(), file)
     }
 
     fn construction(&self) -> &Result<InverseKinematics, String> {

@@ -27,8 +27,17 @@ pub struct LinkId(pub u32);
 pub struct Postures {
     /// The target; without it, what `task` says.
     pub target: Option<crate::kinds::Target>,
-    /// The joint whose value is given where there is one too many.
-    pub given: Option<LinkId>,
+    /// What is given besides where there is one joint too many.
+    pub given: Option<GivenBeside>,
+}
+
+/// What is given beside the pose of an arm with one joint too many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GivenBeside {
+    /// The value of a joint.
+    Joint(LinkId),
+    /// The swivel angle of the elbow about the line from shoulder to wrist.
+    Swivel,
 }
 
 /// A valid robot arm.

@@ -44,6 +44,8 @@
 //! | P P P | directions span space | `regional_slides` | 1 |
 //!
 //! Seven joints and a pose: [`Given`](f64::Given) takes the first or the last joint, whose value is given, off the pose, and puts it back into solutions.
+//! Where the first three and the last three turn about axes through one point each, [`shoulder_elbow_wrist`](f64::shoulder_elbow_wrist) takes the swivel angle of
+//! the elbow instead: at most 8.
 //!
 //! If the pose is in L1 or L2, only `regional_general`, `regional_slide` and `regional_mid_slide` hold for all poses.
 //! [`polish`](f64::polish) takes the digits back that block R with D = 2 loses; `three_parallel` wants it where neither axes b and c nor a and c
@@ -91,6 +93,7 @@ macro_rules! blocks {
         include!("blocks/arrangement.rs");
         include!("blocks/general.rs");
         include!("blocks/given.rs");
+        include!("blocks/shoulder_elbow_wrist.rs");
     };
 }
 

@@ -48,5 +48,6 @@ texts! {
     "arrangement" needs ["frame", "branches"],
     "general" needs ["determinant", "arrangement"],
     "given" needs ["frame", "branches"],
+    "shoulder_elbow_wrist" needs ["frame", "turn", "two_links", "regional", "three_turns", "branches", "arrangement"],
     "solutions" needs ["frame", "angles", "branches"],
 }

@@ -27,7 +27,7 @@
 
 use crate::linalg::{is_finite, lit};
 use crate::reference::Pose;
-use crate::robot::{InverseKinematics, Verdict};
+use crate::robot::{InverseKinematics, JointRanges, Postures, RedundantInverseKinematics, Verdict};
 use nalgebra::{RealField, SVector};
 
 /// Where following a branch came to.
@@ -99,130 +99,173 @@ pub fn follow<R, T, const N: usize, const K: usize>(
     mut path: impl FnMut(T) -> Pose<T>,
     start: &SVector<T, N>,
     steps: u32,
-    mut each: impl FnMut(T, &SVector<T, N>),
+    each: impl FnMut(T, &SVector<T, N>),
 ) -> Followed<T, N>
 where
     T: RealField + Copy,
     R: InverseKinematics<N, K, Real = T>,
 {
-    let ended = |s, q, end| Followed { s, q, end: Some(end) };
-    let (mut q, branch) = match continued(robot, &path(T::zero()), start, None, lit(OFF)) {
-        Ok(first) => first,
-        Err(BranchEnd::Jump) => return ended(T::zero(), *start, BranchEnd::Start),
-        Err(end) => return ended(T::zero(), *start, end),
-    };
-    let mut s = T::zero();
-    each(s, &q);
-    let largest = T::one() / lit(f64::from(steps.max(1)));
-    let finest = lit::<T>(1e-9).max(lit::<T>(8.0) * T::default_epsilon());
-    let mut step = largest;
-    // The nearest parameter at which a step was refused.
-    let mut refused: Option<T> = None;
-    for _ in 0..u64::from(steps) * 64 + 8192 {
-        if s >= T::one() {
-            break;
-        }
-        let whole = (s + step).min(T::one());
-        let next = match refused {
-            Some(at) if whole >= at && at - s > finest => s + (at - s) * lit(0.5),
-            Some(at) if whole >= at => at,
-            _ => whole,
-        };
-        match continued(robot, &path(next), &q, Some(branch), lit(FAR)) {
-            Ok((there, _)) => {
-                refused = refused.filter(|at| next < *at);
-                step = ((next - s) * lit(2.0)).min(largest);
-                (s, q) = (next, there);
-                each(s, &q);
-            }
-            Err(_) if next - s > finest => {
-                refused = Some(next);
-                step = (next - s) * lit(0.5);
-            }
-            Err(end @ (BranchEnd::Singular | BranchEnd::Jump)) => {
-                // At the edge of the workspace both are true: what is a little farther tells.
-                let beyond = path((s + finest * lit(8.0)).min(T::one()));
-                let end = match robot.inverse_kinematics(&beyond.frame()).verdict {
-                    Verdict::Unreachable => BranchEnd::Unreachable,
-                    _ if end == BranchEnd::Singular || gap(robot, &path(s), &q) < lit(MEETING) => BranchEnd::Singular,
-                    _ => BranchEnd::Jump,
-                };
-                return ended(s, q, end);
-            }
-            Err(end) => return ended(s, q, end),
-        }
-    }
-    Followed { s, q, end: (s < T::one()).then_some(BranchEnd::TooManyPoses) }
+    let branches = Branches { ranges: robot, signs: robot.branch_signs() };
+    branches.follow(|s| robot.inverse_kinematics(&path(s).frame()), start, steps, each)
 }
 
-/// The posture at `pose` that continues `q` of `branch`, not farther than `far`, within the limits; with its branch. Where none does or
-/// another is too near to tell, `Jump`.
-fn continued<R, T, const N: usize, const K: usize>(
+/// [`follow`] for an arm with one joint more than a pose asks for: `path` gives the redundancy beside the pose. That of the path's start is
+/// [`redundancy`](RedundantInverseKinematics::redundancy)(start).
+pub fn follow_redundant<R, T, const N: usize, const K: usize>(
     robot: &R,
-    pose: &Pose<T>,
-    q: &SVector<T, N>,
-    branch: Option<u16>,
-    far: T,
-) -> Result<(SVector<T, N>, u16), BranchEnd>
+    mut path: impl FnMut(T) -> (Pose<T>, T),
+    start: &SVector<T, N>,
+    steps: u32,
+    each: impl FnMut(T, &SVector<T, N>),
+) -> Followed<T, N>
 where
     T: RealField + Copy,
-    R: InverseKinematics<N, K, Real = T>,
+    R: RedundantInverseKinematics<N, K, Real = T>,
 {
-    if !is_finite(q) {
-        return Err(BranchEnd::Invalid);
-    }
-    let postures = robot.inverse_kinematics(&pose.frame());
-    let lost = match postures.verdict {
-        Verdict::Invalid => return Err(BranchEnd::Invalid),
-        Verdict::Unreachable => return Err(BranchEnd::Unreachable),
-        Verdict::Continuum => BranchEnd::Continuum,
-        Verdict::Complete | Verdict::NearDouble => BranchEnd::Jump,
+    let branches = Branches { ranges: robot, signs: robot.branch_signs() };
+    let postures = |s| {
+        let (pose, redundancy) = path(s);
+        robot.inverse_kinematics(&pose.frame(), redundancy)
     };
-    let mut nearest = None;
-    let mut least = far;
-    for (place, posture) in postures.as_slice().iter().enumerate() {
-        let there = robot.unwrapped(&posture.q, q);
-        let distance = (there - q).amax();
-        if distance <= least {
-            (nearest, least) = (Some((place, posture, there)), distance);
-        }
-    }
-    let (place, posture, there) = nearest.ok_or(lost)?;
-    if posture.free != 0 {
-        return Err(BranchEnd::Continuum);
-    }
-    if posture.double || branch.is_some_and(|branch| (branch ^ posture.branch) & robot.branch_signs() != 0) {
-        return Err(BranchEnd::Singular);
-    }
-    for (i, other) in postures.as_slice().iter().enumerate() {
-        let apart = (robot.unwrapped(&other.q, &there) - there).amax();
-        if i != place && apart < least * lit(APART) {
-            return Err(BranchEnd::Jump);
-        }
-    }
-    for (joint, ([low, high], x)) in robot.position_limits().iter().zip(there.iter()).enumerate() {
-        if !(*low <= *x && *x <= *high) {
-            return Err(BranchEnd::Limit { joint });
-        }
-    }
-    Ok((there, posture.branch))
+    branches.follow(postures, start, steps, each)
 }
 
-/// How far the nearest other posture is from `q` at the pose that both reach.
-fn gap<R, T, const N: usize, const K: usize>(robot: &R, pose: &Pose<T>, q: &SVector<T, N>) -> T
-where
-    T: RealField + Copy,
-    R: InverseKinematics<N, K, Real = T>,
-{
-    let postures = robot.inverse_kinematics(&pose.frame());
-    let mut nearest = [T::max_value().unwrap_or_else(T::one); 2];
-    for posture in postures.as_slice() {
-        let distance = (robot.unwrapped(&posture.q, q) - q).amax();
-        if posture.double && distance < lit(MEETING) {
-            return distance;
+/// What tells postures apart.
+struct Branches<'a, R> {
+    ranges: &'a R,
+    /// The bits of a branch that are signs.
+    signs: u16,
+}
+
+impl<R> Branches<'_, R> {
+    /// Follows a posture: `postures` are all at a parameter of the path.
+    fn follow<T, const N: usize, const K: usize>(
+        &self,
+        mut postures: impl FnMut(T) -> Postures<T, N, K>,
+        start: &SVector<T, N>,
+        steps: u32,
+        mut each: impl FnMut(T, &SVector<T, N>),
+    ) -> Followed<T, N>
+    where
+        T: RealField + Copy,
+        R: JointRanges<N, Real = T>,
+    {
+        let ended = |s, q, end| Followed { s, q, end: Some(end) };
+        let (mut q, branch) = match self.continued(&postures(T::zero()), start, None, lit(OFF)) {
+            Ok(first) => first,
+            Err(BranchEnd::Jump) => return ended(T::zero(), *start, BranchEnd::Start),
+            Err(end) => return ended(T::zero(), *start, end),
+        };
+        let mut s = T::zero();
+        each(s, &q);
+        let largest = T::one() / lit(f64::from(steps.max(1)));
+        let finest = lit::<T>(1e-9).max(lit::<T>(8.0) * T::default_epsilon());
+        let mut step = largest;
+        // The nearest parameter at which a step was refused.
+        let mut refused: Option<T> = None;
+        for _ in 0..u64::from(steps) * 64 + 8192 {
+            if s >= T::one() {
+                break;
+            }
+            let whole = (s + step).min(T::one());
+            let next = match refused {
+                Some(at) if whole >= at && at - s > finest => s + (at - s) * lit(0.5),
+                Some(at) if whole >= at => at,
+                _ => whole,
+            };
+            match self.continued(&postures(next), &q, Some(branch), lit(FAR)) {
+                Ok((there, _)) => {
+                    refused = refused.filter(|at| next < *at);
+                    step = ((next - s) * lit(2.0)).min(largest);
+                    (s, q) = (next, there);
+                    each(s, &q);
+                }
+                Err(_) if next - s > finest => {
+                    refused = Some(next);
+                    step = (next - s) * lit(0.5);
+                }
+                Err(end @ (BranchEnd::Singular | BranchEnd::Jump)) => {
+                    // At the edge of the workspace both are true: what is a little farther tells.
+                    let end = match postures((s + finest * lit(8.0)).min(T::one())).verdict {
+                        Verdict::Unreachable => BranchEnd::Unreachable,
+                        _ if end == BranchEnd::Singular || self.gap(&postures(s), &q) < lit(MEETING) => BranchEnd::Singular,
+                        _ => BranchEnd::Jump,
+                    };
+                    return ended(s, q, end);
+                }
+                Err(end) => return ended(s, q, end),
+            }
         }
-        let [first, second] = nearest;
-        nearest = if distance < first { [distance, first] } else { [first, second.min(distance)] };
+        Followed { s, q, end: (s < T::one()).then_some(BranchEnd::TooManyPoses) }
     }
-    nearest[1]
+
+    /// The one of `postures` that continues `q` of `branch`, not farther than `far`, within the limits; with its branch. Where none does or
+    /// another is too near to tell, `Jump`.
+    fn continued<T, const N: usize, const K: usize>(
+        &self,
+        postures: &Postures<T, N, K>,
+        q: &SVector<T, N>,
+        branch: Option<u16>,
+        far: T,
+    ) -> Result<(SVector<T, N>, u16), BranchEnd>
+    where
+        T: RealField + Copy,
+        R: JointRanges<N, Real = T>,
+    {
+        if !is_finite(q) {
+            return Err(BranchEnd::Invalid);
+        }
+        let lost = match postures.verdict {
+            Verdict::Invalid => return Err(BranchEnd::Invalid),
+            Verdict::Unreachable => return Err(BranchEnd::Unreachable),
+            Verdict::Continuum => BranchEnd::Continuum,
+            Verdict::Complete | Verdict::NearDouble => BranchEnd::Jump,
+        };
+        let mut nearest = None;
+        let mut least = far;
+        for (place, posture) in postures.as_slice().iter().enumerate() {
+            let there = self.ranges.unwrapped(&posture.q, q);
+            let distance = (there - q).amax();
+            if distance <= least {
+                (nearest, least) = (Some((place, posture, there)), distance);
+            }
+        }
+        let (place, posture, there) = nearest.ok_or(lost)?;
+        if posture.free != 0 {
+            return Err(BranchEnd::Continuum);
+        }
+        if posture.double || branch.is_some_and(|branch| (branch ^ posture.branch) & self.signs != 0) {
+            return Err(BranchEnd::Singular);
+        }
+        for (i, other) in postures.as_slice().iter().enumerate() {
+            let apart = (self.ranges.unwrapped(&other.q, &there) - there).amax();
+            if i != place && apart < least * lit(APART) {
+                return Err(BranchEnd::Jump);
+            }
+        }
+        for (joint, ([low, high], x)) in self.ranges.position_limits().iter().zip(there.iter()).enumerate() {
+            if !(*low <= *x && *x <= *high) {
+                return Err(BranchEnd::Limit { joint });
+            }
+        }
+        Ok((there, posture.branch))
+    }
+
+    /// How far the nearest other of the postures is from `q`, one of them.
+    fn gap<T, const N: usize, const K: usize>(&self, postures: &Postures<T, N, K>, q: &SVector<T, N>) -> T
+    where
+        T: RealField + Copy,
+        R: JointRanges<N, Real = T>,
+    {
+        let mut nearest = [T::max_value().unwrap_or_else(T::one); 2];
+        for posture in postures.as_slice() {
+            let distance = (self.ranges.unwrapped(&posture.q, q) - q).amax();
+            if posture.double && distance < lit(MEETING) {
+                return distance;
+            }
+            let [first, second] = nearest;
+            nearest = if distance < first { [distance, first] } else { [first, second.min(distance)] };
+        }
+        nearest[1]
+    }
 }

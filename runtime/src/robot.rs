@@ -19,7 +19,7 @@ mod postures;
 #[rustfmt::skip] // it is written by a test
 mod single;
 
-pub use postures::{InverseKinematics, Posture, Postures, Verdict};
+pub use postures::{InverseKinematics, JointRanges, Posture, Postures, RedundantInverseKinematics, Verdict};
 pub use single::*;
 
 use nalgebra::{Matrix4, RealField, SMatrix, SVector, Scalar};

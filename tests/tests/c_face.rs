@@ -1,7 +1,7 @@
 //! The C face as a stranger uses it: a static library of its own without `std`, and a C program that links it and checks values.
 
 use armgen_codegen::kinds::Scalar;
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::{generate, source::Source, Generated};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -38,6 +38,11 @@ mod robot_ik {
     include!("robot_ik_c.rs");
 }
 
+mod redundant_ik {
+    include!("redundant_ik.rs");
+    include!("redundant_ik_c.rs");
+}
+
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     loop {}
@@ -48,10 +53,10 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-fn generated(robot: &str, scalar: Scalar) -> Generated {
+fn generate_of(robot: &str, scalar: Scalar, functions: Selection) -> Generated {
     let path = root().join("robots").join(robot);
     let source = Source::new(robot.to_string(), fs::read_to_string(path).unwrap());
-    generate(&source, &Options { scalar, ..Options::default() }).0.unwrap()
+    generate(&source, &Options { scalar, functions, ..Options::default() }).0.unwrap()
 }
 
 /// Runs a command; what it printed if it failed, or warned.
@@ -68,13 +73,13 @@ fn declared(header: &str) -> Vec<&str> {
     starts.map(|line| line.trim_end_matches('(').rsplit(' ').next().unwrap()).collect()
 }
 
-/// Builds the library in a folder of its own, and runs tests/c/check.c and tests/c/check_ik.c against it.
+/// Builds the library in a folder of its own, and runs the programs of tests/c against it.
 #[track_caller]
 fn check(robot: &str, scalar: Scalar, folder: &str) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(folder.join("src")).unwrap();
-    let generated = generated(robot, scalar);
+    let generated = generate_of(robot, scalar, Selection::default());
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     write("Cargo.toml", CARGO_TOML);
     write("src/lib.rs", LIB_RS);
@@ -85,6 +90,11 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
     write("src/robot_ik.rs", &generated.inverse_kinematics());
     write("src/robot_ik_c.rs", &inverse_kinematics.wrappers);
     write("robot_ik.h", &inverse_kinematics.header);
+    let panda7 = generate_of("panda7.yaml", scalar, Selection::named(["direct_kinematics"]).expect("a function"));
+    let redundant = panda7.inverse_kinematics_for_c().expect("the Panda has a construction");
+    write("src/redundant_ik.rs", &panda7.inverse_kinematics());
+    write("src/redundant_ik_c.rs", &redundant.wrappers);
+    write("redundant_ik.h", &redundant.header);
     // Every function that the header declares has to be there to be linked, whether check.c calls it or not.
     let functions = declared(&generated.c.header);
     assert_eq!(functions.len(), generated.module.lines().filter(|line| line.starts_with("pub fn ")).count());
@@ -107,6 +117,12 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
         .args(["target/release/librobot.a", "-lm"])
         .current_dir(&folder));
     run(&mut Command::new(folder.join("check_ik")));
+    run(Command::new("cc")
+        .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-I.", "-o", "check_redundant"])
+        .arg(root().join("tests/c/check_redundant.c").canonicalize().unwrap())
+        .args(["target/release/librobot.a", "-lm"])
+        .current_dir(&folder));
+    run(&mut Command::new(folder.join("check_redundant")));
     // C++ reads the same header.
     if Command::new("c++").arg("--version").output().is_ok() {
         write("header.cpp", "#include \"robot.h\"\n#include \"robot_ik.h\"\n");
@@ -124,7 +140,7 @@ fn a_c_program_links_and_finds_the_values_of_the_scara() {
 #[test]
 fn unsafe_is_confined_and_explained() {
     for robot in ["scara.yaml", "ur5.yaml"] {
-        let generated = generated(robot, Scalar::F64);
+        let generated = generate_of(robot, Scalar::F64, Selection::default());
         assert!(!generated.module.contains("unsafe") && !generated.runtime.contains("unsafe"));
         assert!(!generated.inverse_kinematics().contains("unsafe"));
         let wrappers = generated.c.wrappers.clone() + &generated.inverse_kinematics_for_c().expect("a construction").wrappers;

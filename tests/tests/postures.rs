@@ -2,10 +2,10 @@
 
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_runtime::inverse_kinematics::{follow, BranchEnd, Followed};
+use armgen_runtime::inverse_kinematics::{follow, follow_redundant, BranchEnd, Followed};
 use armgen_runtime::nalgebra::{Matrix3, Matrix4, Rotation3, SMatrix, SVector, Vector2, Vector3};
 use armgen_runtime::reference::Pose;
-use armgen_runtime::robot::{InverseKinematics, Kinematics, Postures, Verdict};
+use armgen_runtime::robot::{InverseKinematics, JointRanges, Kinematics, Postures, RedundantInverseKinematics, Verdict};
 use armgen_tests::project::{workspace, Project};
 
 macro_rules! robot {
@@ -26,6 +26,8 @@ robot!(scara4, postures_scara4_f64_ik, "postures_scara4_f64");
 robot!(scara4_single, postures_scara4_f32_ik, "postures_scara4_f32");
 robot!(puma560, postures_puma560_f64_ik, "postures_puma560_f64");
 robot!(ur5, postures_ur5_f64_ik, "postures_ur5_f64");
+robot!(panda7, postures_panda7_f64_ik, "postures_panda7_f64");
+robot!(iiwa14, postures_iiwa14_f64_ik, "postures_iiwa14_f64");
 
 #[path = "postures/figures.rs"]
 mod figures;
@@ -201,6 +203,9 @@ impl InverseKinematics<6, 8> for Limited {
     fn branch_signs(&self) -> u16 {
         puma560::Nominal.branch_signs()
     }
+}
+
+impl JointRanges<6> for Limited {
     fn turns(&self) -> [bool; 6] {
         [true; 6]
     }
@@ -221,6 +226,52 @@ fn a_limit_ends_a_branch() {
     assert_eq!(ended.end, Some(BranchEnd::Limit { joint: 0 }));
     assert!((ended.s - 0.45).abs() < 1.1e-9, "{}", ended.s);
     assert_eq!(follow(&puma560::Nominal, path, &start, 10, |_, _| ()).end, None);
+}
+
+/// Seven joints: a motion of them comes back from its poses and its redundancy; at any value of that the postures have the pose and the value.
+fn redundant<R: RedundantInverseKinematics<7, 8, Real = f64>>(robot: &R) {
+    let q = |s: f64| SVector::from([0.2 + 0.8 * s, 0.5, -0.3 + 0.4 * s, -1.2 - 0.5 * s, 0.4, 1.1 + 0.3 * s, 0.3 - 0.9 * s]);
+    let path = |s| (Pose::of(robot, &q(s)), robot.redundancy(&q(s)));
+    let mut worst = 0.0f64;
+    let ended = follow_redundant(robot, path, &q(0.0), 100, |s, found| worst = worst.max((found - q(s)).amax()));
+    assert_eq!((ended.end, ended.s), (None, 1.0));
+    assert!(worst < 1e-9, "{worst:e}");
+    let pose = robot.direct_kinematics(&q(0.0));
+    let mut most = 0;
+    for step in -8..8 {
+        let value = robot.redundancy(&q(0.0)) + 0.05 * f64::from(step);
+        let found = robot.inverse_kinematics(&pose, value);
+        assert!(matches!(found.verdict, Verdict::Complete | Verdict::Unreachable), "{found:?}");
+        for posture in found.as_slice() {
+            assert!((robot.direct_kinematics(&posture.q) - pose).amax() < 1e-13);
+            assert!((0.5 * (robot.redundancy(&posture.q) - value)).sin().abs() < 1e-12);
+        }
+        most = most.max(found.count);
+    }
+    assert_eq!(most, 8);
+}
+
+#[test]
+fn seven_joints_are_followed_with_their_redundancy() {
+    redundant(&panda7::Nominal);
+    redundant(&iiwa14::Nominal);
+    assert_eq!(panda7::Nominal.redundancy(&SVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.7])), 0.7);
+    // The elbow of the iiwa above the line from shoulder to wrist, and turned by joint 1 and back by joint 3 below it.
+    let [up, down] = [[0.0, 0.5, 0.0, -1.0, 0.0, 0.3, 0.0], [0.0, 0.5, 0.0, 1.0, 0.0, 0.3, 0.0]].map(SVector::from);
+    let between = iiwa14::Nominal.redundancy(&up) - iiwa14::Nominal.redundancy(&down);
+    assert!((between.abs() - core::f64::consts::PI).abs() < 1e-12, "{between}");
+}
+
+/// Turned about the axis of joint 7 with the elbow where it is, only that joint moves: to its limit at 175 degrees.
+#[test]
+fn a_limit_ends_a_branch_of_seven_joints() {
+    let start = SVector::from([0.2, 0.5, -0.3, -1.2, 0.4, 1.1, 0.3]);
+    let (from, swivel) = (iiwa14::Nominal.direct_kinematics(&start), iiwa14::Nominal.redundancy(&start));
+    let turned = |s: f64| Pose::from_frame(&(from * Rotation3::from_axis_angle(&Vector3::z_axis(), 4.0 * s).to_homogeneous()));
+    let ended = follow_redundant(&iiwa14::Nominal, |s| (turned(s), swivel), &start, 50, |_, _| ());
+    assert_eq!(ended.end, Some(BranchEnd::Limit { joint: 6 }));
+    let limit = (175f64.to_radians() - 0.3) / 4.0;
+    assert!(ended.s <= limit && limit - ended.s < 1.1e-9, "{} {limit}", ended.s);
 }
 
 #[test]

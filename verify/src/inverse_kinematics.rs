@@ -23,7 +23,7 @@ mod text;
 
 use std::fmt;
 
-use armgen_codegen::inverse_kinematics::{self as generator, Construction as Generated};
+use armgen_codegen::inverse_kinematics as generator;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
@@ -180,6 +180,10 @@ fn fill(report: &mut Report, manipulator: &Manipulator, source: &Source, text: &
     if module.most != most && Check::MostSolutions.is_made() {
         return Err(format!("MAX_SOLUTIONS: {} where the construction has {most}", module.most));
     }
+    if module.construction == Construction::ShoulderElbowWrist {
+        report.uncounted = Some("the swivel angle is given".into());
+        return Ok(());
+    }
     // Arrangements that the module does not use.
     let given = module.given.as_ref().map(|given| given.joint);
     let joints = module.dof - usize::from(given.is_some());
@@ -197,7 +201,12 @@ fn fill(report: &mut Report, manipulator: &Manipulator, source: &Source, text: &
     };
     report.generic = Some((
         generic.solutions,
-        generic.way.order(joints).iter().map(|joint| joint + 1 + usize::from(given == Some(0))).collect(),
+        generic
+            .way
+            .order(joints)
+            .iter()
+            .map(|joint| joint + 1 + usize::from(given.is_some_and(|given| *joint >= given)))
+            .collect(),
     ));
     let branches =
         if module.branches.is_empty() { module.most } else { module.branches.iter().filter(|b| !b.is_empty()).count() };
@@ -246,20 +255,13 @@ struct Claims {
 
 fn claims(manipulator: &Manipulator) -> Result<Claims, String> {
     let found = generator::of(manipulator).map_err(|reason| format!("the arm has no construction: {reason}"))?;
-    let ways = match &found.construction {
-        Generated::SphericalTriple(way, _)
-        | Generated::ThreeParallel(way, _)
-        | Generated::ParallelTurns(way, _)
-        | Generated::Position(way, _)
-        | Generated::ThreePrismatic(way, _) => vec![way],
-        Generated::General(ways) => ways.iter().collect(),
-    };
-    let numbers = |way: &&generator::Arrangement| {
+    let numbers = |way: &generator::Arrangement| {
         let frames = way.links.iter().chain([&way.before, &way.after]).flatten().flatten();
         frames.chain(way.offsets.iter().flatten()).map(formula).collect()
     };
-    let given = found.given.iter().flat_map(|given| [&given.before, &given.after]).flatten().flatten().map(formula).collect();
-    Ok(Claims { loops: ways.iter().map(numbers).collect(), given, length: formula(&found.length) })
+    let given =
+        found.given().into_iter().flat_map(|given| [&given.before, &given.after]).flatten().flatten().map(formula).collect();
+    Ok(Claims { loops: found.loops().iter().map(numbers).collect(), given, length: formula(&found.length) })
 }
 
 /// Whether all numbers are the floats nearest to what is claimed, or to the description; how many there are.
@@ -323,15 +325,23 @@ fn construction(
         let mut posture = posture(&chain, &mut field);
         let mut pose = chain.pose(&posture);
         let mut kinds = chain.slides.clone();
+        let mut moved = None;
         if let Some(given) = &module.given {
             let value = posture.remove(given.joint);
             if kinds.remove(given.joint) != given.prismatic {
                 return Err("GIVEN: the joint is of the other kind".into());
             }
-            pose = points::rest(given, &claims.given, &field, value, &pose).ok_or("a constant of the loop divides by zero")?;
+            let link = points::link(given, &claims.given, &field, value).ok_or("a constant of the loop divides by zero")?;
+            moved = Some(link);
+            if given.place.is_none() {
+                pose = points::rest(given, &link, chain.modulus, &pose);
+            }
         }
         for (way, numbers) in module.loops.iter().zip(&claims.loops) {
-            let closed = Loop::of(way, numbers, &field).ok_or("a constant of the loop divides by zero")?;
+            let mut closed = Loop::of(way, numbers, &field).ok_or("a constant of the loop divides by zero")?;
+            if let (Some(place), Some(link)) = (way.moved, moved) {
+                closed.links[place] = link;
+            }
             if !closed.closes(way, &kinds, &posture, &pose) && Check::Loop.is_made() {
                 return Err("LOOP: it is not the loop of this arm".into());
             }

@@ -37,18 +37,22 @@ pub(super) struct Chain {
     pub(super) normals: Vec<Normal>,
     /// From axis n to the end effector.
     pub(super) tool: Frame,
-    /// The number in the arm of the first joint, from 0.
-    pub(super) first: usize,
+    /// The number in the arm of the joint that is left out, from 0, since its value is given.
+    pub(super) left_out: Option<usize>,
+    /// That joint with what is behind it, if it stands between two others; `normals` has what is before it.
+    pub(super) between: Option<(Joint, Normal)>,
 }
 
-/// A joint at one end of the arm whose value is given. Documented with the block `given`.
+/// A joint whose value is given. Documented with the block `given`.
 #[derive(Clone, Debug)]
 pub struct Given {
     /// Its number in the arm, from 0.
     pub joint: usize,
+    /// The place in the loop of the link that it moves, if it stands between two other joints; else it is at an end of the arm.
+    pub place: Option<usize>,
     /// Whether it slides.
     pub prismatic: bool,
-    /// From the joint before it, or the base.
+    /// From the joint before it, or the base, in the direction of the loop.
     pub before: Frame,
     /// To the joint behind it, or the end effector.
     pub after: Frame,
@@ -73,8 +77,10 @@ pub struct Arrangement {
     pub backward: bool,
     /// What the loop's joint values have more than the arm's: (cos theta, sin theta), or (d, 0).
     pub offsets: Vec<[Number; 2]>,
-    /// The number in the arm of joint 0, which is not 0 where the first joint is given.
-    pub(super) first: usize,
+    /// The number in the arm of the joint that is left out, from 0.
+    pub(super) left_out: Option<usize>,
+    /// The joint between two others whose value is given, with the place of the link that it moves: that of `links` is the identity.
+    pub(super) given: Option<Given>,
 }
 
 fn frame(manipulator: &Manipulator, placement: &Placement) -> Frame {
@@ -115,30 +121,29 @@ impl Chain {
             }
         }
         let tool = compose(&frame(manipulator, &joint(manipulator.tip).link_frame), &frame(manipulator, &manipulator.tool.frame));
-        Ok(Chain { base, joints, normals, tool, first: 0 })
+        Ok(Chain { base, joints, normals, tool, left_out: None, between: None })
     }
 
-    /// The arm without its first or last joint, whose value is given.
-    pub(super) fn without(&self, joint: usize) -> (Chain, Given) {
+    /// The arm without a joint, whose value is given; and that joint, if it is the first or the last one.
+    pub(super) fn without(&self, joint: usize) -> (Chain, Option<Given>) {
         let mut rest = self.clone();
-        let own = |joint: &Joint| compose(&turn_about_z(&joint.theta), &slide_along_z(&joint.d));
-        let given = |joint: usize, before: &Frame, after: Frame| Given {
-            joint,
-            prismatic: self.joints[joint].prismatic,
-            before: compose(before, &own(&self.joints[joint])),
-            after,
+        rest.left_out = Some(joint);
+        let left_out = rest.joints.remove(joint);
+        let given = |before: &Frame, after: Frame| {
+            Some(Given { joint, place: None, prismatic: left_out.prismatic, before: compose(before, &left_out.own()), after })
         };
         if joint == 0 {
-            rest.first += 1;
-            rest.joints.remove(0);
             let normal = rest.normals.remove(0).frame(false);
             rest.base = identity();
-            (rest, given(0, &self.base, normal))
-        } else {
-            rest.joints.pop();
+            (rest, given(&self.base, normal))
+        } else if joint == rest.joints.len() {
             let normal = rest.normals.pop().map_or(identity(), |normal| normal.frame(false));
             rest.tool = identity();
-            (rest, given(self.joints.len() - 1, &normal, self.tool.clone()))
+            (rest, given(&normal, self.tool.clone()))
+        } else {
+            let behind = rest.normals.remove(joint);
+            rest.between = Some((left_out, behind));
+            (rest, None)
         }
     }
 
@@ -152,6 +157,7 @@ impl Chain {
     pub(super) fn lengths(&self) -> Vec<Number> {
         let mut lengths: Vec<Number> = self.normals.iter().map(|n| n.a.clone()).collect();
         lengths.extend(self.joints.iter().map(|j| j.d.clone()));
+        lengths.extend(self.between.iter().flat_map(|(joint, behind)| [joint.d.clone(), behind.a.clone()]));
         lengths.extend([&self.base, &self.tool].into_iter().flat_map(|f| f.iter().map(|row| row[3].clone())));
         lengths
     }
@@ -180,14 +186,25 @@ impl Chain {
         let last = if backward { 0 } else { n - 1 };
         let open = order.iter().position(|joint| *joint == last).unwrap_or(n - 1);
         let left = |joint: &Joint| if joint.prismatic { turn_about_z(&joint.theta) } else { slide_along_z(&joint.d) };
+        let normal = |joint: usize| if backward { joint - 1 } else { joint };
+        // The given joint stands behind joint `left_out` - 1 of those that are left, and before joint `left_out`.
+        let between = self.between.as_ref().zip(self.left_out);
+        let place = between
+            .and_then(|(_, given)| order.iter().enumerate().position(|(p, joint)| p != open && normal(*joint) + 1 == given));
         let link = |(place, &joint): (usize, &usize)| {
             if place == open {
                 return identity();
             }
-            let normal = if backward { &self.normals[joint - 1] } else { &self.normals[joint] };
-            compose(&left(&self.joints[joint]), &normal.frame(backward))
+            compose(&left(&self.joints[joint]), &self.normals[normal(joint)].frame(backward))
         };
-        let links = order.iter().enumerate().map(link).collect();
+        let mut links: Vec<Frame> = order.iter().enumerate().map(link).collect();
+        let given = place.zip(between).map(|(place, ((given, behind), joint))| {
+            let here = &self.joints[order[place]];
+            let (first, second) = if backward { (behind, &self.normals[joint - 1]) } else { (&self.normals[joint - 1], behind) };
+            let before = compose(&compose(&left(here), &first.frame(backward)), &given.own());
+            links[place] = identity();
+            Given { joint, place: Some(place), prismatic: given.prismatic, before, after: second.frame(backward) }
+        });
         let (before, after) = if backward {
             let flip = half_turn_about_x();
             (compose(&flip, &inverse(&self.base)), compose(&inverse(&self.tool), &flip))
@@ -207,13 +224,33 @@ impl Chain {
             backward,
             offsets: order.iter().map(|joint| offset(&self.joints[*joint])).collect(),
             order,
-            first: self.first,
+            left_out: self.left_out,
+            given,
         }
     }
 
     /// Every way round the loop: by start, forwards before backwards.
     pub(super) fn arrangements(&self) -> impl Iterator<Item = Arrangement> + '_ {
         (0..self.joints.len()).flat_map(|start| [false, true].map(|backward| self.arranged(start, backward)))
+    }
+}
+
+impl Joint {
+    /// Rz(theta) Tz(d).
+    fn own(&self) -> Frame {
+        compose(&turn_about_z(&self.theta), &slide_along_z(&self.d))
+    }
+}
+
+impl Arrangement {
+    /// The number in the arm, from 1, of one of the joints that are left.
+    pub(super) fn number(&self, joint: usize) -> usize {
+        joint + 1 + usize::from(self.left_out.is_some_and(|left_out| joint >= left_out))
+    }
+
+    /// Whether the link at a place is a constant: it depends neither on the pose nor on the joint that is given.
+    pub(super) fn is_constant(&self, place: usize) -> bool {
+        place != self.open && self.given.as_ref().is_none_or(|given| given.place != Some(place))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::chain::{Arrangement, Chain};
 use super::frame::{compose, is_parallel, is_right, is_zero, turn_about_z, Frame};
 use super::general;
-use super::{Choice, Construction, InverseKinematics, Target};
+use super::{Choice, Construction, InverseKinematics, Redundancy, Target};
 use crate::exact::Number;
 
 /// A case of block 6: three joints that bring a point to a point.
@@ -79,6 +79,27 @@ const TURNING: &str = "regional";
 const ONE_SLIDE: &str = "regional_one_prismatic";
 const SLIDES: &str = "regional_prismatic";
 
+/// Axes 1 and 2 intersect.
+const CROSSING: Regional = Regional {
+    function: "regional_crossing",
+    text: TURNING,
+    closed: true,
+    most: 4,
+    choices: &[(ELBOW, Sign::Root(3)), (SHOULDER, Sign::Root(2))],
+    because: "axes {1} and {2} intersect",
+};
+
+/// The case of block 6 for the first three joints of a loop.
+fn regional_of(way: &Arrangement) -> Option<Regional> {
+    let (a, b) = (&way.links[0], &way.links[1]);
+    let moved = way.given.as_ref().is_some_and(|given| given.place == Some(1));
+    // B may then be any frame, and is not at a particular place but at particular values of the joint that is given.
+    if moved && way.is_constant(0) && way.kinds() == [false; 3] && is_zero(&a[0][3]) && !is_parallel(a) {
+        return Some(CROSSING);
+    }
+    regional(way.kinds(), a, b, way.is_constant(0) && way.is_constant(1))
+}
+
 /// The case of block 6 for three joints of given kinds with links A, B; not `constant`: the pose is in one of the links.
 fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: bool) -> Option<Regional> {
     let case = |function, text, closed, most, choices, because| Some(Regional { function, text, closed, most, choices, because });
@@ -105,14 +126,7 @@ fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: bool) -> Option<Re
             &[(SHOULDER, Sign::Root(1)), (ELBOW, Sign::Links)],
             "axes {2} and {3} are parallel",
         ),
-        [false, false, false] if meet(a) && !is_parallel(a) && !(is_parallel(b) && meet(b)) => case(
-            "regional_crossing",
-            TURNING,
-            true,
-            4,
-            &[(ELBOW, Sign::Root(3)), (SHOULDER, Sign::Root(2))],
-            "axes {1} and {2} intersect",
-        ),
+        [false, false, false] if meet(a) && !is_parallel(a) && !(is_parallel(b) && meet(b)) => Some(CROSSING),
         [false, false, false] if !is_parallel(a) && !is_parallel(b) && !meet(b) => {
             case("regional_general", TURNING, false, 4, &[], "axes {1}, {2} and {3} neither are parallel nor intersect")
         }
@@ -192,7 +206,7 @@ impl Regional {
 impl Arrangement {
     /// The numbers of its joints in the arm, from 1.
     fn joints(&self) -> Vec<usize> {
-        self.order.iter().map(|joint| joint + self.first + 1).collect()
+        self.order.iter().map(|joint| self.number(*joint)).collect()
     }
 
     fn kinds(&self) -> [bool; 3] {
@@ -224,7 +238,7 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
         format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
     };
     let Class { construction, class, most, choices } = found.ok_or_else(none)?;
-    Ok(InverseKinematics { target, construction, class, most, choices, length, given: None })
+    Ok(InverseKinematics { target, construction, class, most, choices, length, redundancy: None })
 }
 
 /// A class that fits.
@@ -248,10 +262,10 @@ fn spherical_triple(chain: &Chain, closed: bool) -> Option<Class> {
         let l = &way.links;
         let crosses = |f: &Frame| is_zero(&f[0][3]) && !is_parallel(f);
         let turning = way.prismatic[3..].iter().all(|slides| !slides);
-        if !turning || way.open == 3 || way.open == 4 || !crosses(&l[3]) || !crosses(&l[4]) || !is_zero(&l[4][2][3]) {
+        if !turning || !way.is_constant(3) || !way.is_constant(4) || !crosses(&l[3]) || !crosses(&l[4]) || !is_zero(&l[4][2][3]) {
             return None;
         }
-        let case = regional(way.kinds(), &l[0], &l[1], way.open > 1).filter(|case| case.closed == closed)?;
+        let case = regional_of(&way).filter(|case| case.closed == closed)?;
         let joints = way.joints();
         let because = case.because(&joints);
         let class = format!("spherical triple (axes {} through one point), {because}", listed(&joints[3..]));
@@ -265,12 +279,12 @@ fn spherical_triple(chain: &Chain, closed: bool) -> Option<Class> {
 fn three_parallel(chain: &Chain) -> Option<Class> {
     chain.arrangements().find_map(|way| {
         let l = &way.links;
-        let flat = |place: usize| way.open != place && is_parallel(&l[place]) && !is_zero(&l[place][0][3]);
+        let flat = |place: usize| way.is_constant(place) && is_parallel(&l[place]) && !is_zero(&l[place][0][3]);
         if way.prismatic.contains(&true) || !flat(1) || !flat(2) {
             return None;
         }
         // Axes b and c, or c and a, that intersect or are parallel leave two equations of block 1.
-        let related = |place: usize| way.open != place && (is_zero(&l[place][0][3]) || is_parallel(&l[place]));
+        let related = |place: usize| way.is_constant(place) && (is_zero(&l[place][0][3]) || is_parallel(&l[place]));
         let joints = way.joints();
         let (bc, ca) = (related(4), related(5));
         let mut class = format!("three parallel axes (joints {})", listed(&joints[1..4]));
@@ -292,6 +306,29 @@ fn three_parallel(chain: &Chain) -> Option<Class> {
     })
 }
 
+/// Seven revolute joints, the first three and the last three about axes through one point each: the swivel angle of the elbow is given.
+pub(super) fn shoulder_elbow_wrist(chain: &Chain, length: &Number) -> Option<InverseKinematics> {
+    if chain.joints.len() != 7 || chain.joints.iter().any(|joint| joint.prismatic) {
+        return None;
+    }
+    let way = chain.arranged(0, false);
+    let crosses = |place: usize| is_zero(&way.links[place][0][3]) && !is_parallel(&way.links[place]);
+    let through_one = |place: usize| crosses(place) && crosses(place + 1) && is_zero(&way.links[place + 1][2][3]);
+    if !through_one(0) || !through_one(4) {
+        return None;
+    }
+    let choices = vec![two(0, ELBOW, Sign::Links.meaning(&[])), two(1, SHOULDER, "the sign of sin q2".into()), wrist(2, 6)];
+    Some(InverseKinematics {
+        target: Target::Pose,
+        construction: Construction::ShoulderElbowWrist(way),
+        class: "shoulder, elbow, wrist (axes 1 2 3 through one point, axes 5 6 7 through one point); the swivel angle of the elbow is given".into(),
+        most: 8,
+        choices,
+        length: length.clone(),
+        redundancy: Some(Redundancy::Swivel),
+    })
+}
+
 /// Four joints, place 4 of the loop revolute with the pose behind it, all revolute axes parallel.
 fn parallel_turns(chain: &Chain) -> Option<Class> {
     chain.arrangements().find_map(|way| {
@@ -309,7 +346,7 @@ fn parallel_turns(chain: &Chain) -> Option<Class> {
             }
             since = since.map(|between| compose(&between, &way.links[place]));
         }
-        let case = regional(way.kinds(), &way.links[0], &way.links[1], true).filter(|case| case.closed)?;
+        let case = regional_of(&way).filter(|case| case.closed)?;
         let joints = way.joints();
         let turning: Vec<usize> = (0..4).filter(|place| !way.prismatic[*place]).map(|place| joints[place]).collect();
         let class = format!("all revolute axes parallel (joints {})", listed(&turning));
@@ -331,6 +368,9 @@ fn position(chain: &Chain) -> Option<Class> {
 
 /// Three revolute joints, with neighbours at an angle, and three prismatic ones.
 fn three_prismatic(chain: &Chain) -> Option<Class> {
+    if chain.between.is_some() {
+        return None;
+    }
     chain.arrangements().find_map(|mut way| {
         let turning: Vec<usize> = (0..6).filter(|place| !way.prismatic[*place]).collect();
         let [r1, r2, r3] = turning[..] else { return None };
@@ -379,6 +419,9 @@ fn turn_about_x(way: &mut Arrangement, from: usize, to: usize) -> bool {
 
 /// Six joints of no class.
 fn general(chain: &Chain, length: &Number) -> Option<Class> {
+    if chain.between.is_some() {
+        return None;
+    }
     let ways = general::choose(chain, length)?;
     let places = |way: &Arrangement| way.joints().iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
     let class = format!(

@@ -2,7 +2,7 @@
 
 use super::chain::Arrangement;
 use super::classes::Regional;
-use super::{Construction, InverseKinematics, Target};
+use super::{Construction, InverseKinematics, Redundancy, Target};
 
 impl InverseKinematics {
     /// Class, steps and what is singular, as lines of text.
@@ -12,9 +12,10 @@ impl InverseKinematics {
             Target::Planar => "given the position and the turn about the parallel axes, of T = (R p; 0 1)",
             Target::Position => "given the position p",
         };
-        let target = match &self.given {
+        let target = match &self.redundancy {
             None => target.to_owned(),
-            Some(given) => format!("{target} and q{}", given.joint + 1),
+            Some(Redundancy::Joint(given)) => format!("{target} and q{}", given.joint + 1),
+            Some(Redundancy::Swivel) => format!("{target} and psi, the turn of the elbow about the line from shoulder to wrist"),
         };
         let mut text = format!("inverse_kinematics: {}, at most {} solutions\n  {target}\n", self.class, self.most);
         let (steps, singular) = self.steps();
@@ -94,6 +95,21 @@ impl InverseKinematics {
                     vec![format!("axes {r1} and {r3} parallel (q{r1} and q{r3} free together)"), "slides in one plane".into()],
                 ));
             }
+            Construction::ShoulderElbowWrist(_) => add((
+                vec![
+                    "S, in which axes 1, 2 and 3 meet, and W, in which axes 5, 6 and 7 meet, from the pose".into(),
+                    "q4 by the distance from S to W: two links in the plane across axis 4        elbow: + / -".into(),
+                    "the elbow E, the point of axis 4 nearest to axis 3, by psi: the rotation that takes the triangle S E W to its place".into(),
+                    "q1, q2 and q3 from that rotation        shoulder: + / -".into(),
+                    "q5, q6 and q7 from the rotation that is left        wrist: + / -".into(),
+                ],
+                vec![
+                    "S, E and W in one line (psi has no meaning)".into(),
+                    "W straight below S (the reference of psi has its pole there)".into(),
+                    "axes 1 and 3 parallel (q1 and q3 free together)".into(),
+                    "axes 5 and 7 parallel (q5 and q7 free together)".into(),
+                ],
+            )),
             Construction::General(ways) => {
                 let [a, b, c, d, e, f] = numbers(&ways[0]);
                 add((
@@ -116,11 +132,11 @@ impl InverseKinematics {
 
 /// The numbers of the joints in the order of the loop, from 1.
 fn numbers<const N: usize>(way: &Arrangement) -> [usize; N] {
-    std::array::from_fn(|place| way.order[place] + way.first + 1)
+    std::array::from_fn(|place| way.number(way.order[place]))
 }
 
 fn listed(way: &Arrangement) -> String {
-    way.order.iter().map(|joint| (joint + way.first + 1).to_string()).collect::<Vec<_>>().join(" ")
+    way.order.iter().map(|joint| way.number(*joint).to_string()).collect::<Vec<_>>().join(" ")
 }
 
 fn read(way: &Arrangement) -> String {

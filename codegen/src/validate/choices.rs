@@ -6,7 +6,7 @@ use crate::description::{RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::excerpt;
 use crate::kinds::TaskRow;
-use crate::manipulator::{LinkId, Postures, RegressorChoice};
+use crate::manipulator::{GivenBeside, LinkId, Postures, RegressorChoice};
 use crate::suggest::did_you_mean;
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
@@ -33,6 +33,9 @@ pub(super) fn task(description: &RobotDescription, diagnostics: &mut Diagnostics
     rows
 }
 
+/// The word for the swivel angle.
+const SWIVEL: &str = "swivel";
+
 /// What inverse kinematics is asked for.
 pub(super) fn inverse_kinematics(description: &RobotDescription, diagnostics: &mut Diagnostics) -> Postures {
     let asked = &description.inverse_kinematics;
@@ -42,13 +45,17 @@ pub(super) fn inverse_kinematics(description: &RobotDescription, diagnostics: &m
     let Some(joints) = &description.joints else { return postures };
     let names: Vec<&str> = joints.value.iter().filter_map(|joint| joint.name.as_ref()).map(|name| name.value.as_str()).collect();
     let place = joints.value.iter().position(|joint| joint.name.as_ref().is_some_and(|name| name.value == given.value));
-    postures.given = place.and_then(|place| u32::try_from(place).ok()).map(LinkId);
+    postures.given = place.and_then(|place| u32::try_from(place).ok()).map(|place| GivenBeside::Joint(LinkId(place)));
+    // A joint of that name comes first.
+    if postures.given.is_none() && given.value == SWIVEL {
+        postures.given = Some(GivenBeside::Swivel);
+    }
     if postures.given.is_none() {
         let shown = excerpt(&given.value);
         let message = format!("`given` names `{shown}`, which is no joint");
         let help = match did_you_mean(&given.value, &names) {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => "name the first or the last joint of an arm with one joint too many, or leave the key out".into(),
+            None => "name a joint of an arm with one joint too many, say `swivel`, or leave the key out".into(),
         };
         diagnostics.push(Diagnostic::new(Code::UnknownGivenJoint, given.span, message, "unknown joint", help));
     }

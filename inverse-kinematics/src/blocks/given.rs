@@ -1,15 +1,16 @@
-// A joint too many, at one end of the arm, whose value is given.
+// A joint too many, whose value is given.
 //
 // With T = C0 J1 C1 ... Jn Cn and a given q, T = A G for G = C J(q) C' at the arm's end, or T = G A at its base: the other joints reach A.
+// Between two other joints, G is the link from the one to the other.
 
 /// A joint whose value is given, with what is constant before and behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
-    /// Its number in the arm, from 0: the first or the last.
+    /// Its number in the arm, from 0.
     pub joint: usize,
     /// Whether it slides.
     pub prismatic: bool,
-    /// From the joint before it, or the base.
+    /// From the joint before it in the loop, or the base.
     pub before: Frame,
     /// To the joint behind it, or the end effector.
     pub after: Frame,
@@ -27,10 +28,16 @@ impl Given {
         }
     }
 
-    /// The pose that the other joints have to reach.
+    /// The link that it moves.
+    #[inline]
+    pub fn link(&self, value: [Real; 2]) -> Frame {
+        compose(&self.before, &joint_then(self.prismatic, value, &self.after))
+    }
+
+    /// The pose that the other joints have to reach, where it is the first or the last one.
     #[inline]
     pub fn rest(&self, value: [Real; 2], t: &Frame) -> Frame {
-        let back = inverse(&compose(&self.before, &joint_then(self.prismatic, value, &self.after)));
+        let back = inverse(&self.link(value));
         if self.joint == 0 {
             compose(&back, t)
         } else {
@@ -47,7 +54,8 @@ impl Given {
             for ((_, joint), known) in others.zip(&branch.joints) {
                 *joint = *known;
             }
-            let free = if self.joint == 0 { branch.free << 1 } else { branch.free };
+            let before = (1 << self.joint) - 1;
+            let free = branch.free & before | (branch.free & !before) << 1;
             all.add(Branch { joints, signs: branch.signs, double: branch.double, error: branch.error, free });
         }
         all

@@ -51,18 +51,8 @@ impl<T, const N: usize, const K: usize> Postures<T, N, K> {
     }
 }
 
-/// Inverse kinematics of an arm with `N` joints: all joint variables that reach a pose, at most `K` where they are finitely many.
-///
-/// Emitted by `armgen generate --ik --runtime`, and by build scripts with `inverse_kinematics()`.
-pub trait InverseKinematics<const N: usize, const K: usize>: Kinematics<N> {
-    /// All q with T_e(q) = `pose`, the pose of the end effector in the base frame, in the rows that the task asks for; lengths in m. Limits are not
-    /// looked at.
-    fn inverse_kinematics(&self, pose: &Matrix4<Self::Real>) -> Postures<Self::Real, N, K>;
-
-    /// The bits of a posture's `branch` that are signs: they stay as long as no singular posture is passed. The others number the roots of an
-    /// equation.
-    fn branch_signs(&self) -> u16;
-
+/// What postures are compared by: joints that turn, and limits. Emitted with [`InverseKinematics`] or [`RedundantInverseKinematics`].
+pub trait JointRanges<const N: usize>: Kinematics<N> {
     /// Whether a joint turns, so that a whole turn more is the same posture.
     fn turns(&self) -> [bool; N];
 
@@ -80,4 +70,33 @@ pub trait InverseKinematics<const N: usize, const K: usize>: Kinematics<N> {
         }
         unwrapped
     }
+}
+
+/// Inverse kinematics of an arm with `N` joints: all joint variables that reach a pose, at most `K` where they are finitely many.
+///
+/// Emitted by `armgen generate --ik --runtime`, and by build scripts with `inverse_kinematics()`.
+pub trait InverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
+    /// All q with T_e(q) = `pose`, the pose of the end effector in the base frame, in the rows that the task asks for; lengths in m. Limits are not
+    /// looked at.
+    fn inverse_kinematics(&self, pose: &Matrix4<Self::Real>) -> Postures<Self::Real, N, K>;
+
+    /// The bits of a posture's `branch` that are signs: they stay as long as no singular posture is passed. The others number the roots of an
+    /// equation.
+    fn branch_signs(&self) -> u16;
+}
+
+/// Inverse kinematics of an arm with one joint more than a pose asks for: all joint variables that reach a pose with a given value of one argument,
+/// the `redundancy`, at most `K` where they are finitely many.
+///
+/// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist, rad; the emitted
+/// module says which. Emitted as [`InverseKinematics`] is.
+pub trait RedundantInverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
+    /// All q with T_e(q) = `pose` and [`redundancy`](RedundantInverseKinematics::redundancy)(q) = `redundancy`; lengths in m. Limits are not looked at.
+    fn inverse_kinematics(&self, pose: &Matrix4<Self::Real>, redundancy: Self::Real) -> Postures<Self::Real, N, K>;
+
+    /// The redundancy of a posture, with which `inverse_kinematics` finds it again.
+    fn redundancy(&self, q: &SVector<Self::Real, N>) -> Self::Real;
+
+    /// The bits of a posture's `branch` that are signs, as [`InverseKinematics::branch_signs`].
+    fn branch_signs(&self) -> u16;
 }

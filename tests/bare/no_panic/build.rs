@@ -39,9 +39,10 @@ fn main() {
                     module(&format!("{name}_ik"), &include(format!("{name}_ik")));
                 }
                 if has_postures {
-                    // Of an arm with a joint more than the pose asks for one is given, and the runtime's trait has no place for it.
                     if postures.contains("redundancy: Real") {
-                        calls += &format!("    postures!({name}_ik, inverse_kinematics_redundancy);\n");
+                        calls += &format!(
+                            "    runtime::every_redundant_posture(&{name}::Nominal);\n    postures!({name}_ik, inverse_kinematics_redundancy);\n"
+                        );
                     } else {
                         calls += &format!("    runtime::every_posture(&{name}::Nominal);\n    postures!({name}_ik);\n");
                     }

@@ -31,9 +31,10 @@ impl Link<'_> {
     }
 }
 
-/// The most solutions of a case of block 6 for joints of these kinds with links A and B; not `constant`: the pose is in one of them. Or what
-/// is wrong.
-fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, constant: bool) -> Result<usize, String> {
+/// The most solutions of a case of block 6 for joints of these kinds with links A and B; not `constant`: the pose or the joint that is given
+/// is in one of them. Or what is wrong.
+fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, constants: [bool; 2]) -> Result<usize, String> {
+    let constant = constants == [true; 2];
     let link = |frame| Link { frame, one: closed.modulus.one };
     let product = closed.modulus.compose(a, b);
     let determinant = {
@@ -44,6 +45,8 @@ fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, cons
     let turning = [false; 3];
     let (wanted, holds, most) = match case {
         "regional_general" => (turning, !constant || !a.is_parallel() && !b.is_parallel() && !b.meets(), 4),
+        // B may be any frame.
+        "regional_crossing" if constants == [true, false] => (turning, a.meets() && !a.is_parallel(), 4),
         _ if !constant => return Err(format!("`{case}` does not hold at all poses")),
         "regional_elbow" => (turning, b.is_parallel() && !b.meets() && !a.is_parallel(), 4),
         "regional_crossing" => (turning, a.meets() && !a.is_parallel() && !(b.is_parallel() && b.meets()), 4),
@@ -58,8 +61,9 @@ fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, cons
         "regional_slides" => ([true; 3], determinant != 0, 1),
         other => return Err(format!("there is no construction `{other}`")),
     };
-    // Between two turns a link is in its normal form; that of the pose is whatever it is.
-    let normal = !constant || (kinds[0] || kinds[1] || a.is_normal()) && (kinds[1] || kinds[2] || b.is_normal());
+    // Between two turns a constant link is in its normal form; that of the pose or of the joint that is given is whatever it is.
+    let normal = case == "regional_general" && !constant
+        || (!constants[0] || kinds[0] || kinds[1] || a.is_normal()) && (!constants[1] || kinds[1] || kinds[2] || b.is_normal());
     if kinds == wanted && holds && normal {
         Ok(most)
     } else {
@@ -77,16 +81,17 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
     let link = |place: usize| Link { frame: &closed.links[place], one: closed.modulus.one };
     let joints = way.order.len();
     let fail = |what: &str| Err(format!("the class is wrong: {what}"));
-    let of_case = |case: &str, kinds: &[bool], constant: bool| {
+    let of_case = |case: &str, kinds: &[bool]| {
         if joints < 3 || kinds != &way.prismatic[..3] {
             return Err("the kinds of the first three joints are not those of the loop".into());
         }
-        regional(case, kinds, [&closed.links[0], &closed.links[1]], closed, constant)
+        let constants = [way.is_constant(0), way.is_constant(1)];
+        regional(case, kinds, [&closed.links[0], &closed.links[1]], closed, constants)
             .map_err(|what| format!("the class is wrong: {what}"))
     };
     match construction {
         Construction::SphericalTriple { kinds, case, polished } => {
-            if joints != 6 || way.prismatic[3..].contains(&true) || way.open == 3 || way.open == 4 {
+            if joints != 6 || way.prismatic[3..].contains(&true) || !way.is_constant(3) || !way.is_constant(4) {
                 return fail("the last three axes are not joined by constant links");
             }
             let crosses = |place| link(place).is_normal() && link(place).meets() && !link(place).is_parallel();
@@ -96,14 +101,15 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
             if *polished != is_rough(case) {
                 return fail("Newton's method is called where it should not be, or is not");
             }
-            Ok(2 * of_case(case, kinds, way.open > 1)?)
+            Ok(2 * of_case(case, kinds)?)
         }
         Construction::ThreeParallel { polished } => {
-            let flat = |place| way.open != place && link(place).is_normal() && link(place).is_parallel() && !link(place).meets();
+            let flat =
+                |place| way.is_constant(place) && link(place).is_normal() && link(place).is_parallel() && !link(place).meets();
             if joints != 6 || way.prismatic.contains(&true) || !flat(1) || !flat(2) {
                 return fail("there are no three parallel axes");
             }
-            let related = |place| way.open != place && (link(place).meets() || link(place).is_parallel());
+            let related = |place| way.is_constant(place) && (link(place).meets() || link(place).is_parallel());
             if *polished == (related(4) || related(5)) {
                 return fail("Newton's method is called where it should not be, or is not");
             }
@@ -123,13 +129,13 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
                 }
                 between = between.map(|frame| closed.modulus.compose(&frame, &closed.links[place]));
             }
-            of_case(case, kinds, true)
+            of_case(case, kinds)
         }
         Construction::Position { case } => {
             if joints != 3 || way.open != 2 {
                 return fail("the position is not behind the third joint");
             }
-            of_case(case, &way.prismatic, true)
+            of_case(case, &way.prismatic)
         }
         Construction::ThreePrismatic { turning } => {
             let places: Vec<usize> = (0..joints).filter(|place| !way.prismatic[*place]).collect();
@@ -146,6 +152,20 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
                 Ok(2)
             } else {
                 fail("the links between the joints that turn are no turns about x")
+            }
+        }
+        Construction::ShoulderElbowWrist => {
+            let normal = |place: usize| link(place).is_normal();
+            let crosses = |place: usize| link(place).meets() && !link(place).is_parallel();
+            let through_one = |place: usize| crosses(place) && crosses(place + 1) && closed.links[place + 1][2][3] == 0;
+            if joints != 7 || way.prismatic.contains(&true) || way.backward || way.open != 6 || way.order != [0, 1, 2, 3, 4, 5, 6]
+            {
+                return fail("the loop is not that of seven turning joints, from the base on");
+            }
+            if (0..6).all(normal) && through_one(0) && through_one(4) {
+                Ok(8)
+            } else {
+                fail("there are not three axes through a point at either end")
             }
         }
         Construction::General => {

@@ -61,15 +61,24 @@ pub(super) fn posture(chain: &Chain, field: &mut Prime) -> Vec<[u64; 2]> {
     chain.slides.iter().map(&mut value).collect()
 }
 
-/// The pose that the other joints have to reach where one at an end of the arm has a value: its frames are claimed.
-pub(super) fn rest(given: &Given, numbers: &[Formula], field: &Prime, value: [u64; 2], pose: &Frame) -> Option<Frame> {
+/// The link that a given joint moves: its frames are claimed.
+pub(super) fn link(given: &Given, numbers: &[Formula], field: &Prime, value: [u64; 2]) -> Option<Frame> {
     let m = Modulus::new(field.prime());
     let numbers: Option<Vec<u64>> = numbers.iter().map(|x| Some(m.of(field.constant(x)?.value()))).collect();
     let numbers = numbers?;
     let frame = |at: usize| -> Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
     let moved = m.joint(given.prismatic, [0, 0, m.one], value);
-    let back = m.inverse_frame(&m.compose(&m.compose(&frame(0), &moved), &frame(12)));
-    Some(if given.joint == 0 { m.compose(&back, pose) } else { m.compose(pose, &back) })
+    Some(m.compose(&m.compose(&frame(0), &moved), &frame(12)))
+}
+
+/// The pose that the other joints have to reach where a joint at an end of the arm has a value.
+pub(super) fn rest(given: &Given, link: &Frame, m: Modulus, pose: &Frame) -> Frame {
+    let back = m.inverse_frame(link);
+    if given.joint == 0 {
+        m.compose(&back, pose)
+    } else {
+        m.compose(pose, &back)
+    }
 }
 
 /// A loop with its exact numbers in a field.

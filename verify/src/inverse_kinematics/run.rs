@@ -97,13 +97,24 @@ fn in_order<const J: usize, const N: usize>(
 ///
 /// - `redundancy`: the value of the joint that is given, where there is one.
 pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outcome> {
-    let Some(given) = &text.given else { return of_rest(text, t) };
+    let Some(given) = &text.given else {
+        return match text.construction {
+            Construction::ShoulderElbowWrist => {
+                let way = arrangement::<7>(&text.loops[0])?;
+                Some(in_order(text, &way, block::shoulder_elbow_wrist(&way, t, redundancy)))
+            }
+            _ => of_rest(text, t, None),
+        };
+    };
     let numbers: Option<Vec<f64>> = given.numbers.iter().map(|x| x.parse().ok()).collect();
     let numbers = numbers?;
     let frame = |at: usize| -> block::Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
     let joint = block::Given { joint: given.joint, prismatic: given.prismatic, before: frame(0), after: frame(12) };
     let value = joint.value(redundancy);
-    let mut outcome = of_rest(text, &joint.rest(value, t))?;
+    let mut outcome = match given.place {
+        None => of_rest(text, &joint.rest(value, t), None)?,
+        Some(place) => of_rest(text, t, Some((place, joint.link(value))))?,
+    };
     for solution in &mut outcome.solutions {
         solution.insert(given.joint, value);
     }
@@ -111,17 +122,25 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
 }
 
 /// The same of the joints that are not given.
-fn of_rest(text: &Text, t: &block::Frame) -> Option<Outcome> {
+fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) -> Option<Outcome> {
+    let links_at = |way: &block::Arrangement<6>| {
+        let mut links = way.links_at(t);
+        if let Some((place, link)) = moved {
+            links[place] = link;
+        }
+        links
+    };
     let length: f64 = text.length.parse().ok()?;
     let first = &text.loops[0];
     Some(match &text.construction {
+        Construction::ShoulderElbowWrist => return None,
         Construction::General => {
             let ways = [arrangement::<6>(first)?, arrangement::<6>(&text.loops[1])?];
             concluded(text, &block::general_arm(&ways, t, length))
         }
         Construction::SphericalTriple { kinds, case: name, polished } => {
             let (way, kinds) = (arrangement::<6>(first)?, [kinds[0], kinds[1], kinds[2]]);
-            let links = way.links_at(t);
+            let links = links_at(&way);
             let mut found = block::spherical_triple(&links, kinds, case(name)?);
             if *polished {
                 block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, length });
@@ -130,7 +149,7 @@ fn of_rest(text: &Text, t: &block::Frame) -> Option<Outcome> {
         }
         Construction::ThreeParallel { polished } => {
             let way = arrangement::<6>(first)?;
-            let links = way.links_at(t);
+            let links = links_at(&way);
             let mut found = block::three_parallel(&links);
             if *polished {
                 block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, length });

@@ -138,9 +138,52 @@ fn made_up() -> Vec<(&'static str, usize, String)> {
     ]
 }
 
+/// Seven joints with one that is given: between two others, in the loop read forwards and backwards, and the last one; shoulder and wrist
+/// with an offset at the elbow.
+fn redundant() -> Vec<(&'static str, usize, String)> {
+    let (o, q, minus) = ("0", "pi/2", "-pi/2");
+    let rows = |offset, back| {
+        [
+            ["R", o, minus, "0.36", o],
+            ["R", o, q, o, o],
+            ["R", offset, q, "0.42", o],
+            ["R", back, minus, o, o],
+            ["R", o, minus, "0.4", o],
+            ["R", o, q, o, o],
+            ["R", o, o, "0.126", o],
+        ]
+    };
+    let given = |name| format!("inverse_kinematics: {{given: {name}}}");
+    let mut arms: Vec<_> =
+        ["j3", "j5", "j7"].map(|name| (name, 8, description(&given(name), &rows("0.08", "-0.05")))).into_iter().collect();
+    arms.push(("j3, no offset", 8, description(&given("j3"), &rows(o, o))));
+    arms
+}
+
+/// What is certified at a swivel angle: the text, its numbers, the loop and the class.
+#[test]
+fn a_swivel_angle_is_verified_and_not_counted() {
+    let (_, _, text) = redundant().remove(0);
+    for given in ["inverse_kinematics: {given: swivel}", ""] {
+        let text = text.replace("inverse_kinematics: {given: j3}", given);
+        let (source, text) = module(&text);
+        assert!(text.contains("swivel_angle(&LOOP, q)"), "{text}");
+        let report = verify(&source, &text, 8);
+        assert!(report.passed() && report.numbers > 100, "{report}");
+        assert_eq!(report.uncounted.as_deref(), Some("the swivel angle is given"));
+        let fault = |old: &str, new: &str| {
+            assert!(text.contains(old), "{old}");
+            verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
+        };
+        assert!(fault("order: [0, 1, 2,", "order: [0, 2, 1,").contains("not the loop of this arm"));
+        assert!(fault("0.08", "0.09").contains("is not the float nearest"));
+        assert!(fault("swivel_angle(&LOOP, q)", "q[0]").contains("should stand where"));
+    }
+}
+
 #[test]
 fn arms_of_each_class_are_verified() {
-    for (name, solutions, text) in made_up() {
+    for (name, solutions, text) in made_up().into_iter().chain(redundant()) {
         let (source, text) = module(&text);
         let now = std::time::Instant::now();
         let report = verify(&source, &text, 8);

@@ -24,6 +24,8 @@ pub(super) struct Arrangement {
     pub(super) prismatic: Vec<bool>,
     pub(super) open: usize,
     pub(super) backward: bool,
+    /// The place of the link that the given joint moves, where that stands between two others.
+    pub(super) moved: Option<usize>,
     /// All its numbers as they stand in the text: links, before, after, offsets.
     pub(super) numbers: Vec<String>,
 }
@@ -32,6 +34,8 @@ pub(super) struct Arrangement {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Given {
     pub(super) joint: usize,
+    /// The place in the loop of the link that it moves, where it stands between two others.
+    pub(super) place: Option<usize>,
     pub(super) prismatic: bool,
     /// Its numbers as they stand in the text: before, after.
     pub(super) numbers: Vec<String>,
@@ -45,6 +49,7 @@ pub(super) enum Construction {
     ParallelTurns { kinds: Vec<bool>, case: String },
     Position { case: String },
     ThreePrismatic { turning: Vec<usize> },
+    ShoulderElbowWrist,
     General,
 }
 
@@ -152,6 +157,13 @@ impl<'a> Reader<'a> {
     }
 }
 
+impl Arrangement {
+    /// Whether the link at a place is a constant: it depends neither on the pose nor on the joint that is given.
+    pub(super) fn is_constant(&self, place: usize) -> bool {
+        self.open != place && self.moved != Some(place)
+    }
+}
+
 impl Value {
     fn list(&self) -> Result<&[Value], String> {
         match self {
@@ -207,6 +219,7 @@ fn arrangement(value: &Value) -> Result<Arrangement, String> {
         prismatic: bools(field(1))?,
         open: field(3).count()?,
         backward: field(6).bool()?,
+        moved: None,
         numbers,
     };
     let joints = found.order.len();
@@ -227,7 +240,7 @@ fn given(value: &Value) -> Result<Given, String> {
     }
     let mut numbers = Vec::new();
     fields[2..].iter().for_each(|(_, value)| value.leaves(&mut numbers));
-    let found = Given { joint: fields[0].1.count()?, prismatic: fields[1].1.bool()?, numbers };
+    let found = Given { joint: fields[0].1.count()?, place: None, prismatic: fields[1].1.bool()?, numbers };
     if found.numbers.len() == 24 {
         Ok(found)
     } else {
@@ -239,9 +252,13 @@ const EXPORT: &str = "#[allow(unused_imports)]pubuseself::all_solutions::{invers
 const HEAD: &str = "Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};\
                     #[allow(dead_code,unreachable_pub,clippy::all,clippy::pedantic)]#[rustfmt::skip]modall_solutions{";
 const BEGIN: &str = "pubfninverse_kinematics(t:&[[Real;4];4])->Solutions{let[x,y,z,_]=*t;";
-const BEGIN_GIVEN: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;\
-                           if!is_pose(t)||!redundancy.is_finite(){returnSolutions::none(Verdict::Invalid);}\
-                           letvalue=GIVEN.value(redundancy);lett:Frame=GIVEN.rest(value,&[x,y,z]);";
+const BEGIN_REDUNDANT: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;\
+                               if!is_pose(t)||!redundancy.is_finite(){returnSolutions::none(Verdict::Invalid);}";
+const VALUE: &str = "letvalue=GIVEN.value(redundancy);";
+const REST: &str = "lett:Frame=GIVEN.rest(value,&[x,y,z]);";
+const POSE: &str = "lett:Frame=[x,y,z];";
+const LINKS: &str = "letlinks=LOOP.links_at(&t);";
+const MOVED: &str = "letmutlinks=LOOP.links_at(&t);links[";
 const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}lett:Frame=[x,y,z];";
 const POSITION: &str =
     "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
@@ -250,24 +267,33 @@ const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().tak
 const CONCLUDED: &str = "conclude(&found,false)}";
 const CONCLUDED_GIVEN: &str = "conclude(&GIVEN.with::<6,DOF,8>(&found,value),false)}";
 
-/// The function from behind its check of the arguments.
-fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<Construction, String> {
+/// The function from behind its check of the arguments, and the place of the link that a given joint moves.
+fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(Construction, Option<usize>), String> {
     let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
     if reader.take(if given {
         "conclude(&GIVEN.with::<6,DOF,16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}"
     } else {
         "conclude(&general_arm(&LOOPS,&t,LENGTH),true)}"
     }) {
-        return Ok(Construction::General);
+        return Ok((Construction::General, None));
     }
-    let construction = if reader.take("letlinks=LOOP.links_at(&t);letmutfound=spherical_triple(&links,") {
+    let mut moved = None;
+    if given && reader.take(MOVED) {
+        moved = Some(reader.until(']')?.parse().map_err(|_| "the place of the joint that is given is no number")?);
+        reader.expect("=GIVEN.link(value);")?;
+    }
+    let links = moved.is_some() || reader.take(LINKS);
+    let construction = if links && reader.take("letmutfound=spherical_triple(&links,") {
         let kinds = bools(&reader.value()?)?;
         reader.expect(",")?;
         let case = name(reader, ')')?;
         reader.expect(";")?;
         Construction::SphericalTriple { kinds, case, polished: reader.take(POLISH) }
-    } else if reader.take("letlinks=LOOP.links_at(&t);letmutfound=three_parallel(&links);") {
+    } else if links {
+        reader.expect("letmutfound=three_parallel(&links);")?;
         Construction::ThreeParallel { polished: reader.take(POLISH) }
+    } else if reader.take("letmutfound=shoulder_elbow_wrist(&LOOP,&t,redundancy);") {
+        Construction::ShoulderElbowWrist
     } else if reader.take("letmutfound=parallel_turns(&LOOP.links_at(&t),") {
         let kinds = bools(&reader.value()?)?;
         reader.expect(",")?;
@@ -290,7 +316,7 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<C
     };
     reader.expect(IN_ORDER)?;
     reader.expect(if given { CONCLUDED_GIVEN } else { CONCLUDED })?;
-    Ok(construction)
+    Ok((construction, moved))
 }
 
 impl Text {
@@ -331,7 +357,7 @@ impl Text {
         reader.constant("POSITION_LIMITS", "[[Real;2];DOF]")?.leaves(&mut limits);
         let mut length = Vec::new();
         reader.constant("LENGTH", "Real")?.leaves(&mut length);
-        let loops = if reader.take("constLOOPS:[Arrangement<6>;2]=") {
+        let mut loops = if reader.take("constLOOPS:[Arrangement<6>;2]=") {
             let ways = reader.value()?;
             ways.list()?.iter().map(arrangement).collect::<Result<Vec<_>, String>>()?
         } else {
@@ -346,11 +372,21 @@ impl Text {
         };
         reader.expect(";")?;
         let mut joint = None;
-        if redundant {
-            reader.expect("constGIVEN:Given=Given")?;
+        if redundant && reader.take("constGIVEN:Given=Given") {
             joint = Some(given(&reader.value()?)?);
             reader.expect(";")?;
-            reader.expect(BEGIN_GIVEN)?;
+        }
+        // Whether the given joint is at an end of the arm.
+        let mut at_end = false;
+        if redundant {
+            reader.expect(BEGIN_REDUNDANT)?;
+            if joint.is_some() {
+                reader.expect(VALUE)?;
+                at_end = reader.take(REST);
+            }
+            if !at_end {
+                reader.expect(POSE)?;
+            }
         } else {
             reader.expect(BEGIN)?;
         }
@@ -358,12 +394,25 @@ impl Text {
         if !rotation {
             reader.expect(POSITION)?;
         }
-        let construction = body(&mut reader, &loops, redundant)?;
-        if let Some(joint) = &joint {
-            if joint.joint >= dof || joint.joint != 0 && joint.joint + 1 != dof {
-                return Err("GIVEN: the joint is neither the first nor the last".into());
+        let (construction, moved) = body(&mut reader, &loops, joint.is_some())?;
+        let first = loops.first_mut().ok_or("there is no loop")?;
+        if moved.is_some_and(|place| place >= first.order.len() || place == first.open) {
+            return Err("the place of the joint that is given is none".into());
+        }
+        first.moved = moved;
+        if let Some(joint) = &mut joint {
+            joint.place = moved;
+            let end = joint.joint == 0 || joint.joint + 1 == dof;
+            if joint.joint >= dof || end != at_end || end == moved.is_some() {
+                return Err("GIVEN: the function takes the joint from another place of the arm".into());
             }
-            reader.expect(&format!("pubfninverse_kinematics_redundancy(q:&[Real;DOF])->Real{{q[{}]}}", joint.joint))?;
+        }
+        if redundant {
+            let value = joint.as_ref().map_or("swivel_angle(&LOOP,q)".to_owned(), |joint| format!("q[{}]", joint.joint));
+            reader.expect(&format!("pubfninverse_kinematics_redundancy(q:&[Real;DOF])->Real{{{value}}}"))?;
+        }
+        if (construction == Construction::ShoulderElbowWrist) != (redundant && joint.is_none()) {
+            return Err("what is given is not what the construction asks for".into());
         }
         if !reader.rest.is_empty() {
             return Err("something stands behind the function".into());
@@ -371,7 +420,7 @@ impl Text {
         let whole = branches.len() == number && prismatic.len() == dof && limits.len() == 2 * dof && length.len() == 1;
         let loops_fit = match construction {
             Construction::General => loops.len() == 2 && loops.iter().all(|way| way.order.len() == 6),
-            _ => loops.len() == 1 && loops[0].order.len() + usize::from(redundant) >= dof,
+            _ => loops.len() == 1 && loops[0].order.len() + usize::from(joint.is_some()) >= dof,
         };
         if !(whole && loops_fit) {
             return Err("the lists of constants have not the lengths that they should".into());

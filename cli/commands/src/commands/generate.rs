@@ -325,7 +325,7 @@ fn files(
     }
     if beside.bounds {
         let mut companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", validate::module_name(&stem)))?;
-        if beside.ik && generated.has_inverse_kinematics() {
+        if beside.ik && generated.has_inverse_kinematics_of_pose_alone() {
             companion += &armgen_verify::companion_of_inverse_kinematics(&generated)?;
         }
         files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));

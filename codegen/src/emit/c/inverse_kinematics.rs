@@ -23,7 +23,7 @@ const VERDICTS: [(&str, &str); 5] = [
 /// The C face of inverse kinematics; nothing where the arm has no construction.
 pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematics, String>, origin: &Origin) -> Option<CFace> {
     let found = found.as_ref().ok()?;
-    Some(CFace { header: header(module, found, origin), wrappers: wrappers(module, origin) })
+    Some(CFace { header: header(module, found, origin), wrappers: wrappers(module, found, origin) })
 }
 
 fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String {
@@ -60,11 +60,17 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
          {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
          {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"
     );
-    text += &said(&[format!(
-        "All joint variables that take the end effector to t, its pose in the base frame, T = (R p; 0 1) by rows, lengths in {}.",
-        "m; the last row is not read"
-    )]);
-    text += &format!("void {robot}_inverse_kinematics(\n    const {real} t[4][4],\n    {robot}_solutions *solutions);\n\n");
+    let mut about = vec!["All joint variables that take the end effector to t, its pose in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.".to_owned()];
+    about.extend(rust::about_redundancy(found).map(|about| format!("redundancy: {about}.")));
+    text += &said(&about);
+    let redundancy = found.redundancy.as_ref().map_or(String::new(), |_| format!("    {real} redundancy,\n"));
+    text += &format!(
+        "void {robot}_inverse_kinematics(\n    const {real} t[4][4],\n{redundancy}    {robot}_solutions *solutions);\n\n"
+    );
+    if found.redundancy.is_some() {
+        text += &said(&["The redundancy of a posture, with which it is found again.".into()]);
+        text += &format!("{real} {robot}_inverse_kinematics_redundancy(const {real} q[{dof}]);\n\n");
+    }
     text +=
         &said(&["Those of the postures that are within the limits of the joints, angles moved by whole turns into them.".into()]);
     text += &format!("void {robot}_within_limits(\n    const {robot}_solutions *solutions,\n    {robot}_solutions *within);\n\n");
@@ -88,7 +94,7 @@ fn spelled(name: &str) -> String {
     text
 }
 
-fn wrappers(module: &Module, origin: &Origin) -> String {
+fn wrappers(module: &Module, found: &InverseKinematics, origin: &Origin) -> String {
     let robot = prefix(module);
     let mut numbers = String::new();
     let mut verdicts = String::new();
@@ -98,7 +104,8 @@ fn wrappers(module: &Module, origin: &Origin) -> String {
             verdicts += &format!("        {number} => Verdict::{name},\n");
         }
     }
-    rust::head(origin, &[])
+    let (parameter, argument) = if found.redundancy.is_some() { ("redundancy: Real, ", ", redundancy") } else { ("", "") };
+    let text = rust::head(origin, &[])
         + &format!(
             r#"// For C. Each wrapper believes what its declaration in the header says of its pointers.
 
@@ -143,9 +150,9 @@ fn from_c(solutions: &CSolutions) -> Solutions {{
 /// # Safety
 /// `t` leads to four rows of four numbers, `solutions` to memory for the struct, both aligned.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn {robot}_inverse_kinematics(t: *const [[Real; 4]; 4], solutions: *mut CSolutions) {{
+pub unsafe extern "C" fn {robot}_inverse_kinematics(t: *const [[Real; 4]; 4], {parameter}solutions: *mut CSolutions) {{
     // SAFETY: the caller promises that t points to such an array; nothing is written meanwhile.
-    let value = unsafe {{ inverse_kinematics(&*t) }};
+    let value = unsafe {{ inverse_kinematics(&*t{argument}) }};
     // SAFETY: the caller promises that there is memory for the result.
     unsafe {{ solutions.write(to_c(&value)) }}
 }}
@@ -176,5 +183,21 @@ pub unsafe extern "C" fn {robot}_nearest_to(solutions: *const CSolutions, q: *co
     place.map_or(-1, |place| place as i32)
 }}
 "#
-        )
+        );
+    if found.redundancy.is_none() {
+        return text;
+    }
+    text + &format!(
+        r#"
+/// [`inverse_kinematics_redundancy`] for C.
+///
+/// # Safety
+/// `q` leads to as many numbers as there are joints, aligned.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn {robot}_inverse_kinematics_redundancy(q: *const [Real; DOF]) -> Real {{
+    // SAFETY: the caller promises that q points to an array of this length.
+    inverse_kinematics_redundancy(unsafe {{ &*q }})
+}}
+"#
+    )
 }

@@ -10,7 +10,7 @@ use super::signature::usize_literal;
 use super::{format, head};
 use crate::emit::origin::Origin;
 use crate::exact::Number;
-use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Target};
+use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Target};
 use crate::kinds::Scalar;
 use crate::program::Module;
 
@@ -35,23 +35,37 @@ pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKin
     let signs = Literal::u16_unsuffixed(signs);
     let ik = format_ident!("{ik}");
     let robot = quote!(armgen_runtime::robot);
+    let postures = quote!(#robot::Postures<Real, DOF, { super::#ik::MAX_SOLUTIONS }>);
+    // One argument more, and one function, of an arm with a joint too many.
+    let (interface, parameter, argument, redundancy) = match found.redundancy {
+        None => (quote!(InverseKinematics), None, None, None),
+        Some(_) => {
+            let function = quote! {
+                fn redundancy(&self, q: &armgen_runtime::nalgebra::SVector<Real, DOF>) -> Real {
+                    super::#ik::inverse_kinematics_redundancy(&armgen_runtime::robot::array(q))
+                }
+            };
+            (quote!(RedundantInverseKinematics), Some(quote!(, redundancy: Real)), Some(quote!(, redundancy)), Some(function))
+        }
+    };
     let implementation = |of: TokenStream| {
         quote! {
-            impl #robot::InverseKinematics<DOF, { super::#ik::MAX_SOLUTIONS }> for #of {
-                fn inverse_kinematics(
-                    &self,
-                    pose: &armgen_runtime::nalgebra::Matrix4<Real>,
-                ) -> #robot::Postures<Real, DOF, { super::#ik::MAX_SOLUTIONS }> {
-                    postures(pose)
-                }
-                fn branch_signs(&self) -> u16 {
-                    #signs
-                }
+            impl #robot::JointRanges<DOF> for #of {
                 fn turns(&self) -> [bool; DOF] {
                     JOINT_IS_REVOLUTE
                 }
                 fn position_limits(&self) -> [[Real; 2]; DOF] {
                     POSITION_LIMITS
+                }
+            }
+
+            impl #robot::#interface<DOF, { super::#ik::MAX_SOLUTIONS }> for #of {
+                fn inverse_kinematics(&self, pose: &armgen_runtime::nalgebra::Matrix4<Real> #parameter) -> #postures {
+                    postures(pose #argument)
+                }
+                #redundancy
+                fn branch_signs(&self) -> u16 {
+                    #signs
                 }
             }
         }
@@ -63,11 +77,9 @@ pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKin
         #with_parameters
 
         /// The postures that the module of inverse kinematics finds, in the runtime's types. No parameter enters them.
-        fn postures(
-            pose: &armgen_runtime::nalgebra::Matrix4<Real>,
-        ) -> #robot::Postures<Real, DOF, { super::#ik::MAX_SOLUTIONS }> {
+        fn postures(pose: &armgen_runtime::nalgebra::Matrix4<Real> #parameter) -> #postures {
             let t = core::array::from_fn(|i| core::array::from_fn(|j| pose[(i, j)]));
-            let found = super::#ik::inverse_kinematics(&t);
+            let found = super::#ik::inverse_kinematics(&t #argument);
             #robot::Postures {
                 verdict: match found.verdict {
                     super::#ik::Verdict::Complete => #robot::Verdict::Complete,
@@ -100,8 +112,14 @@ pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKine
         Scalar::F32 => ("2e-3", "0.1"),
     };
     let columns = if found.target == Target::Position { "3.." } else { "0.." };
+    let (uses, at_posture) = match found.redundancy {
+        None => ("", ""),
+        Some(_) => ("inverse_kinematics_redundancy, ", ", inverse_kinematics_redundancy(&q)"),
+    };
     include_str!("inverse_kinematics_test.rs.txt")
         .replace("{file}", &format!("{file:?}"))
+        .replace("{uses}", uses)
+        .replace("{at_posture}", at_posture)
         .replace("{near}", near)
         .replace("{far}", far)
         .replace("{columns}", columns)
@@ -109,7 +127,7 @@ pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKine
 
 /// What stands before the module of the blocks.
 fn exported(found: &InverseKinematics) -> TokenStream {
-    let redundancy = found.given.as_ref().map(|_| quote!(inverse_kinematics_redundancy,));
+    let redundancy = found.redundancy.as_ref().map(|_| quote!(inverse_kinematics_redundancy,));
     quote! {
         #[allow(unused_imports)]
         pub use self::all_solutions::{inverse_kinematics, #redundancy Real, Solution, Solutions, Verdict, BRANCHES, DOF, MAX_SOLUTIONS};
@@ -123,7 +141,7 @@ fn solver(module: &Module, found: &InverseKinematics) -> String {
     );
     text += &format(constants(module, found));
     text.push('\n');
-    text += &format(function(module.scalar, found));
+    text += &format(function(found));
     for block in needed(module.scalar, found) {
         text.push('\n');
         text += block.source;
@@ -138,7 +156,7 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
         Scalar::F32 => "scalar_f32",
     };
     let mut names = vec![scalar, "arrangement", "solutions"];
-    names.extend(found.given.as_ref().map(|_| "given"));
+    names.extend(found.given().map(|_| "given"));
     match &found.construction {
         Construction::SphericalTriple(_, case) => {
             names.extend(["spherical_triple", case.text]);
@@ -151,6 +169,7 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
         Construction::ParallelTurns(_, case) => names.extend(["parallel_turns", case.text]),
         Construction::Position(_, case) => names.push(case.text),
         Construction::ThreePrismatic(..) => names.push("three_prismatic"),
+        Construction::ShoulderElbowWrist(_) => names.push("shoulder_elbow_wrist"),
         Construction::General(_) => names.push("general"),
     }
     let mut texts = Vec::new();
@@ -177,20 +196,16 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
     let branches = branches(found);
     let count = usize_literal(branches.len());
     let meanings = meanings(found);
-    let loops = match &found.construction {
-        Construction::SphericalTriple(way, _)
-        | Construction::ThreeParallel(way, _)
-        | Construction::ParallelTurns(way, _)
-        | Construction::Position(way, _)
-        | Construction::ThreePrismatic(way, _) => {
+    let loops = match found.loops() {
+        [way] => {
             let (joints, way) = (usize_literal(way.order.len()), arrangement(way, scalar));
             quote! {
                 /// The arm's loop in the order in which the construction reads it.
                 const LOOP: Arrangement<#joints> = #way;
             }
         }
-        Construction::General(ways) => {
-            let ways = ways.each_ref().map(|way| arrangement(way, scalar));
+        ways => {
+            let ways = ways.iter().map(|way| arrangement(way, scalar));
             quote! {
                 /// The arm's loop in the orders in which the determinant is taken.
                 const LOOPS: [Arrangement<6>; 2] = [#(#ways),*];
@@ -198,7 +213,7 @@ fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
         }
     };
     let length = literal(&found.length, scalar);
-    let given = found.given.as_ref().map(|given| {
+    let given = found.given().map(|given| {
         let (joint, prismatic) = (usize_literal(given.joint), given.prismatic);
         let (before, after) = (frame(&given.before, scalar), frame(&given.after, scalar));
         quote! {
@@ -300,16 +315,39 @@ fn arrangement(way: &Arrangement, scalar: Scalar) -> TokenStream {
     }
 }
 
-fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
-    let _ = scalar;
+/// What the argument beside the pose is, of an arm with a joint too many.
+pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<String> {
+    Some(match found.redundancy.as_ref()? {
+        Redundancy::Joint(given) => {
+            let unit = if given.prismatic { "m" } else { "rad" };
+            format!("the joint variable q{}, {unit}", given.joint + 1)
+        }
+        Redundancy::Swivel => {
+            "the swivel angle, rad, of the elbow about the line from shoulder to wrist, measured as `shoulder_elbow_wrist` says"
+                .into()
+        }
+    })
+}
+
+fn function(found: &InverseKinematics) -> TokenStream {
     let kinds = |way: &Arrangement, count: usize| {
         let kinds = way.prismatic.iter().take(count);
         quote!([#(#kinds),*])
     };
     let polish = quote!(polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, length: LENGTH }););
-    let conclusion = match found.given {
+    let conclusion = match found.given() {
         None => quote!(conclude(&found, false)),
         Some(_) => quote!(conclude(&GIVEN.with::<6, DOF, 8>(&found, value), false)),
+    };
+    let links = match found.given().and_then(|given| given.place) {
+        None => quote!(let links = LOOP.links_at(&t);),
+        Some(place) => {
+            let place = usize_literal(place);
+            quote! {
+                let mut links = LOOP.links_at(&t);
+                links[#place] = GIVEN.link(value);
+            }
+        }
     };
     let in_order = quote! {
         let count = found.count;
@@ -323,7 +361,7 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
             let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
             let polish = (!case.closed).then_some(polish);
             quote! {
-                let links = LOOP.links_at(&t);
+                #links
                 let mut found = spherical_triple(&links, #kinds, #block);
                 #polish
                 #in_order
@@ -332,7 +370,7 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         Construction::ThreeParallel(_, polished) => {
             let polish = polished.then_some(polish);
             quote! {
-                let links = LOOP.links_at(&t);
+                #links
                 let mut found = three_parallel(&links);
                 #polish
                 #in_order
@@ -366,7 +404,11 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
                 #in_order
             }
         }
-        Construction::General(_) if found.given.is_some() => quote! {
+        Construction::ShoulderElbowWrist(_) => quote! {
+            let mut found = shoulder_elbow_wrist(&LOOP, &t, redundancy);
+            #in_order
+        },
+        Construction::General(_) if found.given().is_some() => quote! {
             conclude(&GIVEN.with::<6, DOF, 16>(&general_arm(&LOOPS, &t, LENGTH), value), true)
         },
         Construction::General(_) => quote! {
@@ -388,13 +430,23 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
             };
             (given, " `Invalid`: the position is not finite.")
         }
-        Target::Pose if found.given.is_some() => {
+        Target::Pose if found.redundancy.is_some() => {
+            let value = found.given().map(|given| match given.place {
+                None => quote! {
+                    let value = GIVEN.value(redundancy);
+                    let t: Frame = GIVEN.rest(value, &[x, y, z]);
+                },
+                Some(_) => quote! {
+                    let value = GIVEN.value(redundancy);
+                    let t: Frame = [x, y, z];
+                },
+            });
+            let value = value.unwrap_or(quote!(let t: Frame = [x, y, z];));
             let given = quote! {
                 if !is_pose(t) || !redundancy.is_finite() {
                     return Solutions::none(Verdict::Invalid);
                 }
-                let value = GIVEN.value(redundancy);
-                let t: Frame = GIVEN.rest(value, &[x, y, z]);
+                #value
             };
             (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6, or the redundancy is not finite.")
         }
@@ -409,19 +461,25 @@ fn function(scalar: Scalar, found: &InverseKinematics) -> TokenStream {
         }
     };
     let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
-    let argument = found.given.as_ref().map(|_| quote!(redundancy: Real));
-    let (about, redundancy) = found.given.as_ref().map_or((None, None), |given| {
-        let joint = usize_literal(given.joint);
-        let number = given.joint + 1;
-        let unit = if given.prismatic { "m" } else { "rad" };
-        let about = format!(" `redundancy`: the joint variable q{number}, {unit}.");
-        let function = quote! {
+    let argument = found.redundancy.as_ref().map(|_| quote!(redundancy: Real));
+    let about = about_redundancy(found).map(|about| {
+        let about = format!(" `redundancy`: {about}.");
+        quote!(#[doc = #about])
+    });
+    let redundancy = found.redundancy.as_ref().map(|redundancy| {
+        let value = match redundancy {
+            Redundancy::Joint(given) => {
+                let joint = usize_literal(given.joint);
+                quote!(q[#joint])
+            }
+            Redundancy::Swivel => quote!(swivel_angle(&LOOP, q)),
+        };
+        quote! {
             /// The `redundancy` of a posture, with which `inverse_kinematics` finds it again.
             pub fn inverse_kinematics_redundancy(q: &[Real; DOF]) -> Real {
-                q[#joint]
+                #value
             }
-        };
-        (Some(quote!(#[doc = #about])), Some(function))
+        }
     });
     quote! {
         /// All joint variables q with direct_kinematics(q) = t.

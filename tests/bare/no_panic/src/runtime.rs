@@ -12,7 +12,7 @@ use armgen_runtime::{
         Adaptive, BoundaryLayer, Controller, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust,
         TorqueLimits,
     },
-    inverse_kinematics::follow as follow_posture,
+    inverse_kinematics::{follow as follow_posture, follow_redundant},
     linalg::{self, Damping, DampingBelow, RightInverse},
     manipulability,
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
@@ -56,9 +56,29 @@ where
     let pose = Pose { position: vector::<R::Real, 3>(), rotation: matrix(&black_box([numbers::<R::Real, 3>(); 3])) };
     let postures = InverseKinematics::inverse_kinematics(robot, &Pose::frame(&pose));
     keep(Postures::as_slice(&postures).len());
-    keep((InverseKinematics::branch_signs(robot), InverseKinematics::turns(robot), InverseKinematics::position_limits(robot)));
-    keep(InverseKinematics::unwrapped(robot, &vector(), &vector()));
+    keep(InverseKinematics::branch_signs(robot));
+    every_range(robot);
     keep(follow_posture(robot, |_| black_box(pose), &vector(), black_box(9), |s, q| keep((s, *q))));
+}
+
+/// The same of a robot with a joint more than a pose asks for.
+#[inline(never)]
+pub(crate) fn every_redundant_posture<R, const N: usize, const K: usize>(robot: &R)
+where
+    R: RedundantInverseKinematics<N, K>,
+{
+    let pose = Pose { position: vector::<R::Real, 3>(), rotation: matrix(&black_box([numbers::<R::Real, 3>(); 3])) };
+    let redundancy = RedundantInverseKinematics::redundancy(robot, &vector());
+    let postures = RedundantInverseKinematics::inverse_kinematics(robot, &Pose::frame(&pose), redundancy);
+    keep(Postures::as_slice(&postures).len());
+    keep(RedundantInverseKinematics::branch_signs(robot));
+    every_range(robot);
+    keep(follow_redundant(robot, |_| black_box((pose, redundancy)), &vector(), black_box(9), |s, q| keep((s, *q))));
+}
+
+fn every_range<R: JointRanges<N>, const N: usize>(robot: &R) {
+    keep((JointRanges::turns(robot), JointRanges::position_limits(robot)));
+    keep(JointRanges::unwrapped(robot, &vector(), &vector()));
 }
 
 /// Calls every public function that runs on a microcontroller, for one robot and task.
