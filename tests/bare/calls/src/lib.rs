@@ -73,7 +73,7 @@ fn implementation_calls(implementation: &syn::ItemImpl) -> Option<impl quote::To
     let (path, _) = implementation.trait_.as_ref()?;
     let name = &path.segments.last()?.ident;
     // Inverse kinematics takes a pose: it is called by hand.
-    if path.segments.first()?.ident != "armgen_runtime" || name == "InverseKinematics" {
+    if path.segments.first()?.ident != "armgen_runtime" || name == "InverseKinematics" || name == "RedundantInverseKinematics" {
         return None;
     }
     let own = &implementation.self_ty;

@@ -7,6 +7,7 @@
 
 mod ghost;
 mod plant;
+pub mod postures;
 
 #[allow(clippy::excessive_precision)]
 pub mod robot {
@@ -14,6 +15,23 @@ pub mod robot {
     include!(concat!(env!("OUT_DIR"), "/scara.rs"));
     include!(concat!(env!("OUT_DIR"), "/scara_runtime.rs"));
     include!(concat!(env!("OUT_DIR"), "/calls.rs"));
+}
+
+#[allow(missing_docs)]
+pub mod scara_ik {
+    //! All postures of the SCARA.
+    include!(concat!(env!("OUT_DIR"), "/scara_ik.rs"));
+}
+
+#[allow(clippy::excessive_precision, unreachable_pub)]
+mod puma560 {
+    include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
+}
+
+#[allow(missing_docs)]
+pub mod puma560_ik {
+    //! All postures of the Puma 560.
+    include!(concat!(env!("OUT_DIR"), "/puma560_ik.rs"));
 }
 
 pub use armgen_runtime::{nalgebra::SVector, reference::JointReference};

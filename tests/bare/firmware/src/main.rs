@@ -8,12 +8,13 @@
 //! | `calibration` | argument of a delay loop, ticks |
 //! | `torque` | step, torques and estimated mass as the bits of f32 |
 //! | `ticks` | step, ticks of trajectory, inverse kinematics, controller, arm |
+//! | `posture` | robot, number of the pose, branch, joint variables as the bits of f32 |
 //! | `error` | largest difference of desired and actual joint variables, units of 1e-9 rad or m |
 //! | `function` | name, largest ticks, largest stack in bytes, of a call from here |
 #![no_std]
 #![no_main]
 
-use armgen_bare_control::{robot, Cell, Fault, JointReference, Line, SVector, STEPS};
+use armgen_bare_control::{postures, robot, Cell, Fault, JointReference, Line, SVector, STEPS};
 use core::fmt::{self, Write};
 use core::hint::black_box;
 use cortex_m::peripheral::{syst::SystClkSource, SYST};
@@ -93,6 +94,10 @@ fn run() -> Result<(), Stopped> {
         writeln!(out, "ticks {step} {trajectory} {clik} {controller} {arm}")?;
     }
     writeln!(out, "error {}", (error * 1e9) as u32)?;
+    for pose in 0..postures::POSES {
+        postures::each_line(pose, &mut |line| writeln!(out, "{line}"))?;
+        costs.measure_postures(pose)?;
+    }
     for (name, ticks, stack) in &costs.entries[..costs.length] {
         writeln!(out, "function {name} {ticks} {stack}")?;
     }
@@ -141,6 +146,24 @@ impl Costs {
             Err(Stopped)
         } else {
             Ok(())
+        }
+    }
+
+    /// Measures inverse kinematics at the poses of this number.
+    fn measure_postures(&mut self, pose: u32) -> Result<(), Stopped> {
+        let (scara, puma560) = (postures::scara_pose(pose), postures::puma560_pose(pose));
+        let places = [
+            self.call("scara_inverse_kinematics", &mut || {
+                black_box(postures::scara_inverse_kinematics(black_box(&scara)));
+            }),
+            self.call("puma560_inverse_kinematics", &mut || {
+                black_box(postures::puma560_inverse_kinematics(black_box(&puma560)));
+            }),
+        ];
+        if places == [true; 2] {
+            Ok(())
+        } else {
+            Err(Stopped)
         }
     }
 

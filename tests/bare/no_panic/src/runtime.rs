@@ -18,7 +18,9 @@ use armgen_runtime::{
     nalgebra::{convert, Matrix3, RealField, SMatrix, SVector, Unit},
     orientation,
     reference::{JointReference, OperationalReference, Pose, State},
-    robot::{array, matrix, Dynamics, InverseKinematics, Kinematics, Postures, Regressor},
+    robot::{
+        array, matrix, Dynamics, InverseKinematics, JointRanges, Kinematics, Postures, RedundantInverseKinematics, Regressor,
+    },
     task::{Row, Task},
     trajectory::{
         JointSegment, JointTrajectory, Law, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, Turn,

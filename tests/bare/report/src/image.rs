@@ -39,7 +39,9 @@ impl Image {
         for symbol in file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text) {
             let Ok(name) = symbol.name() else { continue };
             let name = format!("{:#}", rustc_demangle::demangle(name));
-            if let Some(function) = name.strip_prefix("armgen_bare_control::robot::").filter(|name| !name.contains("::")) {
+            let own = ["robot", "postures"].map(|module| format!("armgen_bare_control::{module}::"));
+            let function = own.iter().find_map(|module| name.strip_prefix(module.as_str()));
+            if let Some(function) = function.filter(|name| !name.contains("::")) {
                 image.functions.insert(function.into(), symbol.size());
                 // The lowest bit of the address says Thumb.
                 if let Some(frame) = frames.get(&(symbol.address() & !1)) {

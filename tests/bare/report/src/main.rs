@@ -11,7 +11,7 @@ mod image;
 mod page;
 mod printed;
 
-use armgen_bare_control::{Cell, Fault, Line, STEPS};
+use armgen_bare_control::{postures, Cell, Fault, Line, STEPS};
 use budgets::{Budgets, Measured};
 use image::Image;
 use printed::Printed;
@@ -51,6 +51,7 @@ fn run() -> Result<Vec<String>, String> {
     let mut faults = printed.calibration_faults();
     let host = host().map_err(|fault| format!("the run ended early on this machine: {fault:?}"))?;
     faults.extend(printed::differences(&host, &printed.torques));
+    faults.extend(printed::differences(&host_postures(), &printed.postures));
     faults.extend(budgets.exceeded(&measured));
     let page_text = page::page(&measured, &budgets, &printed);
     print!("{}", page::summary(&measured, &printed));
@@ -58,6 +59,19 @@ fn run() -> Result<Vec<String>, String> {
         fs::write(page, page_text).map_err(|e| format!("cannot write {page}: {e}"))?;
     }
     Ok(faults)
+}
+
+/// All postures, computed on this machine.
+fn host_postures() -> Vec<String> {
+    let mut lines = Vec::new();
+    for pose in 0..postures::POSES {
+        let added = postures::each_line(pose, &mut |line| {
+            lines.push(line.to_string());
+            Ok(())
+        });
+        debug_assert!(added.is_ok(), "a list takes everything");
+    }
+    lines
 }
 
 /// The torques of each step, computed on this machine.

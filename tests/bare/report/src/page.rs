@@ -40,6 +40,14 @@ pub(crate) fn page(measured: &Measured, budgets: &Budgets, printed: &Printed) ->
     );
     let _ = write!(
         page,
+        "\n## Postures\n\n\
+         All postures of the SCARA and of the Puma 560 ([inverse kinematics](inverse-kinematics.md)), each at {} poses: {} postures, the same on both \
+         machines, bit by bit.\n",
+        armgen_bare_control::postures::POSES,
+        printed.postures.len(),
+    );
+    let _ = write!(
+        page,
         "\n## Instructions per control step\n\n| part | dearest step | mean |\n|---|---:|---:|\n\
          | **control step** | **{}** (budget {}) | {} |\n",
         costs.control_step.instructions,

@@ -17,6 +17,8 @@ pub(crate) struct Printed {
     pub(crate) calibration: Vec<[u64; 2]>,
     /// Whole lines, one for each step.
     pub(crate) torques: Vec<String>,
+    /// Whole lines, one for each posture.
+    pub(crate) postures: Vec<String>,
     /// Ticks of trajectory, inverse kinematics, controller and arm, by step.
     pub(crate) ticks: Vec<[u64; 4]>,
     /// Largest difference of desired and actual joint variables, 1e-9 rad or m.
@@ -35,6 +37,7 @@ impl Printed {
             let numbers = |rest: &str| rest.split(' ').map(|n| n.parse().map_err(|_| wrong())).collect::<Result<Vec<u64>, _>>();
             match kind {
                 "torque" => printed.torques.push(line.into()),
+                "posture" => printed.postures.push(line.into()),
                 "calibration" => printed.calibration.push(numbers(rest)?.try_into().map_err(|_| wrong())?),
                 "ticks" => {
                     let [_, ticks @ ..]: [u64; 5] = numbers(rest)?.try_into().map_err(|_| wrong())?;
@@ -77,7 +80,7 @@ impl Printed {
 pub(crate) fn differences(host: &[String], target: &[String]) -> Vec<String> {
     let mut faults = Vec::new();
     if host.len() != target.len() {
-        faults.push(format!("{} steps on this machine, {} on the microcontroller", host.len(), target.len()));
+        faults.push(format!("{} lines on this machine, {} on the microcontroller", host.len(), target.len()));
     }
     if let Some((host, target)) = host.iter().zip(target).find(|(host, target)| host != target) {
         faults.push(format!("the bits differ, first here:\n  this machine:    {host}\n  microcontroller: {target}"));
