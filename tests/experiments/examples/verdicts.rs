@@ -1,5 +1,6 @@
 //! Verdicts of the sampled loop, at rest and in motion, beside what the simulated arm does in three times the time: gains times 1/3, 1 and 3,
-//! two periods each, loads of 0 and 10 kg that the model does not know, on a SCARA and a UR10.
+//! a period with its half and its double (or others where these say nothing), loads of 0 and 10 kg that the model does not know, on a SCARA, a UR10
+//! and a Puma 560.
 //!
 //! `cargo run --release -p armgen-experiment-tests --example verdicts`
 
@@ -12,6 +13,14 @@ use armgen_runtime::reference::{JointReference, State};
 use armgen_runtime::robot::Dynamics;
 use armgen_runtime::simulation::{run, Integrator, RunOptions};
 use armgen_runtime::stability::{analyse, Delay, Rehearsal, Rehearse, Settle};
+
+/// The Puma 560 with the standard parameters of all links.
+#[allow(missing_docs)]
+#[rustfmt::skip]
+mod puma560 {
+    include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
+    include!(concat!(env!("OUT_DIR"), "/puma560_runtime.rs"));
+}
 
 /// An error, rad or m, beyond which a run is lost.
 const LOST: f64 = 1.0;
@@ -88,9 +97,9 @@ fn main() {
         all += 1;
         agree += usize::from(said == is);
         let differs = if said == is { "" } else { "  DIFFERENT" };
-        println!("{what:64} {rest:9.6} {:>9} {:>9} {:>9} {largest:9.2e}{differs}", word(!grows), word(said), word(is));
+        println!("{what:66} {rest:9.6} {:>9} {:>9} {:>9} {largest:9.2e}{differs}", word(!grows), word(said), word(is));
     };
-    println!("{:64} {:>9} {:>9} {:>9} {:>9} {:>9}", "", "at rest", "in motion", "said", "simulated", "error");
+    println!("{:66} {:>9} {:>9} {:>9} {:>9} {:>9}", "", "at rest", "in motion", "said", "simulated", "error");
     let swing = Swing { c: [0.2, 1.2, 0.2, -0.3], a: [0.5, 0.3, 0.08, 0.4] };
     for load in [0.0, 10.0] {
         let mut parameters = scara::NOMINAL_PARAMETERS;
@@ -98,12 +107,12 @@ fn main() {
         let plant = scara::WithParameters { parameters };
         for factor in [1.0 / 3.0, 1.0, 3.0] {
             let times = |gains: [f64; 4]| gains.map(|k| factor * k);
-            for period in [1e-3, 4e-3] {
+            for period in [1e-3, 2e-3, 4e-3] {
                 let law = InverseDynamics::new(times([1000.0, 1000.0, 2000.0, 1000.0]), times([60.0, 60.0, 90.0, 60.0])).unwrap();
                 let what = format!("SCARA, inverse dynamics, gains times {factor:.2}, {period} s, {load} kg");
                 line(what, judge(&plant, &scara::Nominal, law, &swing, period));
             }
-            for period in [2e-3, 8e-3] {
+            for period in [2e-3, 4e-3, 8e-3] {
                 let weights =
                     [1.0, 1.0, 0.001, 1.0, 1.0, 1.0, 1.0, 1.0, 6.25e6, 1.6e5, 1.0, 1.0, 6.25e6, 1.6e5].map(|k| 10.0 * k);
                 let k_d = times([1000.0, 500.0, 2000.0, 100.0]);
@@ -120,16 +129,36 @@ fn main() {
         parameters[m6] += load;
         let plant = ur10::WithParameters { parameters };
         for factor in [1.0 / 3.0, 1.0, 3.0] {
-            for period in [2e-3, 20e-3] {
+            for period in [2e-3, 10e-3, 20e-3] {
                 let law = InverseDynamics::new([400.0 * factor; 6], [40.0 * factor; 6]).unwrap();
                 let what = format!("UR10, inverse dynamics, gains times {factor:.2}, {period} s, {load} kg");
                 line(what, judge(&plant, &ur10::Nominal, law, &swing, period));
             }
-            for period in [0.5e-3, 0.2e-3] {
+            for period in [1e-3, 0.5e-3, 0.2e-3] {
                 let k_d = [20.0, 20.0, 10.0, 0.5, 0.5, 0.05].map(|k| factor * k);
                 let law = Adaptive::new([20.0; 6], k_d, [10.0; 60], ur10::NOMINAL_PARAMETERS, period).unwrap();
                 let what = format!("UR10, adaptive, K_D times {factor:.2}, {period} s, {load} kg");
                 line(what, judge(&plant, &ur10::Nominal, law, &swing, period));
+            }
+        }
+    }
+    let swing = Swing { c: [0.3, -0.4, 0.6, -0.5, 0.8, 0.2], a: [0.3; 6] };
+    let m6 = puma560::PARAMETER_NAMES.iter().position(|name| *name == "m6").expect("a standard parameter");
+    for load in [0.0, 10.0] {
+        let mut parameters = puma560::NOMINAL_PARAMETERS;
+        parameters[m6] += load;
+        let plant = puma560::WithParameters { parameters };
+        for factor in [1.0 / 3.0, 1.0, 3.0] {
+            for period in [5e-3, 10e-3, 20e-3] {
+                let law = InverseDynamics::new([400.0 * factor; 6], [40.0 * factor; 6]).unwrap();
+                let what = format!("Puma 560, inverse dynamics, gains times {factor:.2}, {period} s, {load} kg");
+                line(what, judge(&plant, &puma560::Nominal, law, &swing, period));
+            }
+            for period in [1e-3, 0.5e-3, 0.25e-3] {
+                let k_d = [20.0, 20.0, 10.0, 0.2, 0.2, 0.05].map(|k| factor * k);
+                let law = Adaptive::new([20.0; 6], k_d, [1.0; 60], puma560::NOMINAL_PARAMETERS, period).unwrap();
+                let what = format!("Puma 560, adaptive, K_D times {factor:.2}, {period} s, {load} kg");
+                line(what, judge(&plant, &puma560::Nominal, law, &swing, period));
             }
         }
     }
