@@ -124,6 +124,19 @@ pub struct FrictionDescription {
     pub offset: Value,
     /// Coefficient of the cube of the rate.
     pub cubic: Value,
+    /// What fades as the joint begins to move.
+    pub stribeck: Option<StribeckDescription>,
+}
+
+/// Stribeck friction at a joint.
+#[derive(Clone, Debug)]
+pub struct StribeckDescription {
+    /// Place of the key that holds it.
+    pub key: Span,
+    /// The torque at the lowest rates, beyond Coulomb friction.
+    pub torque: Value,
+    /// The rate at which 1/e of it is left.
+    pub velocity: Value,
 }
 
 /// A spring at a joint.

@@ -103,10 +103,21 @@ pub struct Joint {
     pub offset: Option<Polynomial>,
     /// Cubic friction, N m s³ or N s³/m³: the torque is cubic · dq³.
     pub cubic: Option<Polynomial>,
+    /// Friction that fades as the joint begins to move.
+    pub stribeck: Option<Stribeck>,
     /// A spring between the joint and the link that carries it.
     pub spring: Option<Spring>,
     /// Inertia that the joint alone feels, kg m² or kg: the torque is armature · ddq. `None` where the file does not give it.
     pub armature: Option<Polynomial>,
+}
+
+/// Stribeck friction at a joint: the torque is torque · sign(dq) · exp(-|dq| / velocity), beyond Coulomb friction.
+#[derive(Clone, Debug)]
+pub struct Stribeck {
+    /// N m or N.
+    pub torque: Polynomial,
+    /// rad/s or m/s; above 0.
+    pub velocity: Number,
 }
 
 /// A spring at a joint: the torque on the left of the equation of motion is stiffness · (q - rest), part of g(q).
@@ -230,6 +241,17 @@ impl Manipulator {
     /// Whether joints have friction that is neither viscous nor Coulomb's.
     pub fn has_more_friction(&self) -> bool {
         self.joints.iter().any(|joint| joint.offset.is_some() || joint.cubic.is_some())
+    }
+
+    /// The Stribeck velocities of the joints; 1 where there is no such friction.
+    pub fn stribeck_velocities(&self) -> Vec<Number> {
+        let velocity = |joint: &Joint| joint.stribeck.as_ref().map_or_else(Number::one, |stribeck| stribeck.velocity.clone());
+        self.joints.iter().map(velocity).collect()
+    }
+
+    /// Whether joints have Stribeck friction.
+    pub fn has_stribeck(&self) -> bool {
+        self.joints.iter().any(|joint| joint.stribeck.is_some())
     }
 
     /// Number of joints.

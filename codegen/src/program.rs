@@ -11,6 +11,8 @@ mod optimise;
 pub use cost::Cost;
 pub(crate) use optimise::optimise;
 
+use std::collections::BTreeMap;
+
 use crate::catalogue::{Absent, Argument, Parameter, Quantity, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -89,6 +91,8 @@ pub struct Function {
     pub outputs: Vec<Output>,
     /// How it was derived.
     pub method: &'static str,
+    /// The Stribeck velocities of the joints whose Stribeck friction it uses.
+    pub stribeck: BTreeMap<u16, Number>,
 }
 
 impl Function {
@@ -126,6 +130,8 @@ pub struct Module {
     pub has_springs: bool,
     /// Whether friction has an offset or grows with the cube of a rate.
     pub has_more_friction: bool,
+    /// Whether friction has a part that fades as a joint begins to move.
+    pub has_stribeck: bool,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
     /// Parameters.

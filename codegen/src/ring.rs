@@ -56,6 +56,8 @@ pub enum Symbol {
     Rate(u16),
     /// sign(dq_i), with sign(0) = 0.
     RateSign(u16),
+    /// exp(-|dq_i| / v_i), v_i the Stribeck velocity of the joint: an input here, tied to dq_i by nothing but its derivative.
+    Stribeck(u16),
     /// ddq_i.
     Acceleration(u16),
     /// dqr_i, the reference rate.
@@ -151,6 +153,7 @@ impl Symbol {
             | Symbol::Position(i)
             | Symbol::Rate(i)
             | Symbol::RateSign(i)
+            | Symbol::Stribeck(i)
             | Symbol::Acceleration(i)
             | Symbol::ReferenceRate(i)
             | Symbol::ReferenceAcceleration(i)
@@ -385,6 +388,7 @@ impl Pool {
             Symbol::ReferenceAcceleration(i) => value(7, i),
             Symbol::Torque(i) => value(8, i),
             Symbol::Parameter(i) => value(9, i),
+            Symbol::Stribeck(i) => value(10, i),
         }
     }
 

@@ -2,7 +2,7 @@
 
 mod selection;
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::OnceLock;
 
@@ -11,11 +11,11 @@ use crate::derive::derivation::Derivation;
 use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::exact::Number;
 use crate::kinds::{JointKind, Scalar};
-use crate::manipulator;
+use crate::manipulator::{self, Manipulator};
 pub use crate::pass::{Pass, Passes};
 use crate::program::{optimise, Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
-use crate::ring::{ExprId, Node, Pool};
+use crate::ring::{ExprId, Node, Pool, Symbol};
 use crate::Model;
 pub use selection::{Selection, UnknownFunctions};
 
@@ -61,6 +61,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         gravity: manipulator.gravity.each_ref().map(|g| nominal(manipulator, g)),
         has_springs: manipulator.has_springs(),
         has_more_friction: manipulator.has_more_friction(),
+        has_stribeck: manipulator.has_stribeck(),
         task: manipulator.task_rows(),
         parameters: model.parameters.entries.clone(),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
@@ -122,19 +123,26 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
         .chain([recursion])
         .map(|derivation| {
             let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, without);
-            lower(quantity, with_parameters, &Derivation { pool, entries, ..derivation })
+            lower(&model.manipulator, quantity, with_parameters, &Derivation { pool, entries, ..derivation })
         })
         .min_by_key(|function| Cost::of(function).weight())
         .expect("there is at least the recursion")
 }
 
-fn lower(quantity: &'static Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
+fn lower(manipulator: &Manipulator, quantity: &'static Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
     let (steps, outputs) = steps(&derivation.pool, &derivation.entries);
     let mut arguments = quantity.arguments.to_vec();
     if with_parameters {
         arguments.insert(0, Argument::Pi);
     }
-    Function { quantity, with_parameters, arguments, steps, outputs, method: derivation.method }
+    let mut function =
+        Function { quantity, with_parameters, arguments, steps, outputs, method: derivation.method, stribeck: BTreeMap::new() };
+    let velocity = |symbol| match symbol {
+        Symbol::Stribeck(i) => Some((i, manipulator.joints[usize::from(i)].stribeck.as_ref()?.velocity.clone())),
+        _ => None,
+    };
+    function.stribeck = function.symbols().into_iter().filter_map(velocity).collect();
+    function
 }
 
 /// The steps that the expressions need, each after its operands, in the order in which the expressions ask for them.

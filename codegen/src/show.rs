@@ -40,6 +40,7 @@ use crate::derive::{
     self,
     determinant::{Factor, Zeros},
 };
+use crate::exact::Number;
 use crate::pass::Passes;
 use crate::program::optimise;
 use crate::ring::normal_form::NormalForm;
@@ -123,6 +124,8 @@ pub struct Shown {
     pub content: Content,
     /// Names of the symbols [`Symbol::Parameter`], by index.
     pub parameters: Vec<String>,
+    /// Stribeck velocities of the joints; 1 where there is no such friction.
+    pub velocities: Vec<Number>,
     /// Of the determinant: its factors, and where each is zero.
     pub factors: Option<Vec<Factor>>,
     /// Digits of constants; none: exactly.
@@ -225,7 +228,7 @@ impl Shown {
     }
 
     fn printer(&self, notation: Notation) -> Printer<'_> {
-        Printer { notation, parameters: &self.parameters, digits: self.digits }
+        Printer { notation, parameters: &self.parameters, velocities: &self.velocities, digits: self.digits }
     }
 
     /// Whether it is a matrix of closed forms that fits a table.
@@ -404,6 +407,7 @@ fn determinant(model: &Model, view: View<'_>, names: &Names) -> Result<Shown, St
         factors: (!found.factors.is_empty()).then_some(found.factors),
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
+        velocities: model.manipulator.stribeck_velocities(),
         digits: names.style.digits,
     };
     Ok(in_form(shown, closed, derivation, names.style.form))
@@ -426,6 +430,7 @@ fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], d
         column_names: columns_of.map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
+        velocities: model.manipulator.stribeck_velocities(),
         factors: None,
         digits: names.style.digits,
     };

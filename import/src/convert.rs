@@ -13,7 +13,7 @@ mod write;
 
 use armgen_codegen::description::{
     BodyDescription, Convention, FrictionDescription, JointDescription, PoseDescription, PoseElement, RegressorDescription,
-    RobotDescription, RotationDescription, SpringDescription, Value, INERTIA_ELEMENTS,
+    RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
 use armgen_codegen::document::Expression;
@@ -257,9 +257,15 @@ impl Converter<'_> {
         text.push("    link:".into());
         self.link(joint, k, row, text);
         self.motor(joint, k, before, text);
-        let FrictionDescription { viscous, coulomb, offset, cubic } = &joint.friction;
+        let FrictionDescription { viscous, coulomb, offset, cubic, stribeck } = &joint.friction;
         let friction = [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic)];
-        self.mapping("friction", &friction, text);
+        let mut friction = self.given(&friction);
+        friction.extend(stribeck.as_ref().map(|StribeckDescription { torque, velocity, .. }| {
+            format!("stribeck: {{{}}}", self.given(&[("torque", torque), ("velocity", velocity)]).join(", "))
+        }));
+        if !friction.is_empty() {
+            text.push(format!("    friction: {{{}}}", friction.join(", ")));
+        }
         if let Some(SpringDescription { stiffness, rest, .. }) = &joint.spring {
             // The joint variable is the same in rows of every convention.
             self.mapping("spring", &[("stiffness", stiffness), ("rest", rest)], text);
@@ -267,10 +273,14 @@ impl Converter<'_> {
         text.extend(joint.armature.as_ref().map(|armature| format!("    armature: {}", self.text(armature))));
     }
 
+    /// The numbers that the file gives, behind their keys.
+    fn given(&self, numbers: &[(&str, &Value)]) -> Vec<String> {
+        numbers.iter().filter_map(|(name, value)| Some(format!("{name}: {}", self.text(value.as_ref()?)))).collect()
+    }
+
     /// A key of a joint with the numbers that the file gives under it, if there are any.
     fn mapping(&self, key: &str, numbers: &[(&str, &Value)], text: &mut Vec<String>) {
-        let given: Vec<String> =
-            numbers.iter().filter_map(|(name, value)| Some(format!("{name}: {}", self.text(value.as_ref()?)))).collect();
+        let given = self.given(numbers);
         if !given.is_empty() {
             text.push(format!("    {key}: {{{}}}", given.join(", ")));
         }

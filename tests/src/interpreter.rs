@@ -114,6 +114,7 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
             0.0 => 0.0,
             rate => rate.signum(),
         },
+        Symbol::Stribeck(i) => (-given(Argument::Dq, &a.dq, i).abs() / function.stribeck[&i].to_f64()).exp(),
         Symbol::Acceleration(i) => given(Argument::Ddq, &a.ddq, i),
         Symbol::ReferenceRate(i) => given(Argument::Dqr, &a.dqr, i),
         Symbol::ReferenceAcceleration(i) => given(Argument::Ddqr, &a.ddqr, i),

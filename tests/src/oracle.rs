@@ -80,6 +80,10 @@ pub struct Joint {
     pub offset: Option<f64>,
     /// Coefficient of the cube of the rate, if given.
     pub cubic: Option<f64>,
+    /// Stribeck friction at the lowest rates, if given.
+    pub stribeck: Option<f64>,
+    /// The rate at which 1/e of it is left.
+    pub stribeck_velocity: f64,
     /// Stiffness of the joint's spring, if given.
     pub stiffness: Option<f64>,
     /// Where that is at rest.

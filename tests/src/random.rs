@@ -94,7 +94,7 @@ pub fn arm(seed: u64) -> String {
 }
 
 /// A random arm of what rows of Denavit and Hartenberg do not need: rows with origin and axis, poses in all writings, a base, tensors in turned
-/// axes, attached bodies, armatures, springs, friction with an offset and a cubic part.
+/// axes, attached bodies, armatures, springs, friction with an offset, a cubic and a Stribeck part.
 pub fn posed_arm(seed: u64) -> String {
     let mut random = Random::new(seed ^ 0x7053_0000);
     let random = &mut random;
@@ -150,7 +150,14 @@ pub fn posed_arm(seed: u64) -> String {
                 .expect("text");
         }
         if random.chance(30) {
-            let more = random.one_of(&["", "", ", offset: -0.75", ", cubic: 0.05", ", offset: 1/3, cubic: -0.002"]);
+            let more = random.one_of(&[
+                "",
+                "",
+                ", offset: -0.75",
+                ", cubic: 0.05",
+                ", offset: 1/3, cubic: -0.002",
+                ", stribeck: {torque: 1.25, velocity: 0.05}",
+            ]);
             writeln!(text, "    friction: {{viscous: 0.2, coulomb: 3{more}}}").expect("text");
         }
         if random.chance(20) {

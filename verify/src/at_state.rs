@@ -1,5 +1,7 @@
 //! What a wrong function is off by: its value and that of the equations at one state in floats, for people. It proves nothing.
 
+use armgen_codegen::manipulator::{Joint, Manipulator};
+
 use crate::arithmetic::Arithmetic;
 use crate::bounds;
 use crate::checker::Checker;
@@ -44,7 +46,7 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
     // Few digits, so that a reader can type them.
     let thousandths = |x: f64| (x * 1e3).round() / 1e3;
     let arguments = Arguments { pi: drawn.pi.clone(), ..drawn.map(thousandths) };
-    let state = state(&arguments);
+    let state = state(&arguments, checker.manipulator());
     let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
     let Ok(reference) = Reference::at(&mut Floats, checker.manipulator(), checker.vector(), state, wanted) else { return };
     for function in functions {
@@ -64,10 +66,14 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
     }
 }
 
-fn state(arguments: &Arguments<f64>) -> State<f64> {
+fn state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> State<f64> {
     let sign = |rate: &f64| if *rate == 0.0 { 0.0 } else { rate.signum() };
     let angles = arguments.q.iter().map(|q| q.sin_cos()).collect();
-    State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0])
+    let fading = |(rate, joint): (&f64, &Joint)| {
+        joint.stribeck.as_ref().map_or(0.0, |stribeck| libm::exp(-rate.abs() / stribeck.velocity.to_f64()))
+    };
+    let stribeck = arguments.dq.iter().zip(&manipulator.joints).map(fading).collect();
+    State { stribeck, ..State::of(arguments.clone(), angles, arguments.dq.iter().map(sign).collect(), [0.0, 1.0]) }
 }
 
 /// The arguments of a function, as a reader writes them; parameters are those of the description.

@@ -35,7 +35,7 @@ use crate::equations::parameters::Standard;
 use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::formula::Formula;
-use crate::program::Program;
+use crate::program::{Program, Step};
 use crate::reference::Reference;
 
 /// The base parameters of a module: the standard ones after which they are named with whether others are carried along, and their claimed values.
@@ -108,6 +108,7 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
             }
             Standard::Viscous(i) => column[i].clone_from(&state.dq[i]),
             Standard::Coulomb(i) => column[i].clone_from(&state.signs[i]),
+            Standard::Stribeck(i) => column[i] = state.signs[i].times(&state.stribeck[i]),
             Standard::Offset(i) => column[i].clone_from(&arm.one),
             Standard::Cubic(i) => column[i] = state.dq[i].times(&state.dq[i]).times(&state.dq[i]),
             Standard::Stiffness(i) => column[i] = state.q[i].minus(&arm.joints[i].rest),
@@ -118,7 +119,7 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
     for parameter in named.iter().flat_map(|(parameter, _)| kind(*parameter)) {
         columns.entry(parameter).or_insert_with(|| column(parameter));
     }
-    let friction = friction(arm, &state.dq, &state.dq, &state.signs);
+    let friction = friction(arm, &state, &state.dq);
     let springs = spring_torques(arm, &state.q);
     let torques = whole.torques().iter().zip(friction).zip(springs).map(|((a, b), c)| a.plus(&b).plus(&c)).collect();
     Sample { torques, columns, state }
@@ -137,7 +138,8 @@ impl<E: Element> Samples<E> {
         let arm = Arm::new(arithmetic, manipulator, &names)?;
         let mut samples = vec![sample(&arm, reference.state.clone(), named)];
         for _ in 0..more {
-            samples.push(sample(&arm, State::draw(arithmetic, arm.dof()), named));
+            let fades = manipulator.joints.iter().map(|joint| joint.stribeck.is_some());
+            samples.push(sample(&arm, State::draw(arithmetic, arm.dof()).with_stribeck(arithmetic, fades), named));
         }
         Some(Samples(samples))
     }
@@ -321,7 +323,8 @@ pub fn dependent_column<K: Arithmetic>(
         if echelon.0.len() == columns {
             return None;
         }
-        let state = State::draw(&mut arithmetic, n);
+        let fades = (0..n).map(|i| program.steps.iter().any(|step| matches!(step, Step::Stribeck(joint, _) if *joint == i)));
+        let state = State::draw(&mut arithmetic, n).with_stribeck(&mut arithmetic, fades);
         let Some(entries) = program.run(&state, literals).into_iter().collect::<Option<Vec<_>>>() else { continue };
         entries.chunks(columns).for_each(|row| echelon.add(row.to_vec(), columns));
     }

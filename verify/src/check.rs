@@ -46,7 +46,7 @@ pub(crate) enum Check {
     Angles,
     /// Bodies: sines of the angles that are asked for, and of no others.
     Lanes,
-    /// Bodies: signs are of rates.
+    /// Bodies: signs and exponentials are of rates.
     Signs,
     /// Bodies: numbers are the shortest decimals.
     Shortest,
@@ -54,6 +54,8 @@ pub(crate) enum Check {
     Places,
     /// Functions: indices of arguments.
     Indices,
+    /// Functions: velocities of Stribeck friction are those of the description.
+    Velocities,
     /// Functions: those that every module has.
     Required,
     /// Functions: those that every module of an arm has that can have them.

@@ -18,7 +18,7 @@ use crate::contract::{Promise, Sizes};
 use crate::divisors::{divisors, is_needed, needed, undivided_operands};
 use crate::element::Element;
 use crate::enclosure::Float;
-use crate::equations::arm::Arm;
+use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::Arguments;
@@ -144,7 +144,12 @@ fn sizes(manipulator: &Manipulator, vector: &Vector, base: Option<&OwnParameters
 }
 
 /// The program of a function that takes and gives what its name promises; else what is wrong.
-fn fitting<'a>(sizes: &Sizes, name: &str, function: &'a Function) -> Result<&'a Program, String> {
+fn fitting<'a>(
+    sizes: &Sizes,
+    (manipulator, real): (&Manipulator, Float),
+    name: &str,
+    function: &'a Function,
+) -> Result<&'a Program, String> {
     let (promise, _) = Promise::of(name).ok_or("not a function that the checker knows the equations of")?;
     let program = &function.program;
     let places = promise.returned.places(sizes);
@@ -152,9 +157,29 @@ fn fitting<'a>(sizes: &Sizes, name: &str, function: &'a Function) -> Result<&'a 
         return Err(format!("its result does not have the {} entries that it should", places.len()));
     }
     match beyond_the_end(program, sizes.n, sizes.p) {
-        Some(why) if Check::Indices.is_made() => Err(why),
+        Some(why) if Check::Indices.is_made() => return Err(why),
+        _ => {}
+    }
+    match other_velocity(program, manipulator, real) {
+        Some(why) if Check::Velocities.is_made() => Err(why),
         _ => Ok(program),
     }
+}
+
+/// An exponential at another velocity than that of the description: equations take exponentials as inputs, and cannot tell.
+fn other_velocity(program: &Program, manipulator: &Manipulator, real: Float) -> Option<String> {
+    program.steps.iter().find_map(|step| {
+        let Step::Stribeck(joint, literal) = step else { return None };
+        let Some(stribeck) = manipulator.joints.get(*joint).and_then(|joint| joint.stribeck.as_ref()) else {
+            return Some(format!("joint {} has no Stribeck friction", joint + 1));
+        };
+        let written = &program.literals[*literal];
+        let other = !real.is_nearest(written.value, &formula(&stribeck.velocity));
+        other.then(|| {
+            let given = stribeck.velocity.to_f64();
+            format!("the Stribeck friction of joint {} fades at {}, in the description at {given}", joint + 1, written.text)
+        })
+    })
 }
 
 /// The equations of an arm at random points, ready for any module that claims to be its.
@@ -342,7 +367,11 @@ impl Checker {
         if name == BASE_REGRESSOR && self.base.is_none() {
             return refused(name, "the module does not say of which parameters: BASE_PARAMETER_NAMES".into());
         }
-        let program = match function.as_ref().map_err(String::clone).and_then(|function| fitting(&self.sizes, name, function)) {
+        let program = match function
+            .as_ref()
+            .map_err(String::clone)
+            .and_then(|function| fitting(&self.sizes, (&self.manipulator, real), name, function))
+        {
             Ok(program) => program,
             Err(why) => return refused(name, why),
         };
@@ -494,6 +523,7 @@ fn growth(manipulator: &Manipulator, vector: &Vector) -> Result<BTreeMap<String,
     let arguments = Arguments::each(|argument| vec![Growths.entry(argument, 0); joints]);
     let arguments = Arguments { pi: Vec::new(), ..arguments };
     let state = State::of(arguments, vec![(one, one); joints], vec![one; joints], [Growths.integer(0), one]);
+    let state = State { stribeck: vec![one; joints], ..state };
     let wanted = Wanted { base: BaseParameters::Free, pivots: false };
     let reference = Reference::at(&mut Growths, manipulator, vector, state, wanted)?;
     let most = |entries: Vec<Growth>| entries.into_iter().fold(Growths.integer(0), Growth::most);
@@ -526,8 +556,9 @@ impl Odds {
         base: Option<&OwnParameters>,
     ) -> BTreeMap<String, f64> {
         let sizes = sizes(manipulator, vector, base);
-        let fitting =
-            |(name, function): &'a (String, Result<Function, String>)| fitting(&sizes, name, function.as_ref().ok()?).ok();
+        let fitting = |(name, function): &'a (String, Result<Function, String>)| {
+            fitting(&sizes, (manipulator, module.real), name, function.as_ref().ok()?).ok()
+        };
         let literals: Vec<(&Program, Vec<Formula>)> = (module.functions.iter().filter_map(fitting))
             .map(|program| {
                 let values = claims.resolve(&program.name, &program.literals, module.real).values;
@@ -590,6 +621,7 @@ fn beyond_the_end(program: &Program, n: usize, p: usize) -> Option<String> {
         Step::Input(argument, index) if *index >= Promise::length(*argument, n, p) => {
             Some(format!("index {index} is beyond the end of its argument"))
         }
+        Step::Sign(joint) | Step::Stribeck(joint, _) if *joint >= n => Some(format!("index {joint} is beyond the end of `dq`")),
         Step::Sine(angle) | Step::Cosine(angle) => {
             angle.terms.iter().find(|(joint, _)| *joint >= n).map(|(joint, _)| format!("index {joint} is beyond the end of `q`"))
         }

@@ -8,6 +8,7 @@
 //! quotient          e_z = (e_x + |x/y| e_y) / (|y| - e_y) + u |z|
 //! sine, cosine      e = 2 u |s|: one unit in the last place; of a sum of k angles besides k u (|q_1| + ... + |q_k|),
 //!                   a constant angle among them, with what its literal is off by
+//! exponential       e = (2 + 2 |dq| / v) u exp(-|dq| / v), and 1e-17 where that is taken to be 0
 //! literal           e = u |c|, 0 where the float is the exact value
 //! ```
 //!
@@ -35,6 +36,8 @@ macro_rules! face {
                 $sincos(x)
             }
             include!("companion/template.rs");
+            include!("companion/stribeck.rs");
+            include!("reader/sines/stribeck.rs");
             include!("companion/lanes.rs");
 
             use crate::float::{Arguments, LANES};
@@ -97,6 +100,7 @@ macro_rules! face {
                     Row::Sin(joint) => Step::Sin(joint),
                     Row::Cos(joint) => Step::Cos(joint),
                     Row::Sign(joint) => Step::Sign(joint),
+                    Row::Stribeck(joint, velocity) => Step::Stribeck(joint, velocity as Real),
                     Row::Neg(a) => Step::Neg(a),
                     Row::Add(a, b) => Step::Add(a, b),
                     Row::Sub(a, b) => Step::Sub(a, b),
@@ -120,6 +124,7 @@ enum Row {
     Sin(u32),
     Cos(u32),
     Sign(u32),
+    Stribeck(u32, f64),
     Neg(u32),
     Add(u32, u32),
     Sub(u32, u32),
@@ -176,6 +181,7 @@ impl Table {
                 Step::Sine(angle) => Row::Sin(number_of(angle)),
                 Step::Cosine(angle) => Row::Cos(number_of(angle)),
                 Step::Sign(joint) => Row::Sign(*joint as u32),
+                Step::Stribeck(joint, velocity) => Row::Stribeck(*joint as u32, program.literals[*velocity].value),
                 Step::Negate(a) => Row::Neg(number(a)),
                 Step::Add(a, b) => Row::Add(number(a), number(b)),
                 Step::Subtract(a, b) => Row::Sub(number(a), number(b)),
@@ -287,7 +293,22 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     }
     let _ =
         write!(text, "/// Sine and cosine of an angle in rad.\nfn sin_cos(x: Real) -> (Real, Real) {{\n    {sincos}(x)\n}}\n\n");
-    text += include_str!("companion/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
+    // What only Stribeck friction needs.
+    const MARK: &str = " // with Stribeck friction";
+    let fades = module.programs().any(|(_, program)| program.steps.iter().any(|step| matches!(step, Step::Stribeck(..))));
+    if fades {
+        text += &[include_str!("reader/sines/stribeck.rs"), include_str!("companion/stribeck.rs")]
+            .map(|part| format!("{part}\n"))
+            .concat();
+    }
+    let template = include_str!("companion/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
+    for line in template.split_inclusive('\n') {
+        match line.trim_end().strip_suffix(MARK) {
+            None => text += line,
+            Some(line) if fades => text += &format!("{line}\n"),
+            Some(_) => {}
+        }
+    }
     Ok(text)
 }
 
@@ -335,6 +356,7 @@ fn number(value: f64, real: Float) -> String {
 fn row_text(row: &Row, real: Float) -> String {
     match *row {
         Row::Lit(value, error) => format!("Lit({}, {})", number(value, real), number(error, real)),
+        Row::Stribeck(joint, velocity) => format!("Stribeck({joint}, {})", number(velocity, real)),
         other => format!("{other:?}"),
     }
 }

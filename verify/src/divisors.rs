@@ -112,7 +112,9 @@ pub fn undivided_operands(program: &Program) -> Vec<usize> {
             Step::Divide(a, b) => (&[*a, *b], true),
             Step::Negate(a) => (&[*a], false),
             Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) => (&[*a, *b], false),
-            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => (&[], false),
+            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {
+                (&[], false)
+            }
         };
         let takes_part = quotient || of.iter().any(|&operand| divided[operand]);
         if takes_part {

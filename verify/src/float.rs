@@ -73,8 +73,34 @@ impl<T> Arguments<T> {
     }
 }
 
+/// The function of emitted modules, in both scalars.
+macro_rules! stribeck {
+    ($module:ident, $float:ty) => {
+        pub(crate) mod $module {
+            type Real = $float;
+            include!("reader/sines/stribeck.rs");
+
+            /// exp(-|rate| / velocity), as it is computed.
+            pub(crate) fn of(rate: Real, velocity: Real) -> Real {
+                stribeck(rate, velocity)
+            }
+        }
+    };
+}
+
+stribeck!(stribeck_f64, f64);
+stribeck!(stribeck_f32, f32);
+
+/// How far what is left of Stribeck friction can be from the exact value, at x = |dq| / v with a rounded v: two units of roundoff of the function, and two
+/// of x, which weigh x times; what is below 1e-17 is 0.
+pub(crate) fn stribeck_error(x: f64, value: f64, real: Float) -> f64 {
+    (2.1 + 2.1 * x.min(64.0)) * real.unit() * value + if value == 0.0 { 1e-17 } else { 0.0 }
+}
+
+pub(crate) use stribeck_f64::of as stribeck;
+
 macro_rules! inputs {
-    ($float:ty, $sincos:path) => {
+    ($float:ty, $sincos:path, $stribeck:path) => {
         impl Arguments<$float> {
             fn angle(&self, terms: &[(usize, i64)]) -> $float {
                 match terms {
@@ -108,12 +134,16 @@ macro_rules! inputs {
                     x
                 }
             }
+
+            fn stribeck(&self, joint: usize, velocity: &$float) -> $float {
+                $stribeck(self.dq[joint], *velocity)
+            }
         }
     };
 }
 
-inputs!(f64, libm::sincos);
-inputs!(f32, libm::sincosf);
+inputs!(f64, libm::sincos, stribeck_f64::of);
+inputs!(f32, libm::sincosf, stribeck_f32::of);
 
 impl Program {
     /// The entries of the result in the module's scalar; the arguments are rounded to it first.

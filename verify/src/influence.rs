@@ -24,7 +24,7 @@ pub fn idle_steps(program: &Program, point: &mut Point<Prime>, literals: &[Formu
         let own = adjoint[i];
         let mut add = |to: usize, amount| adjoint[to] = adjoint[to].plus(&amount);
         match step {
-            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => {}
+            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {}
             Step::Negate(a) => add(*a, own.negated()),
             Step::Add(a, b) => {
                 add(*a, own);

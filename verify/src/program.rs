@@ -70,6 +70,8 @@ pub enum Step {
     Cosine(Angle),
     /// Sign of a joint rate.
     Sign(usize),
+    /// exp(-|dq| / v) of a joint rate, v a literal.
+    Stribeck(usize, usize),
     /// -a
     Negate(usize),
     /// a + b
@@ -140,6 +142,8 @@ pub trait Inputs<E> {
     fn sine_cosine(&self, angle: &[(usize, i64)]) -> (E, E);
     /// Sign of a joint rate.
     fn sign(&self, joint: usize) -> E;
+    /// exp(-|dq| / velocity) of a joint rate.
+    fn stribeck(&self, joint: usize, velocity: &E) -> E;
     /// Sine and cosine of such a combination and a constant.
     fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E);
 }
@@ -212,7 +216,7 @@ impl Program {
                 Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => {
                     (needed[*a], needed[*b]) = (true, true);
                 }
-                Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) => {}
+                Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {}
             }
         }
         needed
@@ -241,6 +245,7 @@ impl Program {
                 Step::Sine(angle) => Some(wave(angle).0),
                 Step::Cosine(angle) => Some(wave(angle).1),
                 Step::Sign(joint) => Some(inputs.sign(*joint)),
+                Step::Stribeck(joint, velocity) => Some(inputs.stribeck(*joint, &literals[*velocity])),
                 Step::Negate(a) => of(a).map(Element::negated),
                 Step::Add(a, b) => both(a, b).map(|(a, b)| a.plus(b)),
                 Step::Subtract(a, b) => both(a, b).map(|(a, b)| a.minus(b)),
@@ -263,7 +268,7 @@ impl Program {
         let mut touched = vec![false; self.steps.len()];
         for (i, step) in self.steps.iter().enumerate() {
             touched[i] = match step {
-                Step::Literal(index) => *index == literal,
+                Step::Literal(index) | Step::Stribeck(_, index) => *index == literal,
                 Step::Negate(a) => touched[*a],
                 Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => touched[*a] || touched[*b],
                 Step::Sine(angle) | Step::Cosine(angle) => angle.turn.is_some_and(|(k, _)| self.turns[k] == literal),

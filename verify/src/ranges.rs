@@ -151,6 +151,14 @@ pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Opti
                 let (low, high) = domain.of(Argument::Dq)[*joint];
                 Range::exact(low.signum().min(0.0), high.signum().max(0.0))
             }
+            Step::Stribeck(joint, literal) => {
+                let (low, high) = domain.of(Argument::Dq)[*joint];
+                let most = low.abs().max(high.abs());
+                let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+                let at = |rate: f64| libm::exp(-rate / program.literals[*literal].value);
+                // Two units of the function itself, and two of |rate| / velocity, which weigh no more than x exp(-x) <= 0.37. Below 1e-17 it is 0.
+                Range::of(&[at(most) - 1e-15, at(least)], 4.0 * u + 1e-17)
+            }
             Step::Negate(a) => {
                 let a = of(a);
                 Range { low: -a.high, high: -a.low, ..a }

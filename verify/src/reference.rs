@@ -125,7 +125,7 @@ fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
         b: inertia_matrix(arm, state),
         c: coriolis_matrix(&inertia_derivatives(arm, state), &state.dq, &arm.half()),
         g: gravity(arm, state),
-        f: friction(arm, &state.dq, &state.dq, &state.signs),
+        f: friction(arm, state, &state.dq),
         u: potential_energy(arm, state),
     };
     let without_friction = of_parts(arm, state, parts, values, suffix)?;
@@ -196,7 +196,7 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> (Vec<Vec<E>
         let pose = Pose::new(&moving_arm, &state);
         let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: moving_arm.gravity.clone() };
         let torques = Moving::new(&moving_arm, &pose, motion).torques();
-        let friction = friction(&moving_arm, &state.dq, &state.dq, &state.signs);
+        let friction = friction(&moving_arm, &state, &state.dq);
         let springs = spring_torques(&moving_arm, &state.q);
         torques.iter().zip(friction).zip(springs).map(|((t, f), s)| t.plus(&f).plus(&s).rate).collect()
     };
@@ -317,7 +317,8 @@ impl<E: Element> Reference<E> {
         vector: &Vector,
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
-        let state = State::draw(arithmetic, manipulator.joints.len());
+        let fades = manipulator.joints.iter().map(|joint| joint.stribeck.is_some());
+        let state = State::draw(arithmetic, manipulator.joints.len()).with_stribeck(arithmetic, fades);
         Reference::at(arithmetic, manipulator, vector, state, wanted)
     }
 
@@ -333,6 +334,7 @@ impl<E: Element> Reference<E> {
         let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
         let arm = Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)?;
         let n = arm.dof();
+        state.stribeck_velocities = arm.joints.iter().map(|joint| joint.stribeck_velocity.clone()).collect();
         let mut values = Values::new();
         kinematics(&arm, &state, &mut values);
         if manipulator.is_massless() {

@@ -124,6 +124,12 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
                 parts.integer(*joint as u64);
                 parts.finish()
             }
+            Step::Stribeck(joint, velocity) => {
+                let mut parts = Parts::of("stribeck");
+                parts.integer(*joint as u64);
+                parts.add(&literals[*velocity]);
+                parts.finish()
+            }
             Step::Negate(a) => one("negate", a),
             Step::Add(a, b) => either("add", a, b),
             Step::Subtract(a, b) => two("subtract", &steps[*a], &steps[*b]),
@@ -175,6 +181,11 @@ fn of_description(manipulator: &Manipulator) -> Hash {
                 arm.word(word);
                 arm.optional(value);
             }
+        }
+        if let Some(stribeck) = &joint.stribeck {
+            arm.word("stribeck");
+            arm.polynomials([&stribeck.torque]);
+            arm.number(&stribeck.velocity);
         }
         if let Some(spring) = &joint.spring {
             arm.word("spring");

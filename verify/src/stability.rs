@@ -23,6 +23,8 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::manipulator::{Joint, Manipulator};
+
 use crate::arithmetic::running::{Running, RunningNumbers};
 use crate::bounds::{corner, draw, two_digits, undivided_bound, widened, Parameters};
 use crate::check::Check;
@@ -30,9 +32,10 @@ use crate::checker::Checker;
 use crate::companion::{LaneArguments, Table};
 use crate::divisors::undivided_operands;
 use crate::enclosure::Float;
+use crate::equations::arm::formula;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
-use crate::float::{Arguments, LANES};
+use crate::float::{stribeck, stribeck_error, Arguments, LANES};
 use crate::formula::Formula;
 use crate::program::{Argument, Program};
 use crate::ranges::{literal_errors, worst, Domain};
@@ -65,7 +68,7 @@ pub struct Trial<'a> {
 }
 
 /// The arm at some states, in numbers that know their errors.
-fn running(states: &[Arguments<f64>; LANES]) -> State<Running> {
+fn running(states: &[Arguments<f64>; LANES], manipulator: &Manipulator) -> State<Running> {
     let arguments = Arguments::gather(states, Running::exact);
     let circle = |q: &Running| {
         let both = q.value.map(libm::sincos);
@@ -74,7 +77,20 @@ fn running(states: &[Arguments<f64>; LANES]) -> State<Running> {
     };
     let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
     let (angles, signs) = (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
-    State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Running::exact([x; LANES])))
+    let fading = |(rates, joint): (&Running, &Joint)| {
+        let velocity = joint.stribeck.as_ref().and_then(|stribeck| Float::F64.nearest(&formula(&stribeck.velocity)));
+        velocity.map_or(Running::exact([0.0; LANES]), |velocity| {
+            let one = |lane: usize| {
+                let x = rates.value[lane].abs() / velocity;
+                let value = stribeck(rates.value[lane], velocity);
+                (value, stribeck_error(x, value, Float::F64))
+            };
+            let both: [(f64, f64); LANES] = std::array::from_fn(one);
+            Running { value: both.map(|(value, _)| value), error: both.map(|(_, error)| error) }
+        })
+    };
+    let stribeck = arguments.dq.iter().zip(&manipulator.joints).map(fading).collect();
+    State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Running::exact([x; LANES]))) }
 }
 
 /// Largest error and largest size of the entries of a function at each state.
@@ -102,7 +118,7 @@ impl<'a> Trial<'a> {
         let batches: Vec<_> = (0..BATCHES).map(batch).collect();
         let mut plain: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
         for (states, _) in &batches {
-            let mut state = running(states);
+            let mut state = running(states, manipulator);
             let mut numbers = RunningNumbers::default();
             if matches!(checker.vector(), Vector::Base(..)) {
                 numbers.given = std::mem::take(&mut state.pi).into();

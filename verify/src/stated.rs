@@ -89,6 +89,7 @@ fn prose(manipulator: &Manipulator, name: &str, function: &Function, bounded: bo
         gravity: &gravity,
         has_springs: manipulator.has_springs(),
         has_more_friction: manipulator.has_more_friction(),
+        has_stribeck: manipulator.has_stribeck(),
         turned_joint: turned,
         cost: operations(&function.program),
         method,
@@ -205,6 +206,7 @@ fn operations(program: &Program) -> String {
         (count(|step| matches!(step, Step::Add(..) | Step::Subtract(..))), "addition"),
         (count(|step| matches!(step, Step::Divide(..))), "division"),
         (count(|step| matches!(step, Step::Sine(_))), "sine and cosine pair"),
+        (count(|step| matches!(step, Step::Stribeck(..))), "exponential"),
     ]
     .into_iter()
     .filter(|(count, _)| *count > 0)

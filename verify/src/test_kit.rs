@@ -9,12 +9,13 @@ mod languages;
 use std::fmt::Write;
 
 use armgen_codegen::emit::Language;
-use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::Arithmetic;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
+use crate::equations::arm::formula;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::Arguments;
@@ -62,12 +63,17 @@ fn arguments(stream: &mut Stream, n: usize, p: usize) -> Arguments<f64> {
     }
 }
 
-fn wide_state(arguments: &Arguments<f64>) -> Option<State<Wide>> {
+fn wide_state(arguments: &Arguments<f64>, manipulator: &Manipulator) -> Option<State<Wide>> {
     let inputs = WideArguments::new(arguments)?;
     let joints = 0..arguments.q.len();
     let angles = joints.clone().map(|i| inputs.sine_cosine(&[(i, 1)])).collect();
     let signs = joints.map(|i| Inputs::<Wide>::sign(&inputs, i)).collect();
-    Some(State::of(arguments.map(Wide::from_f64), angles, signs, [0.0, 1.0].map(Wide::from_f64)))
+    let fading = |(i, joint): (usize, &Joint)| match &joint.stribeck {
+        Some(stribeck) => Some(inputs.stribeck(i, &Wide::from_formula(&formula(&stribeck.velocity))?)),
+        None => Some(Wide::from_f64(0.0)),
+    };
+    let stribeck = manipulator.joints.iter().enumerate().map(fading).collect::<Option<_>>()?;
+    Some(State { stribeck, ..State::of(arguments.map(Wide::from_f64), angles, signs, [0.0, 1.0].map(Wide::from_f64)) })
 }
 
 fn list(values: &[f64], real: Float) -> String {
@@ -114,7 +120,7 @@ impl Kit {
         let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes, states: Vec::new(), values: Vec::new() };
         for index in 0..STATES {
             let arguments = arguments(&mut stream, manipulator.joints.len(), sizes.p);
-            let state = wide_state(&arguments).ok_or("a joint variable out of reach")?;
+            let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;
             let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
             let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
             for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {

@@ -81,6 +81,10 @@ pub struct Joint {
     pub offset: ExprId,
     /// Coefficient of the cube of the rate.
     pub cubic: ExprId,
+    /// Stribeck friction at the lowest rates.
+    pub stribeck: ExprId,
+    /// The rate at which 1/e of it is left; 1 where there is none.
+    pub stribeck_velocity: ExprId,
     /// Stiffness of its spring.
     pub stiffness: ExprId,
     /// The joint variable at which its spring is at rest.
@@ -409,6 +413,8 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let armature = given(pool, StandardParameter::Armature(index));
     let offset = given(pool, StandardParameter::Offset(index));
     let cubic = given(pool, StandardParameter::Cubic(index));
+    let stribeck = given(pool, StandardParameter::Stribeck(index));
+    let stribeck_velocity = joint.stribeck.as_ref().map_or(ExprId::ONE, |stribeck| pool.constant(&stribeck.velocity));
     let stiffness = given(pool, StandardParameter::Stiffness(index));
     let rest = joint.spring.as_ref().map_or(ExprId::ZERO, |spring| view.polynomial(pool, manipulator, &spring.rest));
     if let Some(motor) = &joint.motor {
@@ -438,6 +444,8 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         coulomb,
         offset,
         cubic,
+        stribeck,
+        stribeck_velocity,
         stiffness,
         rest,
     }

@@ -73,6 +73,7 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
             Symbol::ReferenceAcceleration(i) => (7, i),
             Symbol::Torque(i) => (8, i),
             Symbol::Parameter(i) => (9, i),
+            Symbol::Stribeck(i) => (10, i),
         };
         field.from_u64(scramble(scramble(state << 8 | kind) ^ u64::from(index)))
     };
@@ -545,6 +546,7 @@ fn preference(parameter: StandardParameter) -> (u8, u16, u8) {
         StandardParameter::Offset(i) => (0, i, 3),
         StandardParameter::Cubic(i) => (0, i, 4),
         StandardParameter::Stiffness(i) => (0, i, 5),
+        StandardParameter::Stribeck(i) => (0, i, 6),
         StandardParameter::Link(i, k) => (1, i, of_body(k)),
         StandardParameter::RotorInertia(i) => (2, i, 0),
         StandardParameter::Armature(i) => (2, i, 1),

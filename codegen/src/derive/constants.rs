@@ -44,10 +44,12 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
                 .chain(&joint.armature)
                 .chain(&joint.offset)
                 .chain(&joint.cubic)
+                .chain(joint.stribeck.iter().map(|stribeck| &stribeck.torque))
                 .chain(joint.spring.iter().flat_map(|spring| [&spring.stiffness, &spring.rest]))
                 .flat_map(|p| p.terms().map(|(_, c)| c.clone())),
         );
     }
+    numbers.extend(manipulator.joints.iter().filter_map(|joint| Some(joint.stribeck.as_ref()?.velocity.clone())));
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
     numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
     numbers

@@ -330,7 +330,10 @@ fn half_angle_term(angle: u16, a: usize, b: usize, c: &Number) -> NormalForm {
 
 /// Values of a joint variable in both notations, each as `print` gives it.
 fn at(print: impl Fn(&Printer<'_>) -> String) -> Zeros {
-    Zeros::Of([Notation::Text, Notation::Latex].map(|notation| print(&Printer { notation, parameters: &[], digits: None })))
+    Zeros::Of(
+        [Notation::Text, Notation::Latex]
+            .map(|notation| print(&Printer { notation, parameters: &[], velocities: &[], digits: None })),
+    )
 }
 
 /// Where a factor in one variable is zero.

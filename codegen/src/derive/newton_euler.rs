@@ -207,8 +207,8 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
     (tau, wrench)
 }
 
-/// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42), an offset, and F_3 dq² times `rates`: F_3 dq³ where
-/// these are dq, and linear in reference rates where they are not.
+/// F: viscous friction on `rates`, Coulomb friction on the sign of dq (the book, eq. 7.42), an offset, Stribeck friction sign(dq) F_s
+/// exp(-|dq| / v_s), and F_3 dq² times `rates`: F_3 dq³ where these are dq, and linear in reference rates where they are not.
 pub fn friction(pool: &mut Pool, arm: &Arm, rates: &[ExprId]) -> Vec<ExprId> {
     (0..arm.dof())
         .map(|i| {
@@ -222,7 +222,14 @@ pub fn friction(pool: &mut Pool, arm: &Arm, rates: &[ExprId]) -> Vec<ExprId> {
             let sign = pool.symbol(Symbol::RateSign(i as u16));
             let coulomb = pool.mul(joint.coulomb, sign);
             let sum = pool.add(viscous, coulomb);
-            pool.add(sum, joint.offset)
+            let sum = pool.add(sum, joint.offset);
+            if joint.stribeck == ExprId::ZERO {
+                return sum;
+            }
+            let fading = pool.symbol(Symbol::Stribeck(i as u16));
+            let along = pool.mul(sign, fading);
+            let stribeck = pool.mul(joint.stribeck, along);
+            pool.add(sum, stribeck)
         })
         .collect()
 }
@@ -232,6 +239,17 @@ pub fn cubic_coefficient(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
     let rate = pool.symbol(Symbol::Rate(i as u16));
     let square = pool.mul(rate, rate);
     pool.mul(arm.joints[i].cubic, square)
+}
+
+/// -F_s sign(dq)² exp(-|dq| / v_s) / v_s: the slope of Stribeck friction, 0 at rest, where it jumps.
+pub fn stribeck_slope(pool: &mut Pool, arm: &Arm, i: usize) -> ExprId {
+    let joint = &arm.joints[i];
+    let (sign, fading) = (pool.symbol(Symbol::RateSign(i as u16)), pool.symbol(Symbol::Stribeck(i as u16)));
+    let inverse = pool.reciprocal(joint.stribeck_velocity);
+    let steepness = pool.mul(joint.stribeck, inverse);
+    let square = pool.mul(sign, sign);
+    let moving = pool.mul(square, fading);
+    -pool.mul(steepness, moving)
 }
 
 /// q - rest of the spring of joint `i`.

@@ -26,6 +26,8 @@ pub enum StandardParameter {
     Offset(u16),
     /// Cubic friction at a joint.
     Cubic(u16),
+    /// Stribeck friction at a joint.
+    Stribeck(u16),
     /// Stiffness of the spring of a joint.
     Stiffness(u16),
     /// One of the payload, in the end-effector frame.
@@ -150,6 +152,9 @@ impl StandardParameter {
             if joint.cubic.is_some() {
                 all.push(StandardParameter::Cubic(i));
             }
+            if joint.stribeck.is_some() {
+                all.push(StandardParameter::Stribeck(i));
+            }
             if joint.spring.is_some() {
                 all.push(StandardParameter::Stiffness(i));
             }
@@ -160,7 +165,7 @@ impl StandardParameter {
         all
     }
 
-    /// Its name: `m1`, `Ixx1`, `Im1`, `Ia1`, `Fm1`, `Fv1`, `Fc1`, `F0_1`, `F3_1`, `ks1`, `mp`.
+    /// Its name: `m1`, `Ixx1`, `Im1`, `Ia1`, `Fm1`, `Fv1`, `Fc1`, `F0_1`, `F3_1`, `Fs1`, `ks1`, `mp`.
     pub fn name(self) -> String {
         match self {
             StandardParameter::Link(i, k) => format!("{}{}", k.name(), i + 1),
@@ -171,6 +176,7 @@ impl StandardParameter {
             StandardParameter::Coulomb(i) => format!("Fc{}", i + 1),
             StandardParameter::Offset(i) => format!("F0_{}", i + 1),
             StandardParameter::Cubic(i) => format!("F3_{}", i + 1),
+            StandardParameter::Stribeck(i) => format!("Fs{}", i + 1),
             StandardParameter::Stiffness(i) => format!("ks{}", i + 1),
             StandardParameter::Payload(k) => format!("{}p", k.name()),
         }
@@ -189,6 +195,7 @@ impl StandardParameter {
             StandardParameter::Coulomb(i) => Entry::Whole(joint(i).coulomb.as_ref()),
             StandardParameter::Offset(i) => Entry::Whole(joint(i).offset.as_ref()),
             StandardParameter::Cubic(i) => Entry::Whole(joint(i).cubic.as_ref()),
+            StandardParameter::Stribeck(i) => Entry::Whole(joint(i).stribeck.as_ref().map(|stribeck| &stribeck.torque)),
             StandardParameter::Stiffness(i) => Entry::Whole(joint(i).spring.as_ref().map(|spring| &spring.stiffness)),
             StandardParameter::Payload(k) => Entry::OfBodies(manipulator.payload.as_slice(), k),
         }
@@ -442,6 +449,9 @@ impl StandardParameter {
             StandardParameter::Coulomb(i) => format!("joint {} ({}): Coulomb friction, N m or N", i + 1, name(i)),
             StandardParameter::Offset(i) => format!("joint {} ({}): friction whatever the rate, N m or N", i + 1, name(i)),
             StandardParameter::Cubic(i) => format!("joint {} ({}): cubic friction, N m s³ or N s³/m³", i + 1, name(i)),
+            StandardParameter::Stribeck(i) => {
+                format!("joint {} ({}): Stribeck friction at the lowest rates, N m or N", i + 1, name(i))
+            }
             StandardParameter::Stiffness(i) => format!("joint {} ({}): stiffness of its spring, N m/rad or N/m", i + 1, name(i)),
             StandardParameter::Payload(k) => format!("payload, in the end-effector frame: {}", k.meaning()),
         }

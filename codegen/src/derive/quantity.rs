@@ -162,6 +162,8 @@ pub struct Documentation {
     pub springs: Option<&'static str>,
     /// What friction that is neither viscous nor Coulomb's adds, said of arms that have it.
     pub more_friction: Option<&'static str>,
+    /// What Stribeck friction adds, said of arms that have it.
+    pub stribeck: Option<&'static str>,
 }
 
 /// The derivation of a quantity by recursion over the links.
@@ -203,12 +205,18 @@ impl Documentation {
             names_gravity: false,
             springs: None,
             more_friction: None,
+            stribeck: None,
         }
     }
 
     /// The same with what springs add.
     pub const fn with_springs(self, springs: &'static str) -> Documentation {
         Documentation { springs: Some(springs), ..self }
+    }
+
+    /// The same with what Stribeck friction adds.
+    pub const fn with_stribeck(self, stribeck: &'static str) -> Documentation {
+        Documentation { stribeck: Some(stribeck), ..self }
     }
 
     /// The same with what more friction adds.

@@ -116,6 +116,10 @@ fn columns_in(
             StandardParameter::Armature(i) => y[usize::from(i)][column] = motion.accelerations[usize::from(i)],
             StandardParameter::Viscous(i) => y[usize::from(i)][column] = motion.reference[usize::from(i)],
             StandardParameter::Coulomb(i) => y[usize::from(i)][column] = pool.symbol(Symbol::RateSign(i)),
+            StandardParameter::Stribeck(i) => {
+                let (sign, fading) = (pool.symbol(Symbol::RateSign(i)), pool.symbol(Symbol::Stribeck(i)));
+                y[usize::from(i)][column] = pool.mul(sign, fading);
+            }
             StandardParameter::Offset(i) => y[usize::from(i)][column] = ExprId::ONE,
             StandardParameter::Cubic(i) => {
                 let i = usize::from(i);

@@ -458,7 +458,12 @@ fn check_determinant(text: &str, form: &str, factors: &[(&str, Option<&str>)]) {
     let model =
         crate::Model::new(read.unwrap_or_else(|| panic!("{}", diagnostics.render(&source, crate::diagnostic::Colour::Never))).0);
     let found = determinant::determinant(&model, View::Nominal).expect("square");
-    let printer = crate::ring::print::Printer { notation: crate::ring::print::Notation::Text, parameters: &[], digits: None };
+    let printer = crate::ring::print::Printer {
+        notation: crate::ring::print::Notation::Text,
+        parameters: &[],
+        velocities: &[],
+        digits: None,
+    };
     assert_eq!(printer.form(found.form.as_ref().expect("short")), form);
     let texts: Vec<(String, Option<String>)> =
         found.factors.iter().map(|f| (printer.form(&f.form), f.zeros.words().map(String::from))).collect();

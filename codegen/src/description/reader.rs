@@ -4,7 +4,7 @@ use super::other_formats::{OTHER_NAMES, OTHER_PLACES};
 use super::{
     AttachedDescription, BodyDescription, Convention, FrictionDescription, InertiaDescription, JointDescription,
     LimitsDescription, MotorDescription, ParameterDescription, PoseDescription, PoseElement, PosturesDescription,
-    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, Value, INERTIA_ELEMENTS,
+    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
 use crate::document::reader::{first_key, optional, required, Fields, Key, Reader};
@@ -75,7 +75,8 @@ const INERTIA: &[Key] = &[
 ];
 const MOTOR: &[Key] =
     &[optional("ratio"), optional("inertia"), optional("mass"), optional("position"), optional("axis"), optional("viscous")];
-const FRICTION: &[Key] = &[optional("viscous"), optional("coulomb"), optional("offset"), optional("cubic")];
+const FRICTION: &[Key] = &[optional("viscous"), optional("coulomb"), optional("offset"), optional("cubic"), optional("stribeck")];
+const STRIBECK: &[Key] = &[required("torque", "torque: 2.5"), required("velocity", "velocity: 0.05")];
 const SPRING: &[Key] = &[required("stiffness", "stiffness: 200"), optional("rest")];
 const POSE: &[Key] =
     &[optional("xyz"), optional("rpy"), optional("quat"), optional("axis"), optional("angle"), optional("xyaxes")];
@@ -175,6 +176,14 @@ impl Reader<'_> {
             link: fields.get("link").and_then(|(key, node)| self.body(node, key, "`link`", LINK)),
             motor: fields.get("motor").and_then(|(key, node)| self.motor(node, key)),
             friction: friction.map_or_else(FrictionDescription::default, |fields| FrictionDescription {
+                stribeck: fields.get("stribeck").and_then(|(key, node)| {
+                    let fields = self.mapping(node, "`stribeck`", key, STRIBECK)?;
+                    Some(StribeckDescription {
+                        key,
+                        torque: self.field(&fields, "torque"),
+                        velocity: self.field(&fields, "velocity"),
+                    })
+                }),
                 viscous: self.field(&fields, "viscous"),
                 coulomb: self.field(&fields, "coulomb"),
                 offset: self.field(&fields, "offset"),

@@ -84,6 +84,8 @@ pub struct Described<'a> {
     pub has_springs: bool,
     /// Whether joints have friction that is neither viscous nor Coulomb's.
     pub has_more_friction: bool,
+    /// Whether friction has a part that fades as a joint begins to move.
+    pub has_stribeck: bool,
     /// The joint whose variable it turns by a constant angle, counted from 1.
     pub turned_joint: Option<usize>,
     /// Its operations in words.
@@ -100,6 +102,7 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
         gravity: &module.gravity,
         has_springs: module.has_springs,
         has_more_friction: module.has_more_friction,
+        has_stribeck: module.has_stribeck,
         turned_joint: turned_joint(function),
         cost: cost(&Cost::of(function)),
         method: function.method,
@@ -109,7 +112,7 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
 
 impl Described<'_> {
     pub(super) fn blocks(&self, allocates: bool) -> Vec<Block> {
-        let Documentation { title, formula, result, result_with, failure, names_gravity, springs, more_friction } =
+        let Documentation { title, formula, result, result_with, failure, names_gravity, springs, more_friction, stribeck } =
             self.quantity.documentation;
         let (result, failure) = match self.with_parameters {
             false => (result, failure[0]),
@@ -120,7 +123,11 @@ impl Described<'_> {
             let [x, y, z] = self.gravity.each_ref().map(Number::to_f64);
             blocks.push(Block::text(format!("The acceleration of free fall is g0 = ({x}, {y}, {z}) m/s² in the base frame.")));
         }
-        let of_joints = springs.filter(|_| self.has_springs).into_iter().chain(more_friction.filter(|_| self.has_more_friction));
+        let of_joints = springs
+            .filter(|_| self.has_springs)
+            .into_iter()
+            .chain(more_friction.filter(|_| self.has_more_friction))
+            .chain(stribeck.filter(|_| self.has_stribeck));
         blocks.extend(of_joints.map(Block::text));
         if self.with_parameters {
             blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
@@ -234,6 +241,7 @@ fn cost(cost: &Cost) -> String {
         count(cost.add, "addition", "additions"),
         count(cost.div, "division", "divisions"),
         count(cost.sincos, "sine and cosine pair", "sine and cosine pairs"),
+        count(cost.exp, "exponential", "exponentials"),
     ]
     .into_iter()
     .flatten()

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::documentation::{self, Block, Link};
 use super::origin::{Notes, Origin};
-use super::plain::{asks_for_signs, blocks, camel, constants, expression, head, waves, Syntax, Value};
+use super::plain::{asks_for_exponentials, asks_for_signs, blocks, camel, constants, expression, head, waves, Syntax, Value};
 use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
@@ -15,6 +15,7 @@ use crate::program::{Function, Module, Trig};
 
 const CHECK: &str = include_str!("javascript/check.mjs");
 const SIGN: &str = include_str!("javascript/sign.mjs");
+const STRIBECK: &str = include_str!("javascript/stribeck.mjs");
 const STD: &str = include_str!("javascript/std.mjs");
 const FAST: &str = include_str!("javascript/sines.mjs");
 
@@ -27,6 +28,10 @@ impl Syntax for JavaScript {
 
     fn sign(&self, entry: &str) -> String {
         format!("sign({entry})")
+    }
+
+    fn stribeck(&self, entry: &str, velocity: &str) -> String {
+        format!("stribeck({entry}, {velocity})")
     }
 }
 
@@ -47,6 +52,10 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     if asks_for_signs(module) {
         text += "\n";
         text += SIGN;
+    }
+    if asks_for_exponentials(module) {
+        text += "\n";
+        text += STRIBECK;
     }
     for function in &module.functions {
         print_function(&mut text, module, function, notes);

@@ -17,6 +17,7 @@ use crate::ring::Symbol;
 
 const CHECK: &str = include_str!("matlab/check.m");
 const SIGN: &str = include_str!("matlab/sign.m");
+const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
 
@@ -45,6 +46,10 @@ impl Syntax for Matlab {
 
     fn sign(&self, entry: &str) -> String {
         format!("signOf({entry})")
+    }
+
+    fn stribeck(&self, entry: &str, velocity: &str) -> String {
+        format!("stribeck({entry}, {velocity})")
     }
 
     fn entry(&self, argument: Argument, index: usize) -> String {
@@ -232,7 +237,9 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
     let symbols = function.symbols();
     let sines = symbols.iter().any(|symbol| symbol.angle().is_some());
     let signs = symbols.iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)));
-    for (wanted, block) in [(true, CHECK), (sines, if module.trig == Trig::Fast { FAST } else { STD }), (signs, SIGN)] {
+    let sines_text = if module.trig == Trig::Fast { FAST } else { STD };
+    let blocks = [(true, CHECK), (sines, sines_text), (signs, SIGN), (!function.stribeck.is_empty(), STRIBECK)];
+    for (wanted, block) in blocks {
         if wanted {
             text += "\n";
             text += block;

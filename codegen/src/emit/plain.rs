@@ -17,6 +17,9 @@ pub(super) trait Syntax {
     /// The sign of an entry.
     fn sign(&self, entry: &str) -> String;
 
+    /// What is left of Stribeck friction at an entry, at a velocity.
+    fn stribeck(&self, entry: &str, velocity: &str) -> String;
+
     /// An entry of an argument, counted from 0.
     fn entry(&self, argument: Argument, index: usize) -> String {
         format!("{}[{index}]", argument.name())
@@ -38,6 +41,9 @@ pub(super) fn expression(of: &Expression, syntax: &dyn Syntax) -> String {
     match of {
         Expression::Input(symbol) => input(*symbol, syntax),
         Expression::Constant(value) => syntax.number(value),
+        Expression::Stribeck(i, velocity) => {
+            syntax.stribeck(&syntax.entry(Argument::Dq, usize::from(*i)), &syntax.number(velocity))
+        }
         Expression::Step(i) => Name::Step(*i).text(),
         Expression::Operation(operation, left, right) => {
             format!("{} {} {}", expression(left, syntax), syntax.operator(*operation), expression(right, syntax))
@@ -62,6 +68,7 @@ fn input(symbol: Symbol, syntax: &dyn Syntax) -> String {
 pub(super) fn reads_an_argument(of: &Expression) -> bool {
     match of {
         Expression::Input(symbol) => symbol.angle().is_none(),
+        Expression::Stribeck(..) => true,
         Expression::Constant(_) | Expression::Step(_) => false,
         Expression::Operation(_, left, right) => reads_an_argument(left) || reads_an_argument(right),
         Expression::Negation(inner) | Expression::Brackets(inner) => reads_an_argument(inner),
@@ -120,6 +127,11 @@ pub(super) fn places(quantity: &'static Quantity, sizes: &Sizes) -> Vec<(&'stati
 /// Whether any function of a module uses a sign.
 pub(super) fn asks_for_signs(module: &Module) -> bool {
     module.functions.iter().flat_map(Function::symbols).any(|symbol| matches!(symbol, Symbol::RateSign(_)))
+}
+
+/// Whether any function of a module has Stribeck friction.
+pub(super) fn asks_for_exponentials(module: &Module) -> bool {
+    module.functions.iter().any(|function| !function.stribeck.is_empty())
 }
 
 /// A text that stands in the name of a robot called `robot`, for one of another name.

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use super::documentation::{self, Block, Link};
 use super::origin::{Notes, Origin};
-use super::plain::{asks_for_signs, blocks, constants, expression, head, waves, Syntax, Value};
+use super::plain::{asks_for_exponentials, asks_for_signs, blocks, constants, expression, head, waves, Syntax, Value};
 use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
@@ -20,6 +20,7 @@ pub use native::{print as native, Native};
 
 const ARRAYS: &str = include_str!("python/arrays.py");
 const SIGN: &str = include_str!("python/sign.py");
+const STRIBECK: &str = include_str!("python/stribeck.py");
 const STD: &str = include_str!("python/std.py");
 const FAST_F64: &str = include_str!("python/sines_f64.py");
 const FAST_F32: &str = include_str!("python/sines_f32.py");
@@ -35,6 +36,10 @@ impl Syntax for Python {
 
     fn sign(&self, entry: &str) -> String {
         format!("_sign(xp, {entry})")
+    }
+
+    fn stribeck(&self, entry: &str, velocity: &str) -> String {
+        format!("_stribeck(xp, {entry}, {velocity})")
     }
 }
 
@@ -76,6 +81,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     }
     if asks_for_signs(module) {
         let _ = writeln!(text, "\n{SIGN}");
+    }
+    if asks_for_exponentials(module) {
+        let _ = writeln!(text, "\n{STRIBECK}");
     }
     let mut known: Vec<String> = Vec::new();
     for function in &module.functions {

@@ -11,10 +11,11 @@ mod signature;
 mod sincos;
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, ToTokens};
 
 use super::documentation::{self as common, Block, Described};
 use super::origin::{Notes, Origin};
+use super::plain::asks_for_exponentials;
 use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -27,6 +28,8 @@ use literal::literal;
 pub use runtime::single_traits;
 pub(super) use signature::accesses;
 use signature::{argument, ignored, of_parts, structures, type_of, usize_literal, with_fields};
+
+const STRIBECK: &str = include_str!("rust/stribeck.rs");
 
 /// The emitted module as text.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
@@ -262,7 +265,7 @@ pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
     module.functions.iter().flat_map(Function::symbols).any(|symbol| symbol.angle().is_some())
 }
 
-/// Sine and cosine, and the sign of a rate: the only calls in the module.
+/// Sine and cosine, the sign of a rate and what is left of Stribeck friction: the only calls in the module.
 fn private_block(module: &Module) -> TokenStream {
     let all: Vec<Vec<Symbol>> = module.functions.iter().map(Function::symbols).collect();
     let uses = |wanted: fn(&Symbol) -> bool| all.iter().flatten().any(wanted);
@@ -282,5 +285,9 @@ fn private_block(module: &Module) -> TokenStream {
             }
         }
     });
-    quote!(#sin_cos #sign)
+    let stribeck = asks_for_exponentials(module).then(|| {
+        let file: syn::File = syn::parse_str(STRIBECK).expect("the text to take in is a Rust file");
+        file.into_token_stream()
+    });
+    quote!(#sin_cos #sign #stribeck)
 }

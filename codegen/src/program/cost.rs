@@ -18,6 +18,8 @@ pub struct Cost {
     pub neg: usize,
     /// Sine and cosine pairs.
     pub sincos: usize,
+    /// Exponentials.
+    pub exp: usize,
 }
 
 impl Cost {
@@ -39,6 +41,7 @@ impl Cost {
             }
         }
         cost.sincos = angles.len();
+        cost.exp = function.stribeck.len();
         cost.add += angles.iter().map(|angle| angle.additions()).sum::<usize>();
         cost.neg = function.outputs.iter().filter(|output| output.negated).count();
         cost
@@ -46,6 +49,6 @@ impl Cost {
 
     /// A single figure to compare derivations by: a sine and cosine pair or a division counts like some additions, a sign change not at all.
     pub fn weight(&self) -> usize {
-        self.mul + self.add + DIVISION_COST * self.div + SINE_COSINE_COST * self.sincos
+        self.mul + self.add + DIVISION_COST * self.div + SINE_COSINE_COST * (self.sincos + self.exp)
     }
 }

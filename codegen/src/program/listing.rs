@@ -42,6 +42,8 @@ pub enum Expression {
     Input(Symbol),
     /// A constant, with its sign.
     Constant(Number),
+    /// exp(-|dq_i| / v) of a joint, with the velocity v.
+    Stribeck(u16, Number),
     /// A line before.
     Step(usize),
     /// An operation.
@@ -101,7 +103,7 @@ impl Argument {
     pub fn of(symbol: Symbol) -> Argument {
         match symbol {
             Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) | Symbol::Position(_) => Argument::Q,
-            Symbol::Rate(_) | Symbol::RateSign(_) => Argument::Dq,
+            Symbol::Rate(_) | Symbol::RateSign(_) | Symbol::Stribeck(_) => Argument::Dq,
             Symbol::Acceleration(_) => Argument::Ddq,
             Symbol::ReferenceRate(_) => Argument::Dqr,
             Symbol::ReferenceAcceleration(_) => Argument::Ddqr,
@@ -232,7 +234,7 @@ impl Expression {
             Expression::Constant(value) => value.to_f64().is_sign_negative(),
             Expression::Operation(_, left, _) => left.is_signed(),
             Expression::Negation(_) => true,
-            Expression::Input(_) | Expression::Step(_) | Expression::Brackets(_) => false,
+            Expression::Input(_) | Expression::Stribeck(..) | Expression::Step(_) | Expression::Brackets(_) => false,
         }
     }
 
@@ -244,7 +246,7 @@ impl Expression {
 
     fn collect_constants<'a>(&'a self, constants: &mut Vec<&'a Number>) {
         match self {
-            Expression::Constant(value) => constants.push(value),
+            Expression::Constant(value) | Expression::Stribeck(_, value) => constants.push(value),
             Expression::Input(_) | Expression::Step(_) => {}
             Expression::Operation(_, left, right) => {
                 left.collect_constants(constants);
@@ -258,6 +260,9 @@ impl Expression {
         match self {
             Expression::Input(symbol) => {
                 names.insert(Name::of(*symbol));
+            }
+            Expression::Stribeck(..) => {
+                names.insert(Name::Argument(Argument::Dq));
             }
             Expression::Step(i) => {
                 names.insert(Name::Step(*i));
@@ -295,10 +300,18 @@ impl Listing {
                 uses[*i as usize] += 1;
             }
         }
-        let mut lines = Vec::new();
+        // An exponential is taken once, in a line of its own.
+        let mut lines: Vec<Line> = function
+            .stribeck
+            .iter()
+            .zip(1..)
+            .map(|((&joint, velocity), name)| Line { name, value: Expression::Stribeck(joint, velocity.clone()) })
+            .collect();
+        let fading: BTreeMap<u16, usize> = function.stribeck.keys().copied().zip(1..).collect();
         let mut made: Vec<Made> = Vec::with_capacity(function.steps.len());
         let operand = |made: &[Made], operand: &Operand| match operand {
             Operand::Step(i) => made[*i as usize].clone(),
+            Operand::Input(Symbol::Stribeck(i)) => Made { expression: Expression::Step(fading[i]), operands: 1 },
             Operand::Input(symbol) => Made { expression: Expression::Input(*symbol), operands: 1 },
             Operand::Constant(value) => Made { expression: Expression::Constant(value.clone()), operands: 1 },
         };
@@ -377,6 +390,7 @@ mod tests {
         match expression {
             Expression::Input(symbol) => format!("{}{}", Argument::of(*symbol).name(), symbol.index() + 1),
             Expression::Constant(value) => decimal(value, Scalar::F64),
+            Expression::Stribeck(i, velocity) => format!("stribeck(dq{}, {})", i + 1, decimal(velocity, Scalar::F64)),
             Expression::Step(i) => Name::Step(*i).text(),
             Expression::Operation(operation, left, right) => {
                 let sign = match operation {
@@ -411,6 +425,7 @@ mod tests {
             steps: steps.iter().map(step).collect(),
             outputs: outputs.iter().map(|(operand, negated)| Output { operand: operand.clone(), negated: *negated }).collect(),
             method: "hand",
+            stribeck: BTreeMap::new(),
         };
         let listing = Listing::of(&function);
         let found: Vec<String> = listing.lines.iter().map(|line| format!("t{} = {}", line.name, text(&line.value))).collect();
@@ -481,6 +496,7 @@ mod tests {
             steps: steps.iter().map(step).collect(),
             outputs: outputs.to_vec(),
             method: "hand",
+            stribeck: BTreeMap::new(),
         };
         let listing = Listing::of(&function);
         let parts = listing.parts();

@@ -114,6 +114,7 @@ impl Pool {
                 Symbol::ReferenceAcceleration(_) => 7,
                 Symbol::Torque(_) => 8,
                 Symbol::Parameter(_) => 9,
+                Symbol::Stribeck(_) => 10,
             };
             let drawn = draw(number, kind, symbol.index());
             Number::from(match symbol {
@@ -180,5 +181,6 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
         Symbol::ReferenceAcceleration(i) => small(7, i),
         Symbol::Torque(i) => small(8, i),
         Symbol::Parameter(i) => small(9, i),
+        Symbol::Stribeck(i) => small(10, i),
     })
 }

@@ -25,6 +25,8 @@ pub struct Printer<'a> {
     pub notation: Notation,
     /// Names of parameters, by index.
     pub parameters: &'a [String],
+    /// Stribeck velocities of the joints; 1 where there is no such friction.
+    pub velocities: &'a [Number],
     /// Constants as decimals of so many digits, 1 to 17; none: exactly.
     pub digits: Option<u8>,
 }
@@ -59,6 +61,14 @@ impl Printer<'_> {
             }
             Symbol::RateSign(i) => {
                 return if text { format!("sign(dq{})", i + 1) } else { format!("\\operatorname{{sign}} \\dot q_{{{}}}", i + 1) };
+            }
+            Symbol::Stribeck(i) => {
+                let (k, velocity) = (i + 1, self.number(&self.velocities[usize::from(i)]));
+                return if text {
+                    format!("exp(-abs(dq{k})/({velocity}))")
+                } else {
+                    format!("e^{{-|\\dot q_{{{k}}}|/({velocity})}}")
+                };
             }
             Symbol::Parameter(i) => {
                 let name = &self.parameters[usize::from(i)];

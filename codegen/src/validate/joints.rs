@@ -5,12 +5,14 @@ use std::cmp::Ordering;
 use super::bodies::{self, optional_not_negative, warn_of_massless};
 use super::number::text_of;
 use super::{call, geometry, zeros, Context};
-use crate::description::{Convention, JointDescription, LimitsDescription, MotorDescription, SpringDescription};
+use crate::description::{
+    Convention, JointDescription, LimitsDescription, MotorDescription, SpringDescription, StribeckDescription,
+};
 use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::exact::{Number, Polynomial};
 use crate::kinds::JointKind;
-use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose, Spring};
+use crate::manipulator::{Joint, Limits, LinkId, Motor, Pose, Spring, Stribeck};
 
 /// The joint; faults are reported. `base`: what stands before the first row.
 pub(super) fn joint(
@@ -42,6 +44,10 @@ pub(super) fn joint(
     };
     let offset = optional(&description.friction.offset, context);
     let cubic = optional(&description.friction.cubic, context);
+    let stribeck = match &description.friction.stribeck {
+        Some(stribeck) => self::stribeck(stribeck, &called, context).map(Some),
+        None => Some(None),
+    };
     let spring = match &description.spring {
         Some(spring) => self::spring(spring, &called, context).map(Some),
         None => Some(None),
@@ -64,9 +70,24 @@ pub(super) fn joint(
         coulomb: coulomb?,
         offset: offset?,
         cubic: cubic?,
+        stribeck: stribeck?,
         spring: spring?,
         armature: armature?,
     })
+}
+
+fn stribeck(description: &StribeckDescription, called: &str, context: &mut Context<'_>) -> Option<Stribeck> {
+    let what = format!("the Stribeck friction of joint {called}");
+    let torque = bodies::not_negative(description.torque.as_ref()?, &what, Code::NegativeFriction, context);
+    let given = description.velocity.as_ref()?;
+    let velocity = context.number(given)?;
+    if velocity.sign() != Ordering::Greater {
+        let message = format!("the velocity of the Stribeck friction of joint {called} is not positive");
+        let help = "give the rate at which 1/e of it is left, above 0; leave `stribeck` out if it does not fade: that is Coulomb friction";
+        context.report(Code::NonPositiveLimit, given.span, message, format!("this is {}", text_of(&velocity)), help);
+        return None;
+    }
+    Some(Stribeck { torque: torque?, velocity })
 }
 
 fn spring(description: &SpringDescription, called: &str, context: &mut Context<'_>) -> Option<Spring> {

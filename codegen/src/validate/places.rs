@@ -80,6 +80,8 @@ pub enum Role {
     Axis,
     /// A friction coefficient.
     Friction,
+    /// The velocity at which Stribeck friction fades.
+    StribeckVelocity,
     /// The stiffness of a spring.
     Stiffness,
     /// Where a spring is at rest.
@@ -106,6 +108,7 @@ impl Role {
             Role::RotorPosition => "the position of a rotor",
             Role::Axis => "the direction of an axis",
             Role::Friction => "a friction coefficient",
+            Role::StribeckVelocity => "the velocity of Stribeck friction",
             Role::Stiffness => "the stiffness of a spring",
             Role::SpringRest => "the rest of a spring",
             Role::Armature => "an armature",
@@ -141,6 +144,10 @@ pub(super) fn expressions(description: &RobotDescription) -> Vec<(Role, &Express
         all.value(Role::Friction, &joint.friction.coulomb);
         all.value(Role::Friction, &joint.friction.offset);
         all.value(Role::Friction, &joint.friction.cubic);
+        if let Some(stribeck) = &joint.friction.stribeck {
+            all.value(Role::Friction, &stribeck.torque);
+            all.value(Role::StribeckVelocity, &stribeck.velocity);
+        }
         if let Some(spring) = &joint.spring {
             all.value(Role::Stiffness, &spring.stiffness);
             all.value(Role::SpringRest, &spring.rest);

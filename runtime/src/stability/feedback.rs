@@ -74,16 +74,20 @@ fn offset<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
     Some(model.inertia_matrix(q).cholesky()?.solve(&(plant.gravity(q) - model.gravity(q))))
 }
 
-/// Viscous friction F_v, column by column: F(2 e_i) - F(e_i), in which Coulomb friction cancels, less 7/12 of the second difference
-/// F(3 e_i) - 2 F(2 e_i) + F(e_i) = 12 F_3 e_i, which takes cubic friction out.
+/// A rate, rad/s or m/s, beyond the Stribeck velocity of any joint: measured ones are below 1.
+const FADED: f64 = 16.0;
+
+/// Viscous friction F_v, column by column: F(2 x e_i) - F(x e_i), in which Coulomb friction cancels, less 7/12 of the second difference
+/// F(3 x e_i) - 2 F(2 x e_i) + F(x e_i) = 12 F_3 x³ e_i, which takes cubic friction out; over x, a rate, rad/s or m/s, at which nothing is left of Stribeck
+/// friction.
 pub(crate) fn viscous<R: Dynamics<N>, const N: usize>(robot: &R) -> SMatrix<R::Real, N, N> {
     let mut f = SMatrix::<R::Real, N, N>::zeros();
     for i in 0..N {
         let mut e = SVector::zeros();
         e[i] = nalgebra::one::<R::Real>();
-        let [one, two, three] = [1.0, 2.0, 3.0].map(|rate| robot.friction(&(e * lit::<R::Real>(rate))));
+        let [one, two, three] = [1.0, 2.0, 3.0].map(|times| robot.friction(&(e * lit::<R::Real>(times * FADED))));
         let first = two - one;
-        f.set_column(i, &(first - (three - two - first) * lit::<R::Real>(7.0 / 12.0)));
+        f.set_column(i, &((first - (three - two - first) * lit::<R::Real>(7.0 / 12.0)) / lit::<R::Real>(FADED)));
     }
     f
 }

@@ -163,6 +163,15 @@ struct FrictionText {
     coulomb: Option<Text>,
     offset: Option<Text>,
     cubic: Option<Text>,
+    #[serde(default)]
+    stribeck: StribeckText,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StribeckText {
+    torque: Option<Text>,
+    velocity: Option<Text>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize)]
@@ -460,6 +469,8 @@ fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Num
         coulomb: numbers.some(&text.friction.coulomb)?,
         offset: numbers.some(&text.friction.offset)?,
         cubic: numbers.some(&text.friction.cubic)?,
+        stribeck: numbers.some(&text.friction.stribeck.torque)?,
+        stribeck_velocity: numbers.some(&text.friction.stribeck.velocity)?.unwrap_or(1.0),
         stiffness: numbers.some(&text.spring.stiffness)?,
         rest: numbers.some(&text.spring.rest)?.unwrap_or(0.0),
         armature: numbers.some(&text.armature)?,

@@ -210,10 +210,13 @@ impl Model {
         self.friction_at(dq, dq)
     }
 
-    /// F_v dqr + F_c sign(dq) + F_0 + F_3 dq² dqr.
+    /// F_v dqr + (F_c + F_s exp(-|dq| / v_s)) sign(dq) + F_0 + F_3 dq² dqr.
     fn friction_at(&self, dq: &[f64], dqr: &[f64]) -> Vec<f64> {
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
-        let coulomb = self.joints.iter().zip(dq).map(|(j, &x)| j.coulomb.unwrap_or(0.0) * sign(x) + j.offset.unwrap_or(0.0));
+        let dry = |j: &super::Joint, x: f64| {
+            j.coulomb.unwrap_or(0.0) + j.stribeck.unwrap_or(0.0) * (-x.abs() / j.stribeck_velocity).exp()
+        };
+        let coulomb = self.joints.iter().zip(dq).map(|(j, &x)| dry(j, x) * sign(x) + j.offset.unwrap_or(0.0));
         let cubic = self.joints.iter().zip(dq).map(|(j, &x)| j.cubic.unwrap_or(0.0) * x * x);
         self.viscous().iter().zip(cubic).zip(dqr).zip(coulomb).map(|(((f, s), x), c)| (f + s) * x + c).collect()
     }
@@ -309,7 +312,16 @@ impl Model {
         let fixed = |v: &[f64]| Dual::along(v, &rest);
         let (mut by_q, mut by_dq) = (vec![vec![0.0; n]; n], vec![vec![0.0; n]; n]);
         let cubic = self.joints.iter().zip(dq).map(|(joint, rate)| 3.0 * joint.cubic.unwrap_or(0.0) * rate * rate);
-        let slope: Vec<f64> = self.viscous().iter().zip(cubic).map(|(viscous, cubic)| viscous + cubic).collect();
+        let stribeck = self.joints.iter().zip(dq).map(|(joint, rate)| {
+            let fading = (-rate.abs() / joint.stribeck_velocity).exp() / joint.stribeck_velocity;
+            if *rate == 0.0 {
+                0.0
+            } else {
+                -joint.stribeck.unwrap_or(0.0) * fading
+            }
+        });
+        let slopes = self.viscous().into_iter().zip(cubic).zip(stribeck);
+        let slope: Vec<f64> = slopes.map(|((viscous, cubic), stribeck)| viscous + cubic + stribeck).collect();
         for k in 0..n {
             let mut unit = rest.clone();
             unit[k] = 1.0;

@@ -53,7 +53,7 @@ impl Regressor {
 
 impl Model {
     /// The places of the standard parameters: ten per link, then of each joint what is given of rotor inertia, rotor and joint
-    /// viscous friction, Coulomb friction, offset, cubic friction, stiffness of a spring, then the payload's ten.
+    /// viscous friction, Coulomb friction, offset, cubic and Stribeck friction, stiffness of a spring, then the payload's ten.
     fn standard_places(&mut self) -> Vec<&mut f64> {
         let (mut links, mut drives) = (Vec::new(), Vec::new());
         for joint in &mut self.joints {
@@ -63,6 +63,7 @@ impl Model {
             drives.extend([inertia, joint.armature.as_mut(), viscous].into_iter().flatten());
             drives.extend(joint.viscous.as_mut());
             drives.extend([joint.coulomb.as_mut(), joint.offset.as_mut(), joint.cubic.as_mut()].into_iter().flatten());
+            drives.extend(joint.stribeck.as_mut());
             drives.extend(joint.stiffness.as_mut());
         }
         links.extend(drives);

@@ -32,6 +32,7 @@ fn exact(formula: &Formula, names: &Names) -> Result<Exact, String> {
                 "cos" => sine_and_cosine(&x)?.1,
                 "sqrt" => root(&x)?,
                 "sign" => sign(&x)?,
+                "exp" | "abs" => Polynomial::atom(Atom::Name(format!("{function}({x})"))).into(),
                 _ => return Err(format!("unknown function {function}")),
             }
         }

@@ -105,4 +105,8 @@ impl Inputs<Growth> for Growths {
     fn sign(&self, _: usize) -> Growth {
         Growth::CONSTANT
     }
+
+    fn stribeck(&self, _: usize, _: &Growth) -> Growth {
+        Growth::CONSTANT
+    }
 }

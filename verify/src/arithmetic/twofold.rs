@@ -6,7 +6,7 @@
 //! roundoff of 2^-92 in place of 2^-53 at the worst: **its error is below 2^-38 of the running bound**, and 256 bits ([`super::wide`]) are
 //! needed only to show the worst cases.
 
-use super::wide::{Wide, WideArguments};
+use super::wide::{stribeck, Wide, WideArguments};
 use crate::element::Element;
 use crate::float::{Arguments, LANES};
 use crate::program::{Angle, Argument, Inputs, Program, Step};
@@ -278,6 +278,16 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
             Step::Cosine(angle) => wave(angle).1,
             Step::Sign(joint) => {
                 Twofold::exact(arguments.arguments.of(Argument::Dq)[*joint].map(|x| if x == 0.0 { 0.0 } else { x.signum() }))
+            }
+            Step::Stribeck(joint, velocity) => {
+                let rates = arguments.arguments.of(Argument::Dq)[*joint];
+                let (high, low) = literals[*velocity];
+                let velocity = Wide::from_f64(high).plus(&Wide::from_f64(low));
+                Twofold::of(|lane| {
+                    let exact = stribeck(rates[lane], &velocity);
+                    let high = exact.to_f64();
+                    (high, exact.minus(&Wide::from_f64(high)).to_f64())
+                })
             }
             Step::Negate(a) => {
                 let a = &values[*a];

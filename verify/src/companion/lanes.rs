@@ -67,7 +67,7 @@ impl Lanes {
                     continue;
                 }
                 match steps[i] {
-                    Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) => {}
+                    Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) | Step::Stribeck(..) => {}
                     Step::Neg(a) => inside[a as usize] = true,
                     Step::Add(a, b) | Step::Sub(a, b) | Step::Mul(a, b) | Step::Scale(a, b) | Step::Div(a, b) => {
                         inside[a as usize] = true;
@@ -110,6 +110,7 @@ impl Lanes {
                     })
                 }
                 Step::Sign(joint) => Many::of(|lane| sign(side.arguments.dq[joint as usize][lane])),
+                Step::Stribeck(joint, velocity) => Many::of(|lane| fading(side.arguments.dq[joint as usize][lane], velocity)),
                 Step::Neg(a) => Many::of(|lane| negated(values[a as usize].at(lane))),
                 Step::Add(a, b) => {
                     let (a, b) = both(a, b);
@@ -177,7 +178,7 @@ fn backward_in_lanes(
             bound[lane] = if active[lane] { more } else { bound[lane] };
         }
         match steps[i] {
-            Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) => {}
+            Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) | Step::Stribeck(..) => {}
             Step::Neg(a) => add(&mut sensitivities[a as usize], &active, |lane| negated(own.at(lane))),
             Step::Add(a, b) => {
                 add(&mut sensitivities[a as usize], &active, |lane| own.at(lane));

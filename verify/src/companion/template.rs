@@ -14,6 +14,8 @@ enum Step {
     Cos(u32),
     /// Sign of a joint rate.
     Sign(u32),
+    /// What is left of Stribeck friction at a joint rate, and its velocity. // with Stribeck friction
+    Stribeck(u32, Real), // with Stribeck friction
     /// -a
     Neg(u32),
     /// a + b
@@ -176,6 +178,7 @@ fn forward(steps: &[Step], angles: &[Angle<'_>], given: &Given<'_>, values: &mut
                 wave(if matches!(step, Step::Sin(_)) { sine } else { cosine }, angle.error)
             }
             Step::Sign(joint) => sign(given.dq[joint as usize]),
+            Step::Stribeck(joint, velocity) => fading(given.dq[joint as usize], velocity), // with Stribeck friction
             Step::Neg(a) => negated(of(a)),
             Step::Add(a, b) => plus(of(a), of(b)),
             Step::Sub(a, b) => plus(of(a), negated(of(b))),
@@ -193,6 +196,7 @@ fn rounding(step: &Step, value: &Bounded) -> Real {
         Step::Scale(..) if value.value.abs() < TINY => TINY,
         Step::Scale(..) => 0.0,
         Step::Lit(..) | Step::Sin(_) | Step::Cos(_) => value.error,
+        Step::Stribeck(..) => value.error, // with Stribeck friction
         Step::Add(..) | Step::Sub(..) => UNIT * value.value.abs(),
         Step::Mul(..) => UNIT * value.value.abs() + TINY,
         Step::Div(..) => 2.0 * UNIT * value.value.abs() + TINY,
@@ -221,6 +225,7 @@ fn backward(steps: &[Step], values: &[Bounded], sensitivities: &mut [Bounded], e
         };
         match steps[i] {
             Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) => {}
+            Step::Stribeck(..) => {} // with Stribeck friction
             Step::Neg(a) => add(a, negated(own)),
             Step::Add(a, b) => {
                 add(a, own);

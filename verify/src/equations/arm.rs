@@ -73,6 +73,10 @@ pub struct Joint<E> {
     pub offset: E,
     /// Coefficient of the cube of the rate.
     pub cubic: E,
+    /// Stribeck friction at the lowest rates.
+    pub stribeck: E,
+    /// The rate at which 1/e of it is left; 1 where there is none.
+    pub stribeck_velocity: E,
     /// Stiffness of the joint's spring.
     pub stiffness: E,
     /// The joint variable at which that is at rest.
@@ -207,6 +211,11 @@ impl<K: Arithmetic> Builder<'_, K> {
             coulomb: self.optional(joint.coulomb.as_ref())?,
             offset: self.optional(joint.offset.as_ref())?,
             cubic: self.optional(joint.cubic.as_ref())?,
+            stribeck: self.optional(joint.stribeck.as_ref().map(|stribeck| &stribeck.torque))?,
+            stribeck_velocity: match &joint.stribeck {
+                Some(stribeck) => self.number(&stribeck.velocity)?,
+                None => self.arithmetic.integer(1),
+            },
             stiffness: self.optional(joint.spring.as_ref().map(|spring| &spring.stiffness))?,
             rest: self.optional(joint.spring.as_ref().map(|spring| &spring.rest))?,
             armature: self.optional(joint.armature.as_ref())?,
@@ -297,6 +306,8 @@ impl<E: Element> Arm<E> {
             coulomb: f(&joint.coulomb),
             offset: f(&joint.offset),
             cubic: f(&joint.cubic),
+            stribeck: f(&joint.stribeck),
+            stribeck_velocity: f(&joint.stribeck_velocity),
             stiffness: f(&joint.stiffness),
             rest: f(&joint.rest),
             armature: f(&joint.armature),

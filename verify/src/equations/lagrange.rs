@@ -158,8 +158,9 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
         .collect()
 }
 
-/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + F_c sign_i + F_0: the cube of dq_i is taken once by `rates`.
-pub fn friction<E: Element>(arm: &Arm<E>, dq: &[E], rates: &[E], signs: &[E]) -> Vec<E> {
+/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with what is drawn for signs and exponentials: the cube of dq_i is taken once by `rates`.
+pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<E> {
+    let State { dq, signs, stribeck, .. } = state;
     arm.joints
         .iter()
         .enumerate()
@@ -169,7 +170,8 @@ pub fn friction<E: Element>(arm: &Arm<E>, dq: &[E], rates: &[E], signs: &[E]) ->
                 viscous = viscous.plus(&motor.ratio.times(&motor.ratio).times(&motor.viscous));
             }
             let cubic = joint.cubic.times(&dq[i]).times(&dq[i]).times(&rates[i]);
-            viscous.times(&rates[i]).plus(&joint.coulomb.times(&signs[i])).plus(&joint.offset).plus(&cubic)
+            let dry = joint.coulomb.plus(&joint.stribeck.times(&stribeck[i]));
+            viscous.times(&rates[i]).plus(&dry.times(&signs[i])).plus(&joint.offset).plus(&cubic)
         })
         .collect()
 }

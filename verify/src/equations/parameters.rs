@@ -34,6 +34,8 @@ pub enum Standard {
     Offset(usize),
     /// Cubic friction at a joint.
     Cubic(usize),
+    /// Stribeck friction at a joint.
+    Stribeck(usize),
     /// Stiffness of a joint's spring.
     Stiffness(usize),
     /// One of the ten of the payload.
@@ -57,6 +59,7 @@ impl Standard {
                 (joint.coulomb.is_some(), Standard::Coulomb(i)),
                 (joint.offset.is_some(), Standard::Offset(i)),
                 (joint.cubic.is_some(), Standard::Cubic(i)),
+                (joint.stribeck.is_some(), Standard::Stribeck(i)),
                 (joint.spring.is_some(), Standard::Stiffness(i)),
             ];
             all.extend(given.iter().filter(|(given, _)| *given).map(|(_, parameter)| *parameter));
@@ -78,6 +81,7 @@ impl Standard {
             Standard::Coulomb(i) => format!("Fc{}", i + 1),
             Standard::Offset(i) => format!("F0_{}", i + 1),
             Standard::Cubic(i) => format!("F3_{}", i + 1),
+            Standard::Stribeck(i) => format!("Fs{}", i + 1),
             Standard::Stiffness(i) => format!("ks{}", i + 1),
             Standard::Payload(k) => format!("{}p", TEN[k]),
         }
@@ -95,6 +99,7 @@ impl Standard {
             Standard::Coulomb(i) => arm.joints[i].coulomb.clone(),
             Standard::Offset(i) => arm.joints[i].offset.clone(),
             Standard::Cubic(i) => arm.joints[i].cubic.clone(),
+            Standard::Stribeck(i) => arm.joints[i].stribeck.clone(),
             Standard::Stiffness(i) => arm.joints[i].stiffness.clone(),
             Standard::Payload(k) => arm.payload.as_ref().map_or(arm.zero.clone(), |p| ten(p)[k].clone()),
         }
@@ -117,6 +122,7 @@ pub fn with_standard<E: Element>(arm: &Arm<E>, columns: &[Standard], values: &[E
             Standard::Coulomb(i) => arm.joints[i].coulomb = value.clone(),
             Standard::Offset(i) => arm.joints[i].offset = value.clone(),
             Standard::Cubic(i) => arm.joints[i].cubic = value.clone(),
+            Standard::Stribeck(i) => arm.joints[i].stribeck = value.clone(),
             Standard::Stiffness(i) => arm.joints[i].stiffness = value.clone(),
         }
     }
@@ -178,6 +184,7 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
             Standard::Coulomb(i) => single(i, state.signs[i].clone()),
             Standard::Offset(i) => single(i, arm.one.clone()),
             Standard::Cubic(i) => single(i, state.dq[i].times(&state.dq[i]).times(&state.dqr[i])),
+            Standard::Stribeck(i) => single(i, state.signs[i].times(&state.stribeck[i])),
             Standard::Stiffness(i) => single(i, state.q[i].minus(&arm.joints[i].rest)),
         })
         .collect()
@@ -254,7 +261,8 @@ impl<E: Element> KeptAlone<'_, E> {
             let (offset, cubic) = (self.of(Standard::Offset(i), &joint.offset), self.of(Standard::Cubic(i), &joint.cubic));
             let rate = &state.dq[i];
             let steep = cubic.times(rate).times(rate).times(rate);
-            viscous.times(rate).plus(&coulomb.times(&state.signs[i])).plus(&offset).plus(&steep)
+            let fading = self.of(Standard::Stribeck(i), &joint.stribeck).times(&state.stribeck[i]);
+            viscous.times(rate).plus(&coulomb.plus(&fading).times(&state.signs[i])).plus(&offset).plus(&steep)
         };
         let stiffness = |i: usize, joint: &Joint<E>| self.of(Standard::Stiffness(i), &joint.stiffness);
         let spring = |(i, joint): (usize, &Joint<E>)| stiffness(i, joint).times(&state.q[i].minus(&joint.rest));
@@ -288,7 +296,7 @@ impl<E: Element> KeptAlone<'_, E> {
 pub fn reference_torques<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     let pose = Pose::new(arm, state);
     let torques = Reference::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr).whole();
-    let friction = friction(arm, &state.dq, &state.dqr, &state.signs);
+    let friction = friction(arm, state, &state.dqr);
     let springs = spring_torques(arm, &state.q);
     torques.iter().zip(friction).zip(springs).map(|((a, b), c)| a.plus(&b).plus(&c)).collect()
 }
@@ -346,7 +354,8 @@ pub fn base_map<K: Arithmetic>(
     let states = base.len().div_ceil(n) + 3;
     let (mut left, mut right) = (Vec::new(), Vec::new());
     for _ in 0..states {
-        let state = State::draw(arithmetic, n);
+        let fades = (0..n).map(|i| all.contains(&Standard::Stribeck(i)));
+        let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades);
         let y = standard_columns(arm, &state, base, LinkFrames::Joint);
         let full = standard_columns(arm, &state, all, LinkFrames::Described);
         for row in 0..n {

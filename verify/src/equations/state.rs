@@ -25,6 +25,10 @@ pub struct State<E> {
     pub tau: Vec<E>,
     /// Signs of the joint rates: independent inputs here, as in the equations.
     pub signs: Vec<E>,
+    /// exp(-|dq| / v) of the joints, v their Stribeck velocities: independent inputs here, as in the equations.
+    pub stribeck: Vec<E>,
+    /// These velocities, for derivatives by the rates; 1 until an arm says what they are.
+    pub stribeck_velocities: Vec<E>,
     /// The parameter vector.
     pub pi: Vec<E>,
     /// 0.
@@ -34,19 +38,34 @@ pub struct State<E> {
 }
 
 impl<E: Element> State<E> {
-    /// A state of these arguments.
+    /// A state of these arguments; nothing is left of Stribeck friction.
     pub fn of(arguments: Arguments<E>, angles: Vec<(E, E)>, signs: Vec<E>, [zero, one]: [E; 2]) -> State<E> {
         let Arguments { pi, q, dq, ddq, dqr, ddqr, tau } = arguments;
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, pi, zero, one }
+        let (stribeck, stribeck_velocities) = (vec![zero.clone(); q.len()], vec![one.clone(); q.len()]);
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi, zero, one }
     }
 
-    /// A random state; `pi` is filled in by who knows what it means.
+    /// The same with exponentials drawn for the joints that have Stribeck friction.
+    #[must_use]
+    pub fn with_stribeck<K: Arithmetic<Element = E>>(
+        mut self,
+        arithmetic: &mut K,
+        joints: impl IntoIterator<Item = bool>,
+    ) -> State<E> {
+        for (value, _) in self.stribeck.iter_mut().zip(joints).filter(|(_, has_it)| *has_it) {
+            *value = arithmetic.draw();
+        }
+        self
+    }
+
+    /// A random state without Stribeck friction; `pi` is filled in by who knows what it means.
     pub fn draw<K: Arithmetic<Element = E>>(arithmetic: &mut K, n: usize) -> State<E> {
         let mut many = |_| (0..n).map(|_| arithmetic.draw()).collect::<Vec<E>>();
         let [q, dq, ddq, dqr, ddqr, tau, signs] = [0; 7].map(&mut many);
         let angles = (0..n).map(|_| arithmetic.draw_angle()).collect();
         let (zero, one) = (arithmetic.integer(0), arithmetic.integer(1));
-        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, pi: Vec::new(), zero, one }
+        let (stribeck, stribeck_velocities) = (vec![zero.clone(); n], vec![one.clone(); n]);
+        State { angles, q, dq, ddq, dqr, ddqr, tau, signs, stribeck, stribeck_velocities, pi: Vec::new(), zero, one }
     }
 
     /// This state moving: joint variables with `along` as their rates of change, rates with `rates` as theirs, all else at rest.
@@ -59,7 +78,14 @@ impl<E: Element> State<E> {
             let sine = Dual { value: s.clone(), rate: c.times(rate) };
             (sine, Dual { value: c.clone(), rate: s.times(rate).negated() })
         });
+        // d/dt exp(-|dq| / v) = -sign(dq) ddq exp(-|dq| / v) / v
+        let fading = |(i, value): (usize, &E)| {
+            let by_rate = self.signs[i].times(value).over(&self.stribeck_velocities[i]).unwrap_or_else(|| self.zero.clone());
+            Dual { value: value.clone(), rate: by_rate.times(&rates[i]).negated() }
+        };
         State {
+            stribeck: self.stribeck.iter().enumerate().map(fading).collect(),
+            stribeck_velocities: still(&self.stribeck_velocities),
             angles: angles.collect(),
             q: with(&self.q, along),
             dq: with(&self.dq, rates),
@@ -104,6 +130,11 @@ impl<E: Element> Inputs<E> for State<E> {
 
     fn sign(&self, joint: usize) -> E {
         self.signs[joint].clone()
+    }
+
+    /// The literal is that of the joint: this is seen to before anything is run.
+    fn stribeck(&self, joint: usize, _: &E) -> E {
+        self.stribeck[joint].clone()
     }
 
     fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, E>) -> (E, E) {

@@ -336,6 +336,20 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.shared.calls.insert("sign");
                 self.push(Step::Sign(joint))?
             }
+            Kind::Word if token.is("stribeck") => {
+                self.parser.expect("stribeck(")?;
+                let place = self.parser.peek();
+                let (argument, joint, _) = self.entry()?;
+                if argument != Argument::Dq && Check::Signs.is_made() {
+                    return Err(place.fault("Stribeck friction of something that is not a joint rate"));
+                }
+                self.parser.expect(",")?;
+                let velocity = self.program.literals.len();
+                self.literal()?;
+                self.parser.expect(")")?;
+                self.shared.calls.insert("stribeck");
+                self.push(Step::Stribeck(joint, velocity))?
+            }
             Kind::Word if Argument::named(token.text).is_some() => self.entry()?.2,
             Kind::Word => {
                 self.parser.take()?;

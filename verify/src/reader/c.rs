@@ -1,7 +1,7 @@
 //! Reads a module in C: the header that holds the functions.
 //!
 //! ```text
-//! header   = guard [ library ] prologue constants [ sines ] [ sign ] { { part } function } epilogue
+//! header   = guard [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } epilogue
 //! function = static inline TYPE ROBOT_NAME( ARGUMENTS ) { ROBOT_UNFUSED { (void)ARGUMENT; } [ angles ] { line } { call { line } } result }
 //! angles   = const ROBOT_real angle[N] = {ANGLES};  ROBOT_real sine[N], cosine[N];  ROBOT_sin_cos(ROBOT_ANGLES(USED, N), angle, sine, cosine);
 //!            { const ROBOT_real NAME = sine[I]; | const ROBOT_real NAME = cosine[I]; }
@@ -22,6 +22,7 @@ const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")) };
 const PROLOGUE: &str = include_str!("c/prologue.h");
 const EPILOGUE: &str = include_str!("c/epilogue.h");
 const SIGN: &str = include_str!("c/sign.h");
+const STRIBECK: &str = include_str!("c/stribeck.h");
 const STD: &str = include_str!("c/std.h");
 const FAST_F64: &str = include_str!("c/fast_f64.h");
 const FAST_F32: &str = include_str!("c/fast_f32.h");
@@ -133,6 +134,11 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if sign {
         fixed(&mut lines, SIGN)?;
     }
+    let own_stribeck = robot.own(STRIBECK);
+    let stribeck = lines.is(Lines::new(&own_stribeck, COMMENTS)?.peek());
+    if stribeck {
+        fixed(&mut lines, STRIBECK)?;
+    }
 
     let syntax = Syntax {
         index: ("[", "]"),
@@ -140,14 +146,15 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         operators: [" * ", " / "],
         suffix,
         sign: format!("{}_sign(", robot.name),
+        stribeck: format!("{}_stribeck(", robot.name),
         define: [format!("    const {}_real ", robot.name), " = ".into(), ";".into()],
         list: ("[", "]"),
         angles: ", ",
     };
     let own_epilogue = robot.own(EPILOGUE);
     let end = Lines::new(&own_epilogue, COMMENTS)?;
-    let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 2] };
-    let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign])?;
+    let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 3] };
+    let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign, stribeck])?;
     fixed(&mut lines, EPILOGUE)?;
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
@@ -205,7 +212,7 @@ struct Reader<'a, 'r> {
     sizes: Sizes,
     parts: BTreeMap<&'a str, Part<'a>>,
     steps: usize,
-    asks: [bool; 2],
+    asks: [bool; 3],
 }
 
 impl<'a> Functions<'a> for Reader<'a, '_> {
@@ -213,7 +220,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         self.parts.iter().find_map(|(name, part)| (!part.used).then_some(*name))
     }
 
-    fn asks(&self) -> [bool; 2] {
+    fn asks(&self) -> [bool; 3] {
         self.asks
     }
 
@@ -284,7 +291,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         }
         lines.expect("}")?;
         self.steps = body.steps();
-        (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
+        (0..3).for_each(|k| self.asks[k] |= body.asks[k]);
         Ok(Some((name.into(), Function { documentation, program: body.program })))
     }
 }

@@ -1,7 +1,7 @@
 //! Reads a module in JavaScript.
 //!
 //! ```text
-//! module   = constants check [ sines ] [ sign ] { { part } function }
+//! module   = constants check [ sines ] [ sign ] [ stribeck ] { { part } function }
 //! function = export function NAME(ARGUMENTS) { { check("ARGUMENT", ARGUMENT, LENGTH); } { wave } { line } { call { line } } result }
 //! wave     = sinCos(ANGLE);  { const NAME = wave[0]; | const NAME = wave[1]; }
 //! line     = const NAME = SUM;
@@ -21,6 +21,7 @@ const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/"
 
 const CHECK: &str = include_str!("javascript/check.mjs");
 const SIGN: &str = include_str!("javascript/sign.mjs");
+const STRIBECK: &str = include_str!("javascript/stribeck.mjs");
 const STD: &str = include_str!("javascript/std.mjs");
 const FAST: &str = include_str!("javascript/sines.mjs");
 
@@ -68,18 +69,23 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if sign {
         lines.expect_all(SIGN, COMMENTS)?;
     }
+    let stribeck = begins(&lines, STRIBECK, 0)?;
+    if stribeck {
+        lines.expect_all(STRIBECK, COMMENTS)?;
+    }
     let syntax = Syntax {
         index: ("[", "]"),
         first: 0,
         operators: [" * ", " / "],
         suffix: "",
         sign: "sign(".into(),
+        stribeck: "stribeck(".into(),
         define: ["    const ".into(), " = ".into(), ";".into()],
         list: ("[", "]"),
         angles: ", ",
     };
-    let mut reader = Reader { syntax: &syntax, sizes, parts: Parts::default(), steps: 0, asks: [false; 2] };
-    let functions = reader.all(&mut lines, "", [trig.is_some(), sign])?;
+    let mut reader = Reader { syntax: &syntax, sizes, parts: Parts::default(), steps: 0, asks: [false; 3] };
+    let functions = reader.all(&mut lines, "", [trig.is_some(), sign, stribeck])?;
     Ok(Module { real: Float::F64, trig, head, documentation: None, constants, functions })
 }
 
@@ -88,7 +94,7 @@ struct Reader<'a, 'r> {
     sizes: Sizes,
     parts: Parts<'a>,
     steps: usize,
-    asks: [bool; 2],
+    asks: [bool; 3],
 }
 
 impl<'a> Functions<'a> for Reader<'a, '_> {
@@ -96,7 +102,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         self.parts.unused()
     }
 
-    fn asks(&self) -> [bool; 2] {
+    fn asks(&self) -> [bool; 3] {
         self.asks
     }
 
@@ -153,7 +159,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         }
         lines.expect("}")?;
         self.steps = body.steps();
-        (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
+        (0..3).for_each(|k| self.asks[k] |= body.asks[k]);
         Ok(Some((own, Function { documentation, program: body.program })))
     }
 }

@@ -4,7 +4,7 @@
 //! package  = { %%% FILE  file }                    files in the order of their names: Contents.m, which is a comment, model.m, functions
 //! model    = function m = model()  m = struct();  { m.FIELD = VALUE; }  end
 //! function = function RESULTS = NAME(ARGUMENTS)  n = COLUMNS;  { check('ARGUMENT', ARGUMENT, ROWS, n); } [ waves ] { line } { call { line } }
-//!            { RESULT = zeros(SIZES, n); } { RESULT(INDICES, :) = SUM; } end { part } check [ sines ] [ sign ]
+//!            { RESULT = zeros(SIZES, n); } { RESULT(INDICES, :) = SUM; } end { part } check [ sines ] [ sign ] [ stribeck ]
 //! waves    = [sine, cosine] = sinCos([ANGLES]);  { NAME = sine(I, :); | NAME = cosine(I, :); }
 //! line     = NAME = SUM;
 //! call     = givenK = NAMEPartK(ARGUMENTS, {NAMES});  { NAME = givenK{I}; }
@@ -22,6 +22,7 @@ const COMMENTS: Comments = Comments { line: Some("%"), block: None };
 
 const CHECK: &str = include_str!("matlab/check.m");
 const SIGN: &str = include_str!("matlab/sign.m");
+const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
 
@@ -104,6 +105,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         operators: [" .* ", " ./ "],
         suffix: "",
         sign: "signOf(".into(),
+        stribeck: "stribeck(".into(),
         define: ["    ".into(), " = ".into(), ";".into()],
         list: ("{", "}"),
         angles: "; ",
@@ -216,7 +218,7 @@ impl Reader<'_> {
         }
         lines.at = behind_parts;
         lines.expect_all(CHECK, COMMENTS)?;
-        let (function, [sines, sign]) = function;
+        let (function, [sines, sign, stribeck]) = function;
         if sines {
             let fast = Lines::new(FAST, COMMENTS)?;
             let fast = lines.all.get(lines.at + 1).map(|line| line.text) == fast.all.get(1).map(|line| line.text);
@@ -229,20 +231,23 @@ impl Reader<'_> {
         if sign {
             lines.expect_all(SIGN, COMMENTS)?;
         }
+        if stribeck {
+            lines.expect_all(STRIBECK, COMMENTS)?;
+        }
         match lines.ended() {
             true => Ok((own, function)),
             false => Err(lines.fault(format!("{} behind the end of the file's functions", lines.shown()))),
         }
     }
 
-    /// The function itself, and whether it needs sines and signs.
+    /// The function itself, and whether it needs sines, signs and what is left of Stribeck friction.
     fn function<'a>(
         &mut self,
         lines: &mut Lines<'a>,
         (own, promise, arguments): (String, &'static Promise, Vec<Argument>),
         name: &str,
         parts: &mut Parts<'a>,
-    ) -> Result<(Function, [bool; 2]), Fault> {
+    ) -> Result<(Function, [bool; 3]), Fault> {
         let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
         let results: Vec<String> = promise.returned.named().iter().map(|(name, _)| camel(name)).collect();
         let returned = match results.as_slice() {

@@ -269,6 +269,8 @@ pub(super) struct Syntax {
     pub(super) suffix: &'static str,
     /// In front of the entry that a sign is of.
     pub(super) sign: String,
+    /// In front of the entry that what is left of Stribeck friction is of.
+    pub(super) stribeck: String,
     /// Around the value of a name: `const double `, ` = `, `;`.
     pub(super) define: [String; 3],
     /// Around the index of a value in a list.
@@ -414,7 +416,7 @@ pub(super) struct Body<'a, 's> {
     pub(super) program: Program,
     scope: BTreeMap<&'a str, usize>,
     /// Sines are used, and signs.
-    pub(super) asks: [bool; 2],
+    pub(super) asks: [bool; 3],
     /// Steps and entries of the functions before.
     steps: usize,
 }
@@ -429,7 +431,7 @@ impl<'a, 's> Body<'a, 's> {
             turns: Vec::new(),
             outputs: Vec::new(),
         };
-        Body { syntax, real, program, scope: BTreeMap::new(), asks: [false; 2], steps }
+        Body { syntax, real, program, scope: BTreeMap::new(), asks: [false; 3], steps }
     }
 
     /// Steps and entries of this function and those before.
@@ -636,6 +638,17 @@ impl<'a, 's> Body<'a, 's> {
             place.expect(")")?;
             self.asks[1] = true;
             self.push(Step::Sign(joint), place)?
+        } else if place.eat(&self.syntax.stribeck) {
+            let (argument, joint, _) = self.entry(place)?;
+            if argument != Argument::Dq {
+                return Err(start.fault("Stribeck friction is of a joint rate"));
+            }
+            place.expect(", ")?;
+            let velocity = self.program.literals.len();
+            self.literal(place)?;
+            place.expect(")")?;
+            self.asks[2] = true;
+            self.push(Step::Stribeck(joint, velocity), place)?
         } else {
             let mut after = *place;
             let word = after.word();
@@ -662,11 +675,11 @@ pub(super) trait Functions<'a> {
     /// A part that no function calls.
     fn unused(&self) -> Option<&'a str>;
 
-    /// Whether functions use sines, and signs.
-    fn asks(&self) -> [bool; 2];
+    /// Whether functions use sines, signs, and what is left of Stribeck friction.
+    fn asks(&self) -> [bool; 3];
 
-    /// Takes all functions, up to a line or the end of the text; `has`: whether the module has sines, and a sign.
-    fn all(&mut self, lines: &mut Lines<'a>, end: &str, has: [bool; 2]) -> Result<Vec<(String, Read)>, Fault> {
+    /// Takes all functions, up to a line or the end of the text; `has`: whether the module has these.
+    fn all(&mut self, lines: &mut Lines<'a>, end: &str, has: [bool; 3]) -> Result<Vec<(String, Read)>, Fault> {
         let mut functions: Vec<(String, Read)> = Vec::new();
         while !lines.ended() && !lines.is(end) {
             if let Some((name, function)) = self.item(lines)? {
@@ -681,7 +694,8 @@ pub(super) trait Functions<'a> {
         }
         match has == self.asks() {
             true => Ok(functions),
-            false => Err(lines.fault("the module has sines or a sign that no function needs, or lacks those that one needs")),
+            false => Err(lines
+                .fault("the module has sines, a sign or an exponential that no function needs, or lacks those that one needs")),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Reads a module in Python.
 //!
 //! ```text
-//! module   = imports names constants arrays [ sines ] [ sign ] { [ class ] { part } function }
+//! module   = imports names constants arrays [ sines ] [ sign ] [ stribeck ] { [ class ] { part } function }
 //! function = def NAME(ARGUMENTS) -> TYPE:  xp, shape, (ARGUMENTS,) = _enter(("ARGUMENT", ARGUMENT, LENGTH), ...)  [ waves ] { line } { call { line } } result
 //! waves    = sine, cosine = _sin_cos(xp, (ANGLES,))  { NAME = sine[I] | NAME = cosine[I] }
 //! line     = NAME = SUM
@@ -21,6 +21,7 @@ const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\""
 
 const ARRAYS: &str = include_str!("python/arrays.py");
 const SIGN: &str = include_str!("python/sign.py");
+const STRIBECK: &str = include_str!("python/stribeck.py");
 const STD: &str = include_str!("python/std.py");
 const FAST_F64: &str = include_str!("python/sines_f64.py");
 const FAST_F32: &str = include_str!("python/sines_f32.py");
@@ -100,19 +101,24 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if sign {
         lines.expect_all(SIGN, COMMENTS)?;
     }
+    let stribeck = lines.is(Lines::new(STRIBECK, COMMENTS)?.peek());
+    if stribeck {
+        lines.expect_all(STRIBECK, COMMENTS)?;
+    }
     let syntax = Syntax {
         index: ("[", "]"),
         first: 0,
         operators: [" * ", " / "],
         suffix: "",
         sign: "_sign(xp, ".into(),
+        stribeck: "_stribeck(xp, ".into(),
         define: ["    ".into(), " = ".into(), String::new()],
         list: ("[", "]"),
         angles: ", ",
     };
     let mut reader =
-        Reader { syntax: &syntax, real, sizes, parts: Parts::default(), structures: Vec::new(), steps: 0, asks: [false; 2] };
-    let functions = reader.all(&mut lines, "", [trig.is_some(), sign])?;
+        Reader { syntax: &syntax, real, sizes, parts: Parts::default(), structures: Vec::new(), steps: 0, asks: [false; 3] };
+    let functions = reader.all(&mut lines, "", [trig.is_some(), sign, stribeck])?;
     let named = constants.len() + 1;
     let own = CONSTANTS.iter().map(|(name, ..)| (*name).to_string()).filter(|name| constants.contains_key(name));
     let mut wanted: Vec<String> = own.chain(["DTYPE".into()]).collect();
@@ -133,7 +139,7 @@ struct Reader<'a, 'r> {
     parts: Parts<'a>,
     structures: Vec<String>,
     steps: usize,
-    asks: [bool; 2],
+    asks: [bool; 3],
 }
 
 impl<'a> Functions<'a> for Reader<'a, '_> {
@@ -141,7 +147,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         self.parts.unused()
     }
 
-    fn asks(&self) -> [bool; 2] {
+    fn asks(&self) -> [bool; 3] {
         self.asks
     }
 
@@ -201,7 +207,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
             }
         }
         self.steps = body.steps();
-        (0..2).for_each(|k| self.asks[k] |= body.asks[k]);
+        (0..3).for_each(|k| self.asks[k] |= body.asks[k]);
         Ok(Some((name.into(), Function { documentation, program: body.program })))
     }
 }

@@ -1,4 +1,4 @@
-//! The private functions that answer for sine, cosine and sign. The equations take these as inputs, so that no equation can judge them: they are
+//! The private functions that answer for sine, cosine, sign and what is left of Stribeck friction. The equations take these as inputs, so that no equation can judge them: they are
 //! accepted by their texts alone.
 //!
 //! The texts stand here once more, and are not those of the generator taken in: what is right is decided where it is checked. Whoever changes the
@@ -19,12 +19,14 @@ const OF_STD: &str =
     "/// Sine and cosine of an angle in rad.\n#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    x.sin_cos()\n}";
 const SIGN: &str = "/// Sign of a rate: 0 at rest, not a number for what is not a number.\n#[inline]\n\
     fn sign(x: Real) -> Real {\n    if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { x }\n}";
+const STRIBECK: &str = include_str!("sines/stribeck.rs");
 const FAST_F64: &str = include_str!("sines/fast_f64.rs");
 const FAST_F32: &str = include_str!("sines/fast_f32.rs");
 
 /// All names.
-pub(super) const NAMES: [&str; 10] = [
+pub(super) const NAMES: [&str; 11] = [
     "sign",
+    "stribeck",
     "sin_cos",
     "SIN_COS_RANGE",
     "sin_cos_one",
@@ -64,6 +66,7 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
         let is = |text: &str| place.clone().expect(text);
         match name {
             "sign" => is(SIGN)?,
+            "stribeck" => is(STRIBECK.trim_end())?,
             "sin_cos" if !fast && is(OF_STD).is_ok() => trig = Some("std"),
             "sin_cos" if !fast => {
                 is(if real == Float::F64 { OF_LIBM_F64 } else { OF_LIBM_F32 })?;
@@ -86,7 +89,7 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
 /// Whether exactly those private items are there that the calls of some functions need.
 pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>) -> Result<(), Fault> {
     let mut needed = calls.clone();
-    if calls.iter().any(|name| *name != "sign" && *name != "sin_cos") {
+    if calls.iter().any(|name| !["sign", "stribeck", "sin_cos"].contains(name)) {
         needed.extend(FAST);
     }
     for (lanes, each) in [("sin_cos_four", "sin_cos_each_of_four"), ("sin_cos_eight", "sin_cos_each_of_eight")] {

@@ -28,6 +28,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
                     format!("{} {:?} {turn:?}", if matches!(step, Step::Sine(_)) { "sine" } else { "cosine" }, angle.terms)
                 }
                 Step::Input(..) | Step::Sign(_) => format!("{step:?}"),
+                Step::Stribeck(joint, velocity) => format!("stribeck {joint} {}", program.literals[*velocity].text),
                 Step::Negate(a) => format!("-{}", numbers[*a]),
                 Step::Add(a, b) => format!("{} + {}", numbers[*a], numbers[*b]),
                 Step::Subtract(a, b) => format!("{} - {}", numbers[*a], numbers[*b]),
@@ -51,6 +52,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
     both.turns.extend(b.turns.iter().map(|k| k + literals));
     both.steps.extend(b.steps.iter().map(|step| match step.clone() {
         Step::Literal(k) => Step::Literal(k + literals),
+        Step::Stribeck(joint, velocity) => Step::Stribeck(joint, velocity + literals),
         Step::Sine(mut angle) => {
             angle.turn = angle.turn.map(|(k, minus)| (k + turns, minus));
             Step::Sine(angle)

@@ -37,7 +37,7 @@ use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::origin_rate;
 use crate::derive::factors::LdlFactors;
-use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, wrenches, LinkMotion, Motion};
+use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, stribeck_slope, wrenches, LinkMotion, Motion};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
@@ -124,7 +124,7 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
 
 type Rows = Vec<Vec<ExprId>>;
 
-/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, F_v + 3 F_3 dq² in the second, and springs, k in the first; Coulomb friction counts as constant.
+/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, F_v + 3 F_3 dq² and the slope of Stribeck friction in the second, and springs, k in the first; Coulomb friction counts as constant.
 pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan, motion: &Motion) -> (Rows, Rows) {
     let c = coriolis::coriolis_matrix(pool, arm, plan);
     let two = pool.integer(2);
@@ -134,6 +134,10 @@ pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan,
         if joint.cubic != ExprId::ZERO {
             let (steep, three) = (cubic_coefficient(pool, arm, i), pool.integer(3));
             let slope = pool.mul(three, steep);
+            by_rates[i][i] = pool.add(by_rates[i][i], slope);
+        }
+        if joint.stribeck != ExprId::ZERO {
+            let slope = stribeck_slope(pool, arm, i);
             by_rates[i][i] = pool.add(by_rates[i][i], slope);
         }
     }

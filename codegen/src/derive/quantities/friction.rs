@@ -4,7 +4,7 @@
 //! F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i)                                       (the book, eq. 7.42)
 //! ```
 //!
-//! and F_0 + F_3 dq_i³ where the description has them.
+//! and F_0 + F_3 dq_i³ + F_s sign(dq_i) exp(-|dq_i| / v_s) where the description has them.
 
 use crate::derive::newton_euler;
 use crate::derive::passes::RewriteScope;
@@ -24,9 +24,8 @@ pub static FRICTION: Quantity = Quantity {
         "F_i = (k_r² F_m + F_v) dq_i + F_c sign(dq_i), sign(0) = 0          (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
     )
-    .with_more_friction(
-        "Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.",
-    ),
+    .with_more_friction("Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.")
+    .with_stribeck("Stribeck friction adds F_s sign(dq_i) exp(-|dq_i| / v_s), with the numbers of its joint."),
     recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {
         let rates = arm.symbols(pool, Symbol::Rate);
         newton_euler::friction(pool, arm, &rates)

@@ -25,7 +25,8 @@ pub static REGRESSOR: Quantity = Quantity {
         "`y[joint][parameter]`, parameters in the order of {PARAMETER_NAMES}. In F viscous friction acts on dqr, Coulomb friction on sign(dq). \
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
     )
-    .with_more_friction("In F cubic friction is F_3 dq² dqr."),
+    .with_more_friction("In F cubic friction is F_3 dq² dqr.")
+    .with_stribeck("In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description."),
     recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],

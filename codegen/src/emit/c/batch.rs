@@ -25,6 +25,10 @@ impl Syntax for Lanes<'_> {
         self.0.sign(entry)
     }
 
+    fn stribeck(&self, entry: &str, velocity: &str) -> String {
+        self.0.stribeck(entry, velocity)
+    }
+
     fn entry(&self, argument: Argument, index: usize) -> String {
         format!("lanes_{}[{index}][lane]", argument.name())
     }

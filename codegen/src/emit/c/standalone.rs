@@ -10,7 +10,7 @@ use super::syntax::C;
 use super::{batch, prefix, returns_a_number};
 use crate::emit::documentation::{self, Block};
 use crate::emit::origin::{Notes, Origin};
-use crate::emit::plain::{asks_for_signs, expression, of_robot, places, reads_an_argument, waves};
+use crate::emit::plain::{asks_for_exponentials, asks_for_signs, expression, of_robot, places, reads_an_argument, waves};
 use crate::emit::rust::asks_for_sines;
 use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Line, Listing, Name};
@@ -18,6 +18,7 @@ use crate::program::{Function, Module, Trig};
 
 const PROLOGUE: &str = include_str!("prologue.h");
 const EPILOGUE: &str = include_str!("epilogue.h");
+const STRIBECK: &str = include_str!("stribeck.h");
 const SIGN: &str = include_str!("sines/sign.h");
 const STD: &str = include_str!("sines/std.h");
 const FAST_F64: &str = include_str!("sines/fast_f64.h");
@@ -50,6 +51,10 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     }
     if asks_for_signs(module) {
         text += &of_robot(SIGN, &c.name, &c.upper);
+        text += "\n";
+    }
+    if asks_for_exponentials(module) {
+        text += &of_robot(STRIBECK, &c.name, &c.upper);
         text += "\n";
     }
     text += POINTERS.trim_start();

@@ -20,4 +20,8 @@ impl Syntax for C<'_> {
     fn sign(&self, entry: &str) -> String {
         format!("{}_sign({entry})", self.name)
     }
+
+    fn stribeck(&self, entry: &str, velocity: &str) -> String {
+        format!("{}_stribeck({entry}, {velocity})", self.name)
+    }
 }

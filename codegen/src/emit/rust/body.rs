@@ -80,6 +80,10 @@ fn expression(of: &Expression, scalar: Scalar) -> TokenStream {
     match of {
         Expression::Input(symbol) => input(*symbol),
         Expression::Constant(value) => literal(value, scalar),
+        Expression::Stribeck(i, velocity) => {
+            let (index, velocity) = (usize_literal(usize::from(*i)), literal(velocity, scalar));
+            quote!(stribeck(dq[#index], #velocity))
+        }
         Expression::Step(i) => {
             let name = format_ident!("t{i}");
             quote!(#name)

@@ -1,0 +1,21 @@
+def _stribeck(xp: Any, rate: Any, velocity: float) -> Any:
+    # exp(-|rate| / velocity), what is left of Stribeck friction at a rate, within 2 units of roundoff; 0 where it is below 1e-17.
+    # x = |rate| / velocity = n ln 2 + r with n the integer nearest to x / ln 2, after Cody and Waite (1980): the first part of ln 2 has 16 bits, so
+    # that its product with n is exact, and so is x less that. 2^-n is a product of powers of two; exp(-r) its series up to r^13 / 13!, which leaves
+    # out less than 2^-57.
+    x = xp.where(rate < 0.0, -rate, rate) / velocity
+    n, power, rest = xp.zeros_like(x), xp.ones_like(x), x + 0.3465728759765625
+    powers = ((32.0, 2.3283064365386963e-10), (16.0, 1.52587890625e-5), (8.0, 0.00390625), (4.0, 0.0625), (2.0, 0.25), (1.0, 0.5))
+    for count, factor in powers:
+        more = rest >= count * 0.693145751953125
+        rest = xp.where(more, rest - count * 0.693145751953125, rest)
+        n = xp.where(more, n + count, n)
+        power = xp.where(more, power * factor, power)
+    r = (x - n * 0.693145751953125) - n * 1.4286068203094173e-6
+    series = xp.zeros_like(x)
+    for coefficient in (
+        1.6059043836821613e-10, 2.08767569878681e-9, 2.505210838544172e-8, 2.755731922398589e-7, 2.7557319223985893e-6, 2.48015873015873e-5,
+        0.0001984126984126984, 0.001388888888888889, 0.008333333333333333, 0.041666666666666664, 0.16666666666666666, 0.5,
+    ):
+        series = coefficient - r * series
+    return xp.where(x > 40.0, xp.zeros_like(x), power * (1.0 - (r - r * r * series)))
