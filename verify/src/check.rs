@@ -140,6 +140,8 @@ pub(crate) enum Check {
     Class,
     /// Inverse kinematics: the room for solutions.
     MostSolutions,
+    /// Inverse kinematics: every branch closes the loop.
+    Sound,
     /// Inverse kinematics: as many branches as solutions at random poses.
     Branches,
     /// Inverse kinematics: solutions reach the pose.

@@ -2,13 +2,15 @@
 //!
 //! 1. *Text*: every building block is byte for byte the tested one, every number the float nearest to its exact value, the function a call of a construction.
 //!    With these exact values the loop closes, J1 L1 ... Jn Ln = 1, at random points of prime fields; the construction may be called with it.
-//! 2. *Generic completeness*: at random poses in prime fields the equations have as many solutions as the construction has branches.
-//! 3. *Counts*: at rational poses the number of real solutions is known by Sturm's theorem, and the module as it stands there, run in double
+//! 2. *Soundness*: the blocks of closed forms, as texts, run in prime fields: every branch closes the loop exactly (`soundness`).
+//! 3. *Generic completeness*: at random poses in prime fields the equations have as many solutions as the construction has branches.
+//! 4. *Counts*: at rational poses the number of real solutions is known by Sturm's theorem, and the module as it stands there, run in double
 //!    precision, returns so many.
 //!
 //! Classes are not decided here: the exact values are claims of the generator, and what a construction asks of its loop is tested on them.
 //! The solutions are counted with equations, arrangements and an algebra of their own (`forms`, `quotient`), which know no classes.
 
+mod certificate;
 mod chain;
 mod class;
 mod counts;
@@ -18,6 +20,7 @@ mod points;
 mod polynomials;
 mod quotient;
 mod run;
+mod soundness;
 mod sturm;
 mod text;
 
@@ -60,12 +63,20 @@ pub struct Report {
     pub robot: String,
     /// `f64` or `f32`.
     pub scalar: &'static str,
+    /// SHA-256 of the description, hexadecimal.
+    pub input: String,
+    /// SHA-256 of the module, hexadecimal.
+    pub output: String,
+    /// The numbers of the loop, in the order of the text, exactly.
+    pub exact_values: Vec<String>,
     /// The module says that the arm has no construction.
     pub absent: bool,
     /// At most so many solutions, as the module says.
     pub most: usize,
     /// So many numbers are the floats nearest to their exact values.
     pub numbers: usize,
+    /// So many branches close the loop at random poses of prime fields, of a construction of closed forms.
+    pub sound: Option<usize>,
     /// Solutions at random poses, complex ones too, and the joints in the order in which the loop was read for that, from 1.
     pub generic: Option<(usize, Vec<usize>)>,
     /// Rational poses at which the module returns as many solutions as there are.
@@ -118,6 +129,9 @@ impl fmt::Display for Report {
         if self.numbers > 0 {
             writeln!(f, "building blocks are the tested ones, {} numbers equal the description, the loop closes", self.numbers)?;
         }
+        if let Some(sound) = self.sound {
+            writeln!(f, "{sound} branches are sound: run in prime fields they close the loop exactly")?;
+        }
         if let Some((solutions, order)) = &self.generic {
             let order: Vec<String> = order.iter().map(ToString::to_string).collect();
             writeln!(
@@ -150,7 +164,8 @@ impl fmt::Display for Report {
 
 /// Verifies the text of a module of inverse kinematics against the text of its description, with counts at so many rational poses.
 pub fn verify(source: &Source, text: &str, poses: usize) -> Report {
-    let mut report = Report::default();
+    let hash = crate::hash;
+    let mut report = Report { input: hash(source.text()), output: hash(text), ..Report::default() };
     let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let Some((manipulator, _)) = read else {
         report.faults.push(diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never));
@@ -175,11 +190,13 @@ fn fill(report: &mut Report, manipulator: &Manipulator, source: &Source, text: &
     let claims = claims(manipulator)?;
     report.numbers = numbers(&module, manipulator, &claims)?;
     let all: Vec<Formula> = claims.loops.iter().flatten().chain(&claims.given).cloned().collect();
+    report.exact_values = all.iter().map(ToString::to_string).collect();
     let constants = Constants::of(manipulator, &all)?;
     let most = construction(&module, manipulator, &constants, &claims, &mut stream)?;
     if module.most != most && Check::MostSolutions.is_made() {
         return Err(format!("MAX_SOLUTIONS: {} where the construction has {most}", module.most));
     }
+    report.sound = sound(&module, manipulator, &constants, &claims, &mut stream)?;
     if module.construction == Construction::ShoulderElbowWrist {
         report.uncounted = Some("the swivel angle is given".into());
         return Ok(());
@@ -353,6 +370,55 @@ fn construction(
         }
     }
     Ok(most)
+}
+
+/// So many random poses are tried for branches that need square roots.
+const MOST_POSES: usize = 1 << 15;
+
+/// How many branches of a construction of closed forms close the loop.
+fn sound(
+    module: &Text,
+    manipulator: &Manipulator,
+    constants: &Constants,
+    claims: &Claims,
+    stream: &mut Stream,
+) -> Result<Option<usize>, String> {
+    if !soundness::is_closed(&module.construction) {
+        return Ok(None);
+    }
+    let named: Vec<bool> = module.branches.iter().map(|name| !name.is_empty()).collect();
+    let mut sound = vec![false; named.len()];
+    let open = |sound: &[bool]| named.iter().zip(sound).any(|(named, sound)| *named && !sound);
+    let mut tried = 0;
+    while tried < MOST_POSES && open(&sound) {
+        let mut field = constants.field(stream)?;
+        let chain = Chain::of(manipulator, &field).ok_or("a constant of the description divides by zero")?;
+        let closed = Loop::of(&module.loops[0], &claims.loops[0], &field).ok_or("a constant of the loop divides by zero")?;
+        for _ in 0..64 {
+            tried += 1;
+            let whole = posture(&chain, &mut field);
+            let mut pose = chain.pose(&whole);
+            let mut closed = closed.clone();
+            if let Some(given) = &module.given {
+                let value = whole[given.joint];
+                let link = points::link(given, &claims.given, &field, value).ok_or("a constant of the loop divides by zero")?;
+                match given.place {
+                    None => pose = points::rest(given, &link, chain.modulus, &pose),
+                    Some(place) => closed.links[place] = link,
+                }
+            }
+            let at = soundness::At { closed: &closed, pose: &pose, posture: &whole };
+            let branch = soundness::run(module, &at, &mut sound);
+            if let (Err(branch), true) = (branch, Check::Sound.is_made()) {
+                return Err(format!("BRANCHES: branch {branch} does not close the loop"));
+            }
+        }
+    }
+    let lost = named.iter().zip(&sound).position(|(named, sound)| *named && !sound);
+    if let (Some(branch), true) = (lost, Check::Sound.is_made()) {
+        return Err(format!("BRANCHES: branch {branch} does not close the loop at any of {tried} random poses"));
+    }
+    Ok(Some(sound.into_iter().filter(|sound| *sound).count()))
 }
 
 /// How far each solution is from the pose.

@@ -77,10 +77,12 @@ pub fn shoulder_elbow_wrist(way: &Arrangement<7>, t: &Frame, swivel: Real) -> Br
     let noise_across = if along > 0.0 { noise * (distance + along) / (across + noise) } else { noise };
     let (l1_across, l2_across) = (length(upper[0], upper[1]), length(behind_elbow[0], behind_elbow[1]));
     let links = two_links(l1_across, l2_across, [across, 0.0], noise_across, 0.0);
-    found.missed(if along > distance + noise { along - distance } else { links.miss });
-    if along > distance + noise {
+    let gap = distance - along;
+    if !(gap >= -noise) {
+        found.missed(-gap);
         return found;
     }
+    found.missed(links.miss);
     let e = scaled(to_wrist, 1.0 / distance);
     let ([x, y], pole) = swivel_reference(&way.after, e);
     found.near = pole <= ROUNDING;

@@ -81,13 +81,19 @@ pub(super) fn rest(given: &Given, link: &Frame, m: Modulus, pose: &Frame) -> Fra
     }
 }
 
+/// Where a displacement takes a point.
+fn image(m: Modulus, f: &Frame, point: [u64; 3]) -> [u64; 3] {
+    f.map(|row| m.plus(m.dot([row[0], row[1], row[2]], point), row[3]))
+}
+
 /// A loop with its exact numbers in a field.
+#[derive(Clone)]
 pub(super) struct Loop {
     pub(super) modulus: Modulus,
     pub(super) links: Vec<Frame>,
-    before: Frame,
-    after: Frame,
-    offsets: Vec<[u64; 2]>,
+    pub(super) before: Frame,
+    pub(super) after: Frame,
+    pub(super) offsets: Vec<[u64; 2]>,
 }
 
 impl Loop {
@@ -111,9 +117,7 @@ impl Loop {
     /// Whether J1 L1 ... Jn Ln = 1 at a posture of the arm and its pose. Joints that the arm has not are at 0.
     pub(super) fn closes(&self, way: &Arrangement, kinds: &[bool], posture: &[[u64; 2]], pose: &Frame) -> bool {
         let m = self.modulus;
-        let x = if way.backward { *pose } else { m.inverse_frame(pose) };
-        let open = m.compose(&self.before, &m.compose(&x, &self.after));
-        let mut product = m.identity();
+        let mut values = Vec::new();
         for (place, joint) in way.order.iter().enumerate() {
             let slides = way.prismatic[place];
             if kinds.get(*joint).is_some_and(|kind| *kind != slides) {
@@ -126,9 +130,56 @@ impl Loop {
             } else {
                 [m.minus(m.times(c, a), m.times(s, b)), m.plus(m.times(s, a), m.times(c, b))]
             };
-            let link = if place == way.open { &open } else { &self.links[place] };
-            product = m.compose(&m.compose(&product, &m.joint(slides, [0, 0, m.one], value)), link);
+            values.push(value);
         }
-        product == m.identity()
+        self.is_met(&way.prismatic, &self.links_at(way, pose), &values)
+    }
+
+    /// The links at a pose.
+    pub(super) fn links_at(&self, way: &Arrangement, pose: &Frame) -> Vec<Frame> {
+        let m = self.modulus;
+        let x = if way.backward { *pose } else { m.inverse_frame(pose) };
+        let mut links = self.links.clone();
+        links[way.open] = m.compose(&self.before, &m.compose(&x, &self.after));
+        links
+    }
+
+    fn chain(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]]) -> Frame {
+        let m = self.modulus;
+        let joints = prismatic.iter().zip(links).zip(values);
+        joints.fold(m.identity(), |product, ((slides, link), value)| {
+            m.compose(&m.compose(&product, &m.joint(*slides, [0, 0, m.one], *value)), link)
+        })
+    }
+
+    /// Whether J1 L1 ... Jn Ln = 1 for values of the loop's joints, with c² + s² = 1.
+    pub(super) fn is_met(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]]) -> bool {
+        self.are_values(prismatic, values) && self.chain(prismatic, links, values) == self.modulus.identity()
+    }
+
+    fn are_values(&self, prismatic: &[bool], values: &[[u64; 2]]) -> bool {
+        let m = self.modulus;
+        let on_circle = |[c, s]: &[u64; 2]| m.plus(m.times(*c, *c), m.times(*s, *s)) == m.one;
+        prismatic.iter().zip(values).all(|(slides, value)| *slides || on_circle(value))
+    }
+
+    /// Where three joints take a point that the third moves: J1 L1 J2 L2 J3.
+    pub(super) fn moved(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]], point: [u64; 3]) -> Option<[u64; 3]> {
+        let m = self.modulus;
+        let links = [links[0], links[1], m.identity()];
+        let chain = self.chain(prismatic, &links, values);
+        self.are_values(prismatic, values).then(|| image(m, &chain, point))
+    }
+
+    /// Of a position: the point behind the third joint, and where it has to be as seen from before the first.
+    pub(super) fn points(&self, way: &Arrangement, pose: &Frame) -> [[u64; 3]; 2] {
+        let m = self.modulus;
+        let position = pose.map(|row| row[3]);
+        let origin = |f: &Frame| f.map(|row| row[3]);
+        if way.backward {
+            [image(m, &self.before, position), origin(&m.inverse_frame(&self.after))]
+        } else {
+            [origin(&self.before), image(m, &m.inverse_frame(&self.after), position)]
+        }
     }
 }

@@ -26,6 +26,7 @@ fn robots_are_verified() {
         println!("{report}\n{:?}", now.elapsed());
         assert!(report.passed(), "{report}");
         assert_eq!(report.generic.as_ref().map(|generic| generic.0), Some(solutions), "{report}");
+        assert_eq!(report.sound, Some(solutions), "{report}");
         assert!(report.uncounted.is_none() && report.equal >= 8 && report.unreachable >= 2, "{report}");
     }
 }
@@ -169,7 +170,9 @@ fn a_swivel_angle_is_verified_and_not_counted() {
         let (source, text) = module(&text);
         assert!(text.contains("swivel_angle(&LOOP, q)"), "{text}");
         let report = verify(&source, &text, 8);
-        assert!(report.passed() && report.numbers > 100, "{report}");
+        assert!(report.passed() && report.numbers > 100 && report.sound == Some(8), "{report}");
+        assert_eq!(report.to_json(), verify(&source, &text, 8).to_json());
+        assert!(report.to_json().contains("\"sound_branches\": 8"));
         assert_eq!(report.uncounted.as_deref(), Some("the swivel angle is given"));
         let fault = |old: &str, new: &str| {
             assert!(text.contains(old), "{old}");
@@ -192,6 +195,9 @@ fn arms_of_each_class_are_verified() {
         if let Some((found, _)) = &report.generic {
             assert_eq!(*found, solutions, "{name}: {report}");
         }
+        // Every branch, where the construction is of closed forms: text without Newton's method and without a determinant.
+        let closed = !text.contains("impl Loop<'_> {");
+        assert_eq!(report.sound, closed.then_some(solutions), "{name}: {report}");
     }
 }
 
@@ -235,7 +241,7 @@ type Fault<'a> = &'a dyn Fn() -> Option<String>;
 
 /// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.
 pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<'_>)) {
-    use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached};
+    use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound};
     let (_, _, shoulder) = made_up().remove(3);
     let (source, text) = module(&shoulder);
     let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
@@ -246,7 +252,11 @@ pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<
     edited("[Real::NEG_INFINITY, Real::INFINITY]", "[Real::NEG_INFINITY, 3.0]", &[(Limits, "POSITION_LIMITS: 3.0 is not what")]);
     edited("0.4]", "0.41]", &[(LoopNumbers, "0.41 is not the float nearest to 2/5")]);
     edited("order: [0, 1, 2,", "order: [0, 2, 1,", &[(Loop, "not the loop of this arm")]);
-    edited("], regional_elbow", "], regional_crossing", &[(Class, "`regional_crossing` does not hold")]);
+    edited(
+        "], regional_elbow",
+        "], regional_crossing",
+        &[(Class, "`regional_crossing` does not hold"), (Sound, "does not close the loop")],
+    );
     edited(
         "MAX_SOLUTIONS: usize = 8",
         "MAX_SOLUTIONS: usize = 9",

@@ -321,7 +321,9 @@ fn files(
                 "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
             ));
         }
-        terminal::note(&report.summary());
+        let certificate = certificate_beside(&out.with_file_name(format!("{stem}_ik.rs")));
+        terminal::note(&format!("{}; {}", report.summary(), certificate.display()));
+        files.push((certificate, report.to_json()));
     }
     if beside.bounds {
         let mut companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", validate::module_name(&stem)))?;

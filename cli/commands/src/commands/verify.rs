@@ -78,8 +78,16 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
 /// A module of inverse kinematics.
 fn postures(source: &Source, module: &Path, text: &str) -> Result<u8, u8> {
     input::manipulator(source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
-    let report = with_spinner("verifying", || inverse_kinematics::verify(source, text, inverse_kinematics::POSES));
-    let code = terminal::print(&format!("{report}\n"));
+    let mut report = with_spinner("verifying", || inverse_kinematics::verify(source, text, inverse_kinematics::POSES));
+    let beside = certificate_beside(module);
+    let mut certificate = String::new();
+    if beside.exists() {
+        if input::written(&beside)?.text() != report.to_json() {
+            report.faults.push(format!("{} says otherwise than what is found now, of these texts", beside.display()));
+        }
+        certificate = format!("certificate: {}\n", beside.display());
+    }
+    let code = terminal::print(&format!("{report}\n{certificate}"));
     match report.faults.first() {
         None => Ok(code),
         Some(fault) => {
