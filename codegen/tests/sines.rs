@@ -76,17 +76,43 @@ fn zeros_keep_their_sign_and_the_smallest_numbers_their_bits() {
     }
 }
 
+/// Every so many f32 up to the largest; the example `sine_errors` takes every one.
 #[test]
-fn beyond_the_range_the_answer_is_that_of_libm() {
+fn sines_in_f32_are_within_an_ulp_for_every_size_of_angle() {
+    const STEP: usize = 100_003;
+    let reference = Reference::new();
+    let beyond = emitted::f32::RANGE.to_bits();
+    // The f32 that comes nearest to a multiple of pi/2, and the angles about a power of two, where the bits of 2/pi that count change.
+    let special = [16_367_173.0 * 72f32.exp2()].into_iter().chain((7..128).map(|k| (k as f32).exp2().next_down()));
+    for x in (1..f32::INFINITY.to_bits()).step_by(STEP).map(f32::from_bits).chain(special) {
+        let ((sine, cosine), (exact_sine, exact_cosine)) = (emitted::f32::one(x), reference.sin_cos(x.into()));
+        let errors = (exact_sine.ulps(sine.into(), F32), exact_cosine.ulps(cosine.into(), F32));
+        assert!(errors.0 <= PROMISE && errors.1 <= PROMISE, "sine and cosine of {x:e} are {errors:?} ulp off");
+        if x.to_bits() > beyond {
+            assert_eq!(emitted::f32::one(-x), (-sine, cosine), "{x:e}");
+        }
+    }
+    for x in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+        let (sine, cosine) = emitted::f32::one(x);
+        assert!(sine.is_nan() && cosine.is_nan());
+    }
+}
+
+/// The runtime's sines of f32 are the emitted ones: the same text, item by item.
+#[test]
+fn the_runtime_has_the_same_sines() {
+    let emitted = include_str!("../src/emit/rust/sincos/fast_f32.rs");
+    let (_, own) = include_str!("../../runtime/src/scalar/sines.rs").split_once("\n\n").expect("documentation comes first");
+    let own = own.trim_end().replace("pub(super) ", "");
+    assert!(emitted.starts_with(&own) && own.ends_with('}'), "copy the items up to `sin_cos_beyond`");
+}
+
+#[test]
+fn beyond_the_range_the_answer_in_f64_is_that_of_libm() {
     let above = f64::from_bits(emitted::f64::RANGE.to_bits() + 1);
     for x in [above, -above, 1e22, -f64::MAX, f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
         let ((sine, cosine), expected) = (emitted::f64::one(x), libm::sincos(x));
         assert!(same(sine, expected.0) && same(cosine, expected.1), "{x:e}");
-    }
-    let above = f32::from_bits(emitted::f32::RANGE.to_bits() + 1);
-    for x in [above, -above, 1e22, -f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
-        let ((sine, cosine), expected) = (emitted::f32::one(x), libm::sincosf(x));
-        assert!(same(sine.into(), expected.0.into()) && same(cosine.into(), expected.1.into()), "{x:e}");
     }
 }
 

@@ -7,7 +7,7 @@
 //! - **Allocation**: none, except in `stability` and `simulation`, which run on a host and stand behind the feature `std`.
 //! - **Panics**: none. A function that can fail returns a small documented `enum`, which is an [`Error`](core::error::Error) with a message.
 //! - **Bits**: sine, cosine and root come from `libm` in every build and nothing is contracted into a fused multiply-add,
-//!   so one program gives the same bits on a host and on a microcontroller.
+//!   so one program gives the same bits on a host and on a microcontroller. Sines and cosines of f32 are computed in f32, those of `--trig fast`.
 //! - **Time**: [`core::time::Duration`], integer nanoseconds, so that the phases of a time law change at exactly the sample meant.
 #![cfg_attr(not(feature = "std"), no_std)]
 // `!(x > 0)` also catches a NaN, which `x <= 0` lets pass.
@@ -27,6 +27,7 @@ pub mod manipulability;
 pub mod orientation;
 pub mod reference;
 pub mod robot;
+mod scalar;
 pub mod settings;
 #[cfg(feature = "std")]
 pub mod simulation;

@@ -14,6 +14,7 @@
 //! For small turns theta r and sin(theta) r agree, and sin(theta/2) r is half of them: it wants twice the gain.
 
 use crate::linalg::lit;
+use crate::scalar::sin_cos;
 use nalgebra::{Matrix3, RealField, Rotation3, Unit, UnitQuaternion, Vector3};
 
 /// sin(theta) r of a rotation matrix: the axial vector of its skew part.
@@ -98,7 +99,24 @@ pub fn quaternion<T: RealField + Copy>(r: &Matrix3<T>) -> UnitQuaternion<T> {
 
 /// Rotation by `angle` about the unit vector `axis` (the book, eq. 2.25).
 pub fn rotation<T: RealField + Copy>(axis: &Unit<Vector3<T>>, angle: T) -> Matrix3<T> {
-    Rotation3::from_axis_angle(axis, angle).into_inner()
+    if angle == T::zero() {
+        return Matrix3::identity();
+    }
+    let (sine, cosine) = sin_cos(angle);
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let (xx, yy, zz) = (x * x, y * y, z * z);
+    let less = T::one() - cosine;
+    Matrix3::new(
+        xx + (T::one() - xx) * cosine,
+        x * y * less - z * sine,
+        x * z * less + y * sine,
+        x * y * less + z * sine,
+        yy + (T::one() - yy) * cosine,
+        y * z * less - x * sine,
+        x * z * less - y * sine,
+        y * z * less + x * sine,
+        zz + (T::one() - zz) * cosine,
+    )
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ impl Module {
             .collect();
         // What the others call is not known.
         if functions.iter().all(|(_, function)| function.is_ok()) {
-            sines::check_calls(&items.private, &shared.calls)?;
+            sines::check_calls(&items.private, &shared.calls, real)?;
             let unneeded = items.parts.iter().find(|(name, _)| !shared.parts_called.contains(*name));
             if let Some((name, part)) = unneeded.filter(|_| Check::PartsNeeded.is_made()) {
                 return Err(part.place.peek().fault(format!("`{name}` is needed by no function of the module")));

@@ -84,7 +84,7 @@ impl Reference {
         Reference { half_pi, table }
     }
 
-    /// Sine and cosine of a finite angle other than zero, |x| < 2^60.
+    /// Sine and cosine of a finite angle other than zero, |x| < 2^128; beyond 1 every power of two costs a bit.
     pub(crate) fn sin_cos(&self, x: f64) -> (Exact, Exact) {
         let Exact { mantissa, exponent } = Exact::of(x);
         if x.abs() < SMALL {

@@ -13,7 +13,8 @@
 //! shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
 
 use super::{chain::span, PlanFault};
-use crate::linalg::{lit, to_f64};
+use crate::linalg::lit;
+use crate::scalar::{duration, seconds};
 use core::time::Duration;
 use nalgebra::RealField;
 
@@ -92,17 +93,6 @@ pub struct Progress<T> {
     pub ds: T,
     /// d2s/dt2, 1/s^2.
     pub dds: T,
-}
-
-/// Seconds of a duration, rounded once in `f64`.
-#[inline]
-pub(crate) fn seconds<T: RealField>(t: Duration) -> T {
-    lit(t.as_secs_f64())
-}
-
-/// The nearest duration; `None` for what is negative, not finite or too long.
-fn duration<T: RealField>(seconds: T) -> Option<Duration> {
-    Duration::try_from_secs_f64(to_f64(seconds)?).ok()
 }
 
 impl<T: RealField + Copy> Law<T> {

@@ -9,7 +9,10 @@ use super::{
     law::{Law, Profile},
     PlanError, PlanFault,
 };
-use crate::linalg::{is_finite, lit};
+use crate::{
+    linalg::{is_finite, lit},
+    scalar::sin_cos,
+};
 use core::{marker::PhantomData, time::Duration};
 use nalgebra::{RealField, Vector3};
 
@@ -179,7 +182,7 @@ impl<T: RealField + Copy> Segment<T> {
                 PathSample { position: self.run.to, velocity: Vector3::zeros(), acceleration: Vector3::zeros() }
             }
             Some(arc) => {
-                let (sine, cosine) = (arc.sweep * p.s).sin_cos();
+                let (sine, cosine) = sin_cos(arc.sweep * p.s);
                 let (rate, acceleration) = (arc.sweep * p.ds, arc.sweep * p.dds);
                 let radial = arc.u * cosine + arc.w * sine;
                 let tangential = arc.w * cosine - arc.u * sine;
@@ -240,7 +243,7 @@ impl<T: RealField + Copy> Arc<T> {
     }
 
     fn at(&self, s: T) -> Vector3<T> {
-        let (sine, cosine) = (self.sweep * s).sin_cos();
+        let (sine, cosine) = sin_cos(self.sweep * s);
         self.centre + self.u * cosine + self.w * sine
     }
 }

@@ -24,13 +24,14 @@ const FAST_F64: &str = include_str!("sines/fast_f64.rs");
 const FAST_F32: &str = include_str!("sines/fast_f32.rs");
 
 /// All names.
-pub(super) const NAMES: [&str; 11] = [
+pub(super) const NAMES: [&str; 12] = [
     "sign",
     "stribeck",
     "sin_cos",
     "SIN_COS_RANGE",
     "sin_cos_one",
     "sin_cos_beyond",
+    "sin_cos_reduced",
     "SIN_COS_VECTORS",
     "sin_cos_four",
     "sin_cos_each_of_four",
@@ -87,10 +88,11 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
 }
 
 /// Whether exactly those private items are there that the calls of some functions need.
-pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>) -> Result<(), Fault> {
+pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>, real: Float) -> Result<(), Fault> {
     let mut needed = calls.clone();
     if calls.iter().any(|name| !["sign", "stribeck", "sin_cos"].contains(name)) {
         needed.extend(FAST);
+        needed.extend((real == Float::F32).then_some("sin_cos_reduced"));
     }
     for (lanes, each) in [("sin_cos_four", "sin_cos_each_of_four"), ("sin_cos_eight", "sin_cos_each_of_eight")] {
         if calls.contains(lanes) {
