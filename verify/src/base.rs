@@ -125,6 +125,15 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
     Sample { torques, columns, state }
 }
 
+/// For each entry of a base regressor the sum of what it may be a combination of: no smaller, and of no lower degree.
+pub fn sums_of_kinds<E: Element>(arm: &Arm<E>, state: &State<E>, named: &[(Standard, bool)]) -> Vec<E> {
+    let columns = sample(arm, state.clone(), named).columns;
+    let entry = |i: usize, parameter: Standard| {
+        kind(parameter).iter().map(|k| columns[k][i].clone()).reduce(|a, b| a.plus(&b)).unwrap_or(arm.zero.clone())
+    };
+    (0..arm.dof()).flat_map(|i| named.iter().map(move |(parameter, _)| entry(i, *parameter)).collect::<Vec<E>>()).collect()
+}
+
 impl<E: Element> Samples<E> {
     /// The state of a reference and `more` others, each with the columns that these parameters need.
     pub fn draw<K: Arithmetic<Element = E>>(
@@ -156,7 +165,7 @@ impl<E: Element> Samples<E> {
         for sample in &self.0 {
             let entries = program.run(&sample.state, literals);
             if let Some(entry) = entries.iter().position(Option::is_none) {
-                return Some((program.outputs[entry].place.clone(), "divides by zero".into()));
+                return Some((program.outputs[entry].place.clone(), program.without_value(&sample.state, literals).into()));
             }
             values.push(entries.into_iter().flatten().collect::<Vec<E>>());
         }

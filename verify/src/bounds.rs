@@ -130,11 +130,11 @@ pub enum Parameters {
 /// As a part of the largest parameter.
 const HARDLY: f64 = 1.0 / (1 << 30) as f64;
 
-/// The largest error over a box of the results of a program that does not divide, infinite where a value can leave the scalar; and the largest
-/// size of any value on the way to them.
-pub fn undivided_bound(program: &Program, values: &[Formula], domain: &Domain, real: Float) -> (f64, f64) {
+/// The errors over a box of the results of a program that does not divide, infinite where a value can leave the scalar; and the largest size of any
+/// value on the way to them.
+pub fn undivided_bounds(program: &Program, values: &[Formula], domain: &Domain, real: Float) -> (Vec<f64>, f64) {
     let ranges = ranges(program, &literal_errors(program, values, real), domain, None, real);
-    (worst(program.outputs.iter().map(|output| ranges[output.step].error)), worst(ranges.iter().map(Range::size)))
+    (program.outputs.iter().map(|output| ranges[output.step].error).collect(), worst(ranges.iter().map(Range::size)))
 }
 
 /// A random point of a domain, each entry rounded to the scalar.

@@ -40,6 +40,10 @@ pub(crate) enum Check {
     Names,
     /// Bodies: a name is given once.
     NamesOnce,
+    /// Bodies: names that a compiler tells apart.
+    Long,
+    /// Bodies: results are written when all arguments are read.
+    Aliases,
     /// Bodies: brackets in brackets.
     Brackets,
     /// Bodies: the order of the joints in an angle.
@@ -76,16 +80,20 @@ pub(crate) enum Check {
     Zeros,
     /// Floats: functions grow with their arguments as the equations do.
     Growth,
+    /// Floats: angles are those of frames.
+    Frames,
+    /// Floats: joint variables in sums and as lengths that the equations of the function depend on.
+    Dependence,
     /// Floats: values on the way are not far above entries and arguments.
     Headroom,
     /// Floats: values stay in the scalar.
     Leaves,
-    /// Floats: error bounds over the box.
+    /// Floats: error bounds over the box beside those of the equations there.
+    Intervals,
+    /// Floats: error bounds over the box beside those of the equations at states.
     Box,
     /// Floats: error bounds at states.
     States,
-    /// Floats: errors are not far above those of the equations themselves.
-    Plain,
     /// Floats: error bounds at states of what divides.
     DividedStates,
     /// Floats: values of what divides stay in the scalar.

@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::degree::{log2_odds, Degree, Degrees};
-use crate::arithmetic::growth::{Growth, Growths};
 use crate::arithmetic::prime::Prime;
 use crate::arithmetic::roots::dependent;
 use crate::arithmetic::tower::Tower;
@@ -15,15 +14,15 @@ use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
 use crate::check::Check;
 use crate::claims::{Claims, Resolved};
 use crate::contract::{Promise, Sizes};
-use crate::divisors::{divisors, is_needed, needed, undivided_operands};
+use crate::divisors::{divisors, is_needed, needed};
 use crate::element::Element;
 use crate::enclosure::Float;
 use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
-use crate::float::Arguments;
 use crate::formula::{Atoms, Dependent, Formula};
-use crate::program::{Argument, Inputs, Program, Step};
+use crate::powers::{joints_asked, Powers};
+use crate::program::{Program, Step};
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
@@ -32,6 +31,9 @@ use crate::stream::Stream;
 
 /// The function that is not compared entry by entry.
 const BASE_REGRESSOR: &str = "base_regressor";
+
+/// The function that has a meaning up to a constant where parameters are base parameters.
+const ENERGY_WITH: &str = "potential_energy_with";
 
 const DIVIDED: &str = "a constant of the description divides by zero here";
 
@@ -88,15 +90,23 @@ impl<K: Arithmetic> Point<K> {
         self.literals(&program.exact_literals(values))
     }
 
-    /// The first entry of a program that is not what the equations say; `None` if there is none.
-    fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<usize> {
+    /// The first entry of a program that is not what the equations say, and in which way; `None` if there is none.
+    fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<(usize, &'static str)> {
         let expected = self.reference.values.get(&program.name)?;
-        let Some(literals) = self.literals_of(program, literals) else { return Some(0) };
+        let Some(literals) = self.literals_of(program, literals) else { return Some((0, "has a constant that divides by 0")) };
         let values = program.run(&self.reference.state, &literals);
-        if base && program.name == "potential_energy_with" {
-            return self.energy_difference(program, &literals, &values);
+        if let Some(entry) = values.iter().position(Option::is_none) {
+            let before = values[..entry].iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected));
+            if before.is_none() || base && program.name == ENERGY_WITH {
+                return Some((entry, program.without_value(&self.reference.state, &literals)));
+            }
         }
-        values.iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected))
+        let entry = if base && program.name == ENERGY_WITH {
+            self.energy_difference(program, &literals, &values)
+        } else {
+            values.iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected))
+        };
+        entry.map(|entry| (entry, "differs from the equations"))
     }
 
     /// Whether there is something here to compare a function with.
@@ -127,8 +137,9 @@ impl<K: Arithmetic> Point<K> {
     fn energy_difference(&self, program: &Program, literals: &[K::Element], here: &[Option<K::Element>]) -> Option<usize> {
         let (there, expected_there) = self.reference.elsewhere.as_ref()?;
         let expected_here = &self.reference.values.get(&program.name)?[0];
-        let change = program.run(there, literals).first().cloned().flatten()?.minus(here.first()?.as_ref()?);
-        (change != expected_there.minus(expected_here)).then_some(0)
+        let there = program.run(there, literals).first().cloned().flatten();
+        let change = there.zip(here.first()?.as_ref()).map(|(there, here)| there.minus(here));
+        (change != Some(expected_there.minus(expected_here))).then_some(0)
     }
 }
 
@@ -191,8 +202,8 @@ pub struct Checker {
     exact: Vec<Point<Tower>>,
     /// log2 of the odds of a miss by function, for all points in prime fields together.
     log2_odds: BTreeMap<String, f64>,
-    /// How fast each function grows by the equations.
-    growth: BTreeMap<String, Growth>,
+    /// Powers and angles of the equations.
+    powers: Powers,
     base: Option<OwnParameters>,
     sizes: Sizes,
     /// Random bits that nothing has been drawn from.
@@ -292,8 +303,10 @@ impl Checker {
             exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
         }
         let sizes = sizes(&manipulator, &vector, base.as_ref());
-        let growth = growth(&manipulator, &vector)?;
-        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, growth, base, sizes, rest: stream })
+        let asked = joints_asked(module.programs().map(|(_, program)| program));
+        let field = points.first().map(|point| &point.arithmetic);
+        let powers = Powers::new(&manipulator, &vector, base.as_ref(), sizes.p, asked, field)?;
+        Ok(Checker { manipulator, vector, claims, points, exact, log2_odds, powers, base, sizes, rest: stream })
     }
 
     /// The arm.
@@ -309,6 +322,11 @@ impl Checker {
     /// The claimed constants.
     pub fn claims(&self) -> &Claims {
         &self.claims
+    }
+
+    /// The number of axes that are neither parallel nor perpendicular to the next one.
+    pub fn oblique(&self) -> usize {
+        self.powers.oblique()
     }
 
     /// The base parameters of its `base_regressor`.
@@ -387,7 +405,7 @@ impl Checker {
         let verdict = match difference {
             None => (self.foreign_divisor(program, &chosen))
                 .or_else(|| zero_operand(program))
-                .or_else(|| self.foreign_growth(program, &chosen))
+                .or_else(|| self.powers.fault(program, &chosen).map(Verdict::Refused))
                 .unwrap_or(Verdict::Equal),
             Some((entry, why)) => {
                 let suspect = self.claims.suspect(program, &entry, real);
@@ -425,15 +443,15 @@ impl Checker {
         let modular = self.points.iter().enumerate().filter_map(|(i, point)| {
             point
                 .difference(program, literals, base)
-                .map(|entry| (entry, format!("at point {} modulo {}", i + 1, point.arithmetic.prime())))
+                .map(|(entry, how)| (entry, format!("{how} at point {} modulo {}", i + 1, point.arithmetic.prime())))
         });
         let exact = self.exact.iter().enumerate().filter_map(|(i, point)| {
-            point.difference(program, literals, base).map(|entry| (entry, format!("at rational point {}", i + 1)))
+            point.difference(program, literals, base).map(|(entry, how)| (entry, format!("{how} at rational point {}", i + 1)))
         });
         let modular = modular.filter(|_| Check::Modular.is_made());
         let exact = exact.filter(|_| Check::Rational.is_made());
-        let (entry, place) = modular.chain(exact).min_by_key(|(entry, _)| *entry)?;
-        Some((program.outputs[entry].place.clone(), format!("differs from the equations {place}")))
+        let (entry, why) = modular.chain(exact).min_by_key(|(entry, _)| *entry)?;
+        Some((program.outputs[entry].place.clone(), why))
     }
 
     fn base_difference(&self, program: &Program, literals: &[Formula]) -> Option<(String, String)> {
@@ -458,34 +476,6 @@ impl Checker {
         let exact = || exact().filter(|_| Check::Rational.is_made());
         let dependent = || dependent().filter(|_| Check::Columns.is_made());
         modular.or_else(exact).or_else(dependent)
-    }
-
-    /// A power of an argument that the equations do not have: it would be added and taken away again.
-    fn foreign_growth(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
-        let literals: Vec<Growth> =
-            program.exact_literals(chosen).iter().map(|value| Growths.constant(value)).collect::<Option<_>>()?;
-        let most =
-            |program: &Program| program.run(&Growths, &literals).into_iter().flatten().fold(Growths.integer(0), Growth::most);
-        let own = *self.growth.get(&program.name)?;
-        let operands = undivided_operands(program);
-        // A quotient of polynomials in the joint variables has no degree that the text shows; what it is made of are parts of torques.
-        let parts = (!operands.is_empty()).then(|| most(&program.part(&operands)));
-        let torques = ["inverse_dynamics", "inverse_dynamics_with"].into_iter().filter_map(|name| self.growth.get(name));
-        let (found, torques) = (most(program), torques.fold(own, |most, &growth| most.most(growth)));
-        let compared = Argument::ALL.into_iter().map(|argument| match parts {
-            Some(parts) if argument == Argument::Q => (argument, parts.of(argument), torques.of(argument)),
-            _ => (argument, found.of(argument), own.of(argument)),
-        });
-        let degree = |degree: Option<i64>| degree.unwrap_or(0);
-        let (argument, found, own) = compared.into_iter().find(|(_, found, own)| degree(*found) > degree(*own))?;
-        Check::Growth.is_made().then(|| {
-            Verdict::Refused(format!(
-                "it takes `{}` to the power {} where its equations have {}",
-                argument.name(),
-                degree(found),
-                degree(own)
-            ))
-        })
     }
 
     /// A divisor that the equations do not ask for.
@@ -514,25 +504,6 @@ fn zero_operand(program: &Program) -> Option<Verdict> {
         _ => false,
     });
     (with_zero && Check::Zeros.is_made()).then(|| Verdict::Refused("it calculates with the number 0".into()))
-}
-
-/// How fast the functions of an arm grow with their arguments, by the equations.
-fn growth(manipulator: &Manipulator, vector: &Vector) -> Result<BTreeMap<String, Growth>, String> {
-    let joints = manipulator.joints.len();
-    let one = Growths.integer(1);
-    let arguments = Arguments::each(|argument| vec![Growths.entry(argument, 0); joints]);
-    let arguments = Arguments { pi: Vec::new(), ..arguments };
-    let state = State::of(arguments, vec![(one, one); joints], vec![one; joints], [Growths.integer(0), one]);
-    let state = State { stribeck: vec![one; joints], ..state };
-    let wanted = Wanted { base: BaseParameters::Free, pivots: false };
-    let reference = Reference::at(&mut Growths, manipulator, vector, state, wanted)?;
-    let most = |entries: Vec<Growth>| entries.into_iter().fold(Growths.integer(0), Growth::most);
-    let mut growth: BTreeMap<String, Growth> =
-        reference.values.into_iter().map(|(name, entries)| (name, most(entries))).collect();
-    if let Some(&torques) = growth.get("inverse_dynamics") {
-        growth.insert(BASE_REGRESSOR.into(), torques);
-    }
-    Ok(growth)
 }
 
 /// Degrees and heights of what the equations say, for the odds of a miss.

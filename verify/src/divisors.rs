@@ -108,17 +108,10 @@ pub fn undivided_operands(program: &Program) -> Vec<usize> {
     let mut divided: Vec<bool> = Vec::with_capacity(program.steps.len());
     let mut operands = BTreeSet::new();
     for step in &program.steps {
-        let (of, quotient): (&[usize], bool) = match step {
-            Step::Divide(a, b) => (&[*a, *b], true),
-            Step::Negate(a) => (&[*a], false),
-            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) => (&[*a, *b], false),
-            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {
-                (&[], false)
-            }
-        };
-        let takes_part = quotient || of.iter().any(|&operand| divided[operand]);
+        let of = || step.operands().into_iter().flatten();
+        let takes_part = matches!(step, Step::Divide(..)) || of().any(|operand| divided[operand]);
         if takes_part {
-            operands.extend(of.iter().copied().filter(|&operand| !divided[operand]));
+            operands.extend(of().filter(|&operand| !divided[operand]));
         }
         divided.push(takes_part);
     }

@@ -51,7 +51,7 @@ impl Running<'_> {
     fn run(&self, name: &str, state: &State<Residue>) -> Result<Entries, String> {
         let (program, literals) = self.program(name)?;
         let entries: Option<Entries> = program.run(state, &literals).into_iter().collect();
-        entries.ok_or(format!("`{name}` divides by zero"))
+        entries.ok_or(format!("`{name}` has no value"))
     }
 
     /// The rates of change of a function's entries.
@@ -59,7 +59,7 @@ impl Running<'_> {
         let (program, literals) = self.program(name)?;
         let literals: Vec<Moving> = literals.iter().map(Dual::constant).collect();
         let entries: Option<Entries> = program.run(state, &literals).into_iter().map(|e| Some(e?.rate)).collect();
-        entries.ok_or(format!("`{name}` divides by zero"))
+        entries.ok_or(format!("`{name}` has no value"))
     }
 
     fn state(&self) -> &State<Residue> {

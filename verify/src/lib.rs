@@ -61,6 +61,8 @@ pub mod influence;
 mod interval;
 pub mod inverse_kinematics;
 #[doc(hidden)]
+pub mod powers;
+#[doc(hidden)]
 pub mod program;
 #[doc(hidden)]
 pub mod ranges;
@@ -80,6 +82,8 @@ pub mod stated;
 #[doc(hidden)]
 pub mod stream;
 pub mod test_kit;
+#[doc(hidden)]
+pub mod yardstick;
 
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::emit::Language;

@@ -84,6 +84,19 @@ pub enum Step {
     Divide(usize, usize),
 }
 
+impl Step {
+    /// The steps that it takes.
+    pub fn operands(&self) -> [Option<usize>; 2] {
+        match self {
+            Step::Negate(a) => [Some(*a), None],
+            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => [Some(*a), Some(*b)],
+            Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {
+                [None, None]
+            }
+        }
+    }
+}
+
 /// An integer combination of joint variables, and a constant that is added or taken away.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Angle {
@@ -172,8 +185,20 @@ pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E
 impl Program {
     /// The entries of the result; `None` for those that divide by 0.
     pub fn run<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
-        let values = self.values(inputs, literals);
+        // What owns memory is given back as soon as nothing needs it any more.
+        let last = std::mem::needs_drop::<E>().then(|| self.last_uses());
+        let values = self.execute(inputs, literals, last.as_deref());
         self.outputs.iter().map(|output| values[output.step].clone()).collect()
+    }
+
+    /// For each step the last one that takes it as an operand; none is behind an entry.
+    fn last_uses(&self) -> Vec<usize> {
+        let mut last: Vec<usize> = (0..self.steps.len()).collect();
+        for (i, step) in self.steps.iter().enumerate() {
+            step.operands().into_iter().flatten().for_each(|operand| last[operand] = i);
+        }
+        self.outputs.iter().for_each(|output| last[output.step] = usize::MAX);
+        last
     }
 
     /// The exact values of the literals, followed by sine and cosine of each that is the constant of an angle: what exact runs take.
@@ -210,13 +235,8 @@ impl Program {
         let mut needed = vec![false; self.steps.len()];
         results.iter().for_each(|&step| needed[step] = true);
         for (i, step) in self.steps.iter().enumerate().rev() {
-            match step {
-                _ if !needed[i] => {}
-                Step::Negate(a) => needed[*a] = true,
-                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => {
-                    (needed[*a], needed[*b]) = (true, true);
-                }
-                Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {}
+            if needed[i] {
+                step.operands().into_iter().flatten().for_each(|operand| needed[operand] = true);
             }
         }
         needed
@@ -225,9 +245,14 @@ impl Program {
     /// The value of every step; `None` of what divides by zero, and of all from where numbers have grown out of bounds: 2^20 bits for one,
     /// 2^32 for all.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
+        self.execute(inputs, literals, None)
+    }
+
+    /// The same, without the values of steps behind their last uses.
+    fn execute<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E], last: Option<&[usize]>) -> Vec<Option<E>> {
         let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());
         let mut bits = 0;
-        for step in &self.steps {
+        for (i, step) in self.steps.iter().enumerate() {
             let of = |i: &usize| values[*i].as_ref();
             let both = |a: &usize, b: &usize| Some((values[*a].as_ref()?, values[*b].as_ref()?));
             let wave = |angle: &Angle| match angle.turn {
@@ -259,8 +284,21 @@ impl Program {
                 break;
             }
             values.push(value);
+            let Some(last) = last else { continue };
+            step.operands().into_iter().flatten().chain([i]).filter(|&k| last[k] == i).for_each(|k| values[k] = None);
         }
         values
+    }
+
+    /// Why an entry has no value: it divides by 0, or numbers have grown out of bounds.
+    pub fn without_value<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> &'static str {
+        let values = self.values(inputs, literals);
+        let zero = |step: &usize| values[*step].as_ref().is_some_and(Element::is_zero);
+        if self.steps.iter().any(|step| matches!(step, Step::Divide(_, divisor) if zero(divisor))) {
+            "divides by 0"
+        } else {
+            "has exact values of more than 2^20 bits, or 2^32 together, which no robot's has,"
+        }
     }
 
     /// The entries that a literal takes part in.

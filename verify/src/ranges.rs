@@ -36,7 +36,7 @@ pub fn worst(sizes: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 /// An interval around the exact value, and how far the computed one can be from it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Its lower end.
     pub low: f64,
@@ -54,8 +54,17 @@ impl Range {
         Range { low, high, error: 0.0 }
     }
 
+    /// exp(-|rate| / velocity) of the rates of an interval, as a float.
+    pub(crate) fn stribeck((low, high): (f64, f64), velocity: f64, real: Float) -> Range {
+        let most = low.abs().max(high.abs());
+        let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+        let at = |rate: f64| libm::exp(-rate / velocity);
+        // Two units of the function itself, and two of |rate| / velocity, which weigh no more than x exp(-x) <= 0.37. Below 1e-17 it is 0.
+        Range::of(&[at(most) - 1e-15, at(least)], 4.0 * real.unit() + 1e-17)
+    }
+
     /// No bound at all.
-    const ANYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
+    pub(crate) const ANYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
 
     /// The range, if no value of it and none that can be computed for it leaves the scalar.
     fn within(self, real: Float) -> Range {
@@ -66,7 +75,8 @@ impl Range {
         }
     }
 
-    fn of(ends: &[f64], error: f64) -> Range {
+    /// Around some values, widened by what rounding can do to them.
+    pub(crate) fn of(ends: &[f64], error: f64) -> Range {
         if ends.iter().any(|end| end.is_nan()) {
             return Range::ANYTHING;
         }
@@ -152,12 +162,7 @@ pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Opti
                 Range::exact(low.signum().min(0.0), high.signum().max(0.0))
             }
             Step::Stribeck(joint, literal) => {
-                let (low, high) = domain.of(Argument::Dq)[*joint];
-                let most = low.abs().max(high.abs());
-                let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
-                let at = |rate: f64| libm::exp(-rate / program.literals[*literal].value);
-                // Two units of the function itself, and two of |rate| / velocity, which weigh no more than x exp(-x) <= 0.37. Below 1e-17 it is 0.
-                Range::of(&[at(most) - 1e-15, at(least)], 4.0 * u + 1e-17)
+                Range::stribeck(domain.of(Argument::Dq)[*joint], program.literals[*literal].value, real)
             }
             Step::Negate(a) => {
                 let a = of(a);

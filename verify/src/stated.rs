@@ -178,7 +178,7 @@ fn head(module: &Module, input: &str, notes: &[String]) -> Result<bool, String> 
 fn same(found: Option<&str>, expected: &str) -> Result<(), String> {
     match found {
         Some(found) if found == expected => Ok(()),
-        found => Err(format!("`{}` where `{expected}` stands", found.unwrap_or(""))),
+        found => Err(format!("`{}` where an emitted module has `{expected}`", found.unwrap_or(""))),
     }
 }
 

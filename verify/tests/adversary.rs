@@ -3,6 +3,7 @@
 
 mod common;
 
+use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
@@ -10,6 +11,7 @@ use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
+use armgen_verify::reader::ModuleText;
 use armgen_verify::{certify, document_bounds, verify, verify_with};
 
 struct Given {
@@ -470,4 +472,98 @@ fn run_time_parameters_may_be_anything() {
     let without = Given::of(Source::new("scara.yaml", text), Trig::Libm);
     let lost = "[0.0, 0.0, -9.81 * pi[2] + 1e17 * pi[2] - 1e17 * pi[2], 0.0]";
     without.refused(load, lost, "gravity_with: rounding can make an error of");
+}
+
+/// A line of the function that is changed, as it stands, and another one.
+const FRICTION: &str = "[5e-5 * dq[0], 5e-5 * dq[1], 25.0 * dq[2], 2.0 * dq[3]]";
+const TORQUES: &str = "[t9 + 12.76 * ddq[0], t6 + 5e-5 * t7 - t8, t10, 0.38 * t1 - 1.4 * t2 + 2.0 * dq[3]]";
+const C2: &str = "    let (_, c2) = sin_cos(q[1]);\n";
+
+/// What is right in the box, and of a power outside that its equations do not have there.
+#[test]
+fn powers_are_those_of_the_entry() {
+    let scara = scara();
+    // Of each entry of an argument.
+    let friction = |dq_1: &str, why: &str| scara.refused(FRICTION, &FRICTION.replace("5e-5 * dq[1]", dq_1), why);
+    friction("5e-5 * dq[1] + dq[0] - dq[0]", "friction: in [1] it takes `dq[0]` to the power 1 where its equations have 0");
+    friction("5e-5 * dq[1] + dq[1] * dq[1] - dq[1] * dq[1]", "in [1] it takes `dq[1]` to the power 2 where its equations have 1");
+    let torques = |old: &str, new: &str, why: &str| scara.refused(TORQUES, &TORQUES.replace(old, new), why);
+    torques("12.76 * ddq[0]", "12.76 * ddq[0] + q[0] - q[0]", "in [0] it takes `q[0]` to the power 1 where its equations have 0");
+    // Of sines and cosines: a peak where all angles are 0, and nothing beside it.
+    let mut peak = "    let (_, c2) = sin_cos(q[1]);\n    let t1 = c2 * c2;\n".to_string();
+    (2..8).for_each(|k| peak += &format!("    let t{k} = t{0} * t{0};\n", k - 1));
+    let at = scara.module.find("pub fn gravity(").expect("the function");
+    let changed = scara.module[at..].replacen("    let _ = q;\n", &peak, 1);
+    let changed = changed.replacen("-98.1", "1000.0 * t7 - 98.1 - 1000.0 * t7", 1);
+    let why = "gravity: in [2] it takes sine and cosine of `q[1]` to the power 128";
+    scara.refused_text(&format!("{}{changed}", &scara.module[..at]), why);
+}
+
+/// A sum of joint variables has lost the digits of the smaller one where the other is large.
+#[test]
+fn angles_are_those_of_the_equations() {
+    let scara = scara();
+    let as_differences = |first: &str, second: &str| {
+        format!("    let (s0, c0) = sin_cos({first});\n    let (s1, c1) = sin_cos({second});\n    let c2 = c0 * c1 + s0 * s1;\n")
+    };
+    let foreign = "inertia_matrix: it has an angle with `q[0]` and others, which its equations do not depend on";
+    scara.refused(C2, &as_differences("q[0] + q[1]", "q[0]"), foreign);
+    let no_frame = "inertia_matrix: it has an angle of `q[0]`, `q[3]`, by which no frame is turned";
+    scara.refused(C2, &as_differences("q[0] + q[1] - q[3]", "q[0] - q[3]"), no_frame);
+    // As their axes point: a sum where the frames are turned by the difference.
+    scara.refused(C2, &as_differences("q[1] + q[3]", "q[3]"), "it has an angle of `q[1]`, `q[3]`, by which no frame is turned");
+}
+
+/// An entry that is small beside the others, and as exact as they are.
+#[test]
+fn each_entry_has_digits_of_its_own() {
+    let scara = scara();
+    let single = {
+        let source = common::source("scara");
+        let generated = common::generate(&source, Scalar::F32);
+        let claims = Claims::from_numbers(&generated.constants);
+        let certificate = scara.certificate.clone();
+        Given { source, module: generated.module, claims, certificate }
+    };
+    for given in [&scara, &single] {
+        given.refused("[5e-5 * dq[0], ", "[5e-5 * dq[0] + 1000.0 - 1000.0, ", "friction: rounding can make an error of");
+    }
+    let lost = "[t3 + 1000000.0 * dq[0] - 1000000.0 * dq[0], 0.0, 0.0, 0.0]";
+    scara.refused("[t3, 0.0, 0.0, 0.0]", lost, "coriolis_matrix: rounding can make an error of");
+}
+
+/// One array may be argument and result; names are told apart by 63 characters.
+#[test]
+fn what_a_compiler_of_c_may_do_is_refused() {
+    let given = scara();
+    let generated = common::generate(&given.source, Scalar::F64);
+    let text = generated.in_language(Language::C);
+    let fault = |old: &str, new: &str| {
+        let at = text.find("scara_momentum(").expect("the function");
+        assert!(text[at..].contains(old), "{old}");
+        let text = text[..at].to_string() + &text[at..].replacen(old, new, 1);
+        let report = verify_with(
+            &given.source,
+            ModuleText { language: Language::C, text: &text },
+            given.claims.clone(),
+            Effort::default(),
+        );
+        report.first_fault().expect("a fault")
+    };
+    let aliased = fault("    result[2] = r3;", "    result[2] = 22.5 * dq[2] - 0.25 * t2;");
+    assert!(aliased.contains("an argument is read after an entry of the result is written"), "{aliased}");
+    let long = fault("_real t1 = ", &format!("_real t1{} = ", "a".repeat(62)));
+    assert!(long.contains("where an emitted module has"), "{long}");
+}
+
+/// What is no difference is not said to be one.
+#[test]
+fn what_has_no_value_is_not_said_to_differ() {
+    let scara = scara();
+    let squares: String = (901..961).map(|k| format!("let t{k} = t{0} * t{0}; ", k - 1)).collect();
+    let changed = format!("{T1}    let t900 = 0.5 * c2; {squares}\n");
+    let text = scara.module.replacen(T1, &changed, 1).replacen("[10.0 * c2 + 21.526,", "[10.0 * c2 + 21.526 + t960 - t960,", 1);
+    scara.refused_text(&text, "inertia_matrix[0][0]: has exact values of more than 2^20 bits");
+    let none = "[10.0 * c2 + 21.526 + (c2 - c2) / (c2 - c2),";
+    scara.refused("[10.0 * c2 + 21.526,", none, "inertia_matrix[0][0]: divides by 0 at point 1");
 }

@@ -136,6 +136,10 @@ impl Name {
     }
 }
 
+/// As many characters of a name C and MATLAB tell from others.
+const LONGEST_NAME: usize = 63;
+
+/// The joints of a sum, counted from 1; as sets of bits where a name of them would be too long: of 24 joints and more.
 fn of_sum(sum: AngleSum) -> String {
     let mut text = String::new();
     for (k, (i, minus)) in sum.terms().enumerate() {
@@ -149,10 +153,15 @@ fn of_sum(sum: AngleSum) -> String {
         };
         text += &(i + 1).to_string();
     }
-    if sum.turned {
-        text += "_turned";
+    let turned = if sum.turned { "_turned" } else { "" };
+    // One more for the letter in front.
+    if text.len() + turned.len() >= LONGEST_NAME {
+        text = format!("0x{:x}", sum.plus);
+        if sum.minus != 0 {
+            text += &format!("_less_0x{:x}", sum.minus);
+        }
     }
-    text
+    text + turned
 }
 
 impl Function {

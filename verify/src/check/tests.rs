@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::panic::{catch_unwind, AssertUnwindSafe};
 
+use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
@@ -14,6 +15,7 @@ use super::Check::{self, *};
 use crate::certificate::Certificate;
 use crate::checker::Effort;
 use crate::claims::Claims;
+use crate::reader::ModuleText;
 use crate::{certify, document_bounds, verify, verify_with};
 
 thread_local! {
@@ -157,6 +159,7 @@ fn no_check_can_be_left_out() {
     texts_and_items(&mut tally, &scara);
     unreadable(&mut tally, &scara);
     bodies(&mut tally, &scara);
+    bodies_in_c(&mut tally, &scara);
     functions(&mut tally, &scara);
     floats(&mut tally, &scara);
     constants(&mut tally, &scara);
@@ -262,6 +265,29 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     tally.module(&dry, known, "stribeck(dq[1], 0.02)", "stribeck(dq[1], 0.03)", &fades);
 }
 
+/// What a compiler of C may do: take one array for two arguments, forget what stands behind 63 characters of a name.
+fn bodies_in_c(tally: &mut Tally, scara: &Given) {
+    let mut generated = armgen_codegen::generate(&scara.source, &Options::default()).0.expect("a valid robot");
+    document_bounds(&scara.source, &mut generated).expect("bounds");
+    let text = generated.in_language(Language::C);
+    let at = text.find("scara_momentum(").expect("the function");
+    let (before, function) = text.split_at(at);
+    let mut c = |trick: &str, function: &str, layers: &[Layer]| {
+        assert!(text[at..] != *function, "{trick}");
+        let text = format!("{before}{function}");
+        let module = ModuleText { language: Language::C, text: &text };
+        let fault = || verify_with(&scara.source, module, scara.claims.clone(), Effort::default()).first_fault();
+        tally.peel(trick, layers, Last::Accepted, fault);
+    };
+    let sum = "22.5 * dq[2] - 0.25 * t2";
+    let local = format!("    const scara_real r3 = {sum};\n");
+    let aliased = function.replacen(&local, "", 1).replacen("result[2] = r3;", &format!("result[2] = {sum};"), 1);
+    c("an alias", &aliased, &[(Aliases, "an argument is read after an entry of the result is written")]);
+    let end = function.find("\n}\n").expect("its end");
+    let long = function[..end].replace(" t1 ", &format!(" t1{} ", "a".repeat(62))) + &function[end..];
+    c("a long name", &long, &[(Long, "where an emitted module has")]);
+}
+
 fn functions(tally: &mut Tally, scara: &Given) {
     let module = &scara.module;
     let without = |begins: &str| module.replace(item(module, begins), "");
@@ -286,7 +312,8 @@ fn functions(tally: &mut Tally, scara: &Given) {
     let high = edited(module, B, T1, &format!("{T1}    let t900 = 0.25 * c2 - 0.25 * c2; {squares}\n"));
     let high = edited(&high, B, "t1, -0.25", "t1, t1100 - 0.25");
     let said = "the documentation says `Cost: ";
-    let layers = [(Odds, "inertia_matrix: the odds of a miss are"), (Cost, said), (Prose, said)];
+    let growth = (Growth, "inertia_matrix: in [0][2] it takes sine and cosine of `q[1]` to the power 65535");
+    let layers = [growth, (Odds, "inertia_matrix: the odds of a miss are"), (Cost, said), (Prose, said)];
     tally.text(scara, "a high degree", &high, &layers);
 }
 
@@ -298,25 +325,40 @@ fn floats(tally: &mut Tally, scara: &Given) {
     };
     let headroom = (Headroom, "on the way to entries of up to");
     let leaves = (Leaves, "inertia_matrix: a value can leave f64 inside the box");
-    let (the_box, states) = ((Box, "anywhere in the box"), (States, "in f64, at a state of the box"));
-    let divides = [(Divisors, "it divides, which its equations do not ask for")];
-    entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &divides);
-    entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, headroom, the_box, states]);
-    entry(tally, scara, "B11 + 1e300 - 1e300", &[headroom, the_box, states]);
+    let (the_box, intervals) = ((Box, "anywhere in the box"), (Intervals, "anywhere in the box"));
+    let states = (States, "in f64, at a state of the box");
+    let foreign = (Dependence, "inertia_matrix: it takes `q[2]`, which its equations do not depend on");
+    let divides = (Divisors, "it divides, which its equations do not ask for");
+    entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &[divides, foreign]);
+    entry(tally, scara, "B11 + (1e200 * 1e200 - 1e200 * 1e200)", &[leaves, headroom, the_box, intervals, states]);
+    entry(tally, scara, "B11 + 1e300 - 1e300", &[headroom, the_box, intervals, states]);
     entry(tally, scara, "(B11) * 1e300 * 1e-300", &[headroom]);
-    entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[headroom, the_box, states]);
-    entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, states]);
-    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[(Plain, "in f64, at a state of the box")]);
+    entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[headroom, the_box, intervals, states]);
+    entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, intervals, states]);
+    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[states]);
+    // Beside a small entry: the bound of the function is that of another one.
+    let (small, lost) = ("[5e-5 * dq[0],", "[5e-5 * dq[0] + 0.02 - 0.02,");
+    let of_friction = [intervals, states, (Cost, said), (Prose, said)];
+    tally.module(scara, "pub fn friction(", small, lost, &of_friction);
     // Finite in the box, and not a number where q[2] is 2.
     let powers: String = (901..911).map(|k| format!("let t{k} = t{0} * t{0}; ", k - 1)).collect();
     let grown = edited(&scara.module, B, T1, &format!("{T1}    let t900 = 0.9 * q[2]; {powers}\n"));
     let grown = edited(&grown, B, B11, &format!("{B11} + t910 - t910"));
-    let layers = [(Growth, "inertia_matrix: it takes `q` to the power 1024 where its equations have 0")];
+    let layers = [(Growth, "inertia_matrix: in [0][0] it takes `q[2]` to the power 1024 where its equations have 0"), foreign];
     tally.text(scara, "a high power", &grown, &[&layers[..], &comments].concat());
+    let c2 = "let (_, c2) = sin_cos(q[1]);";
+    let as_differences = |tally: &mut Tally, first: &str, second: &str, layers: &[Layer]| {
+        let waves = format!("let (s8, c8) = sin_cos({first}); let (s9, c9) = sin_cos({second}); let c2 = c8 * c9 + s8 * s9;");
+        tally.module(scara, B, c2, &waves, &[layers, &comments].concat());
+    };
+    let sums = (Dependence, "inertia_matrix: it has an angle with `q[0]` and others, which its equations do not depend on");
+    as_differences(tally, "q[0] + q[1]", "q[0]", &[sums]);
+    let frames = (Frames, "inertia_matrix: it has an angle of `q[1]`, `q[3]`, by which no frame is turned");
+    as_differences(tally, "q[1] + q[3]", "q[3]", &[frames, (Dependence, "it has an angle with `q[3]` and others")]);
     entry(tally, scara, "B11 + 0.0 * c2", &[(Zeros, "inertia_matrix: it calculates with the number 0")]);
     let shortest = (Shortest, "is not the shortest decimal of a float");
     let rounded = "B11 - 4.0 + (100000000000000004.0 - 100000000000000000.0)";
-    entry(tally, scara, rounded, &[shortest, the_box, states]);
+    entry(tally, scara, rounded, &[shortest, the_box, intervals, states]);
     let forward = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, "pub fn forward_dynamics(", "[t29,", &format!("[{text},"), &[layers, &comments].concat());
     };
@@ -330,7 +372,8 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
     reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[(DividedLeaves, "forward_dynamics: a value leaves f32")]);
+    let of_quotients = [the_box, intervals, states, (DividedLeaves, "forward_dynamics: a value leaves f32")];
+    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &of_quotients);
 }
 
 fn constants(tally: &mut Tally, scara: &Given) {

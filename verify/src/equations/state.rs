@@ -11,7 +11,7 @@ use crate::program::{by_addition, Argument, Inputs, Turn};
 pub struct State<E> {
     /// Sine and cosine of each joint variable. Those of prismatic joints occur in no equation, and no function may use them.
     pub angles: Vec<(E, E)>,
-    /// Joint variables. Those of revolute joints occur in no equation but through sine and cosine, and no function may use them.
+    /// Joint variables. Those of revolute joints occur in no equation but through sine and cosine and in the torques of springs.
     pub q: Vec<E>,
     /// Joint rates.
     pub dq: Vec<E>,

@@ -6,16 +6,17 @@
 //! angles   = const ROBOT_real angle[N] = {ANGLES};  ROBOT_real sine[N], cosine[N];  ROBOT_sin_cos(ROBOT_ANGLES(USED, N), angle, sine, cosine);
 //!            { const ROBOT_real NAME = sine[I]; | const ROBOT_real NAME = cosine[I]; }
 //! line     = const ROBOT_real NAME = SUM;
-//! result   = return SUM; | { PART[I][J] = SUM; }
+//! result   = return SUM; | { PART[I][J] = SUM; }                   no argument is read once an entry is written: it may be the same array
 //! ```
 
 use std::collections::BTreeMap;
 
 use super::plain::{promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
+use crate::check::Check;
 use crate::contract::{Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
-use crate::program::Argument;
+use crate::program::{Argument, Step};
 
 const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")) };
 
@@ -286,7 +287,13 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
                 let (part, indices) = promise.returned.part_of(&place);
                 let line = lines.number();
                 let value = lines.between(&format!("    {part}{indices} = "), ";")?;
+                // A caller may hand over one array as argument and as result.
+                let written = (!body.program.outputs.is_empty()).then(|| body.program.steps.len());
                 body.output(place, value, line)?;
+                let reads = |step: &Step| matches!(step, Step::Input(..) | Step::Sign(_));
+                if written.is_some_and(|from| body.program.steps[from..].iter().any(reads)) && Check::Aliases.is_made() {
+                    return Err(Fault { line, reason: "an argument is read after an entry of the result is written".into() });
+                }
             }
         }
         lines.expect("}")?;

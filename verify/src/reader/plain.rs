@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use super::constant::Constant;
 use super::lexer::{is_hidden, name_of, Fault};
 use super::{Function, LONGEST};
+use crate::check::Check;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Literal, Output, Program, Step};
@@ -249,10 +250,14 @@ fn shortest(value: f64, real: Float) -> String {
     }
 }
 
+/// As many characters of a name tell it from others: in C 63 of a name inside of a function (C99, 5.2.4.1), in MATLAB the first 63 (`namelengthmax`).
+const LONGEST_NAME: usize = 63;
+
 /// The name of a value: a letter, a digit, and digits, small letters and `_`.
 fn is_value(word: &str) -> bool {
     let rest = word.strip_prefix(['s', 'c', 't', 'r']).unwrap_or("");
-    rest.starts_with(|c: char| c.is_ascii_digit())
+    (word.len() <= LONGEST_NAME || !Check::Long.is_made())
+        && rest.starts_with(|c: char| c.is_ascii_digit())
         && rest.bytes().all(|b| b.is_ascii_digit() || b.is_ascii_lowercase() || b == b'_')
 }
 

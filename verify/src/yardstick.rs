@@ -1,0 +1,206 @@
+//! How well floats can compute the equations: errors of a plain program of them, entry by entry, at states and over boxes.
+//!
+//! The program is that of [`reference`](mod@crate::reference), in double precision. At states it is run in floats with running errors
+//! ([`running`](mod@crate::arithmetic::running)); over a box in intervals with the largest errors of their values, by the rules of
+//! [`mod@crate::ranges`]. What divides by an interval that 0 lies in has no bound there.
+
+use std::collections::BTreeMap;
+
+use armgen_codegen::manipulator::{Joint, Manipulator};
+
+use crate::arithmetic::running::{Running, RunningNumbers};
+use crate::arithmetic::Arithmetic;
+use crate::base::{sums_of_kinds, OwnParameters};
+use crate::element::Element;
+use crate::enclosure::Float;
+use crate::equations::arm::{formula, Arm};
+use crate::equations::parameters::Vector;
+use crate::equations::state::State;
+use crate::float::{stribeck, stribeck_error, Arguments, LANES};
+use crate::formula::Formula;
+use crate::ranges::{Domain, Range};
+use crate::reference::{BaseParameters, Reference, Values, Wanted};
+
+const BASE_REGRESSOR: &str = "base_regressor";
+
+/// An arm whose equations are measured.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    /// The arm.
+    pub manipulator: &'a Manipulator,
+    /// What its parameter vector is.
+    pub vector: &'a Vector,
+    /// The parameters of its `base_regressor`.
+    pub base: Option<&'a OwnParameters>,
+}
+
+impl Subject<'_> {
+    /// All functions in an arithmetic that gives `pi` where it draws.
+    fn values<K: Arithmetic>(&self, numbers: &mut K, state: State<K::Element>) -> Option<Values<K::Element>> {
+        let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
+        let mut values = Reference::at(numbers, self.manipulator, self.vector, state.clone(), wanted).ok()?.values;
+        if let Some(base) = self.base {
+            let names = Arm::nominal(numbers, self.manipulator)?;
+            let arm = Arm::new(numbers, self.manipulator, &names)?;
+            values.insert(BASE_REGRESSOR.into(), sums_of_kinds(&arm, &state, &base.named));
+        }
+        Some(values)
+    }
+
+    /// The velocities at which Stribeck friction fades, of joints that have it.
+    fn stribeck_velocities(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+        let velocity =
+            |joint: &Joint| joint.stribeck.as_ref().and_then(|stribeck| Float::F64.nearest(&formula(&stribeck.velocity)));
+        self.manipulator.joints.iter().map(velocity)
+    }
+
+    fn is_base(&self) -> bool {
+        matches!(self.vector, Vector::Base(..))
+    }
+
+    /// By function and entry: at each state the largest error, and the size of the value.
+    pub fn at_states(&self, states: &[Arguments<f64>; LANES]) -> BTreeMap<String, Vec<[(f64, f64); LANES]>> {
+        let arguments = Arguments::gather(states, Running::exact);
+        let circle = |q: &Running| {
+            let both = q.value.map(libm::sincos);
+            // One unit in the last place each.
+            (Running::rounded(both.map(|(sine, _)| sine), 2.0), Running::rounded(both.map(|(_, cosine)| cosine), 2.0))
+        };
+        let sign = |rate: &Running| Running::exact(rate.value.map(|x| if x == 0.0 { 0.0 } else { x.signum() }));
+        let (angles, signs) = (arguments.q.iter().map(circle).collect(), arguments.dq.iter().map(sign).collect());
+        let stribeck = arguments.dq.iter().zip(self.stribeck_velocities()).map(|(rate, velocity)| {
+            let both = rate.value.map(|rate| match velocity {
+                Some(velocity) => {
+                    let value = stribeck(rate, velocity);
+                    (value, stribeck_error(rate.abs() / velocity, value, Float::F64))
+                }
+                None => (0.0, 0.0),
+            });
+            Running { value: both.map(|(value, _)| value), error: both.map(|(_, error)| error) }
+        });
+        let stribeck = stribeck.collect();
+        let mut state = State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| Running::exact([x; LANES]))) };
+        let mut numbers = RunningNumbers::default();
+        if self.is_base() {
+            numbers.given = std::mem::take(&mut state.pi).into();
+        }
+        let of = |entry: &Running| std::array::from_fn(|k| (entry.error[k], entry.value[k].abs()));
+        let values = self.values(&mut numbers, state).unwrap_or_default();
+        values.into_iter().map(|(name, entries)| (name, entries.iter().map(of).collect())).collect()
+    }
+
+    /// By function and entry: the largest error over a box with all angles.
+    pub fn over(&self, domain: &Domain) -> BTreeMap<String, Vec<f64>> {
+        let range = |(low, high): (f64, f64)| Range { low, high, error: 0.0 };
+        let arguments = domain.map(range);
+        let circle = Range { low: -1.0, high: 1.0, error: 2.0 * Float::F64.unit() };
+        let (angles, signs) = (vec![(circle, circle); arguments.q.len()], vec![range((-1.0, 1.0)); arguments.q.len()]);
+        let stribeck = arguments.dq.iter().zip(self.stribeck_velocities());
+        let stribeck = stribeck.map(|(rate, velocity)| {
+            velocity.map_or(range((0.0, 0.0)), |velocity| Range::stribeck((rate.low, rate.high), velocity, Float::F64))
+        });
+        let stribeck = stribeck.collect();
+        let mut state = State { stribeck, ..State::of(arguments, angles, signs, [0.0, 1.0].map(|x| range((x, x)))) };
+        let mut numbers = Ranges::default();
+        if self.is_base() {
+            numbers.given = std::mem::take(&mut state.pi).into_iter();
+        }
+        let values = self.values(&mut numbers, state).unwrap_or_default();
+        values.into_iter().map(|(name, entries)| (name, entries.iter().map(|entry| entry.error).collect())).collect()
+    }
+}
+
+/// Constants as ranges; what is drawn are given ones, in their order.
+#[derive(Default)]
+struct Ranges {
+    /// 1 where nothing is left.
+    given: std::vec::IntoIter<Range>,
+}
+
+impl Arithmetic for Ranges {
+    type Element = Range;
+
+    fn integer(&self, value: i64) -> Range {
+        Range { low: value as f64, high: value as f64, error: 0.0 }
+    }
+
+    fn constant(&self, formula: &Formula) -> Option<Range> {
+        let value = Float::F64.nearest(formula)?;
+        let exact = formula.as_rational().is_some_and(|e| crate::formula::Rational::try_from(value).is_ok_and(|f| f == *e));
+        let error = if exact { 0.0 } else { Float::F64.unit() * value.abs() };
+        Some(Range { low: value - error, high: value + error, error })
+    }
+
+    fn draw(&mut self) -> Range {
+        self.given.next().unwrap_or(Range { low: 1.0, high: 1.0, error: 0.0 })
+    }
+}
+
+/// An exact number.
+fn point(range: &Range) -> Option<f64> {
+    (range.low == range.high && range.error == 0.0).then_some(range.low)
+}
+
+/// A range with these ends and an error that comes with the operands, once more rounded.
+fn rounded(ends: &[f64], carried: f64) -> Range {
+    let size = ends.iter().fold(0.0f64, |size, end| size.max(end.abs()));
+    let range = Range::of(ends, carried + Float::F64.unit() * (size + carried));
+    if range.error.is_nan() {
+        Range::ANYTHING
+    } else {
+        range
+    }
+}
+
+impl Element for Range {
+    fn plus(&self, other: &Range) -> Range {
+        if self.is_zero() {
+            return *other;
+        }
+        if other.is_zero() {
+            return *self;
+        }
+        if let (Some(a), Some(b)) = (point(self), point(other)) {
+            let sum = a + b;
+            // What a sum of two floats loses is a float (Knuth).
+            let part = sum - a;
+            if (a - (sum - part)) + (b - part) == 0.0 {
+                return Range { low: sum, high: sum, error: 0.0 };
+            }
+        }
+        rounded(&[self.low + other.low, self.high + other.high], self.error + other.error)
+    }
+    fn minus(&self, other: &Range) -> Range {
+        self.plus(&other.negated())
+    }
+    fn times(&self, other: &Range) -> Range {
+        for (a, b) in [(self, other), (other, self)] {
+            match point(a) {
+                Some(0.0) => return *a,
+                Some(1.0) => return *b,
+                Some(-1.0) => return b.negated(),
+                _ => {}
+            }
+        }
+        let ends = [self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high];
+        rounded(&ends, self.size() * other.error + other.size() * self.error + self.error * other.error)
+    }
+    fn negated(&self) -> Range {
+        Range { low: -self.high, high: -self.low, error: self.error }
+    }
+    fn inverse(&self) -> Option<Range> {
+        if self.is_zero() {
+            return None;
+        }
+        let left = self.low.abs().min(self.high.abs()) - self.error;
+        if left > 0.0 && self.low.signum() == self.high.signum() {
+            let ends = [1.0 / self.low, 1.0 / self.high];
+            Some(rounded(&ends, self.error / (self.low.abs().min(self.high.abs()) * left)))
+        } else {
+            Some(Range::ANYTHING)
+        }
+    }
+    fn is_zero(&self) -> bool {
+        point(self) == Some(0.0)
+    }
+}
