@@ -90,11 +90,6 @@ fn power(m: Modulus, mut base: u64, mut exponent: u64) -> u64 {
 /// The blocks over a prime field. Their texts are those of `armgen-inverse-kinematics`; what they need of a scalar stands here.
 #[allow(dead_code, unreachable_pub, missing_docs, clippy::all, clippy::pedantic)]
 mod blocks {
-    use std::cmp::Ordering;
-    use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
-
-    use super::{Field, Modulus, FIELD, UNKNOWN};
-
     /// An element of the field, or none: what has been computed from a square root that does not exist, or from a division by 0.
     #[derive(Clone, Copy, Debug)]
     pub enum Real {
@@ -103,8 +98,8 @@ mod blocks {
         Element(Option<u64>),
     }
 
-    fn field() -> Field {
-        FIELD.get().expect("a field is set before blocks run")
+    fn field() -> super::Field {
+        super::FIELD.get().expect("a field is set before blocks run")
     }
 
     impl Real {
@@ -143,32 +138,32 @@ mod blocks {
             self
         }
 
-        fn with(self, other: Real, operation: impl FnOnce(Modulus, u64, u64) -> Option<u64>) -> Real {
+        fn with(self, other: Real, operation: impl FnOnce(super::Modulus, u64, u64) -> Option<u64>) -> Real {
             Real::Element(self.value().zip(other.value()).and_then(|(x, y)| operation(field().m, x, y)))
         }
     }
 
     macro_rules! operator {
         ($name:ident, $function:ident, $operation:expr) => {
-            impl $name for Real {
+            impl std::ops::$name for Real {
                 type Output = Real;
                 fn $function(self, other: Real) -> Real {
                     self.with(other, $operation)
                 }
             }
-            impl $name<&Real> for Real {
+            impl std::ops::$name<&Real> for Real {
                 type Output = Real;
                 fn $function(self, other: &Real) -> Real {
                     self.with(*other, $operation)
                 }
             }
-            impl $name<Real> for &Real {
+            impl std::ops::$name<Real> for &Real {
                 type Output = Real;
                 fn $function(self, other: Real) -> Real {
                     self.with(other, $operation)
                 }
             }
-            impl $name<&Real> for &Real {
+            impl std::ops::$name<&Real> for &Real {
                 type Output = Real;
                 fn $function(self, other: &Real) -> Real {
                     self.with(*other, $operation)
@@ -182,33 +177,33 @@ mod blocks {
     operator!(Mul, mul, |m, x, y| Some(m.times(x, y)));
     operator!(Div, div, |m, x, y| (y != 0).then(|| m.times(x, m.inverse(y))));
 
-    impl Neg for Real {
+    impl std::ops::Neg for Real {
         type Output = Real;
         fn neg(self) -> Real {
             Real::ZERO - self
         }
     }
 
-    impl Neg for &Real {
+    impl std::ops::Neg for &Real {
         type Output = Real;
         fn neg(self) -> Real {
             Real::ZERO - self
         }
     }
 
-    impl AddAssign for Real {
+    impl std::ops::AddAssign for Real {
         fn add_assign(&mut self, other: Real) {
             *self = *self + other;
         }
     }
 
-    impl SubAssign for Real {
+    impl std::ops::SubAssign for Real {
         fn sub_assign(&mut self, other: Real) {
             *self = *self - other;
         }
     }
 
-    impl MulAssign for Real {
+    impl std::ops::MulAssign for Real {
         fn mul_assign(&mut self, other: Real) {
             *self = *self * other;
         }
@@ -222,11 +217,11 @@ mod blocks {
 
     /// What differs is larger: so a difference from 0 is taken for one that is not rounding.
     impl PartialOrd for Real {
-        fn partial_cmp(&self, other: &Real) -> Option<Ordering> {
+        fn partial_cmp(&self, other: &Real) -> Option<std::cmp::Ordering> {
             let values = self.value().zip(other.value());
-            UNKNOWN.set(UNKNOWN.get() || values.is_none());
+            super::UNKNOWN.set(super::UNKNOWN.get() || values.is_none());
             let (x, y) = values?;
-            Some(if x == y { Ordering::Equal } else { Ordering::Greater })
+            Some(if x == y { std::cmp::Ordering::Equal } else { std::cmp::Ordering::Greater })
         }
     }
 
