@@ -372,7 +372,7 @@ impl<'a> Trial<'a> {
             let size = worst(plain.iter().map(|entry| entry.states[state].1));
             let lost = worst(plain.iter().map(|entry| entry.states[state].0)) / (unit * size);
             // Not so, either, where this is no number.
-            if !(lost < LOST) {
+            if exceeds(lost, LOST) {
                 continue;
             }
             for (k, entry) in plain.iter().enumerate() {

@@ -15,7 +15,7 @@ use armgen_runtime::simulation::{run, Integrator, RunOptions};
 use armgen_runtime::stability::{analyse, Delay, Rehearsal, Rehearse, Settle};
 
 /// The Puma 560 with the standard parameters of all links.
-#[allow(missing_docs)]
+#[allow(missing_docs, unreachable_pub)]
 #[rustfmt::skip]
 mod puma560 {
     include!(concat!(env!("OUT_DIR"), "/puma560.rs"));

@@ -288,7 +288,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
                 let line = lines.number();
                 let value = lines.between(&format!("    {part}{indices} = "), ";")?;
                 // A caller may hand over one array as argument and as result.
-                let written = (!body.program.outputs.is_empty()).then(|| body.program.steps.len());
+                let written = (!body.program.outputs.is_empty()).then_some(body.program.steps.len());
                 body.output(place, value, line)?;
                 let reads = |step: &Step| matches!(step, Step::Input(..) | Step::Sign(_));
                 if written.is_some_and(|from| body.program.steps[from..].iter().any(reads)) && Check::Aliases.is_made() {
