@@ -82,7 +82,12 @@ impl Modulus {
 
     /// 1/a; 0 of 0.
     pub(super) fn inverse(self, a: u64) -> u64 {
-        let (mut result, mut base, mut exponent) = (self.one, a, self.prime - 2);
+        self.power(a, self.prime - 2)
+    }
+
+    /// base^exponent.
+    pub(super) fn power(self, mut base: u64, mut exponent: u64) -> u64 {
+        let mut result = self.one;
         while exponent > 0 {
             if exponent & 1 == 1 {
                 result = self.times(result, base);

@@ -37,10 +37,10 @@ impl Field {
         let odd = (m.prime - 1) >> twos;
         let mut candidate = 2;
         let minus = m.negated(m.one);
-        while power(m, m.integer(candidate), half) != minus {
+        while m.power(m.integer(candidate), half) != minus {
             candidate += 1;
         }
-        Field { m, twos, odd, generator: power(m, m.integer(candidate), odd) }
+        Field { m, twos, odd, generator: m.power(m.integer(candidate), odd) }
     }
 
     /// The square root of the smaller representative, if there is one (Tonelli and Shanks).
@@ -49,8 +49,8 @@ impl Field {
         if x == 0 {
             return Some(0);
         }
-        let mut root = power(m, x, self.odd.div_ceil(2));
-        let mut rest = power(m, x, self.odd);
+        let mut root = m.power(x, self.odd.div_ceil(2));
+        let mut rest = m.power(x, self.odd);
         let (mut generator, mut order) = (self.generator, self.twos);
         while rest != m.one {
             let mut twos = 0;
@@ -73,18 +73,6 @@ impl Field {
         let other = m.negated(root);
         Some(if m.value(root) <= m.value(other) { root } else { other })
     }
-}
-
-fn power(m: Modulus, mut base: u64, mut exponent: u64) -> u64 {
-    let mut result = m.one;
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            result = m.times(result, base);
-        }
-        base = m.times(base, base);
-        exponent >>= 1;
-    }
-    result
 }
 
 /// The blocks over a prime field. Their texts are those of `armgen-inverse-kinematics`; what they need of a scalar stands here.
