@@ -82,7 +82,7 @@ in_both_scalars! {
                     let block = regional.block;
                     angles(&spherical_triple(&way.links_at(t), [p1, p2, p3], block), way)
                 }),
-                Plan::ThreeParallel { way } => measure(&poses, |t| angles(&three_parallel(&way.links_at(t)), way)),
+                Plan::ThreeParallel { way, .. } => measure(&poses, |t| angles(&three_parallel(&way.links_at(t)), way)),
                 Plan::General { ways } => {
                     let length = arm.length();
                     let whole = measure(&poses, |t| general_arm(ways, t, length).count);

@@ -279,6 +279,41 @@ mod double {
         }
     }
 
+    /// The arm held by its end effector.
+    fn held_by_its_end(arm: &Arm) -> Arm {
+        let flip: Frame = [[1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0]];
+        let last = arm.joints();
+        let mut c: Vec<Frame> = arm.c.iter().rev().map(reversed).collect();
+        (c[0], c[last]) = (compose(&flip, &c[0]), compose(&c[last], &flip));
+        Arm { c, prismatic: arm.prismatic.iter().rev().copied().collect() }
+    }
+
+    /// Three parallel axes, the sixth axis 10^-k beside their direction: postures keep their digits, from both ends of the arm.
+    #[test]
+    fn three_parallel_axes_next_to_the_singular_wrist() {
+        let ur5 = read("ur5").arm;
+        for arm in [held_by_its_end(&ur5), ur5] {
+            let plan = plan(&arm);
+            assert!(matches!(plan, Plan::ThreeParallel { related: true, .. }), "{plan:?}");
+            let wrist = if arm.c[1][0][3] == 0.0 && arm.c[2][0][3] == 0.0 { 1 } else { 4 };
+            let random = &mut Random(21);
+            let mut complete = 0;
+            for i in 0..1000 {
+                let beside = 10f64.powf(random.between(-6.0, -1.0));
+                let mut q = arm.posture(random);
+                q[wrist] = if i % 2 == 0 { beside } else { std::f64::consts::PI - beside };
+                let t = arm.at(&q);
+                let found = solve(&plan, &arm, &t);
+                complete += usize::from(verdict(&found) == "Complete");
+                for branch in found.found().iter().filter(|branch| !branch.double) {
+                    let missed = defect(&arm.forward(&branch.joints), &t);
+                    assert!(missed < 1e-14, "{missed:e} at {beside:e}: {branch:?}");
+                }
+            }
+            assert!(complete > 950, "{complete}");
+        }
+    }
+
     /// An arm with three parallel axes by block 8 all the same.
     #[test]
     fn ur5_as_a_general_arm() {

@@ -8,6 +8,8 @@ struct TwoCircles {
     double: bool,
     a_free: bool,
     b_free: bool,
+    /// qa comes from the last equation, else qb.
+    a_last: bool,
     /// How far rounding may have moved the two angles together, rad.
     error: Real,
 }
@@ -31,7 +33,7 @@ fn two_circles(
         return (one_circle_first(m1, m2, d, noise, found), false);
     }
     if d1.abs() <= ROUNDING * size(m1) {
-        let exchanged = |s: TwoCircles| found(TwoCircles { a: s.b, b: s.a, a_free: s.b_free, b_free: s.a_free, ..s });
+        let exchanged = |s: TwoCircles| found(TwoCircles { a: s.b, b: s.a, a_free: s.b_free, b_free: s.a_free, a_last: true, ..s });
         return (one_circle_first(m2, m1, d, noise, exchanged), false);
     }
     // The matrix that is farther from singular is inverted.
@@ -48,10 +50,10 @@ fn two_circles(
         // A length other than 1 is an error that the division magnified.
         let error = root.error + x.miss;
         let (a, b) = if swapped { (y, x.value) } else { (x.value, y) };
-        found(TwoCircles { a, b, signs: i as u16, double: root.double, a_free: false, b_free: false, error });
+        found(TwoCircles { a, b, signs: i as u16, double: root.double, a_free: false, b_free: false, a_last: swapped, error });
     }
     if roots.free {
-        found(TwoCircles { a: [1.0, 0.0], b: [1.0, 0.0], signs: 0, double: false, a_free: true, b_free: true, error: 0.0 });
+        found(TwoCircles { a: [1.0, 0.0], b: [1.0, 0.0], signs: 0, double: false, a_free: true, b_free: true, a_last: false, error: 0.0 });
     }
     (0.0, roots.near && roots.count == 0)
 }
@@ -86,11 +88,39 @@ fn one_circle_first(
                 double: first.double || second.double,
                 a_free: first.free,
                 b_free: second.free,
+                a_last: false,
                 error: first.error + second.error,
             });
         }
     }
     miss
+}
+
+/// The row v Rz(q) F without its third component, for an angle q that this component has given; and q, mended where the component is nearly 1.
+///
+/// There it is a cosine, which leaves u/sine of q. The rest of the row is the sine itself, and `wanted` says how long it is:
+/// d|rest|/dq = -(third/|rest|) d third/dq gives a step of Newton's.
+#[inline]
+fn seen_beside(v: Vector, q: [Real; 2], f: &Frame, wanted: Real) -> ([Real; 2], [Real; 2]) {
+    let seen = |q: [Real; 2]| {
+        let turned = turn_vector(q[0], -q[1], v);
+        (turned, [dot(turned, column(f, 0)), dot(turned, column(f, 1))])
+    };
+    let (turned, rest) = seen(q);
+    if !(wanted < 0.125) {
+        return (rest, q);
+    }
+    // d(v Rz(q))/dq = (v2, -v1, 0) for the turned v.
+    let (third, slope) = (dot(turned, column(f, 2)), turned[1] * f[0][2] - turned[0] * f[1][2]);
+    let sine = length(rest[0], rest[1]);
+    let step = (sine - wanted) * sine / (third * slope);
+    // A larger one is no error of rounding.
+    if !(step.abs() < 0.125 * sine) {
+        return (rest, q);
+    }
+    let (c, s) = small_turn(step);
+    let q = [c * q[0] - s * q[1], c * q[1] + s * q[0]];
+    (seen(q).1, q)
 }
 
 /// Where qc is free: an angle that leaves the elbow within reach, (1, 0) if that does. The squared distance that two links have to reach is
@@ -152,9 +182,15 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
     let d = [lengths * (k[2] * zb[2] - n[2] * za[2]), k[2] * ob[2] + k4 - n[2] * oa[2] - n4];
     let (miss, near) = two_circles(m1, m2, d, noise, |solution| {
         let (qa, qb) = (solution.a, solution.b);
-        let (n, k) = (turn_vector(qa[0], qa[1], n), turn_vector(qb[0], -qb[1], k));
-        let before = [dot(n, column(&ic, 0)), dot(n, column(&ic, 1))];
-        let qc = turn(before, [dot(k, column(lb, 0)), dot(k, column(lb, 1))], ROUNDING);
+        // The normal across axis c, from both sides; the angle that was found last is mended by the other side.
+        let across = |v: [Real; 2]| length(v[0], v[1]);
+        let (mut from_a, mut back_a) = seen_beside(n, [qa[0], -qa[1]], &ic, 1.0);
+        let (from_b, qb) = seen_beside(k, qb, lb, if solution.a_last { 1.0 } else { across(from_a) });
+        if solution.a_last {
+            (from_a, back_a) = seen_beside(n, back_a, &ic, across(from_b));
+        }
+        let qa = [back_a[0], -back_a[1]];
+        let qc = turn(from_a, from_b, ROUNDING);
         // M = (L3 Jb Lb Jc Lc Ja La)⁻¹
         let (first, last) = (compose(l3, &joint_then(false, qb, lb)), compose(lc, &joint_then(false, qa, la)));
         let bracket = |qc: [Real; 2]| inverse(&compose(&first, &joint_then(false, qc, &last)));

@@ -5,7 +5,8 @@
 #[derive(Clone, Debug)]
 pub enum Plan {
     SphericalTriple { way: Arrangement<6>, regional: Regional },
-    ThreeParallel { way: Arrangement<6> },
+    /// `related`: axes b and c, or c and a, intersect or are parallel.
+    ThreeParallel { way: Arrangement<6>, related: bool },
     ParallelTurns { way: Arrangement<4>, regional: Regional },
     General { ways: Box<[Arrangement<6>; 2]> },
 }
@@ -179,7 +180,8 @@ pub fn plan(arm: &Arm) -> Plan {
                 }
                 let flat = |i: usize| way.open != i && zero(l[i][2][1]) && l[i][0][3] != 0.0;
                 if exact && all(0..6) && flat(1) && flat(2) {
-                    return Plan::ThreeParallel { way };
+                    let related = |i: usize| way.open != i && (l[i][0][3] == 0.0 || zero(l[i][2][1]));
+                    return Plan::ThreeParallel { way, related: related(4) || related(5) };
                 }
             }
         }
@@ -232,10 +234,12 @@ pub fn solve(plan: &Plan, arm: &Arm, t: &Frame) -> Branches<6, 16> {
             }
             take(&|i| found.found().get(i).map(|b| way.of_arm(b)), found.miss, found.near, found.continuum);
         }
-        Plan::ThreeParallel { way } => {
+        Plan::ThreeParallel { way, related } => {
             let links = way.links_at(t);
             let mut found = three_parallel(&links);
-            polish(&mut found, &Loop { links: &links, prismatic: way.prismatic, length: arm.length() });
+            if !related {
+                polish(&mut found, &Loop { links: &links, prismatic: way.prismatic, length: arm.length() });
+            }
             take(&|i| found.found().get(i).map(|b| way.of_arm(b)), found.miss, found.near, found.continuum);
         }
         Plan::ParallelTurns { way, regional } => {
