@@ -15,6 +15,8 @@ const fn law(milliseconds: u64, acceleration_milliseconds: u64) -> Law<f32> {
     }
 }
 
+/// There once, not wherever it is called.
+#[inline(never)]
 fn line(to: [f32; 3], milliseconds: u64) -> Segment<f32> {
     Segment::line(to, law(milliseconds, 200))
 }
@@ -24,6 +26,7 @@ fn via(to: [f32; 3], milliseconds: u64) -> Segment<f32> {
     line(to, milliseconds).anticipating(Duration::from_millis(200))
 }
 
+#[inline(never)]
 fn arc(centre: [f32; 3], sweep: f32, to: [f32; 3], milliseconds: u64) -> Segment<f32> {
     Segment::arc_to(centre, [0.0, 0.0, 1.0], sweep, to, law(milliseconds, 200))
 }

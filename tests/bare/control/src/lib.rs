@@ -2,36 +2,18 @@
 //!
 //! Each millisecond: where the end effector should be (trajectory), which joint motion that is (second-order inverse kinematics), which
 //! torques follow it (adaptive control). The arm itself carries 5 kg that the controller does not know, and is integrated by one step of
-//! Runge and Kutta's fourth-order method. Host and microcontroller compile this one source, and every sine and root of it is libm's.
+//! Runge and Kutta's fourth-order method. Host and microcontroller compile this one source; the emitted module and the runtime compute
+//! its sines in f32, libm its roots.
 #![no_std]
 
 mod ghost;
 mod plant;
-pub mod postures;
 
 #[allow(clippy::excessive_precision)]
 pub mod robot {
-    //! The emitted module, the robots of the runtime over it, and a call of each function.
+    //! The emitted module and the robots of the runtime over it.
     include!(concat!(env!("OUT_DIR"), "/scara.rs"));
     include!(concat!(env!("OUT_DIR"), "/scara_runtime.rs"));
-    include!(concat!(env!("OUT_DIR"), "/calls.rs"));
-}
-
-#[allow(missing_docs)]
-pub mod scara_ik {
-    //! All postures of the SCARA.
-    include!(concat!(env!("OUT_DIR"), "/scara_ik.rs"));
-}
-
-#[allow(clippy::excessive_precision, unreachable_pub)]
-mod puma560 {
-    include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
-}
-
-#[allow(missing_docs)]
-pub mod puma560_ik {
-    //! All postures of the Puma 560.
-    include!(concat!(env!("OUT_DIR"), "/puma560_ik.rs"));
 }
 
 pub use armgen_runtime::{nalgebra::SVector, reference::JointReference};
@@ -150,19 +132,6 @@ impl Cell {
     /// The estimate of the third link's mass, kg; the arm carries 15.
     pub fn estimated_mass(&self) -> f32 {
         self.controller.estimate()[2]
-    }
-
-    /// Arguments for the emitted functions, from the present state.
-    pub fn arguments(&self, reference: &JointReference<f32, 4>, tau: &SVector<f32, 4>) -> robot::Arguments {
-        robot::Arguments {
-            q: self.actual.q.into(),
-            dq: self.actual.dq.into(),
-            ddq: reference.ddq.into(),
-            dqr: reference.dq.into(),
-            ddqr: reference.ddq.into(),
-            tau: (*tau).into(),
-            pi: (*self.controller.estimate()).into(),
-        }
     }
 }
 

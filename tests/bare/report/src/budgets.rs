@@ -7,6 +7,9 @@ use crate::{
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
+/// The name of an empty call, whose cost is taken off.
+const NOTHING: &str = "(nothing)";
+
 /// What a function, or a step, costs or may cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,6 +35,14 @@ pub(crate) struct Program {
     pub(crate) error: u64,
 }
 
+/// Functions by name, by module.
+pub(crate) type Modules = BTreeMap<String, BTreeMap<String, Cost>>;
+
+/// The ending of the modules that compute sines themselves.
+const FAST: &str = "_fast";
+/// That of those that call `libm` for them; what they cost has no budget.
+const LIBM: &str = "_libm";
+
 /// The file of budgets; measurements have the same shape.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -39,8 +50,8 @@ pub(crate) struct Budgets {
     pub(crate) program: Program,
     /// A control step: trajectory, inverse kinematics, controller.
     pub(crate) control_step: Cost,
-    /// Each emitted function.
-    pub(crate) functions: BTreeMap<String, Cost>,
+    /// Each function of each emitted module with sines in f32.
+    pub(crate) functions: Modules,
 }
 
 /// What was measured.
@@ -51,26 +62,38 @@ pub(crate) struct Measured {
     pub(crate) parts: [u64; 4],
     /// The same, mean over the run.
     pub(crate) means: [u64; 4],
-    /// Stack frames of the emitted functions themselves.
-    pub(crate) frames: BTreeMap<String, u64>,
     /// Bytes in memory besides the stack.
     pub(crate) data: u64,
 }
 
-impl Measured {
-    pub(crate) fn of(image: &Image, printed: &Printed) -> Result<Measured, String> {
-        let [nothing, _] = printed.functions.get("(nothing)").copied().ok_or("the firmware did not measure an empty call")?;
-        let cost = |name: &str, [ticks, stack]: [u64; 2]| {
-            let text = image.functions.get(name).copied().ok_or(format!("the firmware holds no function `{name}`"))?;
-            Ok::<_, String>(Cost { instructions: instructions(ticks.saturating_sub(nothing)), text, stack })
-        };
-        let mut functions = BTreeMap::new();
-        for (name, measured) in
-            printed.functions.iter().filter(|(name, _)| !["(nothing)", "control_step"].contains(&name.as_str()))
-        {
-            functions.insert(name.clone(), cost(name, *measured)?);
+/// What each function cost, by module.
+pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, String> {
+    let mut modules = Modules::new();
+    for (path, [ticks, stack]) in &printed.functions {
+        let (module, name) = path.split_once("::").ok_or(format!("`{path}` is no function of a module"))?;
+        if name == NOTHING {
+            continue;
         }
-        let [_, stack] = printed.functions.get("control_step").copied().ok_or("the firmware did not measure a control step")?;
+        let [nothing, _] =
+            printed.functions.get(&format!("{module}::{NOTHING}")).ok_or("the firmware did not measure an empty call")?;
+        // Of two functions with the same code the linked program holds one: where no sine is in it, that of the other module will do.
+        let twin = match module.strip_suffix(LIBM) {
+            Some(robot) => format!("{robot}{FAST}::{name}"),
+            None => format!("{}{LIBM}::{name}", module.trim_end_matches(FAST)),
+        };
+        let text = [path, &twin].into_iter().find_map(|path| image.functions.get(path));
+        let text = *text.ok_or(format!("the firmware holds no function `{path}`"))?;
+        let cost = Cost { instructions: instructions(ticks.saturating_sub(*nothing)), text, stack: *stack };
+        modules.entry(module.into()).or_default().insert(name.into(), cost);
+    }
+    Ok(modules)
+}
+
+impl Measured {
+    /// Of the program that controls an arm, and of the functions measured alone.
+    pub(crate) fn of(image: &Image, printed: &Printed, functions: Modules) -> Result<Measured, String> {
+        let [_, stack] =
+            printed.functions.get("control::control_step").copied().ok_or("the firmware did not measure a control step")?;
         let most = |of: &dyn Fn(&[u64; 4]) -> u64| printed.ticks.iter().map(of).max().map_or(0, instructions);
         let mean = |part: usize| {
             let total: u64 = printed.ticks.iter().map(|ticks| ticks[part]).sum();
@@ -85,7 +108,6 @@ impl Measured {
             },
             parts: std::array::from_fn(|part| most(&|ticks| ticks[part])),
             means: std::array::from_fn(mean),
-            frames: image.frames.clone(),
             data: image.data,
         })
     }
@@ -104,8 +126,11 @@ impl Budgets {
         check("code".into(), "bytes", costs.program.text, program.text);
         check("flash".into(), "bytes", costs.program.flash, program.flash);
         check("joint error".into(), "1e-9 rad or m", costs.program.error, program.error);
-        let step = [("control_step", &costs.control_step, Some(&self.control_step))].into_iter();
-        let functions = costs.functions.iter().map(|(name, cost)| (name.as_str(), cost, self.functions.get(name)));
+        let step = [("control_step".into(), costs.control_step, Some(self.control_step))].into_iter();
+        let budget = |module: &str, name: &str| self.functions.get(module).and_then(|functions| functions.get(name)).copied();
+        let functions = all(&costs.functions)
+            .filter(|(module, ..)| !module.ends_with(LIBM))
+            .map(|(module, name, cost)| (format!("{module}::{name}"), cost, budget(module, name)));
         let mut missing = Vec::new();
         for (name, cost, budget) in step.chain(functions) {
             let Some(budget) = budget else {
@@ -117,10 +142,20 @@ impl Budgets {
             check(format!("stack of `{name}`"), "bytes", cost.stack, budget.stack);
         }
         faults.extend(missing);
-        let unknown = self.functions.keys().filter(|name| !costs.functions.contains_key(*name));
-        faults.extend(unknown.map(|name| format!("there is a budget for `{name}`, which is no emitted function")));
+        let unknown = all(&self.functions)
+            .filter(|(module, name, _)| !costs.functions.get(*module).is_some_and(|functions| functions.contains_key(*name)));
+        faults.extend(
+            unknown.map(|(module, name, _)| format!("there is a budget for `{module}::{name}`, which is no emitted function")),
+        );
         faults
     }
+}
+
+/// Module, name and cost of all functions.
+fn all(modules: &Modules) -> impl Iterator<Item = (&str, &str, Cost)> {
+    modules
+        .iter()
+        .flat_map(|(module, functions)| functions.iter().map(move |(name, cost)| (module.as_str(), name.as_str(), *cost)))
 }
 
 #[cfg(test)]
@@ -128,20 +163,26 @@ mod tests {
     use super::*;
 
     fn measured() -> Measured {
-        let image = Image { text: 100, flash: 120, data: 4, functions: [("gravity".into(), 30)].into(), ..Image::default() };
+        let image = Image { text: 100, flash: 120, data: 4, ..Image::default() };
         let printed = Printed {
             ticks: vec![[16, 32, 48, 64], [32, 16, 16, 16]],
-            functions: [("(nothing)".into(), [16, 8]), ("gravity".into(), [48, 40]), ("control_step".into(), [0, 500])].into(),
+            functions: [("control::control_step".into(), [0, 500])].into(),
             error: 7,
             ..Printed::default()
         };
-        Measured::of(&image, &printed).unwrap()
+        let modules =
+            Image { functions: [("a_fast::gravity".into(), 30), ("a_libm::gravity".into(), 31)].into(), ..Image::default() };
+        let calls = ["a_fast", "a_libm"].map(|module| {
+            [("(nothing)", [16, 8]), ("gravity", [48, 40])].map(|(name, cost)| (format!("{module}::{name}"), cost))
+        });
+        let calls = Printed { functions: calls.into_iter().flatten().collect(), ..Printed::default() };
+        Measured::of(&image, &printed, functions(&modules, &calls).unwrap()).unwrap()
     }
 
     const EXACT: &str = "
         program = { text = 100, flash = 120, error = 7 }
         control_step = { instructions = 60, stack = 500 }
-        functions.gravity = { instructions = 20, text = 30, stack = 40 }";
+        functions.a_fast.gravity = { instructions = 20, text = 30, stack = 40 }";
 
     #[track_caller]
     fn check(budgets: &str, expected: &[&str]) {
@@ -161,14 +202,17 @@ mod tests {
         check(&EXACT.replace("= 7", "= 6"), &["joint error: 7 1e-9 rad or m, the budget is 6"]);
         check(&EXACT.replace("= 60", "= 59"), &["`control_step`: 60 instructions, the budget is 59"]);
         check(&EXACT.replace("= 500", "= 499"), &["stack of `control_step`: 500 bytes, the budget is 499"]);
-        check(&EXACT.replace("= 20", "= 19"), &["`gravity`: 20 instructions, the budget is 19"]);
-        check(&EXACT.replace("= 30", "= 29"), &["code of `gravity`: 30 bytes, the budget is 29"]);
-        check(&EXACT.replace("= 40", "= 39"), &["stack of `gravity`: 40 bytes, the budget is 39"]);
+        check(&EXACT.replace("= 20", "= 19"), &["`a_fast::gravity`: 20 instructions, the budget is 19"]);
+        check(&EXACT.replace("= 30", "= 29"), &["code of `a_fast::gravity`: 30 bytes, the budget is 29"]);
+        check(&EXACT.replace("= 40", "= 39"), &["stack of `a_fast::gravity`: 40 bytes, the budget is 39"]);
     }
 
     #[test]
     fn functions_and_budgets_belong_together() {
         let renamed = EXACT.replace("gravity", "levity");
-        check(&renamed, &["`gravity` has no budget", "there is a budget for `levity`, which is no emitted function"]);
+        check(
+            &renamed,
+            &["`a_fast::gravity` has no budget", "there is a budget for `a_fast::levity`, which is no emitted function"],
+        );
     }
 }

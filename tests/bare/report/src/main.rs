@@ -1,8 +1,10 @@
 //! Holds what the firmware printed against this machine's bits and against the budgets, and writes the page about it.
 //!
 //! ```text
-//! armgen-bare-report FIRMWARE.elf PRINTED.txt BUDGETS.toml [--write PAGE.md]
+//! armgen-bare-report BUDGETS.toml FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]
 //! ```
+//!
+//! The firmware is the program that controls an arm; the other two measure the functions of emitted modules, compiled for each processor.
 //!
 //! Exit code 0 if every bit agrees and every budget holds, 1 if not, 2 if a file cannot be read.
 
@@ -11,7 +13,8 @@ mod image;
 mod page;
 mod printed;
 
-use armgen_bare_control::{postures, Cell, Fault, Line, STEPS};
+use armgen_bare_control::{Cell, Fault, Line, STEPS};
+use armgen_bare_functions::postures;
 use budgets::{Budgets, Measured};
 use image::Image;
 use printed::Printed;
@@ -36,24 +39,37 @@ fn main() -> ExitCode {
 fn run() -> Result<Vec<String>, String> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let (files, page) = match arguments.as_slice() {
-        [elf, printed, budgets] => ([elf, printed, budgets], None),
-        [elf, printed, budgets, "--write", page] => ([elf, printed, budgets], Some(page)),
-        _ => return Err("usage: armgen-bare-report FIRMWARE.elf PRINTED.txt BUDGETS.toml [--write PAGE.md]".into()),
-    };
+    let (files, page) =
+        match arguments.as_slice() {
+            [files @ .., "--write", page] if files.len() == 7 => (files, Some(page)),
+            files if files.len() == 7 => (files, None),
+            _ => return Err(
+                "usage: armgen-bare-report BUDGETS.toml FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]"
+                    .into(),
+            ),
+        };
     let read = |path: &str| fs::read(path).map_err(|e| format!("cannot read {path}: {e}"));
     let text = |path: &str| String::from_utf8(read(path)?).map_err(|e| format!("{path}: {e}"));
-    let image = Image::read(&read(files[0])?).map_err(|e| format!("{}: {e}", files[0]))?;
-    let printed = Printed::read(&text(files[1])?)?;
-    let budgets: Budgets = toml::from_str(&text(files[2])?).map_err(|e| format!("{}: {e}", files[2]))?;
-
-    let measured = Measured::of(&image, &printed)?;
-    let mut faults = printed.calibration_faults();
+    let budgets: Budgets = toml::from_str(&text(files[0])?).map_err(|e| format!("{}: {e}", files[0]))?;
+    let mut faults = Vec::new();
+    let mut program = |elf: &str, lines: &str| {
+        let image = Image::read(&read(elf)?).map_err(|e| format!("{elf}: {e}"))?;
+        let printed = Printed::read(&text(lines)?)?;
+        faults.extend(printed.calibration_faults());
+        Ok::<_, String>((image, printed))
+    };
+    let (image, printed) = program(files[1], files[2])?;
+    let ((m4f_image, m4f), (m7_image, m7)) = (program(files[3], files[4])?, program(files[5], files[6])?);
+    let measured = Measured::of(&image, &printed, budgets::functions(&m4f_image, &m4f)?)?;
+    let on_m7 = budgets::functions(&m7_image, &m7)?;
     let host = host().map_err(|fault| format!("the run ended early on this machine: {fault:?}"))?;
     faults.extend(printed::differences(&host, &printed.torques));
-    faults.extend(printed::differences(&host_postures(), &printed.postures));
+    let postures = host_postures();
+    for target in [&m4f, &m7] {
+        faults.extend(printed::differences(&postures, &target.postures));
+    }
     faults.extend(budgets.exceeded(&measured));
-    let page_text = page::page(&measured, &budgets, &printed);
+    let page_text = page::page(&measured, &on_m7, &budgets, &printed, postures.len());
     print!("{}", page::summary(&measured, &printed));
     if let Some(page) = page.filter(|_| faults.is_empty()) {
         fs::write(page, page_text).map_err(|e| format!("cannot write {page}: {e}"))?;
@@ -61,7 +77,7 @@ fn run() -> Result<Vec<String>, String> {
     Ok(faults)
 }
 
-/// All postures, computed on this machine.
+/// Those of all postures, computed on this machine.
 fn host_postures() -> Vec<String> {
     let mut lines = Vec::new();
     for pose in 0..postures::POSES {

@@ -1,12 +1,15 @@
 //! The page about the run, and its summary for a terminal.
 
 use crate::{
-    budgets::{Budgets, Cost, Measured},
+    budgets::{Budgets, Cost, Measured, Modules},
     printed::Printed,
 };
 use std::fmt::Write;
 
 const PREFACE: &str = include_str!("preface.md");
+const FUNCTIONS: &str = include_str!("functions.md");
+/// The module of inverse kinematics.
+const POSTURES: &str = "postures";
 const PARTS: [&str; 4] =
     ["trajectory", "inverse kinematics, second order", "adaptive controller", "the arm itself, one step of its simulation"];
 
@@ -24,8 +27,8 @@ pub(crate) fn summary(measured: &Measured, printed: &Printed) -> String {
     )
 }
 
-/// The page.
-pub(crate) fn page(measured: &Measured, budgets: &Budgets, printed: &Printed) -> String {
+/// The page; `m7` is what the functions cost on the other processor, `postures` how many were compared.
+pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed: &Printed, postures: usize) -> String {
     let mut page = PREFACE.to_string();
     let costs = &measured.costs;
     let _ = write!(
@@ -37,14 +40,6 @@ pub(crate) fn page(measured: &Measured, budgets: &Budgets, printed: &Printed) ->
         printed.torques.len(),
         printed.torques.last().map_or("", String::as_str),
         costs.program.error as f64 * 1e-9,
-    );
-    let _ = write!(
-        page,
-        "\n## Postures\n\n\
-         All postures of the SCARA and of the Puma 560 ([inverse kinematics](inverse-kinematics.md)), each at {} poses: {} postures, the same on both \
-         machines, bit by bit.\n",
-        armgen_bare_control::postures::POSES,
-        printed.postures.len(),
     );
     let _ = write!(
         page,
@@ -71,17 +66,53 @@ pub(crate) fn page(measured: &Measured, budgets: &Budgets, printed: &Printed) ->
         budgets.control_step.stack,
         measured.data,
     );
-    page += "\n## Emitted functions\n\n\
-             Budgets in parentheses.\n\n\
-             | function | instructions | `.text`, bytes | peak stack, bytes | its own frame, bytes |\n|---|---:|---:|---:|---:|\n";
-    for (name, Cost { instructions, text, stack }) in &costs.functions {
-        let budget = budgets.functions.get(name).copied().unwrap_or_default();
-        let frame = measured.frames.get(name).map_or("-".into(), u64::to_string);
+    page += FUNCTIONS;
+    for (robot, title) in [("scara", "SCARA"), ("panda7", "Panda")] {
+        page += &table(robot, title, &costs.functions, m7, budgets);
+    }
+    page += &inverse_kinematics(&costs.functions, m7, budgets, postures);
+    page
+}
+
+/// Every function of one robot, with either source of sines.
+fn table(robot: &str, title: &str, m4f: &Modules, m7: &Modules, budgets: &Budgets) -> String {
+    let mut table = format!(
+        "\n### {title}\n\n\
+         | function | M4F, fast | M4F, libm | M7, fast | M7, libm | `.text`, fast | `.text`, libm | stack, fast | stack, libm |\n\
+         |---|---:|---:|---:|---:|---:|---:|---:|---:|\n"
+    );
+    let [fast, libm] = ["fast", "libm"].map(|ending| format!("{robot}_{ending}"));
+    for name in m4f.get(&fast).into_iter().flat_map(|functions| functions.keys()) {
+        let (a, b, budget) = (cost(m4f, &fast, name), cost(m4f, &libm, name), cost(&budgets.functions, &fast, name));
+        let [a7, b7] = [&fast, &libm].map(|module| cost(m7, module, name).instructions);
         let _ = writeln!(
-            page,
-            "| `{name}` | {instructions} ({}) | {text} ({}) | {stack} ({}) | {frame} |",
-            budget.instructions, budget.text, budget.stack
+            table,
+            "| `{name}` | {} ({}) | {} | {a7} | {b7} | {} ({}) | {} | {} ({}) | {} |",
+            a.instructions, budget.instructions, b.instructions, a.text, budget.text, b.text, a.stack, budget.stack, b.stack,
         );
     }
-    page
+    table
+}
+
+fn inverse_kinematics(m4f: &Modules, m7: &Modules, budgets: &Budgets, postures: usize) -> String {
+    let mut text = format!(
+        "\n## Postures\n\n\
+         All postures of the SCARA and of the Puma 560 ([inverse kinematics](inverse-kinematics.md)), each at {} poses: {postures} postures, the \
+         same on both processors and on the host, bit by bit.\n\n\
+         | function | M4F | M7 | `.text` | stack |\n|---|---:|---:|---:|---:|\n",
+        armgen_bare_functions::postures::POSES,
+    );
+    for (name, measured) in m4f.get(POSTURES).into_iter().flatten() {
+        let (budget, m7) = (cost(&budgets.functions, POSTURES, name), cost(m7, POSTURES, name).instructions);
+        let _ = writeln!(
+            text,
+            "| `{name}` | {} ({}) | {m7} | {} ({}) | {} ({}) |",
+            measured.instructions, budget.instructions, measured.text, budget.text, measured.stack, budget.stack,
+        );
+    }
+    text
+}
+
+fn cost(modules: &Modules, module: &str, name: &str) -> Cost {
+    modules.get(module).and_then(|functions| functions.get(name)).copied().unwrap_or_default()
 }

@@ -1,7 +1,24 @@
 //! All postures of the SCARA and of the Puma 560, each at poses of its own: the same bits on every machine.
 
-use crate::{puma560, puma560_ik, robot, scara_ik};
+use crate::scara_fast;
 use core::fmt;
+
+#[allow(missing_docs)]
+pub mod scara_ik {
+    //! All postures of the SCARA.
+    include!(concat!(env!("OUT_DIR"), "/scara_ik.rs"));
+}
+
+#[allow(clippy::excessive_precision, unreachable_pub)]
+mod puma560 {
+    include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
+}
+
+#[allow(missing_docs)]
+pub mod puma560_ik {
+    //! All postures of the Puma 560.
+    include!(concat!(env!("OUT_DIR"), "/puma560_ik.rs"));
+}
 
 /// Poses of each arm.
 pub const POSES: u32 = 16;
@@ -13,7 +30,7 @@ fn joints<const N: usize>(pose: u32) -> [f32; N] {
 
 /// A pose of the SCARA.
 pub fn scara_pose(pose: u32) -> [[f32; 4]; 4] {
-    robot::direct_kinematics(&joints(pose))
+    scara_fast::direct_kinematics(&joints(pose))
 }
 
 /// A pose of the Puma.

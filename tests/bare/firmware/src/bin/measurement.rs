@@ -1,0 +1,59 @@
+//! Calls every function of each module of `armgen-bare-functions` at a few states and prints what it costs; finds all postures of two arms and
+//! prints them, besides the lines of the library:
+//!
+//! | line | fields |
+//! |---|---|
+//! | `posture` | robot, number of the pose, branch, joint variables as the bits of f32 |
+#![no_std]
+#![no_main]
+
+use armgen_bare_firmware::{Costs, Output, Stopped};
+use armgen_bare_functions::{postures, MODULES};
+use core::fmt::Write;
+use core::hint::black_box;
+use panic_halt as _;
+
+const STATES: u32 = 11;
+
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    armgen_bare_firmware::run(|out| {
+        modules(out)?;
+        inverse_kinematics(out)
+    })
+}
+
+fn modules(out: &mut Output) -> Result<(), Stopped> {
+    for (module, visit) in MODULES {
+        let mut costs = Costs::new();
+        let mut fits = true;
+        for state in 0..STATES {
+            visit(state, &mut |name, call| fits &= costs.call(name, call));
+        }
+        if !fits {
+            return Err(Stopped);
+        }
+        costs.print(module, out)?;
+    }
+    Ok(())
+}
+
+fn inverse_kinematics(out: &mut Output) -> Result<(), Stopped> {
+    let mut costs = Costs::new();
+    for pose in 0..postures::POSES {
+        postures::each_line(pose, &mut |line| writeln!(out, "{line}"))?;
+        let (scara, puma560) = (postures::scara_pose(pose), postures::puma560_pose(pose));
+        let places = [
+            costs.call("scara_inverse_kinematics", &mut || {
+                black_box(postures::scara_inverse_kinematics(black_box(&scara)));
+            }),
+            costs.call("puma560_inverse_kinematics", &mut || {
+                black_box(postures::puma560_inverse_kinematics(black_box(&puma560)));
+            }),
+        ];
+        if places != [true; 2] {
+            return Err(Stopped);
+        }
+    }
+    costs.print("postures", out)
+}
