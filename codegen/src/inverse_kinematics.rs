@@ -75,6 +75,8 @@ pub enum Construction {
     ParallelTurns(Arrangement, Regional),
     /// Three prismatic joints; the places of the revolute ones.
     ThreePrismatic(Arrangement, [usize; 3]),
+    /// Two prismatic joints, by their places.
+    TwoSlides(Arrangement, [usize; 2]),
     /// The position that three joints reach.
     Position(Arrangement, Regional),
     /// Shoulder and wrist of three joints each about axes through a point, a joint between them; the swivel angle is given.
@@ -152,6 +154,7 @@ impl InverseKinematics {
             | Construction::ParallelTurns(way, _)
             | Construction::Position(way, _)
             | Construction::ThreePrismatic(way, _)
+            | Construction::TwoSlides(way, _)
             | Construction::ShoulderElbowWrist(way) => std::slice::from_ref(way),
             Construction::General(ways) => ways.as_slice(),
         }

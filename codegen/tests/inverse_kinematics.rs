@@ -129,6 +129,34 @@ fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
             ],
         ),
         arm(
+            "slides_apart",
+            "",
+            "two prismatic joints (joints 2 5)",
+            8,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (P, "0.2", "-1.1", "0.1", "0.4"),
+                (R, "0.35", "0.8", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (P, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "table",
+            "",
+            "two prismatic joints (joints 1 2)",
+            8,
+            &[
+                (P, "0", quarter, "0.2", quarter),
+                (P, "0.1", "0", "0.1", "0"),
+                (R, "0.3", quarter, "0.2", "0"),
+                (R, "0.1", quarter, "0.1", "0.3"),
+                (R, "0.05", "-pi/2", "0.35", "0"),
+                (R, "0.02", "0", "0.1", "0"),
+            ],
+        ),
+        arm(
             "general",
             "",
             "general",
@@ -182,6 +210,25 @@ fn classes_of_robots() {
         assert!((1..=joints).all(|joint| shown.contains(&joint.to_string())), "{shown}");
         assert!(!shown.contains(&format!("q{}", joints + 2)), "{shown}");
     }
+}
+
+/// Slides that stay parallel move the end effector along one line: no posture stands alone.
+#[test]
+fn parallel_slides_have_no_construction() {
+    let rows = |alpha| {
+        [
+            (P, "0.1", alpha, "0.2", "0.3"),
+            (P, "0.1", "pi/2", "0.1", "0"),
+            (R, "0.3", "1.1", "0.2", "0"),
+            (R, "0.1", "pi/2", "0.1", "0.3"),
+            (R, "0.05", "-pi/2", "0.35", "0"),
+            (R, "0.02", "0", "0.1", "0"),
+        ]
+    };
+    let class = |alpha| classified("slides", &description("slides", "", &rows(alpha)));
+    assert!(class("0.01").expect("a class").class.starts_with("two prismatic joints (joints 1 2)"));
+    let refused = class("0").expect_err("no class");
+    assert!(refused.contains("6 joints, 2 of them prismatic, of this geometry"), "{refused}");
 }
 
 /// 1e-9 is not 0: an arm with a wrist whose axes miss by that much is a general one.

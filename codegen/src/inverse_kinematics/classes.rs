@@ -225,7 +225,7 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
             .or_else(|| three_parallel(chain))
             .or_else(|| spherical_triple(chain, false))
             .or_else(|| general(chain, &length)),
-        (6, _) => spherical_triple(chain, true).or_else(|| spherical_triple(chain, false)),
+        (6, 2) => spherical_triple(chain, true).or_else(|| spherical_triple(chain, false)).or_else(|| two_slides(chain, &length)),
         _ => None,
     };
     let none = || {
@@ -385,6 +385,36 @@ fn three_prismatic(chain: &Chain) -> Option<Class> {
         let choices = vec![wrist(0, joints[r2])];
         Some(Class { construction: Construction::ThreePrismatic(way, [r1, r2, r3]), class, most: 2, choices })
     })
+}
+
+/// Four revolute joints, three of them with neighbours at an angle behind the first, and two prismatic ones.
+fn two_slides(chain: &Chain, length: &Number) -> Option<Class> {
+    if chain.between.is_some() {
+        return None;
+    }
+    chain.arrangements().find_map(|mut way| {
+        let places = |prismatic: bool| (1..6).filter(|place| way.prismatic[*place] == prismatic).collect::<Vec<_>>();
+        let (&[a, b], &[r1, r2, r3]) = (places(true).as_slice(), places(false).as_slice()) else { return None };
+        if way.prismatic[0] || (r1..r3).contains(&way.open) || stay_parallel(&way, a, b) {
+            return None;
+        }
+        if !turn_about_x(&mut way, r1, r2) || !turn_about_x(&mut way, r2, r3) || !general::reaches(chain, &way, [a, b], length) {
+            return None;
+        }
+        let joints = way.joints();
+        let class = format!(
+            "two prismatic joints (joints {}), with samples on the circle of q{}",
+            listed(&[joints[a], joints[b]]),
+            joints[0]
+        );
+        Some(Class { construction: Construction::TwoSlides(way, [a, b]), class, most: 8, choices: Vec::new() })
+    })
+}
+
+/// Whether two slides are parallel in every posture: no link between them, on the side of the loop without the pose, turns an axis.
+fn stay_parallel(way: &Arrangement, a: usize, b: usize) -> bool {
+    let mut links = if (a..b).contains(&way.open) { (b..6).chain(0..a) } else { (a..b).chain(0..0) };
+    links.all(|place| is_parallel(&way.links[place]))
 }
 
 /// Brings the rotation between the revolute joints at two places to one about x: R = Rz(t) Rx(alpha) Rz(t'), the turns about z going to the

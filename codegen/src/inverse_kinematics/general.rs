@@ -45,6 +45,16 @@ fn pose(way: &block::Arrangement<6>, length: f64, number: u64) -> block::Frame {
     chain
 }
 
+/// Whether block 9 finds the posture of each of some fixed poses: directions of slides that are in one plane with what they have to reach at
+/// all poses, or joints that move nothing, leave an equation that vanishes.
+pub(super) fn reaches(chain: &Chain, way: &Arrangement, slides: [usize; 2], length: &Number) -> bool {
+    let (length, forward, floats) = (length.to_f64(), chain.arranged(0, false).rounded(), way.rounded());
+    (0..8).all(|number| {
+        let found = block::two_slides(&floats.links_at(&pose(&forward, length, number)), slides, length);
+        found.count > 0 && !found.continuum
+    })
+}
+
 /// The two arrangements, the better one first.
 pub(super) fn choose(chain: &Chain, length: &Number) -> Option<[Arrangement; 2]> {
     let length = length.to_f64();

@@ -95,6 +95,22 @@ impl InverseKinematics {
                     vec![format!("axes {r1} and {r3} parallel (q{r1} and q{r3} free together)"), "slides in one plane".into()],
                 ));
             }
+            Construction::TwoSlides(way, slides) => {
+                let joints = numbers::<6>(way);
+                let [a, b] = slides.map(|place| joints[place]);
+                let turning: Vec<usize> = (1..6).filter(|place| !slides.contains(place)).map(|place| joints[place]).collect();
+                let (first, [r1, r2, r3]) = (joints[0], [turning[0], turning[1], turning[2]]);
+                add((
+                    vec![
+                        read(way),
+                        format!("with q{first}, q{r2} from the cosine between axes {r1} and {r3}, with either sign of its sine; q{r1} and q{r3} from the rotation that is left"),
+                        format!("what is left to slide has to be in the plane of joints {a} and {b}: f(q{first}) = 0, the product of f for both signs of degree 4 on the circle (8 roots), from 12 samples"),
+                        format!("at each real root q{a} and q{b} from two linear equations"),
+                        "Newton's method on the six equations of the pose".into(),
+                    ],
+                    vec!["det J = 0 (solutions meet)".into()],
+                ));
+            }
             Construction::ShoulderElbowWrist(_) => add((
                 vec![
                     "S, in which axes 1, 2 and 3 meet, and W, in which axes 5, 6 and 7 meet, from the pose".into(),

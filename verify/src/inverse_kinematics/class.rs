@@ -81,6 +81,12 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
     let link = |place: usize| Link { frame: &closed.links[place], one: closed.modulus.one };
     let joints = way.order.len();
     let fail = |what: &str| Err(format!("the class is wrong: {what}"));
+    // The rotation between the joints that turn at two places is one about x.
+    let about_x = |from: usize, to: usize| {
+        let product = closed.links[from..to].iter().fold(closed.modulus.identity(), |f, g| closed.modulus.compose(&f, g));
+        let [x, y, z] = product;
+        x[..3] == [closed.modulus.one, 0, 0] && y[0] == 0 && z[0] == 0 && z[1] != 0
+    };
     let of_case = |case: &str, kinds: &[bool]| {
         if joints < 3 || kinds != &way.prismatic[..3] {
             return Err("the kinds of the first three joints are not those of the loop".into());
@@ -143,13 +149,20 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
             if joints != 6 || *turning != places || (r1..r3).contains(&way.open) {
                 return fail("the joints that turn are others, or the pose is between them");
             }
-            let about_x = |from: usize, to: usize| {
-                let product = closed.links[from..to].iter().fold(closed.modulus.identity(), |f, g| closed.modulus.compose(&f, g));
-                let [x, y, z] = product;
-                x[..3] == [closed.modulus.one, 0, 0] && y[0] == 0 && z[0] == 0 && z[1] != 0
-            };
             if about_x(r1, r2) && about_x(r2, r3) {
                 Ok(2)
+            } else {
+                fail("the links between the joints that turn are no turns about x")
+            }
+        }
+        Construction::TwoSlides { slides } => {
+            let places = |prismatic: bool| (1..joints).filter(|place| way.prismatic[*place] == prismatic).collect::<Vec<_>>();
+            let [r1, r2, r3] = places(false)[..] else { return fail("there are not four joints that turn") };
+            if joints != 6 || way.prismatic[0] || *slides != places(true) || (r1..r3).contains(&way.open) {
+                return fail("the joints that slide are others, the first one does, or the pose is between those that turn");
+            }
+            if about_x(r1, r2) && about_x(r2, r3) {
+                Ok(8)
             } else {
                 fail("the links between the joints that turn are no turns about x")
             }

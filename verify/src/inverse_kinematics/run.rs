@@ -164,6 +164,10 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
             let way = arrangement::<6>(first)?;
             in_order(text, &way, block::three_prismatic(&way.links_at(t), [turning[0], turning[1], turning[2]]))
         }
+        Construction::TwoSlides { slides } => {
+            let way = arrangement::<6>(first)?;
+            in_order(text, &way, block::two_slides(&way.links_at(t), [slides[0], slides[1]], length))
+        }
         Construction::Position { case: name } => {
             let way = arrangement::<3>(first)?;
             let (a, b) = (way.links[0], way.links[1]);

@@ -300,7 +300,7 @@ fn case(name: &str) -> Option<Case> {
 pub(super) fn is_closed(construction: &Construction) -> bool {
     match construction {
         Construction::SphericalTriple { polished, .. } | Construction::ThreeParallel { polished } => !polished,
-        Construction::General => false,
+        Construction::General | Construction::TwoSlides { .. } => false,
         _ => true,
     }
 }
@@ -378,7 +378,7 @@ pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<(), 
                 judge(&branch.joints, branch.signs)
             })
         }
-        Construction::General => Ok(()),
+        Construction::General | Construction::TwoSlides { .. } => Ok(()),
     }
 }
 

@@ -49,6 +49,7 @@ pub(super) enum Construction {
     ParallelTurns { kinds: Vec<bool>, case: String },
     Position { case: String },
     ThreePrismatic { turning: Vec<usize> },
+    TwoSlides { slides: Vec<usize> },
     ShoulderElbowWrist,
     General,
 }
@@ -264,8 +265,6 @@ const POSITION: &str =
     "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
 const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,length:LENGTH});";
 const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
-const CONCLUDED: &str = "conclude(&found,false)}";
-const CONCLUDED_GIVEN: &str = "conclude(&GIVEN.with::<6,DOF,8>(&found,value),false)}";
 
 /// The function from behind its check of the arguments, and the place of the link that a given joint moves.
 fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(Construction, Option<usize>), String> {
@@ -304,6 +303,10 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
         let turning = counts(&reader.value()?)?;
         reader.expect(");")?;
         Construction::ThreePrismatic { turning }
+    } else if reader.take("letmutfound=two_slides(&LOOP.links_at(&t),") {
+        let slides = counts(&reader.value()?)?;
+        reader.expect(",LENGTH);")?;
+        Construction::TwoSlides { slides }
     } else {
         reader.expect("let[a,b,_]=LOOP.links;letmutfound=")?;
         let case = name(reader, '(')?;
@@ -315,7 +318,10 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
         Construction::Position { case }
     };
     reader.expect(IN_ORDER)?;
-    reader.expect(if given { CONCLUDED_GIVEN } else { CONCLUDED })?;
+    // Without branches by the joint variables.
+    let by_angle = matches!(construction, Construction::TwoSlides { .. });
+    reader.expect(if given { "conclude(&GIVEN.with::<6,DOF,8>(&found,value)," } else { "conclude(&found," })?;
+    reader.expect(if by_angle { "true)}" } else { "false)}" })?;
     Ok((construction, moved))
 }
 

@@ -169,6 +169,7 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
         Construction::ParallelTurns(_, case) => names.extend(["parallel_turns", case.text]),
         Construction::Position(_, case) => names.push(case.text),
         Construction::ThreePrismatic(..) => names.push("three_prismatic"),
+        Construction::TwoSlides(..) => names.push("two_slides"),
         Construction::ShoulderElbowWrist(_) => names.push("shoulder_elbow_wrist"),
         Construction::General(_) => names.push("general"),
     }
@@ -335,9 +336,11 @@ fn function(found: &InverseKinematics) -> TokenStream {
         quote!([#(#kinds),*])
     };
     let polish = quote!(polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, length: LENGTH }););
+    // Solutions without branches come in the order of their joint variables.
+    let by_angle = matches!(found.construction, Construction::TwoSlides(..));
     let conclusion = match found.given() {
-        None => quote!(conclude(&found, false)),
-        Some(_) => quote!(conclude(&GIVEN.with::<6, DOF, 8>(&found, value), false)),
+        None => quote!(conclude(&found, #by_angle)),
+        Some(_) => quote!(conclude(&GIVEN.with::<6, DOF, 8>(&found, value), #by_angle)),
     };
     let links = match found.given().and_then(|given| given.place) {
         None => quote!(let links = LOOP.links_at(&t);),
@@ -401,6 +404,13 @@ fn function(found: &InverseKinematics) -> TokenStream {
             let turning = turning.map(Literal::usize_unsuffixed);
             quote! {
                 let mut found = three_prismatic(&LOOP.links_at(&t), [#(#turning),*]);
+                #in_order
+            }
+        }
+        Construction::TwoSlides(_, slides) => {
+            let slides = slides.map(Literal::usize_unsuffixed);
+            quote! {
+                let mut found = two_slides(&LOOP.links_at(&t), [#(#slides),*], LENGTH);
                 #in_order
             }
         }
