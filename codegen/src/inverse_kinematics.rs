@@ -130,19 +130,18 @@ fn redundant(chain: &Chain, length: &Number, given: Option<GivenBeside>) -> Resu
     if let Some(found) = classes::shoulder_elbow_wrist(chain, length) {
         return Ok(found);
     }
-    let general = |found: &Result<InverseKinematics, String>| {
-        found.as_ref().is_ok_and(|found| matches!(found.construction, Construction::General(_)))
+    let is_closed = |found: &Result<InverseKinematics, String>| {
+        found.as_ref().is_ok_and(|found| !matches!(found.construction, Construction::General(_)))
     };
-    let ends = [with(joints - 1), with(0)];
-    let closed = |found: &&Result<InverseKinematics, String>| found.is_ok() && !general(found);
-    if let Some(found) = ends.iter().find(closed) {
-        return found.clone();
+    let last = with(joints - 1);
+    if is_closed(&last) {
+        return last;
     }
-    if let Some(found) = (1..joints - 1).rev().map(with).find(Result::is_ok) {
-        return found;
+    let first = with(0);
+    if is_closed(&first) {
+        return first;
     }
-    let [last, first] = ends;
-    last.or(first)
+    (1..joints - 1).rev().map(with).find(Result::is_ok).unwrap_or(last.or(first))
 }
 
 impl InverseKinematics {

@@ -60,28 +60,31 @@ pub(super) fn choose(chain: &Chain, length: &Number) -> Option<[Arrangement; 2]>
     let length = length.to_f64();
     let forward = chain.arranged(0, false).rounded();
     let poses: Vec<block::Frame> = (0..POSES).map(|number| pose(&forward, length, number)).collect();
-    let mut ways: Vec<(usize, f64, Arrangement)> = Vec::new();
-    for way in chain.arrangements() {
+    // The best two, the better one first; of equals the first in the order of arrangements.
+    let mut best: Vec<(usize, f64, Arrangement)> = Vec::new();
+    'arrangements: for way in chain.arrangements() {
         let [p1, p2, p3, p4, p5, p6] = std::array::from_fn(|i| way.prismatic[i]);
         if p3 || p6 || (p4 && p5) || ((p1 || p2) && (p4 || p5)) {
             continue;
         }
         let floats = way.rounded();
         let (mut vanishing, mut doubtful, mut noise) = (0, 0, 0.0);
+        let is_less = |(d, n): (usize, f64), (x, y, _): &(usize, f64, Arrangement)| d.cmp(x).then(n.total_cmp(y)).is_lt();
         for t in &poses {
             let result = determinant_on_circle(&floats.links_at(t), floats.prismatic, length);
             doubtful += usize::from(!result.complete);
             vanishing += u64::from(result.free);
             noise += result.noise;
+            // Some always vanish for arms with parallel or intersecting axes. None of the sums falls any more.
+            if 2 * vanishing >= POSES || best.get(1).is_some_and(|second| !is_less((doubtful, noise), second)) {
+                continue 'arrangements;
+            }
         }
-        // Some always vanish for arms with parallel or intersecting axes.
-        if 2 * vanishing < POSES {
-            ways.push((doubtful, noise, way));
-        }
+        let place = best.iter().position(|other| is_less((doubtful, noise), other)).unwrap_or(best.len());
+        best.insert(place, (doubtful, noise, way));
+        best.truncate(2);
     }
-    // Stable: of equals the first in the order of arrangements.
-    ways.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
-    let mut ways = ways.into_iter().map(|(_, _, way)| way);
+    let mut ways = best.into_iter().map(|(_, _, way)| way);
     let first = ways.next()?;
     // With one usable arrangement only, it is its own second.
     let second = ways.next().unwrap_or_else(|| first.clone());
