@@ -1,0 +1,129 @@
+//! The constants of a module: their names, kinds and values.
+
+use std::collections::BTreeMap;
+
+use super::place::Place;
+use crate::contract::Sizes;
+use crate::enclosure::Float;
+use crate::reader::constant::Constant;
+use crate::reader::lexer::Fault;
+
+/// Entries of an array of constants.
+const MOST_ENTRIES: usize = 4096;
+/// Joints, as many as a description can have and more.
+const MOST_JOINTS: usize = 128;
+
+/// The values of constants, as they stand in a line.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::reader) struct Constants {
+    pub(in crate::reader) real: Float,
+    pub(in crate::reader) suffix: &'static str,
+    /// Around a text.
+    pub(in crate::reader) quotes: char,
+    /// What an array of such entries begins with, between them, at its end, and an array without entries; whether it stands in another.
+    pub(in crate::reader) list: fn(Entry, bool) -> [&'static str; 4],
+    pub(in crate::reader) truth: [&'static str; 2],
+    /// Infinity; a minus sign stands before it where it is negative.
+    pub(in crate::reader) infinity: &'static str,
+}
+
+/// What an entry of a constant is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::reader) enum Entry {
+    Text,
+    Integer,
+    Truth,
+    Real,
+}
+
+/// The constants that a module may have: their names, what their entries are, and arrays in arrays.
+pub(in crate::reader) const CONSTANTS: [(&str, Entry, usize); 15] = [
+    ("NAME", Entry::Text, 0),
+    ("DOF", Entry::Integer, 0),
+    ("JOINT_NAMES", Entry::Text, 1),
+    ("JOINT_IS_REVOLUTE", Entry::Truth, 1),
+    ("POSITION_LIMITS", Entry::Real, 2),
+    ("VELOCITY_LIMITS", Entry::Real, 1),
+    ("EFFORT_LIMITS", Entry::Real, 1),
+    ("TASK_ROWS", Entry::Integer, 0),
+    ("TASK", Entry::Integer, 1),
+    ("PARAMETERS", Entry::Integer, 0),
+    ("PARAMETER_NAMES", Entry::Text, 1),
+    ("NOMINAL_PARAMETERS", Entry::Real, 1),
+    ("BASE_PARAMETERS", Entry::Integer, 0),
+    ("BASE_PARAMETER_NAMES", Entry::Text, 1),
+    ("NOMINAL_BASE_PARAMETERS", Entry::Real, 1),
+];
+
+impl Constants {
+    /// Reads the value of a constant.
+    pub(in crate::reader) fn read(&self, name: &str, text: &str, line: usize) -> Result<Constant, Fault> {
+        let mut place = Place { rest: text, line };
+        let known = CONSTANTS.iter().find(|(known, ..)| *known == name);
+        let (_, entry, depth) = known.ok_or_else(|| place.fault("there is no constant of that name"))?;
+        let value = self.value(&mut place, *entry, *depth, false)?;
+        place.ends()?;
+        Ok(value)
+    }
+
+    fn value(&self, place: &mut Place<'_>, entry: Entry, depth: usize, inner: bool) -> Result<Constant, Fault> {
+        if depth > 0 {
+            let [begin, between, end, empty] = (self.list)(entry, inner);
+            if place.eat(empty) {
+                return Ok(Constant::Array(Vec::new()));
+            }
+            place.expect(begin)?;
+            let mut entries = Vec::new();
+            while entries.is_empty() || !place.eat(end) {
+                if !entries.is_empty() {
+                    place.expect(between)?;
+                }
+                if entries.len() == MOST_ENTRIES {
+                    return Err(place.fault("a constant has too many entries"));
+                }
+                entries.push(self.value(place, entry, depth - 1, true)?);
+            }
+            return Ok(Constant::Array(entries));
+        }
+        Ok(match entry {
+            Entry::Text => {
+                place.expect(self.quotes.encode_utf8(&mut [0; 4]))?;
+                let start = *place;
+                let (text, rest) = place.rest.split_once(self.quotes).ok_or_else(|| start.fault("a text should end"))?;
+                if !text.chars().all(|c| c.is_alphanumeric() || c == '_' || !c.is_ascii()) {
+                    return Err(start.fault("a name can stand"));
+                }
+                place.rest = rest;
+                Constant::Text(text.into())
+            }
+            Entry::Integer => Constant::Integer(place.integer()? as u64),
+            Entry::Truth => {
+                let found = self.truth.iter().position(|word| place.eat(word));
+                Constant::Truth(found.ok_or_else(|| place.fault("a truth value can stand"))? == 1)
+            }
+            Entry::Real => {
+                let negative = place.eat("-");
+                if place.eat(self.infinity) {
+                    Constant::Infinite(negative)
+                } else {
+                    Constant::Number(negative, place.literal(self.real, self.suffix)?)
+                }
+            }
+        })
+    }
+}
+
+/// The sizes that constants of a module state.
+pub(in crate::reader) fn sizes(constants: &BTreeMap<String, Constant>) -> Result<Sizes, Fault> {
+    let of = |name: &str, most: usize| match constants.get(name) {
+        Some(Constant::Integer(value)) if *value <= most as u64 => Ok(*value as usize),
+        None => Ok(0),
+        Some(_) => Err(Fault { line: 1, reason: format!("`{name}` is more than {most}") }),
+    };
+    Ok(Sizes {
+        n: of("DOF", MOST_JOINTS)?,
+        p: of("PARAMETERS", MOST_ENTRIES)?,
+        b: of("BASE_PARAMETERS", MOST_ENTRIES)?,
+        m: of("TASK_ROWS", 6)?,
+    })
+}
