@@ -171,6 +171,26 @@ impl Kind {
     }
 }
 
+/// What rounding does to a text.
+struct Errors {
+    /// Over the two boxes: bounds of the entries, and the largest size of a value.
+    boxes: [(Vec<f64>, f64); 2],
+    /// State by state, in f64: values of the entries, and bounds of their errors.
+    states: Option<Vec<Vec<(f64, f64)>>>,
+}
+
+impl Errors {
+    /// Whether entries have a bound over a box.
+    fn is_bounded(&self, which: usize) -> bool {
+        self.boxes[which].0.iter().all(|bound| bound.is_finite())
+    }
+}
+
+/// The largest size of an entry at states.
+fn size_of(states: &[Vec<(f64, f64)>]) -> f64 {
+    states.iter().flatten().fold(0.0f64, |size, (value, _)| size.max(value.abs()))
+}
+
 fn is_finite((error, size): &(f64, f64)) -> bool {
     error.is_finite() && size.is_finite()
 }
@@ -234,26 +254,37 @@ impl<'a> Trial<'a> {
 
     /// What makes a function useless in floats, if it is.
     pub fn fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
-        let operands = undivided_operands(program);
-        let part = if operands.is_empty() { program } else { &program.part(&operands) };
-        self.leaves(part, values)
-            .or_else(|| self.compared(program, values).iter().find_map(Compared::unfit))
-            .or_else(|| self.divided_leaves(program).filter(|_| !operands.is_empty()))
+        let (errors, compared) = self.judge(program, values);
+        self.leaves(&errors)
+            .or_else(|| compared.iter().find_map(Compared::unfit))
+            .or_else(|| self.divided_leaves(program).filter(|_| !undivided_operands(program).is_empty()))
     }
 
     /// All errors beside what is allowed of them.
     pub fn compared(&self, program: &Program, values: &[Formula]) -> Vec<Compared> {
+        self.judge(program, values).1
+    }
+
+    /// The errors of what no quotient takes part in, and all beside what is allowed of them.
+    fn judge(&self, program: &Program, values: &[Formula]) -> (Errors, Vec<Compared>) {
         let operands = undivided_operands(program);
         if operands.is_empty() {
-            let yardsticks = self.plain.get(&program.name);
-            return self.undivided(program, values, yardsticks.map_or(&[], Vec::as_slice));
+            let errors = self.errors(program, values);
+            let yardsticks = self.plain.get(&program.name).map_or(&[][..], Vec::as_slice);
+            let compared = self.undivided(program, &errors, yardsticks);
+            return (errors, compared);
         }
-        let of_operands = self.of_operands(program);
         let part = program.part(&operands);
-        let yardsticks = vec![of_operands; operands.len()];
-        let mut compared = self.undivided(&part, values, &yardsticks);
+        let errors = self.errors(&part, values);
+        let mut compared = self.undivided(&part, &errors, &vec![self.of_operands(program); operands.len()]);
         compared.extend(self.divided(program, values));
-        compared
+        (errors, compared)
+    }
+
+    /// What rounding does to a function in which no quotient takes part.
+    fn errors(&self, program: &Program, values: &[Formula]) -> Errors {
+        let over = |domain: &Domain| undivided_bounds(program, values, domain, self.module.real);
+        Errors { boxes: self.boxes.each_ref().map(over), states: self.runs(program, values) }
     }
 
     /// The largest of what operands of quotients can be part of: torques, Jacobian and inertia; of a centre of mass the moments are not among them.
@@ -277,18 +308,19 @@ impl<'a> Trial<'a> {
         most
     }
 
-    /// That a value of what does not divide can leave the scalar, or comes near to it on the way.
-    fn leaves(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
+    /// That a value of what does not divide can leave the scalar, or comes near to it on the way: over the wide box; with the parameters of the
+    /// description where others leave the scalar, as where masses of 1e12 kg stand beside inertias of 1e-12 kg m² in f32.
+    fn leaves(&self, errors: &Errors) -> Option<Unfit> {
         let real = self.module.real;
-        let (bounds, largest) = self.bounds(program, values);
-        if !worst(bounds).is_finite() && Check::Leaves.is_made() {
+        let which = if errors.is_bounded(0) { 0 } else { 1 };
+        if !errors.is_bounded(which) && Check::Leaves.is_made() {
             return Some(Unfit::Leaves(format!("a value can leave {} inside the box", real.name())));
         }
-        let runs = self.runs(program, values)?;
-        let size = runs.iter().flatten().fold(0.0f64, |size, (value, _)| size.max(value.abs()));
+        let size = size_of(errors.states.as_ref()?);
         if !size.is_finite() && Check::Headroom.is_made() {
             return Some(Unfit::Leaves("a value can leave f64 at a state of the box".into()));
         }
+        let (_, largest) = errors.boxes[which];
         let headroom = 2f64.powi(64) * size.max(self.arguments).max(1.0).powi(3);
         (largest > headroom && Check::Headroom.is_made()).then(|| {
             let (largest, size) = (two_digits(largest), two_digits(size));
@@ -296,25 +328,12 @@ impl<'a> Trial<'a> {
         })
     }
 
-    /// Bounds over the wide box, and the largest size of a value there; with the parameters of the description where others leave the scalar, as where
-    /// masses of 1e12 kg stand beside inertias of 1e-12 kg m² in f32.
-    fn bounds(&self, program: &Program, values: &[Formula]) -> (Vec<f64>, f64) {
-        let over = |domain: &Domain| undivided_bounds(program, values, domain, self.module.real);
-        let [wide, described] = &self.boxes;
-        let of_wide = over(wide);
-        if of_wide.0.iter().all(|bound| bound.is_finite()) {
-            of_wide
-        } else {
-            over(described)
-        }
-    }
-
     /// What no quotient takes part in.
-    fn undivided(&self, program: &Program, values: &[Formula], yardsticks: &[Plain]) -> Vec<Compared> {
+    fn undivided(&self, program: &Program, errors: &Errors, yardsticks: &[Plain]) -> Vec<Compared> {
+        let Some(runs) = &errors.states else { return Vec::new() };
         let real = self.module.real;
         let (unit, n) = (Float::F64.unit(), self.joints as f64);
-        let Some(runs) = self.runs(program, values) else { return Vec::new() };
-        let size = runs.iter().flatten().fold(0.0f64, |size, (value, _)| size.max(value.abs()));
+        let size = size_of(runs);
         // Where there is no yardstick, by sizes alone.
         let (wider, wider_than_states) = ((0.75 * self.oblique).exp2(), (2.0 * self.oblique).exp2());
         let by_size = wider_than_states * (12.0 + 2.5 * n).exp2() * (real.unit() * size + real.smallest_normal());
@@ -323,13 +342,12 @@ impl<'a> Trial<'a> {
         let plain = |k: usize| yardsticks.get(k).filter(|plain| !plain.states.is_empty()).unwrap_or(&sized);
         let place = |k: usize| program.outputs[k].place.clone();
         let mut compared = Vec::new();
-        for (which, domain) in self.boxes.iter().enumerate() {
-            let (bounds, _) = undivided_bounds(program, values, domain, real);
+        for (which, (bounds, _)) in errors.boxes.iter().enumerate() {
             // With all parameters up to the largest, values can leave a scalar that those of the description keep.
-            if which == 0 && !bounds.iter().all(|bound| bound.is_finite()) {
+            if which == 0 && !errors.is_bounded(which) {
                 continue;
             }
-            for (k, error) in bounds.into_iter().enumerate() {
+            for (k, error) in bounds.iter().copied().enumerate() {
                 let (plain, place) = (plain(k), place(k));
                 let scaled = |in_f64: f64| real.unit() / unit * in_f64 + real.smallest_normal();
                 let (intervals, at_states) = (plain.boxes[which], plain.error());
