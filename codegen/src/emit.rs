@@ -11,7 +11,7 @@ mod language;
 mod origin;
 mod plain;
 
-pub use documentation::Described;
+pub use documentation::{Described, DescribedParameters};
 pub use language::Language;
 pub use origin::{Notes, Origin};
 pub use plain::camel;

@@ -116,6 +116,8 @@ pub(crate) enum Check {
     Prose,
     /// Comments: documentation of names of parameters.
     Meanings,
+    /// Comments: all of them, in languages other than Rust.
+    Comments,
     /// Comments: operations of a function.
     Cost,
     /// Comments: rounding errors of a function.

@@ -7,6 +7,7 @@
 
 mod body;
 mod c;
+mod comments;
 mod constant;
 mod documentation;
 mod items;
@@ -28,6 +29,8 @@ use crate::enclosure::Float;
 use crate::program::Program;
 use body::Shared;
 pub(crate) use c::in_the_name_of;
+pub(crate) use comments::fixed as fixed_comments;
+pub use comments::Comment;
 pub use constant::Constant;
 use items::Items;
 pub use lexer::Fault;
@@ -60,6 +63,8 @@ impl<'a> From<&'a String> for ModuleText<'a> {
 /// What was read.
 #[derive(Clone, Debug)]
 pub struct Module {
+    /// The language.
+    pub language: Language,
     /// The scalar behind `Real`.
     pub real: Float,
     /// Where sines and cosines come from, if any are asked for: `libm`, `std` or `fast`.
@@ -68,6 +73,8 @@ pub struct Module {
     pub head: Vec<String>,
     /// The documentation of constants that name parameters, line by line, where all documentation is judged: in Rust.
     pub documentation: Option<BTreeMap<String, Vec<String>>>,
+    /// All comments, in languages other than Rust.
+    pub comments: Vec<Comment>,
     /// Constants by name.
     pub constants: BTreeMap<String, Constant>,
     /// Public functions in the order of the text, or what is wrong with each.
@@ -87,12 +94,27 @@ impl Module {
     /// Reads the text of a module. In Rust, what is wrong with the body of one function is said in its place.
     pub fn read<'a>(text: impl Into<ModuleText<'a>>) -> Result<Module, Fault> {
         let ModuleText { language, text } = text.into();
-        match language {
+        let module = match language {
             Language::Rust => Module::read_rust(text),
             Language::C => c::read(text),
             Language::JavaScript => javascript::read(text),
             Language::Python => python::read(text),
             Language::Matlab => matlab::read(text),
+        }?;
+        Ok(Module { comments: comments::of_module(language, text), ..module })
+    }
+
+    /// Nothing, with floats of 64 bits.
+    fn empty(language: Language) -> Module {
+        Module {
+            language,
+            real: Float::F64,
+            trig: None,
+            head: Vec::new(),
+            documentation: None,
+            comments: Vec::new(),
+            constants: BTreeMap::new(),
+            functions: Vec::new(),
         }
     }
 
@@ -144,7 +166,8 @@ impl Module {
         let head = items.head.iter().map(ToString::to_string).collect();
         let lines = |lines: &Vec<&str>| lines.iter().map(ToString::to_string).collect();
         let documentation = items.documentation.iter().map(|(name, found)| ((*name).to_string(), lines(found))).collect();
-        Ok(Module { real, trig, head, documentation: Some(documentation), constants, functions })
+        let documentation = Some(documentation);
+        Ok(Module { real, trig, head, documentation, constants, functions, ..Module::empty(Language::Rust) })
     }
 
     /// The sizes that its constants state.

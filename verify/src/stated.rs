@@ -1,14 +1,18 @@
 //! What a module says of itself in comments, against what was found: the description it was made from, the functions that it lacks, the box
-//! and the size of rounding errors, the operations of each function. All other documentation must be that of the catalogue, word for word.
+//! and the size of rounding errors, the operations of each function. All other documentation must be that of the catalogue, word for word;
+//! in other languages than Rust all comments must be those that armgen writes (`comments`).
 //!
 //! Not judged: the file name and the version in the first line, why a function is not there, which of the ways to derive a function was taken, and
 //! which combination of standard parameters a grouped base parameter is said to be.
+
+mod comments;
 
 use std::collections::BTreeMap;
 
 use armgen_codegen::catalogue::{self, METHODS};
 use armgen_codegen::derive::parameters::{nominal, ParameterVector};
-use armgen_codegen::emit::{rust, Described};
+use armgen_codegen::emit::{rust, Described, DescribedParameters, Language};
+use armgen_codegen::exact::Number;
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 
 use crate::bounds::{self, Bound};
@@ -39,6 +43,7 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
         Err(fault) if Check::Head.is_made() => return vec![format!("the head of the file: {fault}")],
         Err(_) => false,
     };
+    let gravity = manipulator.gravity.each_ref().map(|component| nominal(manipulator, component));
     let mut faults = Vec::new();
     for (name, function) in &module.functions {
         let Ok(function) = function else { continue };
@@ -57,18 +62,53 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
         }
         // A line of its own that is wrong is said once.
         if faults.len() == before && module.documentation.is_some() && Check::Prose.is_made() {
-            faults.extend(prose(manipulator, name, function, bounded).map(|fault| format!("{name}: {fault}")));
+            let described = described(manipulator, &gravity, name, function);
+            let fault = described.and_then(|described| prose(&described, function, bounded));
+            faults.extend(fault.map(|fault| format!("{name}: {fault}")));
         }
     }
     if Check::Meanings.is_made() {
         faults.extend(meanings(manipulator, module));
     }
+    if module.language != Language::Rust && faults.is_empty() && Check::Comments.is_made() {
+        let mut functions = Vec::new();
+        for (name, function) in &module.functions {
+            let Some(described) = function.as_ref().ok().and_then(|own| described(manipulator, &gravity, name, own)) else {
+                continue;
+            };
+            functions.push((name.as_str(), described, notes.functions.get(name).filter(|_| bounded).map(String::as_str)));
+        }
+        let parameters = described_parameters(manipulator, module);
+        let words = comments::Words { robot: &manipulator.name, parameters, functions };
+        faults.extend(comments::fault(module, &words));
+    }
     faults
 }
 
-/// The first line of a function's documentation that is not the one of the catalogue; the line of its bound is not looked at.
-fn prose(manipulator: &Manipulator, name: &str, function: &Function, bounded: bool) -> Option<String> {
+/// What the documentation of a function says, from the catalogue, the description and its program; how it was derived as it says itself.
+fn described<'a>(manipulator: &Manipulator, gravity: &'a [Number; 3], name: &str, function: &Function) -> Option<Described<'a>> {
     let (quantity, with_parameters) = catalogue::named(name)?;
+    let turned = function.program.steps.iter().find_map(|step| match step {
+        Step::Sine(angle) | Step::Cosine(angle) if angle.turn.is_some() => angle.terms.last().map(|(joint, _)| joint + 1),
+        _ => None,
+    });
+    let says = |method: &&str| function.documentation.iter().any(|line| line.contains(&format!("Derived by {method}.")));
+    let method = METHODS.into_iter().find(says).unwrap_or("a way of its own");
+    Some(Described {
+        quantity,
+        with_parameters,
+        gravity,
+        has_springs: manipulator.has_springs(),
+        has_more_friction: manipulator.has_more_friction(),
+        has_stribeck: manipulator.has_stribeck(),
+        turned_joint: turned,
+        cost: operations(&function.program),
+        method,
+    })
+}
+
+/// The first line of a function's documentation that is not the one of the catalogue; the line of its bound is not looked at.
+fn prose(described: &Described<'_>, function: &Function, bounded: bool) -> Option<String> {
     let mut found: Vec<&str> = function.documentation.iter().map(String::as_str).collect();
     if bounded {
         found.pop();
@@ -76,25 +116,7 @@ fn prose(manipulator: &Manipulator, name: &str, function: &Function, bounded: bo
             return Some("the documentation does not end in an empty line and the rounding error".into());
         }
     }
-    let turned = function.program.steps.iter().find_map(|step| match step {
-        Step::Sine(angle) | Step::Cosine(angle) if angle.turn.is_some() => angle.terms.last().map(|(joint, _)| joint + 1),
-        _ => None,
-    });
-    let said = found.last().copied().unwrap_or("");
-    let method = METHODS.into_iter().find(|method| said.contains(&format!("Derived by {method}."))).unwrap_or("a way of its own");
-    let gravity = manipulator.gravity.each_ref().map(|component| nominal(manipulator, component));
-    let described = Described {
-        quantity,
-        with_parameters,
-        gravity: &gravity,
-        has_springs: manipulator.has_springs(),
-        has_more_friction: manipulator.has_more_friction(),
-        has_stribeck: manipulator.has_stribeck(),
-        turned_joint: turned,
-        cost: operations(&function.program),
-        method,
-    };
-    different(&found, &rust::function_documentation(&described))
+    different(&found, &rust::function_documentation(described))
 }
 
 /// The first line that is not as expected.
@@ -108,39 +130,56 @@ fn different(found: &[&str], expected: &[String]) -> Option<String> {
 /// What the documentation says of parameters.
 fn meanings(manipulator: &Manipulator, module: &Module) -> Vec<String> {
     let Some(documentation) = &module.documentation else { return Vec::new() };
-    let standard = ParameterVector::standard(manipulator).entries;
-    let (base, parameters) = match &manipulator.regressor {
-        RegressorChoice::Standard => (false, standard.clone()),
-        RegressorChoice::Base => (true, Vec::new()),
-        RegressorChoice::Names(names) => (false, ParameterVector::named(manipulator, names).entries),
-    };
+    let grouped = manipulator.regressor == RegressorChoice::Base;
     let mut faults = Vec::new();
     for (constant, found) in documentation {
         let found: Vec<&str> = found.iter().map(String::as_str).collect();
-        let names = constants::names(module, constant).unwrap_or_default();
-        let grouped = base || constant == "BASE_PARAMETER_NAMES";
-        let meanings: Vec<(String, String)> = names
-            .into_iter()
-            .map(|name| {
-                let known = if grouped { &standard } else { &parameters };
-                let meaning = known.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.meaning.clone());
-                // The combination that a grouped parameter is: as it stands.
-                let meaning = meaning.unwrap_or_else(|| said_of(&found, &name).to_string());
-                (name, meaning)
-            })
-            .collect();
+        let meanings = named(manipulator, module, constant, &found);
         let expected = match constant.as_str() {
             "BASE_PARAMETER_NAMES" => rust::base_parameters_documentation(turn(&found), &meanings),
-            _ => rust::parameters_documentation(base, &meanings),
+            _ => rust::parameters_documentation(grouped, &meanings),
         };
         faults.extend(different(&found, &expected).map(|fault| format!("{constant}: {fault}")));
     }
     faults
 }
 
+/// What the comments of constants say.
+fn described_parameters(manipulator: &Manipulator, module: &Module) -> DescribedParameters {
+    let found: Vec<&str> = module.comments.iter().flat_map(|comment| comment.text.lines()).collect();
+    let of = |constant: &str| named(manipulator, module, constant, &found);
+    let has_base = module.constants.contains_key("BASE_PARAMETERS");
+    DescribedParameters {
+        grouped: manipulator.regressor == RegressorChoice::Base,
+        parameters: of("PARAMETER_NAMES"),
+        base_parameters: has_base.then(|| of("BASE_PARAMETER_NAMES")),
+        turn: turn(&found).map(String::from),
+    }
+}
+
+/// The names that a constant holds and what they mean; the combination that a grouped parameter is, as lines say it.
+fn named(manipulator: &Manipulator, module: &Module, constant: &str, lines: &[&str]) -> Vec<(String, String)> {
+    let standard = ParameterVector::standard(manipulator).entries;
+    let (base, parameters) = match &manipulator.regressor {
+        RegressorChoice::Standard => (false, standard.clone()),
+        RegressorChoice::Base => (true, Vec::new()),
+        RegressorChoice::Names(names) => (false, ParameterVector::named(manipulator, names).entries),
+    };
+    let known = if base || constant == "BASE_PARAMETER_NAMES" { &standard } else { &parameters };
+    let names = constants::names(module, constant).unwrap_or_default();
+    let of = |name: String| {
+        let meaning = known.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.meaning.clone());
+        let meaning = meaning.unwrap_or_else(|| said_of(lines, &name).to_string());
+        (name, meaning)
+    };
+    names.into_iter().map(of).collect()
+}
+
 /// What stands behind a name in a table.
 fn said_of<'a>(lines: &[&'a str], name: &str) -> &'a str {
-    let row = |line: &&'a str| Some(line.strip_prefix(' ')?.strip_prefix(name)?.strip_prefix("  ")?.trim_start());
+    let row = |line: &&'a str| {
+        line.trim_start_matches([' ', '*', '#', '%']).strip_prefix(name)?.strip_prefix("  ").map(str::trim_start)
+    };
     lines.iter().find_map(row).unwrap_or("")
 }
 

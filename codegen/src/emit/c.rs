@@ -11,6 +11,8 @@ mod standalone;
 mod syntax;
 
 use self::header::macro_of;
+#[doc(hidden)]
+pub use self::header::{base_parameters_comment, function_comment, parameters_comment};
 pub use self::inverse_kinematics::print_inverse_kinematics;
 use super::origin::{Notes, Origin};
 use crate::catalogue::Quantity;
@@ -47,6 +49,12 @@ fn returns_a_number(quantity: &Quantity) -> bool {
 
 /// The robot's name as the beginning of C's names: letters that C may not have are spelled out.
 fn prefix(module: &Module) -> String {
+    spelled(&module.name)
+}
+
+/// A name with its letters that C may not have spelled out.
+#[doc(hidden)]
+pub fn spelled(name: &str) -> String {
     let spelled = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c.to_string() } else { format!("u{:04x}", u32::from(c)) };
-    module.name.chars().map(spelled).collect()
+    name.chars().map(spelled).collect()
 }

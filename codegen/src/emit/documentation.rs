@@ -2,7 +2,7 @@
 //! who never saw the generator. Each language writes the [`Block`]s as its comments are written, and its own names for the links.
 
 use crate::catalogue::Parameter;
-use crate::catalogue::{self, Argument, Documentation, Quantity};
+use crate::catalogue::{self, Argument, Documentation, Length, Quantity};
 use crate::exact::Number;
 use crate::program::listing::decimal;
 use crate::program::{Cost, Function, Module, Operand};
@@ -94,9 +94,9 @@ pub struct Described<'a> {
     pub method: &'a str,
 }
 
-/// The documentation of a function; `allocates`: whether its results take memory of their own in the language.
-pub(super) fn function(function: &Function, module: &Module, allocates: bool) -> Vec<Block> {
-    let described = Described {
+/// What the documentation of a function says.
+pub(super) fn described<'a>(function: &Function, module: &'a Module) -> Described<'a> {
+    Described {
         quantity: function.quantity,
         with_parameters: function.with_parameters,
         gravity: &module.gravity,
@@ -106,12 +106,27 @@ pub(super) fn function(function: &Function, module: &Module, allocates: bool) ->
         turned_joint: turned_joint(function),
         cost: cost(&Cost::of(function)),
         method: function.method,
-    };
-    described.blocks(allocates)
+    }
+}
+
+/// The documentation of a function; `allocates`: whether its results take memory of their own in the language.
+pub(super) fn function(function: &Function, module: &Module, allocates: bool) -> Vec<Block> {
+    described(function, module).blocks(allocates, None)
 }
 
 impl Described<'_> {
-    pub(super) fn blocks(&self, allocates: bool) -> Vec<Block> {
+    /// The arguments of the function.
+    pub(super) fn arguments(&self) -> impl Iterator<Item = &'static Argument> {
+        self.with_parameters.then_some(&Argument::Pi).into_iter().chain(self.quantity.arguments)
+    }
+
+    /// Its name in the module.
+    pub(super) fn name(&self) -> String {
+        format!("{}{}", self.quantity.name, if self.with_parameters { "_with" } else { "" })
+    }
+
+    /// `allocates`: whether its results take memory of their own in the language; `note`: what is said behind all else.
+    pub(super) fn blocks(&self, allocates: bool, note: Option<&str>) -> Vec<Block> {
         let Documentation { title, formula, result, result_with, failure, names_gravity, springs, more_friction, stribeck } =
             self.quantity.documentation;
         let (result, failure) = match self.with_parameters {
@@ -133,8 +148,7 @@ impl Described<'_> {
             blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
         }
         blocks.push(Block::Formula(formula));
-        let arguments = self.with_parameters.then_some(&Argument::Pi).into_iter().chain(self.quantity.arguments).map(argument);
-        blocks.push(Block::List(arguments.chain([format!("Returns {result}")]).collect()));
+        blocks.push(Block::List(self.arguments().map(argument).chain([format!("Returns {result}")]).collect()));
         if let Some(joint) = self.turned_joint {
             blocks.push(Block::text(format!(
                 "Inside, the last link has axes whose x axis points to its centre of mass, seen along the joint axis: q{joint} and a constant angle."
@@ -144,6 +158,7 @@ impl Described<'_> {
         let failure = format!("{nothing}{failure}");
         let (first, rest) = failure.split_at(1);
         blocks.push(Block::text(format!("Cost: {}. Derived by {}. {}{rest}.", self.cost, self.method, first.to_uppercase())));
+        blocks.extend(note.map(Block::text));
         blocks
     }
 }
@@ -184,9 +199,43 @@ pub(super) fn turn(module: &Module) -> Option<String> {
     module.turn.as_ref().map(|turn| decimal(turn, module.scalar))
 }
 
-/// Parameters and what they mean.
-pub(super) fn meanings(parameters: &[Parameter]) -> Block {
-    Block::Table(named(parameters))
+/// What the documentation of constants says besides fixed words.
+#[derive(Clone, Debug, Default)]
+pub struct DescribedParameters {
+    /// Whether the parameters are base parameters.
+    pub grouped: bool,
+    /// Names of the parameters and what they mean.
+    pub parameters: Vec<(String, String)>,
+    /// Names of the base parameters of `base_regressor` and what they mean, of modules that have it.
+    pub base_parameters: Option<Vec<(String, String)>>,
+    /// By how many rad the frame of the last link is turned, if it is, as it is written.
+    pub turn: Option<String>,
+}
+
+impl DescribedParameters {
+    pub(super) fn of(module: &Module) -> DescribedParameters {
+        DescribedParameters {
+            grouped: module.base_parameters,
+            parameters: named(&module.parameters),
+            base_parameters: has_base_parameters(module).then(|| named(&module.base_set)),
+            turn: turn(module),
+        }
+    }
+
+    /// Behind a title: what the names of parameters mean.
+    pub(super) fn meanings(&self) -> impl Iterator<Item = Block> + use<> {
+        self.grouped.then(base_note).into_iter().chain([Block::Table(self.parameters.clone())])
+    }
+
+    /// Behind a title: what the names of base parameters mean.
+    pub(super) fn base_meanings(&self) -> [Block; 2] {
+        [own_base_note(self.turn.as_deref()), Block::Table(self.base_parameters.clone().unwrap_or_default())]
+    }
+}
+
+/// Whether a module has base parameters.
+pub(super) fn has_base_parameters(module: &Module) -> bool {
+    module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters))
 }
 
 /// Names of parameters and what they mean.

@@ -3,9 +3,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::documentation::{self, Block, Link};
+use super::documentation::{self, Block, Described, DescribedParameters, Link};
 use super::origin::{Notes, Origin};
-use super::plain::{asks_for_exponentials, asks_for_signs, blocks, camel, constants, expression, head, waves, Syntax, Value};
+use super::plain::{
+    asks_for_exponentials, asks_for_signs, camel, constants, constants_documentation, described, expression, head, waves, Syntax,
+    Value,
+};
 use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
@@ -38,10 +41,9 @@ impl Syntax for JavaScript {
 /// The module.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let mut text = head(module, origin, notes, "//");
-    for constant in constants(module, 0) {
-        text += "\n";
-        text += &comment(&constant.documentation, &[]);
-        let _ = writeln!(text, "export const {} = {};", constant.name, value_of(&constant.value));
+    let documentation = constants_comments(&DescribedParameters::of(module));
+    for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
+        let _ = writeln!(text, "\n{comment}export const {} = {};", constant.name, value_of(&constant.value));
     }
     text += "\n";
     text += CHECK;
@@ -66,10 +68,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
 /// The declarations of the module.
 pub fn declarations(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let mut text = head(module, origin, notes, "//");
-    for constant in constants(module, 0) {
-        text += "\n";
-        text += &comment(&constant.documentation, &[]);
-        let _ = writeln!(text, "export declare const {}: {};", constant.name, type_of(&constant.value));
+    let documentation = constants_comments(&DescribedParameters::of(module));
+    for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
+        let _ = writeln!(text, "\n{comment}export declare const {}: {};", constant.name, type_of(&constant.value));
     }
     let mut shapes: BTreeSet<Vec<usize>> = BTreeSet::new();
     for function in &module.functions {
@@ -96,8 +97,9 @@ pub fn declarations(module: &Module, origin: &Origin, notes: &Notes) -> String {
             }
         };
         let arguments: Vec<String> = function.arguments.iter().map(|a| format!("{}: ArrayLike<number>", a.name())).collect();
+        let (described, note) = described(module, function, notes);
         text += "\n";
-        text += &comment(&blocks(module, function, notes), &[]);
+        text += &comment(&described.blocks(true, note), &[]);
         let _ = writeln!(text, "export declare function {}({}): {result};", camel(&function.name()), arguments.join(", "));
     }
     text
@@ -132,6 +134,26 @@ fn comment(blocks: &[Block], tags: &[String]) -> String {
     format!("/**\n{} */\n", lines.iter().map(line).collect::<String>())
 }
 
+/// The comments of constants, by their names.
+pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str, String)> {
+    constants_documentation(described, 0).into_iter().map(|(name, blocks)| (name, comment(&blocks, &[]))).collect()
+}
+
+/// The comment of a function, with what is said behind all else.
+pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
+    let tags = described.arguments().map(|a| format!("@param {{ArrayLike<number>}} {}", a.name()));
+    let returned = |lengths: usize| format!("number{}", "[]".repeat(lengths));
+    let returns = match described.quantity.result {
+        [one] => returned(one.lengths.len()),
+        several => {
+            let fields = several.iter().map(|part| format!("{}: {}", camel(part.name), returned(part.lengths.len())));
+            format!("{{{}}}", fields.collect::<Vec<_>>().join(", "))
+        }
+    };
+    let tags: Vec<String> = tags.chain([format!("@returns {{{returns}}}")]).collect();
+    comment(&described.blocks(true, note), &tags)
+}
+
 /// A constant as it is written.
 fn value_of(value: &Value) -> String {
     match value {
@@ -161,19 +183,10 @@ fn print_function(text: &mut String, module: &Module, function: &Function, notes
     for (part, number) in parts.iter().zip(1..) {
         print_part(text, function, part, number);
     }
-    let tags = function.arguments.iter().map(|a| format!("@param {{ArrayLike<number>}} {}", a.name()));
-    let returned = |lengths: usize| format!("number{}", "[]".repeat(lengths));
-    let returns = match function.quantity.result {
-        [one] => returned(one.lengths.len()),
-        several => {
-            let fields = several.iter().map(|part| format!("{}: {}", camel(part.name), returned(part.lengths.len())));
-            format!("{{{}}}", fields.collect::<Vec<_>>().join(", "))
-        }
-    };
-    let tags: Vec<String> = tags.chain([format!("@returns {{{returns}}}")]).collect();
+    let (described, note) = described(module, function, notes);
     let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
     *text += "\n";
-    *text += &comment(&blocks(module, function, notes), &tags);
+    *text += &function_comment(&described, note);
     let _ = writeln!(text, "export function {}({}) {{", camel(&function.name()), names.join(", "));
     for argument in &function.arguments {
         let length = match argument {

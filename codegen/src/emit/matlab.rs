@@ -5,9 +5,9 @@
 
 use std::fmt::Write;
 
-use super::documentation::{self, Block, Link};
+use super::documentation::{self, Block, Described, DescribedParameters, Link};
 use super::origin::{Notes, Origin};
-use super::plain::{blocks, camel, constants, expression, head, places, waves, Syntax, Value};
+use super::plain::{camel, constants, constants_documentation, described, expression, head, places, waves, Syntax, Value};
 use crate::catalogue::{Argument, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -76,28 +76,56 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> Vec<File> {
 
 /// What `help` shows of the package.
 fn contents(module: &Module, head: &str) -> File {
-    let described = |function: &Function| match documentation::function(function, module, true).first() {
-        Some(Block::Text(lines)) => lines.iter().map(|line| documentation::linked(line, &link)).collect::<Vec<_>>().join(" "),
-        _ => String::new(),
-    };
+    let functions: Vec<_> = module.functions.iter().map(|function| (function.name(), function.quantity)).collect();
+    File { name: "Contents.m".into(), text: format!("{}\n{head}", contents_comment(&module.name, &functions)) }
+}
+
+/// What stands first in the file of contents.
+pub fn contents_comment(robot: &str, functions: &[(String, &Quantity)]) -> String {
     let mut rows = vec![("model".to_string(), "Names, limits and parameters.".to_string())];
-    rows.extend(module.functions.iter().map(|function| (camel(&function.name()), described(function))));
+    let title = |quantity: &Quantity| documentation::linked(quantity.documentation.title, &link);
+    rows.extend(functions.iter().map(|(name, quantity)| (camel(name), title(quantity))));
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let mut text = format!("% Equations of motion of the robot {}\n%\n", module.name);
+    let mut text = format!("% Equations of motion of the robot {robot}\n%\n");
     for (name, described) in rows {
         let _ = writeln!(text, "%   {name:width$} - {described}");
     }
-    File { name: "Contents.m".into(), text: format!("{text}\n{head}") }
+    text
+}
+
+/// The comments of constants, by their names.
+pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str, String)> {
+    constants_documentation(described, 1).into_iter().map(|(name, blocks)| (name, comment(&blocks, ""))).collect()
+}
+
+/// What `help` shows of a function.
+pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
+    let mut all = described.blocks(true, note);
+    all.insert(1, Block::Verbatim(vec![call(described)]));
+    all.push(Block::text(
+        "Columns of arguments are states, a single column is that of all; `m[i][j]` of state k is m(i, j, k), indices from 1. What is said of \
+         the head of this file stands in Contents.m.",
+    ));
+    comment(&all, &format!("{}  ", camel(&described.name()).to_uppercase()))
+}
+
+/// How a function is called.
+fn call(described: &Described<'_>) -> String {
+    let names: Vec<&str> = described.arguments().map(|a| a.name()).collect();
+    let returned = match results(described.quantity).as_slice() {
+        [one] => one.clone(),
+        several => format!("[{}]", several.join(", ")),
+    };
+    format!("{returned} = {}({})", camel(&described.name()), names.join(", "))
 }
 
 /// The constants, as fields of a struct.
 fn model(module: &Module, head: &str) -> File {
     let mut text = String::from("function m = model()\n%MODEL  Names, limits and parameters, as fields of a struct.\n");
     let _ = write!(text, "\n{}%#codegen\n    m = struct();\n", origin_of(head));
-    for constant in constants(module, 1) {
-        text += "\n";
-        text += &comment(&constant.documentation, "");
-        let _ = writeln!(text, "    m.{} = {};", field(constant.name), value_of(&constant.value));
+    let documentation = constants_comments(&DescribedParameters::of(module));
+    for (constant, (_, comment)) in constants(module, 1).iter().zip(&documentation) {
+        let _ = writeln!(text, "\n{comment}    m.{} = {};", field(constant.name), value_of(&constant.value));
     }
     text += "end\n";
     File { name: "model.m".into(), text }
@@ -174,19 +202,8 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
     let name = camel(&function.name());
     let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
     let results = results(function.quantity);
-    let returned = match results.as_slice() {
-        [one] => one.clone(),
-        several => format!("[{}]", several.join(", ")),
-    };
-    let call = format!("{returned} = {name}({})", names.join(", "));
-    let mut text = format!("function {call}\n");
-    let mut all = blocks(module, function, notes);
-    all.insert(1, Block::Verbatim(vec![call]));
-    all.push(Block::text(
-        "Columns of arguments are states, a single column is that of all; `m[i][j]` of state k is m(i, j, k), indices from 1. What is said of \
-         the head of this file stands in Contents.m.",
-    ));
-    text += &comment(&all, &format!("{}  ", name.to_uppercase()));
+    let (described, note) = described(module, function, notes);
+    let mut text = format!("function {}\n{}", call(&described), function_comment(&described, note));
     let _ = write!(text, "\n{}%#codegen\n", origin_of(head));
     match names.as_slice() {
         [one] => define(&mut text, "n", &format!("size({one}, 2)")),

@@ -1,9 +1,9 @@
 //! What languages have in common whose text is put together line by line: lines, angles and the places of results are those of the
 //! program, and a language says only how it writes an entry, a number and an operator.
 
-use super::documentation::{self, Block};
+use super::documentation::{self, has_base_parameters, Block, Described, DescribedParameters};
 use super::origin::{Notes, Origin};
-use crate::catalogue::{Argument, Length, Parameter, Quantity, ResultPart, Sizes};
+use crate::catalogue::{Argument, Parameter, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::program::listing::{angles, Angle, Expression, Name};
 use crate::program::{Function, Joint, Module, Operation};
@@ -164,8 +164,69 @@ pub(super) enum Value {
 /// A constant of a module.
 pub(super) struct Constant {
     pub(super) name: &'static str,
-    pub(super) documentation: Vec<Block>,
     pub(super) value: Value,
+}
+
+/// The constants of a module in order, those of the base parameters last.
+const CONSTANTS: [&str; 15] = [
+    "NAME",
+    "DOF",
+    "JOINT_NAMES",
+    "JOINT_IS_REVOLUTE",
+    "POSITION_LIMITS",
+    "VELOCITY_LIMITS",
+    "EFFORT_LIMITS",
+    "TASK_ROWS",
+    "TASK",
+    "PARAMETERS",
+    "PARAMETER_NAMES",
+    "NOMINAL_PARAMETERS",
+    "BASE_PARAMETERS",
+    "BASE_PARAMETER_NAMES",
+    "NOMINAL_BASE_PARAMETERS",
+];
+
+/// The documentation of the constants that a module has; `first`: what a language counts from.
+pub(super) fn constants_documentation(described: &DescribedParameters, first: usize) -> Vec<(&'static str, Vec<Block>)> {
+    let [a, b, c, d, e, f] = std::array::from_fn(|row| row + first);
+    let said = |name: &str| {
+        match name {
+        "NAME" => "Name of the robot.".into(),
+        "DOF" => "Number of joints.".into(),
+        "JOINT_NAMES" => "Names of the joints, base to tip.".into(),
+        "JOINT_IS_REVOLUTE" => "Whether a joint turns (q in rad) or slides (q in m).".into(),
+        "POSITION_LIMITS" => "Lowest and highest joint variable, rad or m; infinite where the description gives none.".into(),
+        "VELOCITY_LIMITS" => "Highest joint rate, rad/s or m/s; infinite where the description gives none.".into(),
+        "EFFORT_LIMITS" => {
+            "Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.".into()
+        }
+        "TASK_ROWS" => "Number of rows of the operational space.".into(),
+        "TASK" => format!(
+            "Rows of the geometric Jacobian that make up the operational space: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
+        ),
+        "PARAMETERS" => "Number of parameters.".into(),
+        "PARAMETER_NAMES" => "Names of the parameters, in the order of the columns of {regressor}:".into(),
+        "NOMINAL_PARAMETERS" => "Values of the parameters in the description.".into(),
+        "BASE_PARAMETERS" => {
+            "Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description."
+                .into()
+        }
+        "BASE_PARAMETER_NAMES" => {
+            "Names of the base parameters, in the order of the columns of {base_regressor}, each a combination of standard parameters:".into()
+        }
+        _ => "Values of the base parameters in the description, the masses of rotors included.".to_string(),
+    }
+    };
+    let of = |name: &'static str| {
+        let title = Block::text(said(name));
+        let blocks = match name {
+            "PARAMETER_NAMES" => [title].into_iter().chain(described.meanings()).collect(),
+            "BASE_PARAMETER_NAMES" => [title].into_iter().chain(described.base_meanings()).collect(),
+            _ => vec![title],
+        };
+        (name, blocks)
+    };
+    CONSTANTS.into_iter().filter(|name| !name.contains("BASE_") || described.base_parameters.is_some()).map(of).collect()
 }
 
 /// The constants of a module, in order; `first`: what a language counts from.
@@ -181,70 +242,27 @@ pub(super) fn constants(module: &Module, first: usize) -> Vec<Constant> {
         Value::Array(parameters.iter().map(|parameter| Value::Number(parameter.nominal.clone())).collect())
     };
     let position = |joint: &Joint| Value::Array(vec![number(&joint.position[0], true), number(&joint.position[1], false)]);
-    let said = |name: &'static str, words: &str, value: Value| Constant { name, documentation: vec![Block::text(words)], value };
-    let [a, b, c, d, e, f] = std::array::from_fn(|row| row + first);
-    let rows = format!(
-        "Rows of the geometric Jacobian that make up the operational space: {a} {b} {c} along x y z, {d} {e} {f} about x y z, in the base frame."
-    );
-    let title = Block::text("Names of the parameters, in the order of the columns of {regressor}:");
-    let note = module.base_parameters.then(documentation::base_note);
-    let mut all = vec![
-        said("NAME", "Name of the robot.", text(&module.name)),
-        said("DOF", "Number of joints.", Value::Count(module.joints.len())),
-        said("JOINT_NAMES", "Names of the joints, base to tip.", joints(&|joint| text(&joint.name))),
-        said(
-            "JOINT_IS_REVOLUTE",
-            "Whether a joint turns (q in rad) or slides (q in m).",
-            joints(&|joint| Value::Truth(joint.is_revolute)),
-        ),
-        said(
-            "POSITION_LIMITS",
-            "Lowest and highest joint variable, rad or m; infinite where the description gives none.",
-            joints(&position),
-        ),
-        said(
-            "VELOCITY_LIMITS",
-            "Highest joint rate, rad/s or m/s; infinite where the description gives none.",
-            joints(&|joint| number(&joint.velocity, false)),
-        ),
-        said(
-            "EFFORT_LIMITS",
-            "Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.",
-            joints(&|joint| number(&joint.effort, false)),
-        ),
-        said("TASK_ROWS", "Number of rows of the operational space.", Value::Count(module.task.len())),
-        said("TASK", &rows, Value::Array(module.task.iter().map(|&row| Value::Count(row + first)).collect())),
-        said("PARAMETERS", "Number of parameters.", Value::Count(module.parameters.len())),
-        Constant {
-            name: "PARAMETER_NAMES",
-            documentation: [title].into_iter().chain(note).chain([documentation::meanings(&module.parameters)]).collect(),
-            value: names(&module.parameters),
+    let of = |name: &'static str| Constant {
+        name,
+        value: match name {
+            "NAME" => text(&module.name),
+            "DOF" => Value::Count(module.joints.len()),
+            "JOINT_NAMES" => joints(&|joint| text(&joint.name)),
+            "JOINT_IS_REVOLUTE" => joints(&|joint| Value::Truth(joint.is_revolute)),
+            "POSITION_LIMITS" => joints(&position),
+            "VELOCITY_LIMITS" => joints(&|joint| number(&joint.velocity, false)),
+            "EFFORT_LIMITS" => joints(&|joint| number(&joint.effort, false)),
+            "TASK_ROWS" => Value::Count(module.task.len()),
+            "TASK" => Value::Array(module.task.iter().map(|&row| Value::Count(row + first)).collect()),
+            "PARAMETERS" => Value::Count(module.parameters.len()),
+            "PARAMETER_NAMES" => names(&module.parameters),
+            "NOMINAL_PARAMETERS" => nominal(&module.parameters),
+            "BASE_PARAMETERS" => Value::Count(module.base_set.len()),
+            "BASE_PARAMETER_NAMES" => names(&module.base_set),
+            _ => nominal(&module.base_set),
         },
-        said("NOMINAL_PARAMETERS", "Values of the parameters in the description.", nominal(&module.parameters)),
-    ];
-    if module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters)) {
-        let count = "Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.";
-        let title =
-            "Names of the base parameters, in the order of the columns of {base_regressor}, each a combination of standard parameters:";
-        all.extend([
-            said("BASE_PARAMETERS", count, Value::Count(module.base_set.len())),
-            Constant {
-                name: "BASE_PARAMETER_NAMES",
-                documentation: vec![
-                    Block::text(title),
-                    documentation::own_base_note(documentation::turn(module).as_deref()),
-                    documentation::meanings(&module.base_set),
-                ],
-                value: names(&module.base_set),
-            },
-            said(
-                "NOMINAL_BASE_PARAMETERS",
-                "Values of the base parameters in the description, the masses of rotors included.",
-                nominal(&module.base_set),
-            ),
-        ]);
-    }
-    all
+    };
+    CONSTANTS.into_iter().filter(|name| !name.contains("BASE_") || has_base_parameters(module)).map(of).collect()
 }
 
 /// The lines at the head of a file, each behind the sign of a comment: where it came from, and what the module lacks.
@@ -254,9 +272,7 @@ pub(super) fn head(module: &Module, origin: &Origin, notes: &Notes, sign: &str) 
     lines.map(|line| format!("{sign} {line}").trim_end().to_string() + "\n").collect()
 }
 
-/// What is said of a function whose results take memory of their own.
-pub(super) fn blocks(module: &Module, function: &Function, notes: &Notes) -> Vec<Block> {
-    let mut blocks = documentation::function(function, module, true);
-    blocks.extend(notes.functions.get(&function.name()).map(Block::text));
-    blocks
+/// What is said of a function.
+pub(super) fn described<'a>(module: &'a Module, function: &Function, notes: &'a Notes) -> (Described<'a>, Option<&'a str>) {
+    (documentation::described(function, module), notes.functions.get(&function.name()).map(String::as_str))
 }

@@ -6,9 +6,11 @@ mod native;
 
 use std::fmt::Write;
 
-use super::documentation::{self, Block, Link};
+use super::documentation::{self, Block, Described, DescribedParameters, Link};
 use super::origin::{Notes, Origin};
-use super::plain::{asks_for_exponentials, asks_for_signs, blocks, constants, expression, head, waves, Syntax, Value};
+use super::plain::{
+    asks_for_exponentials, asks_for_signs, constants, constants_documentation, described, expression, head, waves, Syntax, Value,
+};
 use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
@@ -63,13 +65,9 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     }
     let names: String = names.iter().map(|name| format!("    \"{name}\",\n")).collect();
     let _ = writeln!(text, "__all__ = [\n{names}]");
-    for constant in constants(module, 0) {
-        text += "\n";
-        for line in documentation::plain(&constant.documentation, &link) {
-            text += format!("# {line}").trim_end();
-            text += "\n";
-        }
-        let _ = writeln!(text, "{}: Final = {}", constant.name, python.value(&constant.value));
+    let documentation = constants_comments(&DescribedParameters::of(module));
+    for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
+        let _ = writeln!(text, "\n{comment}{}: Final = {}", constant.name, python.value(&constant.value));
     }
     let (dtype, fast) = match module.scalar {
         Scalar::F64 => ("float64", FAST_F64),
@@ -118,6 +116,26 @@ fn link(link: Link<'_>) -> String {
     format!("`{name}`")
 }
 
+/// The comments of constants, by their names.
+pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str, String)> {
+    let line = |line: &String| format!("# {line}").trim_end().to_string() + "\n";
+    let comment = |blocks: &[Block]| documentation::plain(blocks, &link).iter().map(line).collect();
+    constants_documentation(described, 0).into_iter().map(|(name, blocks)| (name, comment(&blocks))).collect()
+}
+
+/// The documentation of a function, with what is said of it behind all that is said in other languages.
+pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
+    let mut all = described.blocks(true, note);
+    all.push(Block::text("Leading axes are those of many states; `m[..., i, j]` is row i, column j."));
+    let mut text = String::new();
+    for (i, line) in documentation::plain(&all, &link).iter().enumerate() {
+        let line = line.replace('\\', "/").replace("\"\"\"", "'''");
+        text += format!("    {}{line}", if i == 0 { "\"\"\"" } else { "" }).trim_end();
+        text += "\n";
+    }
+    text + "    \"\"\"\n"
+}
+
 fn define(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "    {name} = {value}");
 }
@@ -152,15 +170,8 @@ impl Python {
         let signature: Vec<String> = names.iter().map(|name| format!("{name}: Any")).collect();
         let returns = structure(function.quantity).unwrap_or("Any".into());
         let _ = writeln!(text, "\ndef {}({}) -> {returns}:", function.name(), signature.join(", "));
-        let mut all = blocks(module, function, notes);
-        all.push(Block::text("Leading axes are those of many states; `m[..., i, j]` is row i, column j."));
-        let lines = documentation::plain(&all, &link);
-        for (i, line) in lines.iter().enumerate() {
-            let line = line.replace('\\', "/").replace("\"\"\"", "'''");
-            *text += format!("    {}{line}", if i == 0 { "\"\"\"" } else { "" }).trim_end();
-            *text += "\n";
-        }
-        *text += "    \"\"\"\n";
+        let (described, note) = described(module, function, notes);
+        *text += &function_comment(&described, note);
         let entered = function.arguments.iter().map(|a| {
             let length = match a {
                 Argument::Pi => "PARAMETERS",

@@ -170,7 +170,7 @@ fn constants(module: &Module) -> TokenStream {
 /// The documentation of a function, as it stands in a module without bounds.
 #[doc(hidden)]
 pub fn function_documentation(described: &Described<'_>) -> Vec<String> {
-    documentation::lines(&described.blocks(false))
+    documentation::lines(&described.blocks(false, None))
 }
 
 /// The documentation of `PARAMETER_NAMES`: names and what they mean, whether they are base parameters.
@@ -212,8 +212,7 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
 }
 
 fn function(module: &Module, function: &Function, note: Option<&String>) -> TokenStream {
-    let mut blocks = common::function(function, module, false);
-    blocks.extend(note.map(Block::text));
+    let blocks = common::described(function, module).blocks(false, note.map(String::as_str));
     let documentation = documentation::lines(&blocks);
     let name = format_ident!("{}", function.name());
     let arguments = function.arguments.iter().map(|&a| {

@@ -11,6 +11,8 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::emit::Language;
+
 use super::plain::{promised, sizes, Body, Comments, Constants, Functions, Lines, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::check::Check;
@@ -18,7 +20,7 @@ use crate::contract::{Array, Length, Returned, Sizes};
 use crate::enclosure::Float;
 use crate::program::{Argument, Step};
 
-const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")) };
+pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", "*/")) };
 
 const PROLOGUE: &str = include_str!("c/prologue.h");
 const EPILOGUE: &str = include_str!("c/epilogue.h");
@@ -27,6 +29,11 @@ const STRIBECK: &str = include_str!("c/stribeck.h");
 const STD: &str = include_str!("c/std.h");
 const FAST_F64: &str = include_str!("c/fast_f64.h");
 const FAST_F32: &str = include_str!("c/fast_f32.h");
+/// The comments that stand between those texts.
+const BETWEEN: &str = include_str!("c/between.h");
+
+/// Texts that are the same in every module.
+pub(super) const FIXED: [&str; 8] = [PROLOGUE, EPILOGUE, SIGN, STRIBECK, STD, FAST_F64, FAST_F32, BETWEEN];
 
 /// The sines of the C library; of angles beyond the range of the module's own ones, where it has some.
 const LIBRARY: &str = "#include <math.h>\n#define ROBOT_SIN(x) sin(x)\n#define ROBOT_COS(x) cos(x)\n";
@@ -160,7 +167,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
     }
-    Ok(Module { real, trig, head, documentation: None, constants, functions })
+    Ok(Module { real, trig, head, constants, functions, ..Module::empty(Language::C) })
 }
 
 /// The macros of constants, and the scalar.

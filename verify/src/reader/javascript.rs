@@ -11,19 +11,24 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::emit::Language;
+
 use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Returned, Sizes};
 use crate::enclosure::Float;
 use crate::program::Argument;
 
-const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")) };
+pub(super) const COMMENTS: Comments = Comments { line: Some("//"), block: Some(("/**", "*/")) };
 
 const CHECK: &str = include_str!("javascript/check.mjs");
 const SIGN: &str = include_str!("javascript/sign.mjs");
 const STRIBECK: &str = include_str!("javascript/stribeck.mjs");
 const STD: &str = include_str!("javascript/std.mjs");
 const FAST: &str = include_str!("javascript/sines.mjs");
+
+/// Texts that are the same in every module.
+pub(super) const FIXED: [&str; 5] = [CHECK, SIGN, STRIBECK, STD, FAST];
 
 fn comment(lines: &[&str]) -> Vec<String> {
     lines.iter().map(|line| line.strip_prefix(" *").unwrap_or(line).to_string()).filter(|line| !line.is_empty()).collect()
@@ -86,7 +91,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     };
     let mut reader = Reader { syntax: &syntax, sizes, parts: Parts::default(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, "", [trig.is_some(), sign, stribeck])?;
-    Ok(Module { real: Float::F64, trig, head, documentation: None, constants, functions })
+    Ok(Module { trig, head, constants, functions, ..Module::empty(Language::JavaScript) })
 }
 
 struct Reader<'a, 'r> {

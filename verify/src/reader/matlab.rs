@@ -12,13 +12,15 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::emit::Language;
+
 use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module, LONGEST};
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::program::Argument;
 
-const COMMENTS: Comments = Comments { line: Some("%"), block: None };
+pub(super) const COMMENTS: Comments = Comments { line: Some("%"), block: None };
 
 const CHECK: &str = include_str!("matlab/check.m");
 const SIGN: &str = include_str!("matlab/sign.m");
@@ -26,8 +28,12 @@ const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
 
+/// Texts that are the same in every module.
+pub(super) const FIXED: [&str; 6] = [CHECK, SIGN, STRIBECK, STD, FAST, MODEL];
+const MODEL: &str = "function m = model()\n%MODEL  Names, limits and parameters, as fields of a struct.\n    m = struct();\n";
+
 /// What the line in front of a file begins with, behind which its name stands.
-const FILE: &str = "%%% ";
+pub(super) const FILE: &str = "%%% ";
 
 /// The files of a package, names and texts, as the one text that is read.
 pub fn joined(mut files: Vec<(String, String)>) -> String {
@@ -118,7 +124,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     }
     let order: Vec<String> = names_of().collect();
     functions.sort_by_key(|(name, _)| order.iter().position(|other| other == name));
-    Ok(Module { real: Float::F64, trig: reader.trig, head, documentation: None, constants, functions })
+    Ok(Module { trig: reader.trig, head, constants, functions, ..Module::empty(Language::Matlab) })
 }
 
 /// The fields of the model.

@@ -11,13 +11,15 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::emit::Language;
+
 use super::plain::{names_of, promised, sizes, Body, Comments, Constants, Functions, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module};
 use crate::contract::{Length, Promise, Returned, Sizes};
 use crate::enclosure::Float;
 use crate::program::Argument;
 
-const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")) };
+pub(super) const COMMENTS: Comments = Comments { line: Some("#"), block: Some(("    \"\"\"", "\"\"\"")) };
 
 const ARRAYS: &str = include_str!("python/arrays.py");
 const SIGN: &str = include_str!("python/sign.py");
@@ -25,6 +27,10 @@ const STRIBECK: &str = include_str!("python/stribeck.py");
 const STD: &str = include_str!("python/std.py");
 const FAST_F64: &str = include_str!("python/sines_f64.py");
 const FAST_F32: &str = include_str!("python/sines_f32.py");
+
+/// Texts that are the same in every module.
+pub(super) const FIXED: [&str; 7] = [ARRAYS, SIGN, STRIBECK, STD, FAST_F64, FAST_F32, DTYPE];
+const DTYPE: &str = "# The type of the entries of all arrays.\nDTYPE: Final = \n";
 
 fn tuple(entries: &[String]) -> String {
     match entries {
@@ -129,7 +135,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
             format!("`__all__` does not list the {named} constants, the types of results and the functions of the module");
         return Err(Fault { line: 1, reason });
     }
-    Ok(Module { real, trig, head, documentation: None, constants, functions })
+    Ok(Module { real, trig, head, constants, functions, ..Module::empty(Language::Python) })
 }
 
 struct Reader<'a, 'r> {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{prefix, returns_a_number};
 use crate::catalogue::{Absent, Length};
-use crate::emit::documentation::{self, Block, Link};
+use crate::emit::documentation::{self, Block, Described, DescribedParameters, Link};
 use crate::emit::origin::Origin;
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -53,7 +53,7 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
     text += POINTERS;
     for function in &module.functions {
         text += "\n";
-        text += &comment(&documentation::function(function, module, false), &link(&name, &upper));
+        text += &function_comment(&documentation::described(function, module), None, &name);
         text += &format!("{};\n", signature(module, function));
     }
     text += "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
@@ -73,7 +73,7 @@ pub(super) fn macros(module: &Module) -> String {
         Scalar::F32 => "float",
     };
     let mut text = String::new();
-    let link = link(&name, &upper);
+    let described = DescribedParameters::of(module);
     let braces = |entries: Vec<String>| format!("{{{}}}", entries.join(", "));
     let number = |value: &Option<Number>, infinite: &str| match value {
         Some(value) => constant(value, module.scalar),
@@ -116,8 +116,7 @@ pub(super) fn macros(module: &Module) -> String {
         let _ = writeln!(text, "#define {upper}_PARAMETER_NAMES {}", braces(names));
         let _ = writeln!(text, "#define {upper}_NOMINAL_PARAMETERS {}", braces(nominal));
         text += "\n";
-        let title = Block::text("The parameters, in the order of the columns of the regressor:");
-        text += &comment(&[title, documentation::meanings(&module.parameters)], &link);
+        text += &parameters_comment(&described);
     }
     if !module.base_set.is_empty() {
         let names = module.base_set.iter().map(|parameter| format!("\"{}\"", parameter.name)).collect();
@@ -126,15 +125,27 @@ pub(super) fn macros(module: &Module) -> String {
         let _ = writeln!(text, "#define {upper}_BASE_PARAMETER_NAMES {}", braces(names));
         let _ = writeln!(text, "#define {upper}_NOMINAL_BASE_PARAMETERS {}", braces(nominal));
         text += "\n";
-        let title = Block::text(format!("The base parameters, in the order of the columns of {name}_base_regressor:"));
-        let blocks = [
-            title,
-            documentation::own_base_note(documentation::turn(module).as_deref()),
-            documentation::meanings(&module.base_set),
-        ];
-        text += &comment(&blocks, &link);
+        text += &base_parameters_comment(&described, &name);
     }
     text
+}
+
+/// What the names of parameters mean.
+pub fn parameters_comment(described: &DescribedParameters) -> String {
+    let title = Block::text("The parameters, in the order of the columns of the regressor:");
+    comment(&[title, Block::Table(described.parameters.clone())], &|_| String::new())
+}
+
+/// What the names of base parameters mean; `name`: what the functions of the robot begin with.
+pub fn base_parameters_comment(described: &DescribedParameters, name: &str) -> String {
+    let title = Block::text(format!("The base parameters, in the order of the columns of {name}_base_regressor:"));
+    let blocks: Vec<Block> = [title].into_iter().chain(described.base_meanings()).collect();
+    comment(&blocks, &|_| String::new())
+}
+
+/// The comment of a function, with what is said behind all else; `name`: what the functions of the robot begin with.
+pub fn function_comment(described: &Described<'_>, note: Option<&str>, name: &str) -> String {
+    comment(&described.blocks(false, note), &link(name, &macros_of(name)))
 }
 
 /// The declaration of a function, up to its end.

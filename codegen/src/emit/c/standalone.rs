@@ -5,12 +5,13 @@
 
 use std::fmt::Write;
 
-use super::header::{comment, link, macros, macros_of, opening, signature, POINTERS};
+use super::header::{function_comment, macros, macros_of, opening, signature, POINTERS};
 use super::syntax::C;
 use super::{batch, prefix, returns_a_number};
-use crate::emit::documentation::{self, Block};
 use crate::emit::origin::{Notes, Origin};
-use crate::emit::plain::{asks_for_exponentials, asks_for_signs, expression, of_robot, places, reads_an_argument, waves};
+use crate::emit::plain::{
+    asks_for_exponentials, asks_for_signs, described, expression, of_robot, places, reads_an_argument, waves,
+};
 use crate::emit::rust::asks_for_sines;
 use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Line, Listing, Name};
@@ -113,10 +114,9 @@ impl C<'_> {
         for (part, number) in parts.iter().zip(1..) {
             self.part(text, function, part, number);
         }
-        let mut blocks = documentation::function(function, module, false);
-        blocks.extend(notes.functions.get(&function.name()).map(Block::text));
+        let (described, note) = described(module, function, notes);
         *text += "\n";
-        *text += &comment(&blocks, &link(name, upper));
+        *text += &function_comment(&described, note, name);
         let _ = writeln!(text, "static inline {}\n{{\n    {upper}_UNFUSED", signature(module, function));
         for argument in function.unused_arguments() {
             let _ = writeln!(text, "    (void){};", argument.name());
