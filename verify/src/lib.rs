@@ -21,7 +21,7 @@
 //! # }
 //! ```
 //!
-//! What is not covered: that the compiler and libm do what they promise, and documentation comments. How far rounding takes the functions
+//! What is not covered: that the compiler and libm do what they promise. How far rounding takes the functions
 //! from the equations is bounded a priori ([`bounds`](mod@bounds)) and at a state ([`companion`](mod@companion)), and measured ([`errors`]).
 
 #[doc(hidden)]

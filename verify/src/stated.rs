@@ -2,15 +2,15 @@
 //! and the size of rounding errors, the operations of each function. All other documentation must be that of the catalogue, word for word;
 //! in other languages than Rust all comments must be those that armgen writes (`comments`).
 //!
-//! Not judged: the file name and the version in the first line, why a function is not there, which of the ways to derive a function was taken, and
-//! which combination of standard parameters a grouped base parameter is said to be.
+//! Not judged: the name of the file and the number of the version in the first line, and which of the ways to derive a function was taken.
 
 mod comments;
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::catalogue::{self, METHODS};
-use armgen_codegen::derive::parameters::{nominal, ParameterVector};
+use armgen_codegen::catalogue::{self, Quantity, METHODS};
+use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::derive::Model;
 use armgen_codegen::emit::{rust, Described, DescribedParameters, Language};
 use armgen_codegen::exact::Number;
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
@@ -18,7 +18,6 @@ use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 use crate::bounds::{self, Bound};
 use crate::check::Check;
 use crate::constants;
-use crate::contract::Promise;
 use crate::program::{Program, Step};
 use crate::reader::{Function, Module};
 use crate::report::Report;
@@ -38,7 +37,8 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
     let known: BTreeMap<String, Bound> =
         report.functions.iter().filter_map(|f| Some((f.name.clone(), f.bound.clone()?))).collect();
     let notes = bounds::notes(&known);
-    let bounded = match head(module, &report.input, &notes.head) {
+    let model = Model::new(manipulator.clone());
+    let bounded = match head(module, &report.input, &notes.head, &absent(&model, module)) {
         Ok(bounded) => bounded,
         Err(fault) if Check::Head.is_made() => return vec![format!("the head of the file: {fault}")],
         Err(_) => false,
@@ -68,7 +68,7 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
         }
     }
     if Check::Meanings.is_made() {
-        faults.extend(meanings(manipulator, module));
+        faults.extend(meanings(&model, module));
     }
     if module.language != Language::Rust && faults.is_empty() && Check::Comments.is_made() {
         let mut functions = Vec::new();
@@ -78,7 +78,7 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
             };
             functions.push((name.as_str(), described, notes.functions.get(name).filter(|_| bounded).map(String::as_str)));
         }
-        let parameters = described_parameters(manipulator, module);
+        let parameters = described_parameters(&model, module);
         let words = comments::Words { robot: &manipulator.name, parameters, functions };
         faults.extend(comments::fault(module, &words));
     }
@@ -128,13 +128,13 @@ fn different(found: &[&str], expected: &[String]) -> Option<String> {
 }
 
 /// What the documentation says of parameters.
-fn meanings(manipulator: &Manipulator, module: &Module) -> Vec<String> {
+fn meanings(model: &Model, module: &Module) -> Vec<String> {
     let Some(documentation) = &module.documentation else { return Vec::new() };
-    let grouped = manipulator.regressor == RegressorChoice::Base;
+    let grouped = model.manipulator.regressor == RegressorChoice::Base;
     let mut faults = Vec::new();
     for (constant, found) in documentation {
         let found: Vec<&str> = found.iter().map(String::as_str).collect();
-        let meanings = named(manipulator, module, constant, &found);
+        let meanings = named(model, module, constant);
         let expected = match constant.as_str() {
             "BASE_PARAMETER_NAMES" => rust::base_parameters_documentation(turn(&found), &meanings),
             _ => rust::parameters_documentation(grouped, &meanings),
@@ -145,42 +145,37 @@ fn meanings(manipulator: &Manipulator, module: &Module) -> Vec<String> {
 }
 
 /// What the comments of constants say.
-fn described_parameters(manipulator: &Manipulator, module: &Module) -> DescribedParameters {
+fn described_parameters(model: &Model, module: &Module) -> DescribedParameters {
     let found: Vec<&str> = module.comments.iter().flat_map(|comment| comment.text.lines()).collect();
-    let of = |constant: &str| named(manipulator, module, constant, &found);
+    let of = |constant: &str| named(model, module, constant);
     let has_base = module.constants.contains_key("BASE_PARAMETERS");
     DescribedParameters {
-        grouped: manipulator.regressor == RegressorChoice::Base,
+        grouped: model.manipulator.regressor == RegressorChoice::Base,
         parameters: of("PARAMETER_NAMES"),
         base_parameters: has_base.then(|| of("BASE_PARAMETER_NAMES")),
         turn: turn(&found).map(String::from),
     }
 }
 
-/// The names that a constant holds and what they mean; the combination that a grouped parameter is, as lines say it.
-fn named(manipulator: &Manipulator, module: &Module, constant: &str, lines: &[&str]) -> Vec<(String, String)> {
-    let standard = ParameterVector::standard(manipulator).entries;
-    let (base, parameters) = match &manipulator.regressor {
-        RegressorChoice::Standard => (false, standard.clone()),
-        RegressorChoice::Base => (true, Vec::new()),
-        RegressorChoice::Names(names) => (false, ParameterVector::named(manipulator, names).entries),
-    };
-    let known = if base || constant == "BASE_PARAMETER_NAMES" { &standard } else { &parameters };
-    let names = constants::names(module, constant).unwrap_or_default();
+/// The names that a constant holds and what they mean.
+fn named(model: &Model, module: &Module, constant: &str) -> Vec<(String, String)> {
+    let known = if constant == "BASE_PARAMETER_NAMES" { &model.base_parameters().entries } else { &model.parameters.entries };
     let of = |name: String| {
         let meaning = known.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.meaning.clone());
-        let meaning = meaning.unwrap_or_else(|| said_of(lines, &name).to_string());
-        (name, meaning)
+        (name, meaning.unwrap_or_default())
     };
-    names.into_iter().map(of).collect()
+    constants::names(module, constant).unwrap_or_default().into_iter().map(of).collect()
 }
 
-/// What stands behind a name in a table.
-fn said_of<'a>(lines: &[&'a str], name: &str) -> &'a str {
-    let row = |line: &&'a str| {
-        line.trim_start_matches([' ', '*', '#', '%']).strip_prefix(name)?.strip_prefix("  ").map(str::trim_start)
+/// The lines that say which functions the module lacks, and why.
+fn absent(model: &Model, module: &Module) -> Vec<String> {
+    let is_there = |name: &String| module.functions.iter().any(|(other, _)| other == name);
+    let of = |(quantity, with_parameters): (&'static Quantity, bool)| {
+        let name = Some(quantity.function_name(with_parameters)).filter(|name| !is_there(name))?;
+        let reason = (quantity.missing)(model, with_parameters)?;
+        Some(format!("There is no `{name}`: {reason}."))
     };
-    lines.iter().find_map(row).unwrap_or("")
+    catalogue::functions().filter_map(of).collect()
 }
 
 /// The angle, a decimal, by which the frame of the last link is said to be turned.
@@ -191,11 +186,15 @@ fn turn<'a>(lines: &[&'a str]) -> Option<&'a str> {
 }
 
 /// The lines in front of all items; whether they have those on rounding errors.
-fn head(module: &Module, input: &str, notes: &[String]) -> Result<bool, String> {
+fn head(module: &Module, input: &str, notes: &[String], absent: &[String]) -> Result<bool, String> {
     let mut lines = module.head.iter().map(|line| line.strip_prefix(' ').unwrap_or(line));
     let first = lines.next().unwrap_or("");
     let hash = &input[..DIGITS.min(input.len())];
-    if !first.starts_with("@generated by armgen ") || !first.ends_with(&format!(" (input {hash}). Do not edit.")) {
+    let named =
+        first.strip_prefix("@generated by armgen ").and_then(|rest| rest.strip_suffix(&format!(" (input {hash}). Do not edit.")));
+    let is_number = |version: &str| version.chars().all(|c| c.is_ascii_digit() || c == '.');
+    let named = named.and_then(|named| named.split_once(" from ")).filter(|(version, _)| is_number(version));
+    if named.is_none_or(|(_, file)| file.contains("(input ")) {
         return Err(format!("`{first}` does not say that armgen made it from this description, `(input {hash})`"));
     }
     for expected in CONVENTIONS {
@@ -206,12 +205,11 @@ fn head(module: &Module, input: &str, notes: &[String]) -> Result<bool, String> 
     if bounded {
         notes.iter().try_for_each(|expected| same(rest.next(), expected))?;
     }
-    for line in rest {
-        let name = line.strip_prefix("There is no `").and_then(|line| line.split_once("`: ")).map(|(name, _)| name);
-        let absent = |name: &&str| Promise::of(name).is_some() && !module.functions.iter().any(|(other, _)| other == name);
-        name.filter(absent).ok_or(format!("`{line}` is not true"))?;
+    absent.iter().try_for_each(|expected| same(rest.next(), expected))?;
+    match rest.next() {
+        None => Ok(bounded),
+        Some(line) => Err(format!("`{line}` is not true")),
     }
-    Ok(bounded)
 }
 
 fn same(found: Option<&str>, expected: &str) -> Result<(), String> {

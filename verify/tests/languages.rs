@@ -109,6 +109,41 @@ fn changes_are_found_in_every_language() {
     }
 }
 
+/// Each comment of a small arm's module with a word changed, with a line less, and with one more.
+#[test]
+fn every_comment_is_that_of_armgen() {
+    let source = common::source("single_joint");
+    let mut generated = generated(&source, Scalar::F64, Trig::Fast);
+    armgen_verify::document_bounds(&source, &mut generated).expect("bounds");
+    for language in others() {
+        let text = generated.in_language(language);
+        let verdict = |text: &str| armgen_verify::verify(&source, ModuleText { language, text }, None).first_fault();
+        assert_eq!(verdict(&text), None, "{language:?}");
+        let comments = Module::read(ModuleText { language, text: &text }).expect("a module").comments;
+        assert!(comments.len() > 40, "{language:?}");
+        let lines: Vec<&str> = text.lines().collect();
+        for (k, comment) in comments.iter().enumerate().step_by(5) {
+            let (from, count) = (comment.line - 1, comment.text.lines().count());
+            let at = from + k % count;
+            let with = |line: &str, keep: bool| {
+                let mut lines = lines.clone();
+                lines.insert(at, line);
+                if !keep {
+                    lines.remove(at + 1);
+                }
+                lines.join("\n") + "\n"
+            };
+            let word = lines[at].split(|c: char| !c.is_alphanumeric()).find(|word| word.len() > 2).map(|word| (word, "degrees"));
+            let (old, new) = word.unwrap_or(("*", "**"));
+            let changed = with(&lines[at].replacen(old, new, 1), false);
+            if changed != text {
+                assert!(verdict(&changed).is_some(), "{language:?}: {old} of line {}", at + 1);
+            }
+            assert!(verdict(&with(lines[at], true)).is_some(), "{language:?}: line {} twice", at + 1);
+        }
+    }
+}
+
 #[test]
 fn all_languages_have_the_bits_of_rust() {
     for name in ["scara", "modified_prismatic", "dry_friction"] {

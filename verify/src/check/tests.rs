@@ -286,6 +286,8 @@ fn bodies_in_c(tally: &mut Tally, scara: &Given) {
     let end = function.find("\n}\n").expect("its end");
     let long = function[..end].replace(" t1 ", &format!(" t1{} ", "a".repeat(62))) + &function[end..];
     c("a long name", &long, &[(Long, "where an emitted module has")]);
+    let degrees = function.replacen("joint variables, rad", "joint variables, degrees", 1);
+    c("degrees", &degrees, &[(Comments, "the comment says `* - `q`: joint variables, degrees")]);
 }
 
 fn functions(tally: &mut Tally, scara: &Given) {

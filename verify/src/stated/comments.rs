@@ -39,12 +39,17 @@ pub(super) struct Words<'a> {
 pub(super) fn fault(module: &Module, words: &Words<'_>) -> Option<String> {
     let fixed = fixed_comments(module.language, words.robot);
     let mut expected: VecDeque<Expected> = expected(module, words).into();
-    for comment in &module.comments {
+    for (k, comment) in module.comments.iter().enumerate() {
+        let shown = comment.text.lines().next().unwrap_or("").trim();
+        let is_again =
+            |other: &Comment| (&other.text, &other.behind, &other.before) == (&comment.text, &comment.behind, &comment.before);
+        if k > 0 && is_again(&module.comments[k - 1]) {
+            return Some(format!("line {}: the comment `{shown}` stands twice", comment.line));
+        }
         let is_same = |other: &Comment| other.text == comment.text && comment.before.starts_with(&other.before);
         if fixed.iter().any(is_same) || is_of_part(module.language, words.robot, comment) || is_of_results(comment) {
             continue;
         }
-        let shown = comment.text.lines().next().unwrap_or("").trim();
         let Some(wanted) = expected.pop_front().filter(|wanted| comment.before.starts_with(&wanted.before)) else {
             return Some(format!(
                 "line {}: the comment `{shown}` stands where an emitted module has none of its kind",
