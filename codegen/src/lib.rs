@@ -130,7 +130,7 @@ impl Generated {
     /// The module of inverse kinematics, `robot_ik.rs`: all joint variables that reach a pose. It stands alone, in a module of its own. For an
     /// arm that has no construction it holds a comment that says why.
     pub fn inverse_kinematics(&self) -> String {
-        emit::rust::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
+        emit::rust::print_inverse_kinematics(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
     }
 
     /// Whether the arm has a construction, and one that asks for a pose alone.

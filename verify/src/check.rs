@@ -140,6 +140,8 @@ pub(crate) enum Check {
     Work,
     /// Certificates: the bits of a power.
     Powers,
+    /// Inverse kinematics: the text is that of armgen.
+    WholeText,
     /// Inverse kinematics: limits of the joints.
     Limits,
     /// Inverse kinematics: numbers of the loop are those of the arm.

@@ -1,6 +1,7 @@
 //! Certificates of emitted inverse kinematics: whether a module `robot_ik.rs` finds all solutions.
 //!
-//! 1. *Text*: every building block is byte for byte the tested one, every number the float nearest to its exact value, the function a call of a construction.
+//! 1. *Text*: every building block is byte for byte the tested one, every number the float nearest to its exact value, the function a call of a construction;
+//!    all else, comments and names of branches, is what armgen writes for the description.
 //!    With these exact values the loop closes, J1 L1 ... Jn Ln = 1, at random points of prime fields; the construction may be called with it.
 //! 2. *Soundness*: the blocks of closed forms, as texts, run in prime fields: every branch closes the loop exactly (`soundness`).
 //! 3. *Generic completeness*: at random poses in prime fields the equations have as many solutions as the construction has branches.
@@ -26,6 +27,8 @@ mod text;
 
 use std::fmt;
 
+use armgen_codegen::emit::rust::print_inverse_kinematics;
+use armgen_codegen::emit::Origin;
 use armgen_codegen::inverse_kinematics as generator;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
@@ -41,6 +44,8 @@ use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
+use crate::reader::{is_hidden, name_of};
+use crate::stated;
 use crate::stream::Stream;
 use chain::Chain;
 use counts::{Count, Counter, RationalPose, Way};
@@ -172,22 +177,72 @@ pub fn verify(source: &Source, text: &str, poses: usize) -> Report {
         return report;
     };
     report.robot.clone_from(&manipulator.name);
-    if let Err(fault) = fill(&mut report, &manipulator, source, text, poses) {
+    if let Some((line, c)) = hidden(text) {
+        report.faults.push(format!("line {line}: the character {}, which cannot be seen", name_of(c)));
+        return report;
+    }
+    let found = generator::of(&manipulator);
+    if let Err(fault) = fill(&mut report, &manipulator, &found, source, text, poses) {
         report.faults.push(fault);
+    }
+    if report.faults.is_empty() && Check::WholeText.is_made() {
+        report.faults.extend(difference(&manipulator, &found, source, text));
     }
     report
 }
 
-fn fill(report: &mut Report, manipulator: &Manipulator, source: &Source, text: &str, poses: usize) -> Result<(), String> {
+/// The first character that cannot be seen, and its line.
+fn hidden(text: &str) -> Option<(usize, char)> {
+    text.split('\n').zip(1..).find_map(|(line, number)| Some((number, line.chars().find(|c| is_hidden(*c))?)))
+}
+
+/// The first line that is not the one that armgen writes for the description: all that is not judged by what it does, comments and the names of
+/// branches among it. In the first line the name of the file may be another.
+fn difference(
+    manipulator: &Manipulator,
+    found: &Result<generator::InverseKinematics, String>,
+    source: &Source,
+    text: &str,
+) -> Option<String> {
+    let scalar = if text.contains("pub type Real = f32;") { Scalar::F32 } else { Scalar::F64 };
+    let wanted = print_inverse_kinematics(manipulator, scalar, found, &Origin::of(source));
+    let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
+    if let Err(fault) = stated::origin(first.strip_prefix("// ").unwrap_or(""), &crate::hash(source.text())) {
+        return Some(format!("line 1: {fault}"));
+    }
+    let (mut lines, mut wanted) = (rest.split('\n'), wanted.split('\n').skip(1));
+    for number in 2.. {
+        match (lines.next(), wanted.next()) {
+            (None, None) => return None,
+            (found, wanted) if found == wanted => {}
+            (found, wanted) => {
+                let shown = |line: Option<&str>| line.map_or("the end".to_string(), |line| format!("`{}`", line.trim()));
+                return Some(format!("line {number}: {} where armgen writes {}", shown(found), shown(wanted)));
+            }
+        }
+    }
+    None
+}
+
+fn fill(
+    report: &mut Report,
+    manipulator: &Manipulator,
+    found: &Result<generator::InverseKinematics, String>,
+    source: &Source,
+    text: &str,
+    poses: usize,
+) -> Result<(), String> {
     let Some(module) = Text::read(text)? else {
         report.absent = true;
         return Ok(());
     };
     report.scalar = module.real.name();
     report.most = module.most;
-    let seed: [u8; 32] = Sha256::new().chain_update(source.text()).chain_update([0]).chain_update(text).finalize().into();
+    // The first line has the name of a file, which can be chosen: poses that follow from it could be chosen, too.
+    let (_, chosen) = text.split_once('\n').unwrap_or_default();
+    let seed: [u8; 32] = Sha256::new().chain_update(source.text()).chain_update([0]).chain_update(chosen).finalize().into();
     let mut stream = Stream::of(seed);
-    let claims = claims(manipulator)?;
+    let claims = claims(found)?;
     report.numbers = numbers(&module, manipulator, &claims)?;
     let all: Vec<Formula> = claims.loops.iter().flatten().chain(&claims.given).cloned().collect();
     report.exact_values = all.iter().map(ToString::to_string).collect();
@@ -270,8 +325,8 @@ struct Claims {
     length: Formula,
 }
 
-fn claims(manipulator: &Manipulator) -> Result<Claims, String> {
-    let found = generator::of(manipulator).map_err(|reason| format!("the arm has no construction: {reason}"))?;
+fn claims(found: &Result<generator::InverseKinematics, String>) -> Result<Claims, String> {
+    let found = found.as_ref().map_err(|reason| format!("the arm has no construction: {reason}"))?;
     let numbers = |way: &generator::Arrangement| {
         let frames = way.links.iter().chain([&way.before, &way.after]).flatten().flatten();
         frames.chain(way.offsets.iter().flatten()).map(formula).collect()

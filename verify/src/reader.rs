@@ -34,6 +34,7 @@ pub use comments::Comment;
 pub use constant::Constant;
 use items::Items;
 pub use lexer::Fault;
+pub(crate) use lexer::{is_hidden, name_of};
 pub(crate) use plain::camel;
 
 /// The longest text that is read, in bytes; that of a chain of 32 joints has a third of it.

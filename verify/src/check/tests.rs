@@ -455,7 +455,11 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
 
 fn comments(tally: &mut Tally, scara: &Given) {
     let rounding = |why: &'static str| (Rounding, why);
-    let head = [(Head, "the head of the file: `another description."), rounding("Rounding error: "), (Prose, "the documentation says ``, not nothing")];
+    let head = [
+        (Head, "the head of the file: `another description."),
+        rounding("Rounding error: "),
+        (Prose, "the documentation says ``, not nothing"),
+    ];
     tally.module(scara, "", "// the description.", "// another description.", &head);
     let gravity = [(Prose, "gravity: the documentation says `Gravity term g(q) on the right")];
     tally.module(scara, "/// Gravity term g(q) on", "on the left", "on the right", &gravity);

@@ -250,17 +250,48 @@ fn other_texts_are_refused() {
     assert!(fault("\nmod all_solutions {", "\nmod others {").contains("should stand where"));
 }
 
+/// Code in a text of several lines, in documentation that is run, and what a module says of itself.
+#[test]
+fn what_is_not_armgens_is_refused() {
+    let (source, text) = robot("scara4");
+    let fault = |old: &str, new: &str| {
+        assert!(text.contains(old), "{old}");
+        verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
+    };
+    let writes = "where armgen writes";
+    let code = "[\"elbow up\n// \", \"elbow down\"]; mod libm {} pub const X: [&str; 2] = [\"\n\", \"elbow down\"]";
+    assert!(fault("[\"elbow up\", \"elbow down\"]", code).contains(writes));
+    let escaped = "[\"elbow up\\\", \", stringify!(elbow down)]; mod libm {} //\"]";
+    assert!(fault("[\"elbow up\", \"elbow down\"]", escaped).contains(writes));
+    assert!(fault("[\"elbow up\", \"elbow down\"]", "[\"elbow down\", \"elbow up\"]").contains(writes));
+    assert!(fault("/// The construction", "/// ```\n/// std::process::exit(1)\n/// ```\n/// The construction").contains(writes));
+    assert!(fault("at most 2 solutions", "at most 4 solutions").contains(writes));
+    assert!(fault("(input ", "(input 0").contains("line 1: "));
+    assert!(fault("elbow up", "elbow\u{1b}[2Kup").contains("the character U+001B, which cannot be seen"));
+    // The file may have been called otherwise, and other poses are not to be had by that.
+    let renamed = text.replacen(" from robot.yaml", " from arm.yaml", 1);
+    let [one, other] = [&text, &renamed].map(|text| verify(&source, text, 8));
+    assert!(one.passed() && other.passed() && one.to_string() == other.to_string(), "{one}\n{other}");
+    // An arm without a construction.
+    let (source, text) = module(&description("", &[["R", "1", "0", "0", "0"]]));
+    let absent = verify(&source, &text, 0);
+    assert!(absent.passed() && absent.absent, "{absent}\n{text}");
+    assert!(!verify(&source, &(text + "pub static X: u8 = 0;\n"), 0).passed());
+}
+
 type Fault<'a> = &'a dyn Fn() -> Option<String>;
 
 /// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.
 pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<'_>)) {
-    use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound};
+    use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound, WholeText};
     let (_, _, shoulder) = made_up().remove(3);
     let (source, text) = module(&shoulder);
     let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
         assert!(text.contains(old), "{old}");
         let trick = text.replacen(old, new, 1);
-        peel(new, layers, &|| verify(&source, &trick, 0).faults.pop());
+        // All that is written otherwise than armgen does is refused at last.
+        let layers = [layers, &[(WholeText, "where armgen writes")]].concat();
+        peel(new, &layers, &|| verify(&source, &trick, 0).faults.pop());
     };
     edited("[Real::NEG_INFINITY, Real::INFINITY]", "[Real::NEG_INFINITY, 3.0]", &[(Limits, "POSITION_LIMITS: 3.0 is not what")]);
     edited("0.4]", "0.41]", &[(LoopNumbers, "0.41 is not the float nearest to 2/5")]);

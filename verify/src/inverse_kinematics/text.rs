@@ -328,7 +328,7 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
 impl Text {
     /// Reads a module; `None`: it says that the arm has no construction. What stands there and has to be something else is said.
     pub(super) fn read(text: &str) -> Result<Option<Text>, String> {
-        if text.lines().all(|line| line.is_empty() || line.starts_with("// ")) {
+        if text.lines().all(|line| line.is_empty() || line.starts_with("//")) {
             return Ok(None);
         }
         let (mut code, mut blocks) = text.split_once("\n}\n").ok_or("there is no function")?;

@@ -91,7 +91,7 @@ pub(super) struct Lexer<'a> {
 }
 
 /// Whether a character of a comment or a text cannot be seen, or changes how others are seen.
-pub(super) fn is_hidden(c: char) -> bool {
+pub(crate) fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c,
             '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
@@ -100,7 +100,7 @@ pub(super) fn is_hidden(c: char) -> bool {
             | '\u{e0000}'..='\u{e0fff}')
 }
 
-pub(super) fn name_of(c: char) -> String {
+pub(crate) fn name_of(c: char) -> String {
     if c.is_ascii_graphic() {
         format!("`{c}`")
     } else {

@@ -9,19 +9,24 @@ use super::runtime::is_implemented;
 use super::signature::usize_literal;
 use super::{format, head};
 use crate::emit::origin::Origin;
-use crate::exact::Number;
 use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Target};
-use crate::kinds::Scalar;
+use crate::kinds::{JointKind, Scalar};
+use crate::manipulator::{Joint, Manipulator};
 use crate::program::Module;
 
 /// The module's text; where the arm has no construction, a comment that says why.
-pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematics, String>, origin: &Origin) -> String {
+pub fn print_inverse_kinematics(
+    manipulator: &Manipulator,
+    scalar: Scalar,
+    found: &Result<InverseKinematics, String>,
+    origin: &Origin,
+) -> String {
     let lines = |text: &str| text.lines().map(|line| format!("// {line}\n")).collect::<String>();
     match found {
         Err(reason) => head(origin, &[]) + &lines(&format!("There is no `inverse_kinematics`: {reason}.")),
         Ok(found) => {
             let class = format!("Inverse kinematics: {}; at most {} solutions.\n", found.class, found.most);
-            head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(module, found)
+            head(origin, &[]) + &lines(&class) + "\n" + &format(exported(found)) + &solver(&manipulator.joints, scalar, found)
         }
     }
 }
@@ -135,14 +140,14 @@ fn exported(found: &InverseKinematics) -> TokenStream {
 }
 
 /// The module of the blocks.
-fn solver(module: &Module, found: &InverseKinematics) -> String {
+fn solver(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String {
     let mut text = String::from(
         "\n/// The construction and its building blocks.\n#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n#[rustfmt::skip]\nmod all_solutions {\n\n",
     );
-    text += &format(constants(module, found));
+    text += &format(constants(joints, scalar, found));
     text.push('\n');
     text += &format(function(found));
-    for block in needed(module.scalar, found) {
+    for block in needed(scalar, found) {
         text.push('\n');
         text += block.source;
     }
@@ -184,25 +189,25 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
     texts
 }
 
-fn constants(module: &Module, found: &InverseKinematics) -> TokenStream {
-    let scalar = module.scalar;
-    let (dof, most) = (usize_literal(module.joints.len()), usize_literal(found.most));
-    let prismatic = module.joints.iter().map(|joint| !joint.is_revolute);
-    let number = |value: &Option<Number>, infinite: TokenStream| value.as_ref().map_or(infinite, |value| literal(value, scalar));
-    let limits = module.joints.iter().map(|joint| {
-        let [low, high] = &joint.position;
-        let (low, high) = (number(low, quote!(Real::NEG_INFINITY)), number(high, quote!(Real::INFINITY)));
-        quote!([#low, #high])
+fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> TokenStream {
+    let (dof, most) = (usize_literal(joints.len()), usize_literal(found.most));
+    let prismatic = joints.iter().map(|joint| joint.kind == JointKind::Prismatic);
+    let limits = joints.iter().map(|joint| match &joint.limits.position {
+        None => quote!([Real::NEG_INFINITY, Real::INFINITY]),
+        Some(limits) => {
+            let [low, high] = limits.each_ref().map(|limit| literal(limit, scalar));
+            quote!([#low, #high])
+        }
     });
     let branches = branches(found);
     let count = usize_literal(branches.len());
     let meanings = meanings(found);
     let loops = match found.loops() {
         [way] => {
-            let (joints, way) = (usize_literal(way.order.len()), arrangement(way, scalar));
+            let (count, way) = (usize_literal(way.order.len()), arrangement(way, scalar));
             quote! {
                 /// The arm's loop in the order in which the construction reads it.
-                const LOOP: Arrangement<#joints> = #way;
+                const LOOP: Arrangement<#count> = #way;
             }
         }
         ways => {
