@@ -120,7 +120,6 @@ const VERIFY: Layers = &[
     ("companion", &["claims", "contract", "enclosure", "float", "program", "ranges", "reader"]),
     ("residual", &["arithmetic", "claims", "element", "enclosure", "float", "program", "ranges", "reader"]),
     ("seed", &["claims", "enclosure", "equations", "formula", "program", "reader", "stream"]),
-    ("inverse_kinematics", &["arithmetic", "check", "element", "enclosure", "equations", "float", "formula", "stream"]),
     (
         "bounds",
         &[
@@ -235,7 +234,11 @@ const VERIFY: Layers = &[
             "yardstick",
         ],
     ),
-    ("stated", &["bounds", "check", "constants", "contract", "program", "reader", "report"]),
+    ("stated", &["bounds", "check", "constants", "program", "reader", "reference", "report"]),
+    (
+        "inverse_kinematics",
+        &["arithmetic", "check", "element", "enclosure", "equations", "float", "formula", "reader", "stated", "stream"],
+    ),
     (
         "test_kit",
         &[
