@@ -234,7 +234,7 @@ const VERIFY: Layers = &[
             "yardstick",
         ],
     ),
-    ("stated", &["bounds", "check", "constants", "program", "reader", "reference", "report"]),
+    ("stated", &["bounds", "check", "constants", "contract", "program", "reader", "reference", "report"]),
     (
         "inverse_kinematics",
         &["arithmetic", "check", "element", "enclosure", "equations", "float", "formula", "reader", "stated", "stream"],
