@@ -10,7 +10,7 @@ use armgen_verify::stability::{Criterion, Trial};
 use armgen_verify::{bounds, checker::Effort, prepare};
 
 fn main() {
-    let mut largest = [(0.0, String::new()), (0.0, String::new()), (0.0, String::new()), (0.0, String::new())];
+    let mut largest: [(f64, String); 5] = Default::default();
     for path in std::env::args().skip(1) {
         let source = Source::new(path.clone(), std::fs::read_to_string(&path).expect("the file can be read"));
         for (scalar, trig) in [(Scalar::F64, Trig::Libm), (Scalar::F32, Trig::Fast)] {
@@ -35,7 +35,7 @@ fn main() {
             }
             let domain = bounds::domain_of(prepared.checker.manipulator(), module);
             let trial = Trial::new(module, &domain, &prepared.checker);
-            let mut own = [0.0f64; 4];
+            let mut own = [0.0f64; 5];
             for (name, program) in module.programs() {
                 let values = claims.resolve(name, &program.literals, module.real).values;
                 if let Some(unfit) = trial.fault(program, &values) {
@@ -47,6 +47,7 @@ fn main() {
                         Criterion::Box => 1,
                         Criterion::States => 2,
                         Criterion::Divided => 3,
+                        Criterion::Measured => 4,
                     };
                     own[k] = own[k].max(compared.part());
                     if compared.part() > largest[k].0 {
@@ -54,10 +55,10 @@ fn main() {
                     }
                 }
             }
-            println!("{path} {scalar:?}: {:.1e} {:.1e} {:.1e} {:.1e}", own[0], own[1], own[2], own[3]);
+            println!("{path} {scalar:?}: {}", own.map(|part| format!("{part:.1e}")).join(" "));
         }
     }
-    for (criterion, (part, place)) in ["intervals", "box", "states", "divided"].iter().zip(largest) {
+    for (criterion, (part, place)) in ["intervals", "box", "states", "divided", "measured"].iter().zip(largest) {
         println!("{criterion}: {part:.3} in {place}");
     }
 }

@@ -116,6 +116,8 @@ pub(crate) enum Check {
     Prose,
     /// Comments: documentation of names of parameters.
     Meanings,
+    /// Functions: their errors as they occur.
+    Measured,
     /// Comments: all of them, in languages other than Rust.
     Comments,
     /// Comments: operations of a function.

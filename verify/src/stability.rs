@@ -10,6 +10,9 @@
 //! (c)  over a box e is at most 2^(4 + 5n/2 + 2k) (E + u S), E the largest at states
 //! (d)  at 16 states within the limits e is at most 2^(4 + 3k/4) (E + u S), both the largest at these states; likewise at these and 16 at the ends
 //!      of the wide box together, since at those a single entry can be 0
+//! (m)  at 16 states within the limits, and at 8 where the arm is at rest or slow, the error that occurs is at most 2^8 (M + u S) + 2^4 u T, M the one that
+//!      occurs in the plain program and T the size of the largest entry, each the largest at these states: bounds of torques of a wrist can be a million
+//!      times the errors, since they know no correlation
 //! (e)  of functions that divide, at each of the random states among them where E leaves 29 bits of the largest entry, with S that one
 //! (f)  powers and angles are those of the equations ([`mod@crate::powers`])
 //! ```
@@ -35,6 +38,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::arithmetic::twofold::{self, pair, Circle, Pair, TwofoldArguments};
+use crate::arithmetic::wide::Wide;
 use crate::bounds::{corner, draw, two_digits, undivided_bounds, widened, Parameters};
 use crate::check::Check;
 use crate::checker::Checker;
@@ -55,8 +60,11 @@ const FACTOR: f64 = 16.0;
 /// Where the equations themselves lose more units of the last place nothing is asked for.
 const LOST: f64 = (1 << 24) as f64;
 
+/// As many times the error that a plain program really has at states.
+const MEASURED: f64 = 256.0;
+
 /// Batches of states.
-const BATCHES: usize = 4;
+const BATCHES: usize = 5;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +75,8 @@ pub enum Criterion {
     Box,
     /// (d), at states.
     States,
+    /// (m), errors as they occur.
+    Measured,
     /// (e), of what divides.
     Divided,
 }
@@ -101,6 +111,7 @@ impl Compared {
             Criterion::Intervals => (Check::Intervals, "anywhere in the box"),
             Criterion::Box => (Check::Box, "anywhere in the box"),
             Criterion::States => (Check::States, "in f64, at a state of the box"),
+            Criterion::Measured => (Check::Measured, "in f64, at a state within the limits"),
             Criterion::Divided => (Check::DividedStates, "in f64, at a state of the box"),
         };
         (exceeds(self.error, self.allowed) && check.is_made()).then(|| {
@@ -120,6 +131,8 @@ impl Compared {
 struct Plain {
     /// State by state the error and the size of the value, in f64.
     states: Vec<(f64, f64)>,
+    /// State by state the value.
+    values: Vec<f64>,
     /// The error over the wide box, and over that with the parameters of the description.
     boxes: [f64; 2],
 }
@@ -133,7 +146,7 @@ impl Plain {
     /// At random states.
     fn random(&self) -> Plain {
         let random = self.states.iter().enumerate().filter(|(state, _)| Kind::of(*state) == Kind::Random);
-        Plain { states: random.map(|(_, own)| *own).collect(), boxes: self.boxes }
+        Plain { states: random.map(|(_, own)| *own).collect(), values: Vec::new(), boxes: self.boxes }
     }
 
     /// Whether it has a value at all states.
@@ -158,15 +171,17 @@ enum Kind {
     Random,
     /// At the ends of the wide box.
     Corner,
+    /// Within the limits at rest, or slow.
+    Slow,
 }
 
 impl Kind {
-    /// That of a state by its number: batch by batch one and the other.
+    /// That of a state by its number: batch by batch one and another.
     fn of(state: usize) -> Kind {
-        if (state / LANES).is_multiple_of(2) {
-            Kind::Random
-        } else {
-            Kind::Corner
+        match state / LANES {
+            0 | 2 => Kind::Random,
+            1 | 3 => Kind::Corner,
+            _ => Kind::Slow,
         }
     }
 }
@@ -195,6 +210,14 @@ fn is_finite((error, size): &(f64, f64)) -> bool {
     error.is_finite() && size.is_finite()
 }
 
+/// A state without motion, or a thousand times as slow.
+fn slow(mut state: Arguments<f64>, rests: bool) -> Arguments<f64> {
+    for rate in [&mut state.dq, &mut state.ddq, &mut state.dqr, &mut state.ddqr].into_iter().flatten() {
+        *rate *= if rests { 0.0 } else { 2f64.powi(-10) };
+    }
+    state
+}
+
 /// States at which functions of a module are run.
 pub struct Trial<'a> {
     module: &'a Module,
@@ -202,6 +225,8 @@ pub struct Trial<'a> {
     /// k.
     oblique: f64,
     batches: Vec<([Arguments<f64>; LANES], LaneArguments)>,
+    /// The same for finer numbers, where these have sines of the angles.
+    fine: Vec<Option<TwofoldArguments>>,
     /// By function, entry by entry.
     plain: BTreeMap<String, Vec<Plain>>,
     /// The box without limits of angles with all parameters up to the largest, and with those of the description.
@@ -218,20 +243,26 @@ impl<'a> Trial<'a> {
         let boxes = [Parameters::Any, Parameters::Described].map(|parameters| widened(manipulator, domain, parameters));
         let [wide, near] = &boxes;
         let batch = |k: usize| {
-            let states = std::array::from_fn(|_| match Kind::of(k * LANES) {
+            let states = std::array::from_fn(|lane| match Kind::of(k * LANES) {
                 Kind::Random => draw(near, stream, module.real),
                 Kind::Corner => corner(wide, stream, module.real),
+                Kind::Slow => slow(draw(near, stream, module.real), lane % 2 == 0),
             });
             let lanes = LaneArguments::new(&states, Float::F64);
             (states, lanes)
         };
         let batches: Vec<_> = (0..BATCHES).map(batch).collect();
+        let circle = Circle::new();
+        let fine = batches.iter().map(|(states, _)| TwofoldArguments::new(&circle, states)).collect();
         let subject = Subject { manipulator, vector: checker.vector(), base: checker.base() };
         let mut plain: BTreeMap<String, Vec<Plain>> = BTreeMap::new();
         for (states, _) in &batches {
             for (name, entries) in subject.at_states(states) {
                 let own = plain.entry(name).or_insert_with(|| vec![Plain::default(); entries.len()]);
-                own.iter_mut().zip(&entries).for_each(|(own, at)| own.states.extend(at));
+                for (own, at) in own.iter_mut().zip(&entries) {
+                    own.states.extend(at.map(|(error, value)| (error, value.abs())));
+                    own.values.extend(at.map(|(_, value)| value));
+                }
             }
         }
         plain.retain(|_, entries| entries.iter().all(|entry| entry.states.len() == BATCHES * LANES));
@@ -245,7 +276,7 @@ impl<'a> Trial<'a> {
         let ranges = Argument::ALL.into_iter().flat_map(|argument| wide.of(argument));
         let arguments = worst(ranges.map(|(low, high)| low.abs().max(high.abs())));
         let oblique = checker.oblique().saturating_sub(4) as f64;
-        Trial { module, joints: manipulator.joints.len(), oblique, batches, plain, boxes, arguments }
+        Trial { module, joints: manipulator.joints.len(), oblique, batches, fine, plain, boxes, arguments }
     }
 
     fn states(&self) -> impl Iterator<Item = &Arguments<f64>> {
@@ -271,13 +302,15 @@ impl<'a> Trial<'a> {
         if operands.is_empty() {
             let errors = self.errors(program, values);
             let yardsticks = self.plain.get(&program.name).map_or(&[][..], Vec::as_slice);
-            let compared = self.undivided(program, &errors, yardsticks);
+            let mut compared = self.undivided(program, &errors, yardsticks);
+            compared.extend(self.measured(program, values, yardsticks));
             return (errors, compared);
         }
         let part = program.part(&operands);
         let errors = self.errors(&part, values);
         let mut compared = self.undivided(&part, &errors, &vec![self.of_operands(program); operands.len()]);
         compared.extend(self.divided(program, values));
+        compared.extend(self.measured(program, values, self.plain.get(&program.name).map_or(&[][..], Vec::as_slice)));
         (errors, compared)
     }
 
@@ -338,7 +371,7 @@ impl<'a> Trial<'a> {
         let (wider, wider_than_states) = ((0.75 * self.oblique).exp2(), (2.0 * self.oblique).exp2());
         let by_size = wider_than_states * (12.0 + 2.5 * n).exp2() * (real.unit() * size + real.smallest_normal());
         let lost = wider * (4.0 + 0.5 * n).exp2() * unit * size;
-        let sized = Plain { states: vec![(lost, size); runs.len()], boxes: [f64::INFINITY; 2] };
+        let sized = Plain { states: vec![(lost, size); runs.len()], values: Vec::new(), boxes: [f64::INFINITY; 2] };
         let plain = |k: usize| yardsticks.get(k).filter(|plain| !plain.states.is_empty()).unwrap_or(&sized);
         let place = |k: usize| program.outputs[k].place.clone();
         let mut compared = Vec::new();
@@ -371,6 +404,54 @@ impl<'a> Trial<'a> {
             for (error, plain) in [(random, &all.random()), (worst((0..runs.len()).filter_map(judged)), all)] {
                 let allowed = wider * FACTOR * (plain.error() + f64::MIN_POSITIVE);
                 compared.push(Compared { criterion: Criterion::States, place: place(k), error, allowed, size: plain.size() });
+            }
+        }
+        compared
+    }
+
+    /// Errors as they occur, of states of each kind within the limits.
+    fn measured(&self, program: &Program, values: &[Formula], yardsticks: &[Plain]) -> Vec<Compared> {
+        let exact: Option<Vec<Wide>> = program.exact_literals(values).iter().map(Wide::from_formula).collect();
+        let Some(literals) = exact.map(|exact| exact.iter().map(pair).collect::<Vec<Pair>>()) else { return Vec::new() };
+        if yardsticks.len() != program.outputs.len() {
+            return Vec::new();
+        }
+        // As a text in f64 has them.
+        let mut program = program.clone();
+        program.literals.iter_mut().zip(&literals).for_each(|(literal, (high, _))| literal.value = *high);
+        let unit = Float::F64.unit();
+        // Kind by kind and entry by entry: the error, that of the plain program, and the size.
+        let mut all = [Kind::Random, Kind::Slow].map(|kind| (kind, vec![(0.0f64, 0.0f64, 0.0f64); program.outputs.len()]));
+        let mut steps = Vec::new();
+        for (k, ((states, _), fine)) in self.batches.iter().zip(&self.fine).enumerate() {
+            let of_kind = all.iter_mut().find(|(kind, _)| *kind == Kind::of(k * LANES));
+            let (Some((_, largest)), Some(fine)) = (of_kind, fine) else { continue };
+            if twofold::values(&program, &literals, fine, &mut steps).is_none() {
+                continue;
+            }
+            for (lane, state) in states.iter().enumerate() {
+                let found = program.run_float(state, Float::F64);
+                for (((output, found), plain), largest) in
+                    program.outputs.iter().zip(found).zip(yardsticks).zip(largest.iter_mut())
+                {
+                    let exact = &steps[output.step];
+                    // Halves of a float beyond 1e292 are none.
+                    if !exact.high[lane].is_finite() {
+                        continue;
+                    }
+                    let error = |value: f64| ((value - exact.high[lane]) - exact.low[lane]).abs();
+                    largest.0 = worst([largest.0, error(found)]);
+                    largest.1 = worst([largest.1, error(plain.values[k * LANES + lane])]);
+                    largest.2 = worst([largest.2, exact.high[lane].abs()]);
+                }
+            }
+        }
+        let mut compared = Vec::new();
+        for (_, largest) in all {
+            let whole = worst(largest.iter().map(|(.., size)| *size));
+            for (output, (error, plain, size)) in program.outputs.iter().zip(largest) {
+                let allowed = MEASURED * (plain + unit * size + f64::MIN_POSITIVE) + FACTOR * unit * whole;
+                compared.push(Compared { criterion: Criterion::Measured, place: output.place.clone(), error, allowed, size });
             }
         }
         compared

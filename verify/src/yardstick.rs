@@ -58,7 +58,7 @@ impl Subject<'_> {
         matches!(self.vector, Vector::Base(..))
     }
 
-    /// By function and entry: at each state the largest error, and the size of the value.
+    /// By function and entry: at each state the largest error, and the value.
     pub fn at_states(&self, states: &[Arguments<f64>; LANES]) -> BTreeMap<String, Vec<[(f64, f64); LANES]>> {
         let arguments = Arguments::gather(states, Running::exact);
         let circle = |q: &Running| {
@@ -84,7 +84,7 @@ impl Subject<'_> {
         if self.is_base() {
             numbers.given = std::mem::take(&mut state.pi).into();
         }
-        let of = |entry: &Running| std::array::from_fn(|k| (entry.error[k], entry.value[k].abs()));
+        let of = |entry: &Running| std::array::from_fn(|k| (entry.error[k], entry.value[k]));
         let values = self.values(&mut numbers, state).unwrap_or_default();
         values.into_iter().map(|(name, entries)| (name, entries.iter().map(of).collect())).collect()
     }

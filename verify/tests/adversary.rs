@@ -340,6 +340,21 @@ fn documentation_that_runs_is_refused() {
     );
 }
 
+/// Bounds of a wrist's torque are a million times its errors, and those of torques at full speed hide what is lost at rest.
+#[test]
+fn digits_lost_in_small_torques_are_seen() {
+    let puma = Given::new("puma560", Trig::Libm);
+    let why = "in f64, at a state within the limits in [5]";
+    puma.refused("t89, t87, t71, t62, t53]", "t89, t87, t71, t62, t53 + 32768.0 - 32768.0]", why);
+    let description = "name: arm\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  - {name: a, type: revolute, a: 0.5, alpha: 0, d: 0, theta: 0, \
+        limits: {velocity: 59}, link: {mass: 3, com: [-0.25, 0, 0], inertia: {xx: 0.01, yy: 0.1, zz: 0.1}}}\n  - {name: b, type: revolute, \
+        a: 0.4, alpha: 0, d: 0, theta: 0, limits: {velocity: 59}, link: {mass: 2, com: [-0.2, 0, 0], inertia: {xx: 0.01, yy: 0.05, zz: 0.05}}}\n";
+    let given = Given::of(Source::new("arm.yaml", description), Trig::Libm);
+    let (head, body) = given.module.split_once("pub fn inverse_dynamics(").expect("a function");
+    let slow = body.replacen("17.1675 * c1", "(17.1675 * c1 + 2097152.0 - 2097152.0)", 1);
+    given.refused_text(&format!("{head}pub fn inverse_dynamics({slow}"), "in f64, at a state within the limits in [0]");
+}
+
 /// A module that is right and says of itself what is not so.
 #[test]
 fn what_a_module_says_of_itself_is_judged() {

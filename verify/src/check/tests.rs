@@ -329,6 +329,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let leaves = (Leaves, "inertia_matrix: a value can leave f64 inside the box");
     let (the_box, intervals) = ((Box, "anywhere in the box"), (Intervals, "anywhere in the box"));
     let states = (States, "in f64, at a state of the box");
+    let measured = (Measured, "in f64, at a state within the limits");
     let foreign = (Dependence, "inertia_matrix: it takes `q[2]`, which its equations do not depend on");
     let divides = (Divisors, "it divides, which its equations do not ask for");
     entry(tally, scara, "(B11) * ((q[2] - 0.2) / (q[2] - 0.2))", &[divides, foreign]);
@@ -336,8 +337,8 @@ fn floats(tally: &mut Tally, scara: &Given) {
     entry(tally, scara, "B11 + 1e300 - 1e300", &[headroom, the_box, intervals, states]);
     entry(tally, scara, "(B11) * 1e300 * 1e-300", &[headroom]);
     entry(tally, scara, "(B11) * (1e-200 * 1e-200) * 1e200 * 1e200", &[headroom, the_box, intervals, states]);
-    entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, intervals, states]);
-    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[states]);
+    entry(tally, scara, "B11 - 4.0 + (1e17 + 4.0 - 1e17)", &[the_box, intervals, states, measured]);
+    entry(tally, scara, "B11 + 100000.0 - 100000.0", &[states, measured]);
     // Beside a small entry: the bound of the function is that of another one.
     let (small, lost) = ("[5e-5 * dq[0],", "[5e-5 * dq[0] + 0.02 - 0.02,");
     let of_friction = [intervals, states, (Cost, said), (Prose, said)];
@@ -360,12 +361,12 @@ fn floats(tally: &mut Tally, scara: &Given) {
     entry(tally, scara, "B11 + 0.0 * c2", &[(Zeros, "inertia_matrix: it calculates with the number 0")]);
     let shortest = (Shortest, "is not the shortest decimal of a float");
     let rounded = "B11 - 4.0 + (100000000000000004.0 - 100000000000000000.0)";
-    entry(tally, scara, rounded, &[shortest, the_box, intervals, states]);
+    entry(tally, scara, rounded, &[shortest, the_box, intervals, states, measured]);
     let forward = |tally: &mut Tally, given: &Given, text: &str, layers: &[Layer]| {
         tally.module(given, "pub fn forward_dynamics(", "[t29,", &format!("[{text},"), &[layers, &comments].concat());
     };
     let divided = (DividedStates, "forward_dynamics: rounding can make an error of");
-    forward(tally, scara, "t29 + 1e17 - 1e17", &[divided]);
+    forward(tally, scara, "t29 + 1e17 - 1e17", &[divided, measured]);
     let reciprocal = |tally: &mut Tally, text: &str, layers: &[Layer]| {
         tally.module(scara, "pub fn forward_dynamics(", "(1.0 / t25)", text, layers);
     };
