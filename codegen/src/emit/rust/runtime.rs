@@ -120,7 +120,11 @@ fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenS
             }
         }
     });
-    let single = single().filter(|(quantity, _)| has(module, quantity, with_parameters && quantity.has_parameters));
+    // With other parameters a function that does not take them would answer for another robot; a regressor has none in it.
+    let answers =
+        |quantity: &Quantity| !with_parameters || quantity.has_parameters || quantity.has_length(Length::BaseParameters);
+    let single = single().filter(|(quantity, _)| answers(quantity));
+    let single = single.filter(|(quantity, _)| has(module, quantity, with_parameters && quantity.has_parameters));
     let single = single.map(|(quantity, interface)| {
         let (interface, method) = (format_ident!("{interface}"), method(quantity, with_parameters));
         let lengths = constants(quantity).into_iter().map(length);
