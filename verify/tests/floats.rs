@@ -141,3 +141,18 @@ fn hostile_robots_are_right_or_refused_with_a_reason() {
     }
     assert!(verified >= 14, "{verified}");
 }
+
+/// Bounds grow along an arm, and so does what is allowed of them.
+#[test]
+fn a_long_arm_is_verified() {
+    let joint = |i: usize| {
+        format!(
+            "  - {{name: j{i}, type: revolute, a: 0.1, alpha: pi/2, d: 0, theta: 0, link: {{mass: 1, com: [0.1, 0.2, 0.3]}}}}\n"
+        )
+    };
+    let joints: String = (0..16).map(joint).collect();
+    let source = Source::new("long.yaml", format!("name: long\nconvention: standard\ngravity: [1, 2, -9.81]\njoints:\n{joints}"));
+    let generated = common::generate_with(&source, &Options::default());
+    let report = certify(&source, &generated);
+    assert!(report.passed(), "{report}");
+}
