@@ -170,7 +170,7 @@ fn the_determinant_comes_with_its_factors() {
     assert_eq!(singular.iter().filter(|s| s.is_null()).count(), 1, "one factor depends on several joints");
     // Seven joints, six rows.
     let output = check(&["show", &file("robots/panda7.yaml"), "determinant", "--format", "json"], 0);
-    assert!(err(&output).contains("note: determinant: the task has 6 rows"), "{}", err(&output));
+    assert!(err(&output).contains("note: determinant: the task has 6 rows and the arm 7 joints"), "{}", err(&output));
     assert_eq!(serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["quantities"], serde_json::json!([]));
 }
 
@@ -189,12 +189,15 @@ fn count_as_json_keeps_its_schema() {
     let functions = counted["functions"].as_object().expect("an object");
     for cost in functions.values() {
         let keys: Vec<&String> = cost.as_object().expect("an object").keys().collect();
-        assert_eq!(keys, ["add", "div", "mul", "neg", "sincos"]);
+        assert_eq!(keys, ["add", "div", "exp", "mul", "neg", "sincos"]);
         assert!(cost.as_object().expect("an object").values().all(Value::is_u64));
     }
     let work = |name: &str| functions[name]["mul"].as_u64().expect("a count") + functions[name]["add"].as_u64().expect("a count");
     assert!(work("inertia_matrix") <= 4 && work("coriolis_matrix") <= 5 && work("gravity") == 0);
     assert_eq!(functions["equations_of_motion"]["sincos"], 1);
+    assert_eq!(functions["friction"]["exp"], 0);
+    let fading = json(&["count", &file("tests/robots/dry_friction.yaml"), "--functions", "friction", "--format", "json"]);
+    assert_eq!(fading["functions"]["friction"]["exp"], 3);
 }
 
 #[test]

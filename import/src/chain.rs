@@ -78,6 +78,8 @@ pub(crate) struct Arm {
     pub(crate) massless: Vec<String>,
     /// What has a tensor that no body has, taken as written.
     pub(crate) impossible: Vec<String>,
+    /// How many position limits were left out since no arm has such.
+    pub(crate) boundless: usize,
     /// Joints of the base that do not move anything of the chain.
     pub(crate) left_out_branches: usize,
     /// Notes for the user.
@@ -140,7 +142,7 @@ pub(crate) fn arm(
     }
     format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, diagnostics);
     let (snap, inertia_as_written) = (Snap::new(options.snap), options.inertia_as_written);
-    let values = Values { source, diagnostics, snap, inertia_as_written, impossible: Vec::new() };
+    let values = Values { source, diagnostics, snap, inertia_as_written, impossible: Vec::new(), boundless: 0 };
     let on_path = path.iter().copied().collect();
     let mut builder =
         Builder { tree, format, locks, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
@@ -157,7 +159,7 @@ pub(crate) fn arm(
     let left_out_branches = on_base.flat_map(|link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint));
     let left_out_branches = left_out_branches.filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame).count();
     builder.values.warn_of_near_angles();
-    let Builder { values: Values { snap, impossible, .. }, locked, massless, .. } = builder;
+    let Builder { values: Values { snap, impossible, boundless, .. }, locked, massless, .. } = builder;
     let robot_name = options.name.clone().unwrap_or_else(|| identifier(&tree.name, &mut BTreeSet::new(), is_rust_name));
     Some(Arm {
         name: robot_name,
@@ -174,6 +176,7 @@ pub(crate) fn arm(
         locked,
         massless,
         impossible,
+        boundless,
         left_out_branches,
         notes,
     })

@@ -76,7 +76,7 @@ codes! {
         InertiaAsWritten Warning "inertia-as-written",
         /// A limit of 0, which is taken as unknown.
         ZeroLimit Warning "zero-limit",
-        /// A velocity limit of 100, 1000 and so on, which is taken as unknown.
+        /// A velocity limit of 100, 1000 and so on, which is taken as unknown, or position limits beyond any arm, which are taken as none.
         PlaceholderLimit Warning "placeholder-limit",
         /// A decimal that is nearly a multiple of pi/12, and taken as written.
         RoundedAngle Warning "rounded-angle",

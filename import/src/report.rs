@@ -58,7 +58,10 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
     let joints: Vec<Value> =
         arm.rows.iter().map(|row| placed(row.span, vec![("name", json!(row.name)), ("source", json!(row.joint))])).collect();
     let rounded: Vec<Value> = if arm.gravity_rounded { vec![json!({"what": "gravity", "digits": 17})] } else { Vec::new() };
-    let left_out = format.left_out();
+    let mut left_out = format.left_out();
+    if arm.boundless > 0 {
+        left_out.insert("position limits beyond any arm".to_owned(), arm.boundless);
+    }
     let json = json!({
         "robot": arm.name,
         "format": format.name(),

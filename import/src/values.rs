@@ -17,7 +17,12 @@ pub(crate) struct Values<'r> {
     pub(crate) inertia_as_written: bool,
     /// What has a tensor that no body has.
     pub(crate) impossible: Vec<String>,
+    /// How many position limits were left out since no arm has such.
+    pub(crate) boundless: usize,
 }
+
+/// A position limit, rad or m, that no arm has: files write 1e16 or the largest float where a joint has none.
+const BOUNDLESS: f64 = 1e6;
 
 impl Values<'_> {
     pub(crate) fn report(&mut self, code: Code, span: Span, message: impl Into<String>, label: &str, help: impl Into<String>) {
@@ -87,7 +92,7 @@ impl Values<'_> {
         Some(self.snap.direction(axis, span))
     }
 
-    /// Position limits; `None` where there are none, or faulty and reported.
+    /// Position limits; `None` where there are none, where one of them is beyond any arm, or faulty and reported.
     pub(crate) fn position(
         &mut self,
         limit: Span,
@@ -98,7 +103,21 @@ impl Values<'_> {
         let given = lower.is_some() || upper.is_some();
         let (lower, upper) = (lower.unwrap_or_else(Decimal::zero), upper.unwrap_or_else(Decimal::zero));
         if lower.value < upper.value {
-            return Some([lower, upper]);
+            let far = |limit: &Decimal| limit.value.abs() >= BOUNDLESS;
+            if !far(&lower) && !far(&upper) {
+                return Some([lower, upper]);
+            }
+            let what = if far(&lower) && far(&upper) { "which no joint reaches" } else { "one of which no joint reaches" };
+            let message = format!(
+                "the position limits of joint `{}` are {} to {}, {what}: they are taken as none",
+                shown(joint),
+                lower.text,
+                upper.text
+            );
+            let help = "limits of 1e6 rad or m and more are what files have where there is none; write both if there are some";
+            self.report(Code::PlaceholderLimit, limit, message, "left out", help);
+            self.boundless += 1;
+            return None;
         }
         if lower.is_zero() && upper.is_zero() {
             if given {

@@ -117,6 +117,22 @@ fn what_is_snapped_to_nothing_counts_in_the_bound() {
     assert!(flange(&text) > flange(EVERYTHING) + 0.99e-6);
 }
 
+/// Limits of 1e6 and more are none, those below are kept, and the report counts what was left out.
+#[test]
+fn limits_beyond_any_arm_are_none() {
+    let with = |limit: &str| EVERYTHING.replace("lower=\"-2.8973\" upper=\"2.8973\"", limit);
+    let of = |limit: &str| imported(&with(limit), &options());
+    let beyond = "\"position limits beyond any arm\": 1";
+    for limit in ["lower=\"-1e16\" upper=\"1e16\"", "lower=\"-1e6\" upper=\"1\"", "lower=\"-1\" upper=\"1.7976931348623157e308\""]
+    {
+        let Imported { yaml, report } = of(limit);
+        assert!(yaml.contains("limits: {velocity: 2.175, effort: 87}"), "{limit}\n{yaml}");
+        assert!(report.to_json().contains(beyond), "{limit}\n{}", report.to_json());
+    }
+    let kept = of("lower=\"-999999\" upper=\"999999\"");
+    assert!(kept.yaml.contains("position: [-999999, 999999]") && !kept.report.to_json().contains(beyond));
+}
+
 #[test]
 fn a_joint_of_the_chain_can_be_locked() {
     let mut options = options();

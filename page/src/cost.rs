@@ -9,14 +9,14 @@ use crate::html::escape;
 /// The table, of all functions of a module.
 pub(crate) fn table(module: &Module) -> String {
     let mut text = String::from("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\"><caption>Operations of the emitted functions; a column is sorted by a click</caption>\n<thead><tr>");
-    for column in ["function", "mul", "add", "div", "neg", "sincos", "derived by"] {
+    for column in ["function", "mul", "add", "div", "neg", "sincos", "exp", "derived by"] {
         let _ = write!(text, "<th scope=\"col\"><button type=\"button\">{column}</button></th>");
     }
     text += "<th scope=\"col\">weight</th></tr></thead>\n<tbody>\n";
     for function in &module.functions {
         let cost = Cost::of(function);
         let _ = write!(text, "<tr><th scope=\"row\">{}</th>", escape(&function.name()));
-        for count in [cost.mul, cost.add, cost.div, cost.neg, cost.sincos] {
+        for count in [cost.mul, cost.add, cost.div, cost.neg, cost.sincos, cost.exp] {
             let _ = write!(text, "<td class=\"count\">{count}</td>");
         }
         let _ = writeln!(

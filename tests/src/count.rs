@@ -17,6 +17,8 @@ pub struct Operations {
     pub neg: usize,
     /// Calls of `sin_cos`.
     pub sincos: usize,
+    /// Calls of `stribeck`.
+    pub exp: usize,
 }
 
 /// Operations of every public function of a module, with those of the private functions `NAME_part_1` and so on that hold parts of it.
@@ -61,7 +63,8 @@ impl<'a> Visit<'a> for Operations {
                 let Expr::Path(path) = &*call.func else { panic!("a call of something that has no name") };
                 match path.path.get_ident().map(ToString::to_string).as_deref() {
                     Some("sin_cos") => self.sincos += 1,
-                    Some("sign" | "stribeck") => (),
+                    Some("stribeck") => self.exp += 1,
+                    Some("sign") => (),
                     Some(name) if part_of(name).is_some() => (),
                     _ => panic!("a call of something else than sin_cos, sign and stribeck"),
                 }
@@ -79,16 +82,17 @@ mod tests {
     use super::*;
 
     #[track_caller]
-    fn check(body: &str, [mul, add, div, neg, sincos]: [usize; 5]) {
+    fn check(body: &str, [mul, add, div, neg, sincos, exp]: [usize; 6]) {
         let counted = count(&format!("pub fn f() {{ {body} }} fn private() {{ 1 * 2 }}"));
-        assert_eq!(counted, BTreeMap::from([("f".to_owned(), Operations { mul, add, div, neg, sincos })]), "{body}");
+        assert_eq!(counted, BTreeMap::from([("f".to_owned(), Operations { mul, add, div, neg, sincos, exp })]), "{body}");
     }
 
     #[test]
     fn operations_are_counted() {
-        check("let (s1, _) = sin_cos(q[0]); let t = s1 * q[1] - 2.0 + -0.5 * x / y; [-t, t, -1.0]", [2, 2, 1, 1, 1]);
-        check("let _ = q; [0.0]", [0; 5]);
-        check("E { a: [[x + y * z; 1][0]], b: -(x + sign(dq[0])) }".replace("; 1][0]", "]").as_str(), [1, 2, 0, 1, 0]);
+        check("let (s1, _) = sin_cos(q[0]); let t = s1 * q[1] - 2.0 + -0.5 * x / y; [-t, t, -1.0]", [2, 2, 1, 1, 1, 0]);
+        check("let _ = q; [0.0]", [0; 6]);
+        check("E { a: [[x + y * z; 1][0]], b: -(x + sign(dq[0])) }".replace("; 1][0]", "]").as_str(), [1, 2, 0, 1, 0, 0]);
+        check("let t1 = stribeck(dq[0], 0.05); [t1 * 2.0, -t1]", [1, 0, 0, 1, 0, 1]);
     }
 
     #[test]

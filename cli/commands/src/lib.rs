@@ -240,7 +240,7 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
   armgen count robot.yaml --functions inverse_dynamics,gravity
   armgen count robot.yaml --without grouping,origin-along-axis       what these passes are worth
 
-mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine.")]
+mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine, exp: exponentials of Stribeck friction.")]
     Count {
         /// Description of the robot arm
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]

@@ -380,32 +380,44 @@ fn check_velocity(joint: &JointDescription, called: &str, context: &mut Context<
     }
 }
 
-/// Friction against the motion at a rate v is F_c - |F_0| + F_v v + F_3 v³ on the side that has less: it must not be negative up to the limit.
+/// How many rates of each Stribeck velocity are looked at.
+const RATES: u32 = 64;
+/// After so many Stribeck velocities 1e-17 is left of its torque.
+const FADED: u32 = 40;
+
+/// Friction against the motion at a rate v is F_c - |F_0| + F_s exp(-v / v_s) + F_v v + F_3 v³ on the side that has less: it must not be negative up
+/// to the limit.
 fn check_friction(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
     let friction = &joint.friction;
     let (coulomb, offset) = (number(&friction.coulomb, context), number(&friction.offset, context).abs());
-    if let (true, Some(expression)) = (offset > coulomb, &friction.offset) {
+    let (cubic, viscous) = (number(&friction.cubic, context), number(&friction.viscous, context));
+    let ratio = joint.motor.as_ref().map_or(0.0, |motor| {
+        let ratio = motor.ratio.as_ref().and_then(|ratio| context.number(ratio)).map_or(1.0, |ratio| ratio.to_f64());
+        ratio * ratio * number(&motor.viscous, context)
+    });
+    let limit = joint.limits.velocity.as_ref().map(|_| number(&joint.limits.velocity, context));
+    let stribeck = friction.stribeck.as_ref();
+    let (torque, fade) = stribeck.map_or((0.0, 1.0), |s| (number(&s.torque, context), number(&s.velocity, context)));
+    let at = |v: f64| coulomb - offset + torque * (-v / fade).exp() + (viscous + ratio) * v + cubic * v.powi(3);
+    // Only what fades can make up for the offset at rest and leave the joint driven later.
+    let mut rates = (0..=FADED * RATES).map(|k| fade * f64::from(k) / f64::from(RATES));
+    let driven_at = rates.find(|v| limit.is_none_or(|limit| *v <= limit) && at(*v) < 0.0).filter(|_| offset > coulomb);
+    if let (Some(v), Some(expression)) = (driven_at, &friction.offset) {
         let span = written(expression, context);
-        let message = format!(
-            "the friction of joint {called} drives it at low rates: its offset of {} is more than its Coulomb friction of {}",
-            short(offset),
-            short(coulomb)
-        );
+        let (offset, coulomb) = (short(offset), short(coulomb));
+        let message = if v == 0.0 {
+            format!("the friction of joint {called} drives it at low rates: its offset of {offset} is more than its Coulomb friction of {coulomb}")
+        } else {
+            let v = short(v);
+            format!("the friction of joint {called} drives it at {v}, where its Stribeck friction has faded: its offset of {offset} is more than its Coulomb friction of {coulomb}")
+        };
         let help =
             "Coulomb friction is coulomb + offset forwards and coulomb - offset backwards; see whether the two are exchanged";
         context.report(Code::ActiveFriction, span, message, "more than `coulomb`", help);
         return;
     }
-    let cubic = number(&friction.cubic, context);
     let Some(expression) = friction.cubic.as_ref().filter(|_| cubic < 0.0) else { return };
-    let ratio = joint.motor.as_ref().map_or(0.0, |motor| {
-        let ratio = motor.ratio.as_ref().and_then(|ratio| context.number(ratio)).map_or(1.0, |ratio| ratio.to_f64());
-        ratio * ratio * number(&motor.viscous, context)
-    });
-    let viscous = number(&friction.viscous, context) + ratio;
-    let limit = joint.limits.velocity.as_ref().map(|_| number(&joint.limits.velocity, context));
-    let at = |v: f64| coulomb - offset + viscous * v + cubic * v.powi(3);
-    // With F_3 < 0 it is concave in v, and least at an end.
+    // With F_3 < 0 it is concave in v but for what fades, and least at an end.
     let (driven, where_) = match limit {
         Some(limit) => (at(limit) < 0.0, format!("at its velocity limit, {}", short(limit))),
         None => (true, "at high rates, and it has no velocity limit".to_owned()),

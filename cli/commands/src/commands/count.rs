@@ -40,21 +40,20 @@ fn text(robot: &str, costs: &[(String, Cost, &str)]) -> String {
         ("div", Right),
         ("neg", Right),
         ("sincos", Right),
+        ("exp", Right),
         ("derived by", Left),
     ]);
     for (name, cost, method) in costs {
-        let counts = [cost.mul, cost.add, cost.div, cost.neg, cost.sincos].map(|n| n.to_string());
-        let [mul, add, div, neg, sincos] = counts;
-        table.row([name.clone(), mul, add, div, neg, sincos, (*method).to_string()]);
+        let counts = [cost.mul, cost.add, cost.div, cost.neg, cost.sincos, cost.exp].map(|n| n.to_string());
+        let [mul, add, div, neg, sincos, exp] = counts;
+        table.row([name.clone(), mul, add, div, neg, sincos, exp, (*method).to_string()]);
     }
     format!("{robot}: operations of the emitted functions\n\n{}", table.text())
 }
 
 fn json(robot: &str, costs: &[(String, Cost, &str)]) -> String {
-    let functions: Map<String, Value> = costs
-        .iter()
-        .map(|(name, c, _)| (name.clone(), json!({"mul": c.mul, "add": c.add, "div": c.div, "neg": c.neg, "sincos": c.sincos})))
-        .collect();
+    let of = |c: &Cost| json!({"mul": c.mul, "add": c.add, "div": c.div, "neg": c.neg, "sincos": c.sincos, "exp": c.exp});
+    let functions: Map<String, Value> = costs.iter().map(|(name, cost, _)| (name.clone(), of(cost))).collect();
     let text = serde_json::to_string_pretty(&json!({"robot": robot, "functions": functions}));
     text.expect("strings and numbers always have a JSON form") + "\n"
 }
