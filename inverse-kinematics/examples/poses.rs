@@ -154,7 +154,7 @@ impl Tally {
         self.poses += 1;
         if let Plan::General { ways } = plan {
             let first = || determinant_on_circle(&ways[0].links_at(&t), ways[0].prismatic, arm.length()).complete;
-            self.second += usize::from(self.poses % 10 == 0 && !first());
+            self.second += usize::from(self.poses.is_multiple_of(10) && !first());
         }
         self.most = self.most.max(found.count);
         if verdict(&found, joints) != Verdict::Complete {
@@ -180,8 +180,8 @@ impl Tally {
                 }
             }
             self.postures += 1;
-            self.spurious += usize::from(!(residual <= 1e-9));
-            self.coarse += usize::from(!(residual <= 1e-13));
+            self.spurious += usize::from(residual.is_nan() || residual > 1e-9);
+            self.coarse += usize::from(residual.is_nan() || residual > 1e-13);
             self.residual = self.residual.max(residual);
         }
     }
