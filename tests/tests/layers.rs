@@ -219,6 +219,7 @@ const VERIFY: Layers = &[
     (
         "stability",
         &[
+            "arithmetic",
             "bounds",
             "check",
             "checker",
