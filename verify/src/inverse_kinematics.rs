@@ -210,18 +210,8 @@ fn difference(
     if let Err(fault) = stated::origin(first.strip_prefix("// ").unwrap_or(""), &crate::hash(source.text())) {
         return Some(format!("line 1: {fault}"));
     }
-    let (mut lines, mut wanted) = (rest.split('\n'), wanted.split('\n').skip(1));
-    for number in 2.. {
-        match (lines.next(), wanted.next()) {
-            (None, None) => return None,
-            (found, wanted) if found == wanted => {}
-            (found, wanted) => {
-                let shown = |line: Option<&str>| line.map_or("the end".to_string(), |line| format!("`{}`", line.trim()));
-                return Some(format!("line {number}: {} where armgen writes {}", shown(found), shown(wanted)));
-            }
-        }
-    }
-    None
+    let (number, found, wanted) = stated::first_difference(rest.split('\n'), wanted.split('\n').skip(1))?;
+    Some(format!("line {}: {found} where armgen writes {wanted}", number + 2))
 }
 
 fn fill(

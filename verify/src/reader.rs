@@ -36,6 +36,7 @@ use items::Items;
 pub use lexer::Fault;
 pub(crate) use lexer::{is_hidden, name_of};
 pub(crate) use plain::camel;
+pub(crate) use python::structure;
 
 /// The longest text that is read, in bytes; that of a chain of 32 joints has a third of it.
 pub const LONGEST: usize = 32 << 20;

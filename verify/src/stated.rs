@@ -121,10 +121,24 @@ fn prose(described: &Described<'_>, function: &Function, bounded: bool) -> Optio
 
 /// The first line that is not as expected.
 fn different(found: &[&str], expected: &[String]) -> Option<String> {
-    let at = |i: usize| (found.get(i).copied(), expected.get(i).map(String::as_str));
-    let (found, expected) = (0..found.len().max(expected.len())).map(at).find(|(found, expected)| found != expected)?;
+    let (_, found, expected) = first_difference(found.iter().copied(), expected.iter().map(String::as_str))?;
+    Some(format!("the documentation says {found}, not {expected}"))
+}
+
+/// The first line in which two texts differ, counted from 0, as it stands in each.
+pub(crate) fn first_difference<'a>(
+    mut found: impl Iterator<Item = &'a str>,
+    mut expected: impl Iterator<Item = &'a str>,
+) -> Option<(usize, String, String)> {
     let shown = |line: Option<&str>| line.map_or("nothing".to_string(), |line| format!("`{}`", line.trim()));
-    Some(format!("the documentation says {}, not {}", shown(found), shown(expected)))
+    for number in 0.. {
+        match (found.next(), expected.next()) {
+            (None, None) => break,
+            (found, expected) if found != expected => return Some((number, shown(found), shown(expected))),
+            _ => {}
+        }
+    }
+    None
 }
 
 /// What the documentation says of parameters.

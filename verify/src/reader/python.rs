@@ -50,7 +50,7 @@ fn entries(text: &str, line: usize) -> Result<Vec<&str>, Fault> {
 }
 
 /// The type that holds the results of a function that has several.
-fn structure(promise: &Promise) -> Option<String> {
+pub(crate) fn structure(promise: &Promise) -> Option<String> {
     let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
     (!matches!(promise.returned, Returned::One(_))).then(|| promise.name.split('_').map(capital).collect())
 }

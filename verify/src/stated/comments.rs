@@ -5,8 +5,9 @@ use std::collections::VecDeque;
 
 use armgen_codegen::emit::{c, javascript, matlab, python, Described, DescribedParameters, Language};
 
+use super::first_difference;
 use crate::contract::Promise;
-use crate::reader::{camel, fixed_comments, Comment, Module};
+use crate::reader::{camel, fixed_comments, structure, Comment, Module};
 use crate::reference::PROMISES;
 
 /// What a comment should be: its text, nothing for the head, and what the line of code behind it begins with.
@@ -57,15 +58,8 @@ pub(super) fn fault(module: &Module, words: &Words<'_>) -> Option<String> {
             ));
         };
         let Some(text) = wanted.text.filter(|text| *text != comment.text) else { continue };
-        let (mut found, mut lines) = (comment.text.lines(), text.lines());
-        let mut number = comment.line;
-        loop {
-            let (said, wanted) = (found.next(), lines.next());
-            if said != wanted {
-                let shown = |line: Option<&str>| line.map_or("nothing".to_string(), |line| format!("`{}`", line.trim()));
-                return Some(format!("line {number}: the comment says {}, not {}", shown(said), shown(wanted)));
-            }
-            number += 1;
+        if let Some((number, found, wanted)) = first_difference(comment.text.lines(), text.lines()) {
+            return Some(format!("line {}: the comment says {found}, not {wanted}", comment.line + number));
         }
     }
     let missing = expected.pop_front()?;
@@ -163,10 +157,8 @@ fn is_of_part(language: Language, robot: &str, comment: &Comment) -> bool {
 /// Whether a comment says in Python what holds the results of a function that has several.
 fn is_of_results(comment: &Comment) -> bool {
     let of = |promise: &Promise| {
-        let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
-        let name: String = promise.name.split('_').map(capital).collect();
-        comment.text == format!("    \"\"\"Results of `{}`.\"\"\"\n", promise.name)
-            && comment.behind == format!("class {name}(NamedTuple):")
+        structure(promise).is_some_and(|name| comment.behind == format!("class {name}(NamedTuple):"))
+            && comment.text == format!("    \"\"\"Results of `{}`.\"\"\"\n", promise.name)
     };
     PROMISES.iter().any(of)
 }
