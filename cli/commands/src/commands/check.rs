@@ -11,7 +11,7 @@ use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::{JointKind, Scalar};
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
-use armgen_codegen::schedule::Options;
+use armgen_codegen::schedule::{self, Options};
 use armgen_codegen::source::Source;
 use armgen_codegen::{derive, inverse_kinematics, validate, Model};
 
@@ -47,15 +47,21 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
     let source = input::source(file)?;
     let (valid, mut diagnostics) = validate::read_for(&source, Scalar::F64);
     diagnostics.allow(&doubts.allow);
-    let (manipulator, _) = input::report_or_exit_code(&source, valid, &diagnostics, input::Warnings::Shown)?;
-    let (description, _) = RobotDescription::parse(&source);
-    // Only generating the module shows whether products of valid numbers still fit the scalar.
-    let (module, all) = with_spinner("deriving", || armgen_codegen::generate(&source, &Options::default()));
-    if module.is_none() {
-        terminal::diagnose(&all.render(&source, terminal::colour(&std::io::stderr())));
+    let (manipulator, places) = input::report_or_exit_code(&source, valid, &diagnostics, input::Warnings::Shown)?;
+    let description = RobotDescription::parse(&source).0.unwrap_or_default();
+    let model = Model::new(manipulator);
+    let (summary, too_large) = with_spinner("deriving", || {
+        both(
+            || summary(&source, &description, &model, &diagnostics),
+            // Only its programs show whether products of valid numbers still fit the scalar.
+            || schedule::module(&model, &Options::default()).out_of_range().cloned(),
+        )
+    });
+    if let Some(value) = too_large {
+        diagnostics.push(validate::product_out_of_range(&places, Scalar::F64, &value));
+        terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
         return Err(FAULTY);
     }
-    let model = Model::new(manipulator);
     let code = if doubts.strict && diagnostics.warnings() > 0 {
         let warnings = input::counted(diagnostics.warnings(), "warning");
         terminal::error(&format!("{}: {warnings}, and --strict", source.name()));
@@ -63,7 +69,20 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
     } else {
         DONE
     };
-    Ok((summary(&source, &description.unwrap_or_default(), &model, &diagnostics), code))
+    Ok((summary, code))
+}
+
+/// As much stack as the main thread of a program has.
+const STACK: usize = 8 << 20;
+
+/// The results of both, found at the same time where there is a second thread.
+fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {
+    std::thread::scope(|scope| {
+        let beside = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, &first).ok();
+        let second = second();
+        let first = beside.map_or_else(&first, |thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        (first, second)
+    })
 }
 
 fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics) -> String {
