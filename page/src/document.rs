@@ -141,7 +141,11 @@ What remains is a root mean square of distances and of angles times the size of 
 <ol id="suspects"></ol>
 "#;
 
-const WORKSPACE: &str = r#"<details id="reach"><summary>Where the end effector comes to</summary><div class="figures"></div></details>
+const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at this pose</summary>
+<p id="postures-said" role="status"></p>
+<div class="controls"><label id="postures-held-label" hidden>joint that is held <select id="postures-held"></select></label></div>
+<div id="postures-found"></div></details>
+<details id="reach"><summary>Where the end effector comes to</summary><div class="figures"></div></details>
 <details id="w-map"><summary>Manipulability over two joints</summary>
 <div class="controls"><label>across <select id="w-first"></select></label><label>up <select id="w-second"></select></label></div>
 <canvas id="w-canvas" width="384" height="384" role="img" aria-labelledby="w-said"></canvas><p id="w-said" class="small"></p></details>

@@ -268,6 +268,38 @@ fn a_planted_mistake_is_the_first_suspect() {
     tab.close(&file);
 }
 
+/// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; one joint too many is held.
+#[test]
+fn other_postures_at_a_pose_are_ghosts() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("postures");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    // The number of postures, how many ghosts beside the arm, how far the end effector moves when the second posture is taken, and the joint
+    // that is held then.
+    for (name, postures) in [("scara", 2), ("puma560", 8), ("panda7", 4)] {
+        let file = written(&folder, &robot(name));
+        let mut tab = browser.open(&file, 1600, "light");
+        let found = tab.run(&format!(
+            "(async () => {{ {MOVE}(1); const details = document.getElementById('postures'); details.open = true; \
+             await new Promise((done) => setTimeout(done, 1000)); \
+             const arm = document.querySelectorAll('#arm .links .solid').length; \
+             const end = () => document.querySelector('#arm g[data-frame=\"e\"]').dataset.origin.split(' ').map(Number); \
+             const joints = () => Array.from({{ length: robot.DOF }}, (_, i) => Number(document.getElementById(`q${{i + 1}}-value`).value)); \
+             const list = () => [...details.querySelectorAll('tr[data-posture]')]; \
+             const [p, q] = [end(), joints()]; const ghosts = document.querySelectorAll('#arm .ghosts .solid').length / arm; \
+             list()[1].querySelector('button').click(); \
+             const moved = Math.hypot(...end().map((x, i) => x - p[i])); \
+             const turned = joints().filter((x, i) => Math.abs(x - q[i]) > 0.01).length > 1; \
+             return [list().length, ghosts, moved < 1e-9, turned, list()[1].textContent.includes('shown'), \
+                     document.getElementById('postures-held-label').hidden]; }})()"
+        ));
+        let listed = found[0].as_u64().expect("a number");
+        assert!(if name == "panda7" { listed >= postures } else { listed == postures }, "{name}: {found}");
+        assert_eq!(found, serde_json::json!([listed, listed - 1, true, true, true, name != "panda7"]), "{name}");
+        tab.close(&file);
+    }
+}
+
 /// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
 #[test]
 fn a_log_is_played_on_the_arm() {
@@ -306,6 +338,17 @@ fn a_log_is_played_on_the_arm() {
          return [seen(), await lay('large'), await lay('')]; })()",
     );
     assert_eq!(laid, serde_json::json!([[9, 2], [16, 4], [9, 2]]));
+    // Meanwhile neither the page nor the time moves, and the arm of the other run stands beside as a ghost while it is laid over.
+    let stays = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
+         select.scrollIntoView({ block: 'center' }); const top = () => select.getBoundingClientRect().top, before = top(); \
+         const ghosts = () => document.querySelectorAll('#arm .ghosts .solid').length > 5; const seen = []; \
+         for (const name of ['large', '']) { select.value = name; select.dispatchEvent(new Event('change')); \
+             await new Promise((done) => setTimeout(done, 200)); \
+             seen.push(document.getElementById('time').value, document.getElementById('q2-value').value, ghosts(), Math.abs(top() - before) < 2); } \
+         return seen; })()",
+    );
+    assert_eq!(stays, serde_json::json!(["5", "-0.5", true, true, "5", "-0.5", false, true]));
     tab.close(&file);
     let other = robot("ur5");
     let misfit = armgen_page::page(&other, &[run]).expect_err("other joints");

@@ -4,7 +4,6 @@ import { byId, html } from "./dom.mjs";
 import { exact, fromUnit, inUnit, units, withUnit } from "./format.mjs";
 import { rollPitchYaw } from "./numbers.mjs";
 import { Arm } from "./scene.mjs";
-import { drawSolids } from "./solids.mjs";
 import { apart, asWritten, explain, frames, read } from "./suspects.mjs";
 
 /** Suspects that are listed. */
@@ -16,15 +15,11 @@ export function check(data, state, picture) {
     const kinds = data.rows.map((row) => (row.type === "revolute" ? "rad" : "m"));
     /** @type {{arm: any, solids: Arm} | null} */
     let ghost = null;
-    picture.extras.push(() => {
-        const layer = picture.layers.ghosts;
-        if (!ghost) {
-            if (layer.firstChild) layer.replaceChildren();
-            return;
-        }
+    picture.ghosts.push(() => {
+        if (!ghost) return [];
         const { links, end } = frames(ghost.arm, state.q);
         ghost.solids.place(state.q.map((q, i) => q * ghost.arm.signs[i]), links, end);
-        drawSolids(layer, ghost.solids.solids, picture.view);
+        return ghost.solids.solids;
     });
     const choose = (suspect, button) => {
         const chosen = button && button.getAttribute("aria-pressed") !== "true";

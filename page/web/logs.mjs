@@ -1,12 +1,13 @@
 /**
  * Logs played on the arm, with their plots: a time line, the trail of the tip, the desired one beside it where the log has errors of the
  * tip, curves over time with a common cursor. Another run can be laid over one: its curves of the same names, at its sample at or before each
- * time, and its trail.
+ * time, its trail, and the arm in its posture as a ghost.
  */
 
 import { byId, html, svg } from "./dom.mjs";
 import { short } from "./format.mjs";
 import { unpack } from "./pack.mjs";
+import { Arm } from "./scene.mjs";
 import { origin } from "./vector.mjs";
 
 const COLOURS = ["#0b5cad", "#c05600", "#1b7a2f", "#8a1c7c", "#8c6d00", "#b3261e", "#00727a", "#5a5a5a"];
@@ -53,7 +54,7 @@ export function sampleAt(times, t) {
 
 /**
  * Columns of another log at the times of one: the sample at or before each, as values are held; nothing before its first and after its last.
- * @param {Log} log @param {Log} other @param {string[]} names
+ * @param {{columns: (number | null)[][]}} log its times are asked for @param {Log} other @param {string[]} names
  */
 export function laidOver(log, other, names) {
     const times = other.columns[0];
@@ -70,7 +71,10 @@ export function logs(data, state, picture) {
     const runs = [...document.querySelectorAll("details[data-log]")];
     if (runs.length === 0) return;
     const [time, value, play, said] = ["time", "time-value", "log-play", "playback-said"].map(byId);
-    /** @type {{name: string, log: Log, places: number[], rates: number[], trails: {path: number[][], kind: string}[], charts: any[]} | null} */
+    /**
+     * @type {{name: string, log: Log, places: number[], rates: number[], trails: {path: number[][], kind: string}[],
+     *     over: {log: Log, places: number[]} | null, charts: any[]} | null}
+     */
     let active = null;
     const opened = new Map();
     let moving = 0;
@@ -92,14 +96,16 @@ export function logs(data, state, picture) {
             if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
         }
     };
+    /** Follows a run: from its start, or from where it was followed until now. @param {any} run */
     const choose = (run) => {
+        const again = active?.name === run.name;
         active = run;
         const times = run.log.columns[0];
         time.min = String(times[0] ?? 0);
         time.max = String(times[times.length - 1] ?? 1);
         const held = run.rates.length > 0 ? "its q and dq; ddq is that of the fields" : "its q; dq and ddq are those of the fields";
         said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take ${held}, and the parameters of the data sheet, whatever the run had.` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
-        show(Number(times[0] ?? 0), false);
+        show(again ? time.valueAsNumber : Number(times[0] ?? 0), false);
     };
     const layer = picture.layers.trail;
     picture.extras.push(() => {
@@ -109,6 +115,18 @@ export function logs(data, state, picture) {
         }
         const d = (path) => path.map((point, i) => `${i === 0 ? "M" : "L"}${picture.view.project(point).map((x) => x.toFixed(1)).join(" ")}`).join("");
         layer.replaceChildren(...active.trails.map(({ path, kind }) => svg("path", { class: kind, d: d(path) })));
+    });
+    // The arm of the run that is laid over, at the same time.
+    const other = new Arm(data, "ghost other");
+    picture.ghosts.push(() => {
+        const over = active?.over;
+        if (!over || over.places.length === 0) return [];
+        const names = over.places.map((place) => over.log.names[place]);
+        const q = laidOver({ columns: [[time.valueAsNumber]] }, over.log, names).map(([value]) => value);
+        // It has not begun, or has ended.
+        if (!q.every((x) => x !== null)) return [];
+        other.place(q, robot.linkFrames(q), robot.directKinematics(q));
+        return other.solids;
     });
     const pause = () => {
         cancelAnimationFrame(moving);
@@ -153,10 +171,14 @@ export function logs(data, state, picture) {
     const placesOf = (log) => data.rows.map((row) => log.names.indexOf(`q_${row.name}`)).filter((place) => place >= 0);
     /** Draws the plots of a run, with another one laid over them. @param {any} run @param {string} other */
     const draw = async (run, other) => {
+        run.other = other;
         const over = other === "" ? null : { name: other, log: await load(other) };
+        // Another choice while the log was unpacked.
+        if (run.other !== other) return;
         for (const chart of run.charts) chart.destroy();
         run.trails = trails(run.log, run.places);
-        if (over) run.trails.push(...trails(over.log, placesOf(over.log)).map(({ path, kind }) => ({ path, kind: `${kind} other` })));
+        run.over = over && { log: over.log, places: placesOf(over.log) };
+        if (over) run.trails.push(...trails(over.log, run.over.places).map(({ path, kind }) => ({ path, kind: `${kind} other` })));
         run.charts = plots(run.log).map((plot) => chart(run.host, run.log, plot, run.name, over));
         choose(run);
     };
@@ -176,7 +198,7 @@ export function logs(data, state, picture) {
         const log = await load(name);
         const ratesOf = data.rows.map((row) => log.names.indexOf(`dq_${row.name}`));
         const rates = ratesOf.every((place) => place >= 0) ? ratesOf : [];
-        const run = { name, log, places: placesOf(log), rates, trails: [], charts: [], host: details.querySelector(".plots") };
+        const run = { name, log, places: placesOf(log), rates, trails: [], over: null, charts: [], host: details.querySelector(".plots") };
         // The arm goes to the time of a click; that the pointer passes over a plot moves its cursor alone.
         run.host.addEventListener("click", (event) => {
             const chart = run.charts.find((one) => one.over.contains(event.target));

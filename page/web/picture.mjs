@@ -32,6 +32,8 @@ export class Picture {
         this.layers.frames.append(...this.frames.map((frame) => frame.element));
         /** Which row is drawn as on a sheet, from 0. @type {number | null} */
         this.row = null;
+        /** Solids of other arms or postures that are drawn pale over the arm. @type {(() => any[])[]} */
+        this.ghosts = [];
         /** What others draw in the picture, after the arm. @type {((picture: Picture) => void)[]} */
         this.extras = [];
         /** Whether the reader chose the scale. */
@@ -82,6 +84,7 @@ export class Picture {
     redraw() {
         const { view, links, end } = this;
         drawSolids(this.layers.links, this.arm.solids, view);
+        drawSolids(this.layers.ghosts, this.ghosts.flatMap((of) => of()), view);
         this.drawFrames([identity(), ...links, end]);
         this.drawBodies();
         this.drawGrid();

@@ -8,7 +8,7 @@
  */
 
 import { Ball, Box, Cylinder } from "./solids.mjs";
-import { along, column, compose, cross, direct, norm, origin, perpendicular, scale, subtract } from "./vector.mjs";
+import { along, column, compose, cross, direct, norm, origin, perpendicular, scale } from "./vector.mjs";
 
 /** How long an arm is, m: the sum of the lengths of its rows and of what its slides can add. @param {any} data */
 export function size(data) {
@@ -109,11 +109,6 @@ export function step(length) {
     const power = 10 ** Math.floor(Math.log10(length));
     const digit = [5, 2, 1].find((digit) => digit * power <= length);
     return (digit ?? 1) * power;
-}
-
-/** Whether two points are nearer than a length. @param {number[]} a @param {number[]} b @param {number} length */
-export function near(a, b, length) {
-    return norm(subtract(a, b)) < length;
 }
 
 /** A direction as long as 1. @param {number[]} v */

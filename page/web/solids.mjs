@@ -106,5 +106,5 @@ export function drawSolids(layer, solids, view) {
     const depths = new Map(solids.map((solid) => [solid.element, solid.draw(view)]));
     const sorted = [...depths.keys()].sort((a, b) => depths.get(a) - depths.get(b));
     const children = layer.children;
-    if (sorted.some((element, i) => children[i] !== element)) layer.replaceChildren(...sorted);
+    if (children.length !== sorted.length || sorted.some((element, i) => children[i] !== element)) layer.replaceChildren(...sorted);
 }

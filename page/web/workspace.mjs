@@ -1,13 +1,11 @@
 /**
- * Where the end effector comes to, how well it moves there, and ellipsoids at the tip.
- *
- * Points are those of a fixed sequence of low discrepancy over the limits (Roberts' additive recurrence: the k-th point has the fractional
- * parts of k g^-i, g the root of g^(n+1) = g + 1).
+ * Where the end effector comes to, by points of a fixed sequence over the limits, how well it moves there, and ellipsoids at the tip.
  */
 
 import { byId, html, svg } from "./dom.mjs";
 import { short, withUnit } from "./format.mjs";
 import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
+import { sequence } from "./search.mjs";
 import { range } from "./state.mjs";
 import { origin } from "./vector.mjs";
 
@@ -16,14 +14,6 @@ const POINTS = 2000;
 const CELLS = 48;
 /** Side of the map, px. */
 const SIDE = 384;
-
-/** Points between 0 and 1 in so many dimensions. @param {number} dimensions @param {number} count */
-export function sequence(dimensions, count) {
-    let g = 1.5;
-    for (let i = 0; i < 60; i++) g = (1 + g) ** (1 / (dimensions + 1));
-    const steps = Array.from({ length: dimensions }, (_, i) => g ** -(i + 1));
-    return Array.from({ length: count }, (_, k) => steps.map((step) => (0.5 + (k + 1) * step) % 1));
-}
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
 export function workspace(data, state, picture) {

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { laidOver, plots, sampleAt } from "../logs.mjs";
-import { sequence } from "../workspace.mjs";
+import { sequence } from "../search.mjs";
 
 test("columns of one kind and unit share a plot", () => {
     const names = ["t", "q_a", "q_b", "e_x", "e_rz", "x", "z", "w"];
