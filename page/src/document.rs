@@ -81,7 +81,7 @@ fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
     let mut all = vec![
         ("data-sheet", "Data sheet", table + frames + bodies),
         ("check", "Check against the real arm", CHECK.into()),
-        ("numbers", "Numbers", "<div id=\"quantities\"></div>\n".into()),
+        ("numbers", "Numbers", NUMBERS.into()),
         ("equations", "Equations", parts.equations.into()),
         ("workspace", "Workspace", WORKSPACE.into()),
     ];
@@ -100,9 +100,9 @@ fn header(parts: &Parts<'_>) -> String {
     };
     format!(
         "<header>\n<h1>{}</h1>\n<p>{joints} joint{}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
-         <button type=\"button\" id=\"angle-unit\" aria-label=\"Unit of angles: rad\">rad</button>\n\
-         <button type=\"button\" id=\"length-unit\" aria-label=\"Unit of lengths: m\">m</button>\n\
-         <button type=\"button\" id=\"theme\">dark</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n</header>\n",
+         <button type=\"button\" id=\"angle-unit\">angles: rad</button>\n\
+         <button type=\"button\" id=\"length-unit\">lengths: m</button>\n\
+         <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n</header>\n",
         escape(&manipulator.name),
         if joints == 1 { "" } else { "s" },
         decimal(bodies::total_mass(manipulator)),
@@ -114,9 +114,9 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <title id="arm-title">The arm</title><desc id="arm-description"></desc>
 </svg>
 <p id="grid-step" class="small"></p>
-<p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted.</p>
+<p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted. <span class="keys">Drag turns, the wheel zooms; keys: arrows, + −, 1 2 3 0.</span></p>
 <div class="controls" role="group" aria-label="View">
-<button type="button" data-view="front">front</button><button type="button" data-view="side">side</button><button type="button" data-view="top">top</button><button type="button" data-view="oblique">oblique</button>
+<button type="button" data-view="front" title="x to the right, z up">front</button><button type="button" data-view="side" title="y to the right, z up">side</button><button type="button" data-view="top" title="x to the right, y up">top</button><button type="button" data-view="oblique">oblique</button>
 </div>
 <div class="controls layers" role="group" aria-label="Shown in the picture">
 <label><input type="checkbox" id="show-frames" checked> frames</label>
@@ -130,16 +130,22 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <p id="ellipsoid-axes" class="small"></p>
 "##;
 
-const CHECK: &str = r#"<p>Paste postures of the real arm and the poses that were measured there, one a line: <code>q1 … qn x y z</code> or <code>q1 … qn x y z roll pitch yaw</code>, in the units chosen above.
-x y z are those of the end effector in the base frame, orientations Rz(yaw) Ry(pitch) Rx(roll); other units convert what stands here.
-The page shows how far it is from each, and looks for the one mistake that explains them all: in a row a wrong sign, 90° or 180° too many or too few, a and d exchanged, a factor of 1000, a joint that counts the other way; the other convention; a tool left out. Wrong lengths and offsets of zero it does not look for.
-What remains is a root mean square of distances and of angles times the size of the arm; below a thousandth of that size the arm agrees.</p>
+const CHECK: &str = r#"<p>Does the description agree with the arm in the laboratory? Paste what its controller says, a posture and its pose a line: <code>q1 … qn x y z</code> or <code>q1 … qn x y z roll pitch yaw</code>.
+x y z are those of the end effector in the base frame, the orientation is Rz(yaw) Ry(pitch) Rx(roll), units are those chosen above.
+The page says how far its own arm is from each pose, and which single mistake in the rows would explain the difference.</p>
+<details><summary>What is looked for, and what the difference is</summary>
+<p>In a row: a wrong sign, 90° or 180° too many or too few, a and d exchanged, a factor of 1000, a joint that counts the other way. Of the whole: the other convention, a tool left out. Not: wrong lengths, and offsets of zero.</p>
+<p>The difference is the root mean square of distances and of angles times the size of the arm; below a thousandth of that size the arm agrees. Other units convert what stands in the field.</p></details>
 <label for="measured">Measured postures and poses</label>
 <textarea id="measured" rows="4" spellcheck="false"></textarea>
 <div class="controls"><button type="button" id="measured-add">add the pose that is shown</button></div>
 <div id="measured-said" role="status"></div>
 <ol id="suspects"></ol>
 "#;
+
+const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above. Units are those of joints that turn; of one that slides read m for rad, N for N m, kg for kg m².</p>
+<div id=\"quantities\"></div>
+";
 
 const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at this pose</summary>
 <p id="postures-said" role="status"></p>
@@ -152,7 +158,9 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 "#;
 
 fn sliders(rows: &[Row]) -> String {
-    let mut text = String::from("<div id=\"sliders\">\n");
+    let mut text = String::from(
+        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
+    );
     for (i, row) in rows.iter().enumerate() {
         let k = i + 1;
         let name = escape(&row.name);
@@ -161,13 +169,13 @@ fn sliders(rows: &[Row]) -> String {
             text,
             "<div class=\"joint\" data-joint=\"{k}\"><label for=\"q{k}\"><i>q</i><sub>{k}</sub> {name}</label>\
              <input type=\"range\" id=\"q{k}\" step=\"any\">\
-             <input type=\"number\" id=\"q{k}-value\" step=\"any\" aria-label=\"q{k}, exact\"><span class=\"unit\" data-unit=\"{unit}\">{unit}</span>\
-             <label class=\"rate\">d<i>q</i> <input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}, {unit}/s\"></label>\
-             <label class=\"rate\">dd<i>q</i> <input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}, {unit}/s²\"></label>\
+             <input type=\"number\" id=\"q{k}-value\" step=\"any\" aria-label=\"q{k}, exact\" aria-describedby=\"q{k}-unit\"><span class=\"unit\" id=\"q{k}-unit\" data-unit=\"{unit}\">{unit}</span>\
+             <label class=\"rate\"><i>q̇</i> <input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}\" aria-describedby=\"dq{k}-unit\"> <span class=\"unit\" id=\"dq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s</span></label>\
+             <label class=\"rate\"><i>q̈</i> <input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}\" aria-describedby=\"ddq{k}-unit\"> <span class=\"unit\" id=\"ddq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s²</span></label>\
              <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span></div>"
         );
     }
-    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" aria-label=\"Sweep the joints one after the other\">play</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"
+    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" title=\"one joint after the other through its range\">sweep joints</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"
 }
 
 /// The source of a policy that is this very text.

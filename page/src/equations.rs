@@ -67,7 +67,7 @@ impl Equations {
     pub(crate) fn section(&self) -> String {
         let mut text = String::from(CHOICES);
         for quantity in &self.quantities {
-            let (name, symbol, size) = (escape(&quantity.name), escape(&quantity.symbol), &quantity.size);
+            let (name, symbol, size) = (escape(&quantity.name), typeset(&quantity.symbol), &quantity.size);
             let words = name.replace('_', " ");
             let _ = match &quantity.text {
                 Some(_) => writeln!(
@@ -95,6 +95,31 @@ const CHOICES: &str = "<div class=\"controls\"><fieldset><legend>Parameters</leg
 <label><input type=\"radio\" name=\"digits\" value=\"decimal\" checked> six digits</label> \
 <label><input type=\"radio\" name=\"digits\" value=\"exact\"> exact</label></fieldset></div>
 ";
+
+/// A symbol as it is printed: letters of Greek, dots, indices, and d of partial derivatives.
+fn typeset(symbol: &str) -> String {
+    const SIGNS: [(&str, &str); 6] =
+        [("dtau/", "∂τ/"), ("d(ddq)/", "∂q̈/"), ("/d(dq)", "/∂q̇"), ("/dq", "/∂q"), ("^-1", "⁻¹"), ("'", "ᵀ")];
+    const WORDS: [(&str, &str); 5] =
+        [("tau", "τ"), ("dq", "q̇"), ("ddq", "q̈"), ("dqr", "q̇<sub>r</sub>"), ("ddqr", "q̈<sub>r</sub>")];
+    let signs = SIGNS.iter().fold(symbol.to_owned(), |text, (from, to)| text.replace(from, to));
+    let inside = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let mut text = String::new();
+    let mut rest = signs.as_str();
+    while !rest.is_empty() {
+        let end = rest.find(|c| !inside(c)).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        let (head, index) = word.split_once('_').unwrap_or((word, ""));
+        text += WORDS.iter().find(|(name, _)| *name == head).map_or(head, |(_, sign)| sign);
+        if !index.is_empty() {
+            let _ = write!(text, "<sub>{index}</sub>");
+        }
+        let next = after.find(inside).unwrap_or(after.len());
+        text += &escape(&after[..next]);
+        rest = &after[next..];
+    }
+    text
+}
 
 /// Leaves out the longest texts of those that are too much together.
 fn leave_out(quantities: &mut [Quantity]) {
@@ -137,4 +162,21 @@ fn quantity(robot: &str, nominal: &Shown, symbolic: Option<&Shown>) -> Quantity 
         (rows, columns) => format!("{rows} × {columns}"),
     };
     Quantity { name: nominal.name.clone(), symbol: nominal.symbol[0].clone(), size, text, steps }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::typeset;
+
+    #[test]
+    fn symbols_are_typeset() {
+        let check = |symbol: &str, expected: &str| assert_eq!(typeset(symbol), expected);
+        check("T_e(q)", "T<sub>e</sub>(q)");
+        check("tau_known(q, dq, dqr, ddqr)", "τ<sub>known</sub>(q, q̇, q̇<sub>r</sub>, q̈<sub>r</sub>)");
+        check("(J B^-1 J')^-1", "(J B⁻¹ Jᵀ)⁻¹");
+        check("d(ddq)/d(dq)", "∂q̈/∂q̇");
+        check("dtau/dq", "∂τ/∂q");
+        check("dJ/dt(q, dq)", "dJ/dt(q, q̇)");
+        check("<b>", "&lt;b&gt;");
+    }
 }

@@ -23,7 +23,7 @@ pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_
     for column in columns {
         let _ = write!(text, "<th scope=\"col\">{column}</th>");
     }
-    text += "<th scope=\"col\">limits</th><th scope=\"col\">line</th></tr></thead>\n<tbody>\n";
+    text += "<th scope=\"col\">limits</th><th scope=\"col\">line of the file</th></tr></thead>\n<tbody>\n";
     for (i, row) in rows.iter().enumerate() {
         let number = i + 1;
         let _ = write!(
@@ -34,7 +34,7 @@ pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_
         );
         text += &values(row, number);
         text += &limits(row);
-        let _ = writeln!(text, "<td>:{}</td></tr>", row.line);
+        let _ = writeln!(text, "<td>{}</td></tr>", row.line);
         let said = warnings.of_row(i);
         if !said.is_empty() {
             let columns = columns.len() + 4;
@@ -57,9 +57,10 @@ fn values(row: &Row, number: usize) -> String {
                 (true, "0") => variable,
                 (true, written) => format!("{} + {variable}", escape(written)),
             };
+            let offset = if moved { "offset " } else { "" };
             let _ = write!(
                 text,
-                "<td><span class=\"written\">{written}</span> <span class=\"number\" data-value=\"{:?}\" data-unit=\"{unit}\">{} {unit}</span></td>",
+                "<td><span class=\"written\">{written}</span> <span class=\"small\">{offset}<span class=\"number\" data-value=\"{:?}\" data-unit=\"{unit}\">{} {unit}</span></span></td>",
                 value.number,
                 decimal(value.number),
             );

@@ -53,9 +53,15 @@ impl<'d> Warnings<'d> {
                 "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line}): {}. {}.</p>",
                 escape(diagnostic.code.name()),
                 escape(&diagnostic.message),
-                escape(&diagnostic.help),
+                escape(&sentence(&diagnostic.help)),
             );
         }
         text
     }
+}
+
+/// With a capital letter.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -180,6 +180,8 @@ export function logs(data, state, picture) {
         run.over = over && { log: over.log, places: placesOf(over.log) };
         if (over) run.trails.push(...trails(over.log, run.over.places).map(({ path, kind }) => ({ path, kind: `${kind} other` })));
         run.charts = plots(run.log).map((plot) => chart(run.host, run.log, plot, run.name, over));
+        // Charts draw themselves once this task is done; their cursor is set then.
+        await null;
         choose(run);
     };
     const open = async (details) => {
@@ -306,7 +308,7 @@ function chart(host, log, plot, name, over) {
         });
     }
     const options = {
-        title: plot.title,
+        title: plot.unit ? `${plot.title}, ${plot.unit}` : plot.title,
         width: width(host),
         height: HEIGHT,
         scales: { x: { time: false } },

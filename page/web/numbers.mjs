@@ -13,7 +13,7 @@ const NEAR = 0.02;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     rowNames?: string[], columnNames?: string[], near?: () => string}} Quantity
+ *     rowNames?: string[], columnNames?: string[], near?: () => string, remark?: string}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
@@ -40,31 +40,33 @@ function quantities(data, state) {
     const joints = data.rows.map((row) => row.name);
     const velocity = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
     const list = [
-        matrix("direct_kinematics", "T_e", "End effector in the base frame", "m", 4, 4, () => robot.directKinematics(state.q)),
+        { ...matrix("direct_kinematics", "Tₑ", "Pose of the end effector in the base frame: its axes and its origin, m", "", 4, 4, () => robot.directKinematics(state.q)), rowNames: ["x", "y", "z", ""], columnNames: ["x axis", "y axis", "z axis", "origin"] },
         vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]),
-        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian", "m, 1", 6, n, () => robot.geometricJacobian(state.q)), rowNames: velocity, columnNames: joints },
+        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for each rate", "", 6, n, () => robot.geometricJacobian(state.q)), rowNames: velocity, columnNames: joints },
     ];
+    const rows = data.task.map((row) => velocity[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
-    if (data.task.length === n) list.push(scalar("det", "det J", "Determinant of the Jacobian of the task", "", () => determinant(task())));
+    if (data.task.length === n) list.push(scalar("det", "det J", `Determinant of the rows ${rows} of J`, "", () => determinant(task())));
     (data.determinant?.factors ?? []).forEach((text, k) => {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
         const zero = data.determinant.singular[k];
         const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : (zero ?? "zero where several joints together make it so");
         const of = () => evaluate(factor, lookup);
-        const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? `near zero: ${where}` : "");
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J: ${text.length < 60 ? text : "see the equations"}; ${where}`, "", of), near });
+        const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? "⚠ near zero: singular" : "");
+        const shown = text.length < 60 ? text.replaceAll("*", " ") : "see the equations";
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${shown}`, "", of, where), near });
     });
-    list.push(scalar("w", "w", "Manipulability of the task, sqrt(det(J J'))", "", () => manipulability(task())));
-    list.push(scalar("condition", "σ₁/σₘ", "Condition number of the Jacobian of the task", "", () => condition(task())));
-    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m², kg m, kg", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
+    list.push(scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())));
+    list.push(scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())));
+    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m²", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
-        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
-        list.push(scalar("skew_symmetry", "N", "Largest entry of the symmetric part of dB/dt − 2C, dB/dt by differences", "", () => skewSymmetry(state)));
+        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "kg m²/s", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
+        list.push(scalar("skew_symmetry", "Ḃ − 2C", "Largest entry of its symmetric part, 0 but for the differences that Ḃ is taken by", "", () => skewSymmetry(state)));
     }
-    if (has("gravity")) list.push(vector("gravity", "g", "Gravity term", "N m, N", n, () => robot.gravity(state.q), joints));
-    if (has("friction")) list.push(vector("friction", "F", "Friction", "N m, N", n, () => robot.friction(state.dq), joints));
-    if (has("inverse_dynamics")) list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B ddq + C dq + F + g", "N m, N", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
+    if (has("gravity")) list.push(vector("gravity", "g", "Gravity term", "N m", n, () => robot.gravity(state.q), joints));
+    if (has("friction")) list.push(vector("friction", "F", "Friction", "N m", n, () => robot.friction(state.dq), joints));
+    if (has("inverse_dynamics")) list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "N m", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
     if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));
     return list;
@@ -78,8 +80,8 @@ function vector(name, symbol, title, unit, rows, of, rowNames) {
     return { name, symbol, title, unit, rows, columns: 0, of, rowNames };
 }
 
-function scalar(name, symbol, title, unit, of) {
-    return { name, symbol, title, unit, rows: 0, columns: 0, of };
+function scalar(name, symbol, title, unit, of, remark = "") {
+    return { name, symbol, title, unit, rows: 0, columns: 0, of, remark };
 }
 
 /** Roll, pitch and yaw of a frame; at pitch = ±90 degrees roll is taken as 0. @param {number[][]} t */
@@ -124,9 +126,9 @@ function table(quantity) {
     const head = html(first, {}, html("b", {}, symbol), ` ${title}${unit ? `, ${unit}` : ""}`);
     const element = html(whole, { open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
-        head.append(" = ", cell(0, 0), said);
+        head.append(" = ", cell(0, 0), quantity.remark ? html("span", { class: "small" }, `  ${quantity.remark}`) : "", said);
     } else {
-        const rowName = (i) => (quantity.rowNames ? `${i} ${quantity.rowNames[i - 1]}` : String(i));
+        const rowName = (i) => `${i} ${quantity.rowNames?.[i - 1] ?? ""}`;
         const body = html("tbody");
         for (let i = 1; i <= rows; i++) {
             const row = html("tr", {}, html("th", { scope: "row" }, rowName(i)));

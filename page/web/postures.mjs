@@ -51,7 +51,7 @@ export function postures(data, state, picture) {
         const head = html("tr", {}, ...columns.map((column) => html(column ? "th" : "td", column ? { scope: "col" } : {}, column)));
         const rows = at.found.map((q, k) => {
             const outside = data.rows.map((row, i) => (row.limits && (q[i] < row.limits[0] || q[i] > row.limits[1]) ? `q${i + 1}` : "")).filter((name) => name);
-            const take = html("button", { type: "button", "aria-label": `Move the arm to posture ${k + 1}` }, "take");
+            const take = html("button", { type: "button", "aria-label": `take posture ${k + 1}` }, "take");
             take.addEventListener("click", () => state.move(q));
             const remark = isShown(q) ? "shown" : outside.length > 0 ? `⚠ outside its limits: ${outside.join(", ")}` : "";
             const cells = q.map((x, i) => html("td", { class: "entry" }, short(inUnit(x, unit(i)))));

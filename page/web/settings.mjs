@@ -9,21 +9,19 @@ export function settings(state) {
         const button = byId(id);
         button.addEventListener("click", () => {
             units[kind] = units[kind] === names[0] ? names[1] : names[0];
-            button.textContent = units[kind];
-            button.setAttribute("aria-label", `${title}: ${units[kind]}`);
+            button.textContent = `${title}: ${units[kind]}`;
             state.changed("units");
         });
     };
-    toggle("angle-unit", "angle", ["rad", "deg"], "Unit of angles");
-    toggle("length-unit", "length", ["m", "mm"], "Unit of lengths");
+    toggle("angle-unit", "angle", ["rad", "deg"], "angles");
+    toggle("length-unit", "length", ["m", "mm"], "lengths");
 
     const dark = matchMedia("(prefers-color-scheme: dark)");
     const theme = byId("theme");
     const root = document.documentElement;
     const current = () => root.dataset.theme ?? (dark.matches ? "dark" : "light");
     const name = () => {
-        theme.textContent = current() === "dark" ? "light" : "dark";
-        theme.setAttribute("aria-label", `Change to the ${theme.textContent} theme`);
+        theme.textContent = current() === "dark" ? "light theme" : "dark theme";
     };
     theme.addEventListener("click", () => {
         root.dataset.theme = current() === "dark" ? "light" : "dark";

@@ -46,9 +46,12 @@ function frameTable(data, state) {
     const names = ["0", ...data.rows.map((_, i) => String(i + 1)), "e"];
     const columns = ["origin", "x axis", "y axis", "z axis"];
     const cells = [];
+    const groups = html("tr", {}, html("td"), ...["at q = 0", "at the posture of the sliders"].map((when) => html("th", { scope: "colgroup", colspan: 4 }, when)));
     const head = html("tr", {}, html("th", { scope: "col" }, "frame"));
-    for (const when of ["q = 0", "now"]) {
-        for (const column of columns) head.append(html("th", { scope: "col" }, `${column}, ${when}`));
+    const origins = [];
+    for (let k = 0; k < 2; k++) {
+        for (const column of columns) head.append(html("th", { scope: "col" }, column));
+        origins.push(head.children[1 + 4 * k]);
     }
     const body = html("tbody");
     for (const name of names) {
@@ -58,7 +61,7 @@ function frameTable(data, state) {
         cells.push(own);
         body.append(row);
     }
-    const table = html("table", { class: "frames" }, html("caption", {}, "Origins and axes of the frames, in the base frame"), html("thead", {}, head), body);
+    const table = html("table", { class: "frames" }, html("caption", {}, "Origins and axes of the frames, in the base frame"), html("thead", {}, groups, head), body);
     byId("frames").append(html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Frames" }, table));
     const zero = state.q.map(() => 0);
     const write = (q, from) => {
@@ -78,6 +81,7 @@ function frameTable(data, state) {
     const update = () => {
         // What is folded in is not kept.
         if (!byId("frames").closest("details").open) return;
+        for (const name of origins) name.textContent = `origin, ${units.length}`;
         write(zero, 0);
         write(state.q, 4);
     };
@@ -97,27 +101,27 @@ function brief(x) {
 
 /** @param {any} data */
 function bodyTable(data) {
-    const columns = ["body", "frame", "mass", "centre of mass", "edges of its cuboid", "density of the cuboid", "tensor"];
+    const columns = ["body", "frame", "mass, kg", `centre of mass in that frame, ${units.length}`, `edges of its cuboid, ${units.length}`, "density of the cuboid, kg/m³", "inertia tensor"];
     const head = html("tr", {}, ...columns.map((column) => html("th", { scope: "col" }, column)));
     const rows = data.bodies.map((body) => {
         const shape = cuboid(body);
-        const lengths = (values) => values.map(length).join("  ") + ` ${units.length}`;
+        const lengths = (values) => values.map(length).join("  ");
         const cells = shape
             ? [
                   lengths(body.com),
                   shape.empty ? "no inertia" : lengths(shape.edges),
-                  Number.isFinite(shape.density) ? `${short(Number(shape.density.toPrecision(4)))} kg/m³` : "flat: none",
+                  Number.isFinite(shape.density) ? short(Number(shape.density.toPrecision(4))) : shape.empty ? "none" : "flat: none",
                   shape.possible ? "possible" : "⚠ impossible: no body has these moments",
               ]
-            : [lengths(body.com), "no mass", "none", "without mass"];
+            : ["none", "none", "none", "none: no mass"];
         return html(
             "tr",
             { class: shape && !shape.possible ? "doubtful" : "" },
             html("th", { scope: "row" }, body.name),
-            ...[String(body.frame), `${short(body.mass)} kg`, ...cells].map((text) => html("td", {}, text)),
+            ...[String(body.frame), short(body.mass), ...cells].map((text) => html("td", {}, text)),
         );
     });
     const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia; tick “bodies” to see them on the arm");
-    const table = html("table", {}, caption, html("thead", {}, head), html("tbody", {}, ...rows));
+    const table = html("table", { class: "bodies" }, caption, html("thead", {}, head), html("tbody", {}, ...rows));
     return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Bodies" }, table);
 }

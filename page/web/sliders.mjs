@@ -51,7 +51,7 @@ export function sliders(data, state) {
     };
     state.on("motion", show);
     state.on("units", () => {
-        for (const span of document.querySelectorAll("#sliders .unit")) {
+        for (const span of document.querySelectorAll("#sliders [data-unit]")) {
             span.textContent = unitName(span.getAttribute("data-unit") ?? "");
         }
         show();
@@ -101,7 +101,7 @@ export function player(data, state) {
         stop = () => {
             if (reduced.matches) clearTimeout(timer);
             else cancelAnimationFrame(timer);
-            button.textContent = "play";
+            button.textContent = "sweep joints";
             button.setAttribute("aria-pressed", "false");
             stop = () => {};
         };

@@ -59,13 +59,15 @@ function views(points) {
         const axes = svg("path", { class: "axes", d: "M-118 0H118M0 -118V118" });
         return html("figure", {}, svg("svg", { viewBox: "-120 -120 240 240", class: "reach", role: "img", "aria-label": title }, axes, svg("path", { d })), html("figcaption", {}, title));
     };
-    const extent = (values) => `${withUnit(Math.min(...values), "m")} to ${withUnit(Math.max(...values), "m")}`;
+    // Points are samples: more digits would be none of the arm's.
+    const about = (x) => withUnit(Math.abs(x) < 0.005 * size ? 0 : Number(x.toPrecision(3)), "m");
+    const extent = (values) => `${about(Math.min(...values))} to ${about(Math.max(...values))}`;
     const heights = points.map((point) => point[2]);
     const farthest = Math.max(...points.map((point) => Math.hypot(...point)));
     return [
         picture(`side: distance from the z axis ${extent(away)}, z ${extent(heights)}`, points.map((point, i) => [away[i], point[2]])),
         picture(`top: x ${extent(points.map((p) => p[0]))}, y ${extent(points.map((p) => p[1]))}`, points),
-        html("p", {}, `Reach: ${withUnit(farthest, "m")} from the origin of the base, among ${points.length} postures within the limits.`),
+        html("p", {}, `Reach: about ${about(farthest)} from the origin of the base, the farthest of ${points.length} postures within the limits.`),
     ];
 }
 
@@ -81,18 +83,18 @@ function ellipsoids(data, state, picture) {
         const [x, y] = picture.view.project(origin(picture.end));
         const draw = (matrix, kind, title) => {
             const axes = eigen(matrix).values.map((value) => Math.sqrt(Math.max(0, value)));
-            words.push(`${title}: semi-axes ${axes.map(short).join(", ")}`);
+            words.push(`${title}: semi-axes ${axes.map((x) => short(Number(x.toPrecision(4)))).join(", ")}`);
             const { semi, angle } = outline(matrix, picture.view.right, picture.view.up);
             const scale = (0.2 * picture.arm.size * picture.view.scale) / (axes[0] || 1);
             const turn = (-angle * 180) / Math.PI;
             elements.push(svg("ellipse", { class: kind, rx: (semi[0] * scale).toFixed(1), ry: (semi[1] * scale).toFixed(1), transform: `translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${turn.toFixed(1)})` }));
         };
-        if (byId("show-velocity").checked) draw(a, "velocity", "Velocity ellipsoid, m/s per unit of rates");
+        if (byId("show-velocity").checked) draw(a, "velocity", "Velocity ellipsoid of the tip, m/s for rates of norm 1");
         if (byId("show-force").checked) {
             const { values, vectors } = eigen(a);
             if (values[2] > 1e-12 * values[0]) {
                 const inverse = a.map((_, i) => a.map((_, k) => values.reduce((sum, value, m) => sum + (vectors[i][m] * vectors[k][m]) / value, 0)));
-                draw(inverse, "force", "Force ellipsoid, N per unit of torques");
+                draw(inverse, "force", "Force ellipsoid, N for torques of norm 1");
             } else {
                 words.push("Force ellipsoid: none at a singular posture, which bears any force along the lost direction");
             }
