@@ -146,6 +146,73 @@ fn pages_fit_windows_themes_and_paper() {
     }
 }
 
+/// Opens what is folded away, where a page has it.
+const UNFOLD: &str = r#"(async () => {
+    const until = async (there) => {
+        while (!there()) await new Promise((done) => setTimeout(done, 20));
+    };
+    // The log first: it moves the arm, and the postures are those of where it stands then.
+    const log = document.querySelector("details[data-log]");
+    if (log) {
+        log.open = true;
+        await until(() => log.querySelector(".uplot canvas"));
+    }
+    for (const selector of ["[id=postures]", "[id=reach]", "[id=w-map]", "[data-equation=inertia_matrix]", "[data-equation=determinant]"]) {
+        const details = document.querySelector(`details${selector}`);
+        if (details) details.open = true;
+    }
+    await new Promise((done) => setTimeout(done, 500));
+    await until(() => document.getElementById("postures-said").textContent && !document.querySelector("[aria-busy=true]"));
+})()"#;
+
+/// In both themes and in a narrow window every control, picture and table has a name, headings of tables say what they head, references lead
+/// somewhere, and every text has a contrast of 4.5 to 1; the key of tabulators reaches all controls in their order, and the focus is seen.
+#[test]
+fn everybody_can_read_and_use_a_page() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("everybody");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let log =
+        Log::read("t,q_shoulder,q_elbow,q_quill,q_wrist,other\n0,0,0,0,0,1\n1,1,1,0,0,2\n", |_| "rad".into()).expect("a log");
+    let verdict = |met| Verdict { what: "w".into(), found: "1".into(), expected: "2".into(), met };
+    let named = |name: &str| Run {
+        name: name.into(),
+        log: Some(log.clone()),
+        verdicts: vec![verdict(true), verdict(false)],
+        ..Run::default()
+    };
+    let file = folder.join("scara.html");
+    let (page, _) = armgen_page::page(&robot("scara"), &[named("one"), named("two")]).expect("the joints are those of the arm");
+    std::fs::write(&file, page.expect("a page")).expect("written");
+    for (file, width, theme) in
+        [(&file, 1600, "light"), (&file, 360, "dark"), (&written(&folder, &robot("panda7")), 1600, "dark")]
+    {
+        let mut tab = browser.open(file, width, theme);
+        tab.run(UNFOLD);
+        let found = tab.run(include_str!("browser/audit.js"));
+        assert_eq!(found["faults"], serde_json::json!([]), "{}, {theme}", file.display());
+        assert!(found["texts"].as_u64().is_some_and(|texts| texts > 300), "{found}");
+        println!("{}, {theme}: {} texts, the least contrast is {}", file.display(), found["texts"], found["least"]);
+        tab.close(file);
+    }
+    let mut tab = browser.open(&file, 1600, "light");
+    tab.run(UNFOLD);
+    let controls = tab.run(include_str!("browser/keyboard.js")).as_u64().expect("a number");
+    for _ in 0..controls {
+        tab.press_tab();
+    }
+    let missed = "wanted.filter((_, i) => !visited.some(([k, seen]) => k === i && seen)).map((element) => element.outerHTML.slice(0, 100))";
+    assert_eq!(tab.run(missed), serde_json::json!([]));
+    assert_eq!(tab.run("visited.every(([k], i) => k === i)"), true, "in the order of the document");
+    // A curve is taken away by its switch, and brought back.
+    let switched = "(() => { const one = document.querySelector('[role=switch]'), seen = []; \
+                    for (let k = 0; k < 2; k++) { one.dispatchEvent(new KeyboardEvent('keydown', { key: ' ', bubbles: true })); \
+                    seen.push(one.getAttribute('aria-checked'), one.closest('.u-series').classList.contains('u-off')); } return seen; })()";
+    assert_eq!(tab.run(switched), serde_json::json!(["false", true, "true", false]));
+    println!("{controls} controls are reached by the keyboard");
+    tab.close(&file);
+}
+
 /// A picture to be looked at, where somebody asks for them.
 fn keep(folder: &Path, name: &str, tab: &mut Tab<'_>) {
     if std::env::var_os("ARMGEN_PICTURES").is_some() {

@@ -4,7 +4,7 @@
  * time, its trail, and the arm in its posture as a ghost.
  */
 
-import { byId, html, svg } from "./dom.mjs";
+import { byId, html, set, svg } from "./dom.mjs";
 import { short } from "./format.mjs";
 import { unpack } from "./pack.mjs";
 import { Arm } from "./scene.mjs";
@@ -316,5 +316,24 @@ function chart(host, log, plot, name, over) {
         series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
         axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
     };
-    return new uPlot(options, [log.columns[0], ...values], host);
+    const drawn = new uPlot(options, [log.columns[0], ...values], host);
+    describe(drawn, options.title);
+    return drawn;
+}
+
+/** Gives a plot its name, and a curve that a click takes away or brings back a switch that keys reach. @param {any} drawn @param {string} title */
+function describe(drawn, title) {
+    const names = drawn.series.slice(1).map(({ label }) => label);
+    set(drawn.ctx.canvas, { role: "img", "aria-label": `Plot over time: ${title}; curves ${names.join(", ")}` });
+    drawn.root.querySelector(".u-legend").setAttribute("role", "presentation");
+    const switches = [...drawn.root.querySelectorAll(".u-series > th")].slice(1);
+    for (const one of switches) {
+        set(one, { role: "switch", "aria-checked": true, tabindex: 0 });
+        one.addEventListener("keydown", (event) => {
+            if (event.key !== "Enter" && event.key !== " ") return;
+            event.preventDefault();
+            one.click();
+        });
+    }
+    (drawn.hooks.setSeries ??= []).push(() => switches.forEach((one, k) => one.setAttribute("aria-checked", String(drawn.series[k + 1].show))));
 }

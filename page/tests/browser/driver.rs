@@ -154,6 +154,13 @@ impl Tab<'_> {
         addresses.filter(|address| !address.starts_with("data:")).map(str::to_owned).collect()
     }
 
+    /// Presses the key of tabulators.
+    pub(crate) fn press_tab(&mut self) {
+        for kind in ["keyDown", "keyUp"] {
+            self.call("Input.dispatchKeyEvent", json!({"type": kind, "key": "Tab", "code": "Tab", "windowsVirtualKeyCode": 9}));
+        }
+    }
+
     /// The page as it is printed.
     pub(crate) fn print(&mut self) -> usize {
         self.call("Page.printToPDF", json!({}))["data"].as_str().map_or(0, str::len)
