@@ -162,6 +162,6 @@ fn data(
         "leftOut": left_out,
         "equations": equations.data(),
         "determinant": equations.factors,
-        "runs": logs::data(runs),
+        "runs": logs::data(runs, rows),
     })
 }

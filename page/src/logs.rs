@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde_json::{json, Map, Value};
 
 use crate::html::{escape, pack};
+use crate::rows::Row;
 
 /// At most so many samples are kept of a log: more are not seen.
 const SAMPLES: usize = 2000;
@@ -106,19 +107,27 @@ impl Log {
         Err(format!("its joints are {}, and the arm's are {}", own.join(", "), joints.join(", ")))
     }
 
-    /// With seven digits, packed.
-    fn packed(&self) -> String {
+    /// With seven digits, packed; `rows` say which of two units is that of a joint's column.
+    fn packed(&self, rows: &[Row]) -> String {
+        let units: Vec<&str> = self.names.iter().zip(&self.units).map(|(name, unit)| of_joint(name, unit, rows)).collect();
         let digits = |x: &f64| format!("{x:.6e}").parse::<f64>().ok().filter(|x| x.is_finite());
         let columns: Vec<Vec<Option<f64>>> = self.columns.iter().map(|column| column.iter().map(digits).collect()).collect();
-        pack(&json!({"names": self.names, "units": self.units, "columns": columns}).to_string())
+        pack(&json!({"names": self.names, "units": units, "columns": columns}).to_string())
     }
 }
 
+/// Of a unit such as `rad, m` the first for a joint that turns and the second for one that slides, where the column is that of a joint.
+fn of_joint<'u>(name: &str, unit: &'u str, rows: &[Row]) -> &'u str {
+    let Some((turning, sliding)) = unit.split_once(", ") else { return unit };
+    let joint = rows.iter().find(|row| name.strip_suffix(&row.name).is_some_and(|kind| kind.ends_with('_')));
+    joint.map_or(unit, |row| if row.revolute { turning } else { sliding })
+}
+
 /// What the script is given, by the names of the runs.
-pub(crate) fn data(runs: &[Run]) -> Value {
+pub(crate) fn data(runs: &[Run], rows: &[Row]) -> Value {
     let of = |run: &Run| {
         let figures: Vec<Value> = run.figures.iter().map(|figure| json!([figure.title, pack(&figure.svg)])).collect();
-        (run.name.clone(), json!({"log": run.log.as_ref().map(Log::packed), "figures": figures}))
+        (run.name.clone(), json!({"log": run.log.as_ref().map(|log| log.packed(rows)), "figures": figures}))
     };
     Value::Object(runs.iter().map(of).collect::<Map<_, _>>())
 }

@@ -56,9 +56,28 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
     text += &closed(module);
     for (name, file) in FILES {
         let _ = write!(text, "const {} = ", variable(name));
-        text += &closed(file);
+        text += &closed(&without_comments(file));
     }
     inert(&text)
+}
+
+/// A file without the lines that are comments alone, a fifth of it: they are for whoever reads `page/web`.
+fn without_comments(file: &str) -> String {
+    let mut text = String::with_capacity(file.len());
+    let mut within = false;
+    for line in file.lines() {
+        let words = line.trim();
+        let begins = within || words.starts_with("/**");
+        let ends = words.ends_with("*/");
+        // Code may follow a comment on its line.
+        let comment = within || words.starts_with("//") || (begins && (ends || !words.contains("*/")));
+        within = comment && begins && !ends;
+        if !comment {
+            text.push_str(line);
+            text.push('\n');
+        }
+    }
+    text
 }
 
 /// The name under which the exports of a file are known to those after it.
@@ -135,6 +154,12 @@ mod tests {
             let exports = returned.split_once(" }").expect("exports").0.split(", ").map(str::to_owned).collect();
             known.push(((*name).to_owned(), exports));
         }
+    }
+
+    #[test]
+    fn lines_of_comments_alone_are_left_out() {
+        let file = "/** Of a file.\n *\n * More. */\nconst a = 1; // one\n    // two\n    /** three */\n/** @type {X} */ (a).b();\n/**\n * four\n */\nc();\n";
+        assert_eq!(without_comments(file), "const a = 1; // one\n/** @type {X} */ (a).b();\nc();\n");
     }
 
     #[test]

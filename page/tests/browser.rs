@@ -382,7 +382,12 @@ fn a_log_is_played_on_the_arm() {
         })
         .collect();
     let csv = format!("t,q_shoulder,q_elbow,q_quill,q_wrist,e_x,e_y,e_z\n{rows}");
-    let log = Log::read(&csv, |name| if name == "t" { "s".into() } else { "m".into() }).expect("a log");
+    let log = Log::read(&csv, |name| match name {
+        "t" => "s".into(),
+        name if name.starts_with("q_") => "rad, m".into(),
+        _ => "m".into(),
+    })
+    .expect("a log");
     let run = Run { name: "small".into(), log: Some(log.clone()), ..Run::default() };
     let large = Run { name: "large".into(), log: Some(log), ..Run::default() };
     let source = robot("scara");
@@ -395,9 +400,11 @@ fn a_log_is_played_on_the_arm() {
          while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
          const time = document.getElementById('time'); time.value = '5'; time.dispatchEvent(new Event('input')); \
          return [document.getElementById('q2-value').value, document.querySelectorAll('#arm .trail path').length, \
-                 log.querySelectorAll('.uplot').length, time.max]; })()",
+                 [...log.querySelectorAll('.u-title')].map((title) => title.textContent), time.max]; })()",
     );
-    assert_eq!(played, serde_json::json!(["-0.5", 2, 2, "10"]));
+    // Joints that turn and those that slide have axes of their own.
+    let titles = ["joint variables, rad", "joint variables, m", "errors of the end effector, m"];
+    assert_eq!(played, serde_json::json!(["-0.5", 2, titles, "10"]));
     // The other run lies over it: two curves more in the plot of the joints, and its trail; taken away again, they are gone.
     let laid = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
@@ -406,7 +413,7 @@ fn a_log_is_played_on_the_arm() {
              await new Promise((done) => setTimeout(done, 200)); return seen(); }; \
          return [seen(), await lay('large'), await lay('')]; })()",
     );
-    assert_eq!(laid, serde_json::json!([[9, 2], [16, 4], [9, 2]]));
+    assert_eq!(laid, serde_json::json!([[10, 2], [17, 4], [10, 2]]));
     // Meanwhile neither the page nor the time moves, and the arm of the other run stands beside as a ghost while it is laid over.
     let stays = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \

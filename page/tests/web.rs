@@ -1,4 +1,5 @@
-//! The files of `page/web` under the tests that stand beside them, by Node; without it a line says so, and the test passes.
+//! The files of `page/web` under the tests that stand beside them, by Node, and their types, by TypeScript; without these a line says so, and
+//! the test passes.
 
 use std::process::Command;
 
@@ -12,5 +13,21 @@ fn the_files_of_the_script_pass_their_own_tests() {
         return;
     }
     let output = Command::new("node").arg("--test").args(files).output().expect("node runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
+#[test]
+fn the_types_that_the_files_of_the_script_say_are_theirs() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/web");
+    // "Version 5.9.3"; older ones read fewer of the types that JSDoc can say.
+    let said = Command::new("tsc").arg("--version").output().map(|output| String::from_utf8_lossy(&output.stdout).into_owned());
+    let major = said.ok().and_then(|said| said.split([' ', '.']).nth(1)?.parse::<u32>().ok());
+    if major.is_none_or(|major| major < 5) {
+        println!("skipped: no `tsc` of TypeScript 5 or later here");
+        return;
+    }
+    let options = "--allowJs --checkJs --noEmit --strictNullChecks --skipLibCheck --target es2022 --module es2022 --lib dom,dom.iterable,es2022";
+    let output = Command::new("tsc").current_dir(folder).args(options.split(' ')).args(["globals.d.ts", "main.mjs"]).output();
+    let output = output.expect("tsc runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
 }

@@ -17,9 +17,10 @@ export function check(data, state, picture) {
     let ghost = null;
     picture.ghosts.push(() => {
         if (!ghost) return [];
-        const { links, end } = frames(ghost.arm, state.q);
-        ghost.solids.place(state.q.map((q, i) => q * ghost.arm.signs[i]), links, end);
-        return ghost.solids.solids;
+        const { arm, solids } = ghost;
+        const { links, end } = frames(arm, state.q);
+        solids.place(state.q.map((q, i) => q * arm.signs[i]), links, end);
+        return solids.solids;
     });
     const choose = (suspect, button) => {
         const chosen = button && button.getAttribute("aria-pressed") !== "true";

@@ -26,7 +26,8 @@ const CHARACTERS = 4000;
 /** @param {any} data */
 export function equations(data) {
     const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`)?.getAttribute("value");
-    const sections = [...document.querySelectorAll("details[data-equation]")].map((details) => ({
+    const all = /** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("details[data-equation]"));
+    const sections = [...all].map((details) => ({
         details,
         /** @type {Promise<Equation> | null} */
         equation: null,

@@ -9,6 +9,7 @@
 export function eigen(symmetric) {
     const n = symmetric.length;
     const a = symmetric.map((row) => row.slice());
+    /** @type {Matrix} */
     const v = a.map((_, i) => a.map((_, j) => (i === j ? 1 : 0)));
     for (let sweep = 0; sweep < 60; sweep++) {
         let off = 0;

@@ -68,7 +68,7 @@ export function laidOver(log, other, names) {
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
 export function logs(data, state, picture) {
-    const runs = [...document.querySelectorAll("details[data-log]")];
+    const runs = [.../** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("details[data-log]"))];
     if (runs.length === 0) return;
     const [time, value, play, said] = ["time", "time-value", "log-play", "playback-said"].map(byId);
     /**
@@ -81,18 +81,19 @@ export function logs(data, state, picture) {
 
     const show = (t, fromChart) => {
         if (!active) return;
-        const k = sampleAt(active.log.columns[0], t);
+        const { log } = active;
+        const k = sampleAt(log.columns[0], t);
         time.value = String(t);
         value.textContent = `${short(Number(t.toPrecision(5)))} s`;
         if (active.places.length > 0) {
-            const q = active.places.map((place) => active?.log.columns[place][k]);
-            const rates = active.rates.map((place) => active?.log.columns[place][k] ?? 0);
+            const q = active.places.map((place) => log.columns[place][k]);
+            const rates = active.rates.map((place) => log.columns[place][k] ?? 0);
             if (rates.length > 0) state.dq = rates.map(Number);
             if (q.every((x) => x !== null)) state.move(q);
         }
         if (fromChart) return;
         for (const chart of active.charts) {
-            const left = chart.valToPos(active.log.columns[0][k], "x");
+            const left = chart.valToPos(log.columns[0][k], "x");
             if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
         }
     };
@@ -200,6 +201,7 @@ export function logs(data, state, picture) {
         const log = await load(name);
         const ratesOf = data.rows.map((row) => log.names.indexOf(`dq_${row.name}`));
         const rates = ratesOf.every((place) => place >= 0) ? ratesOf : [];
+        /** @type {any} */
         const run = { name, log, places: placesOf(log), rates, trails: [], over: null, charts: [], host: details.querySelector(".plots") };
         // The arm goes to the time of a click; that the pointer passes over a plot moves its cursor alone.
         run.host.addEventListener("click", (event) => {
@@ -259,7 +261,10 @@ function width(host) {
 function trails(log, places) {
     if (places.length === 0) return [];
     const errors = ["e_x", "e_y", "e_z"].map((name) => log.names.indexOf(name));
-    const [actual, desired] = [[], []];
+    /** @type {number[][]} */
+    const actual = [];
+    /** @type {number[][]} */
+    const desired = [];
     for (let k = 0; k < log.columns[0].length; k++) {
         const q = places.map((place) => log.columns[place][k]);
         if (q.includes(null)) continue;

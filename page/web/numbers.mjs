@@ -39,6 +39,7 @@ function quantities(data, state) {
     const has = (name) => data.functions.includes(name);
     const joints = data.rows.map((row) => row.name);
     const velocity = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
+    /** @type {Quantity[]} */
     const list = [
         { ...matrix("direct_kinematics", "Tₑ", "Pose of the end effector in the base frame: its axes and its origin, m", "", 4, 4, () => robot.directKinematics(state.q)), rowNames: ["x", "y", "z", ""], columnNames: ["x axis", "y axis", "z axis", "origin"] },
         vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]),

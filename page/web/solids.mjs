@@ -15,7 +15,8 @@ export class Cylinder {
     /** @param {number} radius @param {string} kind its class: what it is a part of */
     constructor(radius, kind) {
         this.radius = radius;
-        [this.from, this.to] = [[0, 0, 0], [0, 0, 0]];
+        this.from = [0, 0, 0];
+        this.to = [0, 0, 0];
         this.body = svg("path", { class: "body" });
         this.cap = svg("ellipse", { class: "cap" });
         this.element = svg("g", { class: `solid ${kind}` }, this.body, this.cap);

@@ -34,7 +34,7 @@ export function frames(arm, q) {
 
 const RIGHT = Math.PI / 2;
 
-/** What can be mistaken in a row: the name, and the values a, alpha, d, theta instead. @param {number[]} dh */
+/** What can be mistaken in a row: the name, and the values a, alpha, d, theta instead. @param {number[]} dh @returns {[string, string, number[]][]} */
 function mistaken([a, alpha, d, theta]) {
     return [
         ["a-sign", "a has the other sign", [-a, alpha, d, theta]],

@@ -21,11 +21,16 @@ export const HEIGHT = 480;
 export class View {
     constructor() {
         this.name = "oblique";
-        [this.azimuth, this.elevation] = VIEWS.oblique;
+        this.azimuth = VIEWS.oblique[0];
+        this.elevation = VIEWS.oblique[1];
         this.centre = [0, 0, 0];
         this.scale = 100;
         /** A pixel of the window in units of the drawing, where the picture is narrow. */
         this.pixel = 1;
+        /** Directions towards the viewer, and to the right and up on the screen. */
+        this.toward = [0, 0, 1];
+        this.right = [1, 0, 0];
+        this.up = [0, 1, 0];
         this.turn();
     }
 

@@ -63,6 +63,10 @@ test("one full pose names the planted row alone for nine in ten, and two never n
             assert.equal(planted(data, 2, true, seed).wrong, 0, `${name}: two poses`);
         }
         console.log(`${name}: ${alone} of ${all} planted mistakes named alone by one full pose`);
+        const positions = [11, 1234, 77777].map((seed) => planted(data, 1, false, seed));
+        const [some, of] = [positions.reduce((sum, one) => sum + one.alone, 0), positions.reduce((sum, one) => sum + one.all, 0)];
+        console.log(`${name}: ${some} of ${of} that move the tip named alone by one position`);
+        assert.ok(some >= 0.83 * of, `${name}: ${some} of ${of} by one position`);
         assert.ok(alone >= 0.9 * all, `${name}: ${alone} of ${all}`);
     }
 });
