@@ -248,6 +248,10 @@ codes! {
         ReflectedRotor Warning "reflected-rotor",
         /// A gear that would speed up.
         InvertedRatio Warning "inverted-ratio",
+        /// Two joints that turn about one line.
+        CoincidentAxes Warning "coincident-axes",
+        /// A tensor that seems to be about the origin of the frame.
+        InertiaAboutFrame Warning "inertia-about-frame",
         /// A gravity of no planet.
         ImplausibleGravity Warning "implausible-gravity",
         /// A velocity limit beyond what joints reach.

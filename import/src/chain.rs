@@ -330,7 +330,8 @@ impl Builder<'_> {
         let Some((leader, span)) = self.format.leader(index) else { return Some(zero) };
         let Some(found) = self.tree.joint(leader) else {
             let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
-            let help = self.tree.meant_joint(leader);
+            let help =
+                format!("{}; or lock it where it is to stand: `--lock {}=0`", self.tree.meant_joint(leader), shown(&joint.name));
             self.values.report(Code::UnknownJoint, span, message, "", help);
             return None;
         };

@@ -18,6 +18,8 @@
 //! | `active-friction` | friction that drives the joint somewhere below its velocity limit | friction takes energy; fits to noisy measurements do not know that |
 //! | `dust` | a length or an angle that is not 0 but below 1e-9 | less than the size of an atom at any reach; exact equations carry it along |
 
+mod frames;
+
 use super::{call, Context};
 use crate::description::{BodyDescription, JointDescription, PoseDescription, RobotDescription, RotationDescription, Value};
 use crate::diagnostic::Code;
@@ -88,6 +90,7 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     let masses = joints.iter().map(|joint| mass(joint, context)).collect();
     let arm = Arm { joints, lengths, strokes, reach, masses };
     let doubted = arm.check_masses(context);
+    arm.check_axes(description.convention.as_ref().map(|convention| convention.value), context);
     for (i, joint) in joints.iter().enumerate() {
         let called = call(i, joint);
         if let Some(link) = &joint.link {
@@ -236,8 +239,14 @@ impl Arm<'_> {
                 short(mass),
                 short((mass / (total - mass)).round())
             );
-            let help = format!("if a point has slipped, write {}", short(mass / 10.0));
-            context.report(Code::OutlyingMass, span, message, "ten times off?", help);
+            let others = (total - mass) / (with_mass - 1) as f64;
+            let off = |factor: f64| (mass / factor / others).ln().abs();
+            let (help, label) = if off(1000.0) < off(10.0) {
+                (format!("masses are in kg; if this is in g, write {}", short(mass / 1000.0)), "in g?")
+            } else {
+                (format!("if a point has slipped, write {}", short(mass / 10.0)), "ten times off?")
+            };
+            context.report(Code::OutlyingMass, span, message, label, help);
             return true;
         }
         false
@@ -285,6 +294,7 @@ impl Arm<'_> {
         if largest <= 0.0 {
             return;
         }
+        self.check_reference(i, link, called, context);
         let gyration = (largest / mass).sqrt();
         let span = self.span(i, com);
         if gyration > span {
@@ -339,19 +349,21 @@ impl Arm<'_> {
         }
         let (Some(expression), inertia) = (&motor.inertia, number(&motor.inertia, context)) else { return };
         let total: f64 = self.masses.iter().sum();
-        let reach = if joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute) { self.reach } else { 1.0 };
+        let turns = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
+        let (reach, unit) = if turns { (self.reach, "kg m²") } else { (1.0, "kg") };
         let whole = total * reach * reach;
         let reflected = inertia * ratio * ratio;
         if whole > 0.0 && self.reach > SMALL_REACH && ratio > 1.0 && reflected > REFLECTED * whole {
             let span = written(expression, context);
             let message = format!(
-                "the rotor of joint {called} counts as {} at the joint, ratio² times its inertia; the whole arm at its reach is {}",
+                "the rotor of joint {called} counts as {} {unit} at the joint, ratio² times its inertia; the whole arm at its reach is {} {unit}",
                 short(reflected),
                 short(whole)
             );
             let help = format!(
-                "give the inertia at the rotor; if this is the one at the joint, write {}",
-                short(inertia / (ratio * ratio))
+                "give the inertia before the gear in kg m²; if this is the one at the joint, write {}; if it is in kg cm², write {}",
+                short(inertia / (ratio * ratio)),
+                short(inertia / 1e4)
             );
             context.report(Code::ReflectedRotor, span, message, "reflected already?", help);
         }

@@ -2,14 +2,15 @@
 
 mod bodies;
 mod identification;
+mod joints;
+mod posture;
 
 use std::path::{Path, PathBuf};
 
-use armgen_codegen::description::{Convention, JointDescription, RobotDescription};
+use armgen_codegen::description::{Convention, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
-use armgen_codegen::kinds::{JointKind, Scalar};
+use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 use armgen_codegen::schedule::{self, Options};
 use armgen_codegen::source::Source;
@@ -85,6 +86,10 @@ fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) ->
     })
 }
 
+/// What is left to the reader.
+const ADVICE: &str =
+    "  A valid file may still be wrong: compare the posture at q = 0 with a drawing, or with the arm itself by `armgen page`.\n";
+
 fn summary(source: &Source, description: &RobotDescription, model: &Model, diagnostics: &Diagnostics) -> String {
     let manipulator = &model.manipulator;
     let verdict = match diagnostics.warnings() {
@@ -92,8 +97,17 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
         warnings => format!("valid, with {}", input::counted(warnings, "warning")),
     };
     let title = terminal::bold(&format!("{}: {verdict}", source.name()), &std::io::stdout());
-    let parts = [arm(description, manipulator), joints(source, description, manipulator), bodies::table(manipulator)];
-    [title + "\n"].into_iter().chain(parts).chain([identification::report(model)]).collect::<Vec<_>>().join("\n")
+    let parts = [
+        Some(arm(description, manipulator)),
+        Some(joints::rows(source, description, manipulator)),
+        joints::limits(manipulator),
+        joints::drives(manipulator),
+        Some(bodies::table(manipulator)),
+        Some(posture::table(manipulator)),
+        Some(identification::report(model)),
+        Some(ADVICE.into()),
+    ];
+    [title + "\n"].into_iter().chain(parts.into_iter().flatten()).collect::<Vec<_>>().join("\n")
 }
 
 /// The arm as a whole.
@@ -115,7 +129,8 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     let rotors = manipulator.joints.iter().filter_map(|j| j.motor.as_ref()).map(|m| &m.mass);
     let links = manipulator.joints.iter().flat_map(|j| &j.link).map(|part| &part.body.mass);
     let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));
-    row("mass of links and rotors", format!("{} kg", decimal(&total)));
+    let without = if manipulator.payload.is_some() { ", the payload not counted" } else { "" };
+    row("mass that moves", format!("{} kg{without}", decimal(&total)));
     if let Some(payload) = &manipulator.payload {
         row("payload", format!("{} kg", decimal(&at_nominal(&payload.body.mass))));
     }
@@ -146,77 +161,13 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     table.text()
 }
 
-/// One row per joint: the row as written, motors and limits in numbers.
-fn joints(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
-    use Align::{Left, Right};
-    let mut table = Table::new([
-        ("joint", Left),
-        ("type", Left),
-        ("a", Right),
-        ("alpha", Right),
-        ("d", Right),
-        ("theta", Right),
-        ("origin", Left),
-        ("axis", Left),
-        ("ratio", Right),
-        ("position", Left),
-        ("velocity", Right),
-        ("effort", Right),
-    ]);
-    let written = description.joints.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
-    for (i, joint) in manipulator.joints.iter().enumerate() {
-        let revolute = joint.kind == JointKind::Revolute;
-        let urdf = matches!(description.convention.as_ref().map(|c| c.value), Some(Convention::Urdf));
-        let ([a, alpha, d, theta], [origin, axis]) = match written.get(i) {
-            None => Default::default(),
-            Some(row) if urdf => (Default::default(), urdf_row(source, row)),
-            Some(row) => (dh_row(source, row, i, revolute), Default::default()),
-        };
-        let number = |p: &Polynomial| decimal(&derive::parameters::nominal(manipulator, p));
-        let limit = |value: &Option<Number>| value.as_ref().map_or(String::new(), decimal);
-        table.row([
-            format!("{} {}", i + 1, joint.name),
-            if revolute { "revolute" } else { "prismatic" }.into(),
-            a,
-            alpha,
-            d,
-            theta,
-            origin,
-            axis,
-            joint.motor.as_ref().map_or(String::new(), |motor| number(&motor.ratio)),
-            joint.limits.position.as_ref().map_or(String::new(), |[low, high]| format!("{} to {}", decimal(low), decimal(high))),
-            limit(&joint.limits.velocity),
-            limit(&joint.limits.effort),
-        ]);
-    }
-    table.text()
-}
-
-/// a, alpha, d and theta as written; the joint variable is added to theta or to d.
-fn dh_row(source: &Source, row: &JointDescription, i: usize, revolute: bool) -> [String; 4] {
-    let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
-    let [a, alpha, mut d, mut theta] = [text(&row.a), text(&row.alpha), text(&row.d), text(&row.theta)];
-    let moved = if revolute { &mut theta } else { &mut d };
-    *moved = match moved.strip_prefix('-') {
-        _ if moved == "0" => format!("q{}", i + 1),
-        Some(rest) if !rest.contains(['+', '-']) => format!("q{} - {}", i + 1, rest.trim_start()),
-        Some(_) => format!("q{} + ({moved})", i + 1),
-        None => format!("q{} + {moved}", i + 1),
-    };
-    [a, alpha, d, theta]
-}
-
-/// Translations of the origin, and the axis, as written.
-fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
-    let slice = |span| source.slice(span).to_string();
-    let origin = row.origin.iter().flat_map(|pose| &pose.elements).filter_map(|e| e.xyz.as_ref()).map(|xyz| slice(xyz.span));
-    let axis = row.axis.as_ref().map_or(String::new(), |axis| slice(axis.span));
-    [origin.collect::<Vec<_>>().join(" "), axis]
-}
-
 /// A number for people: six digits at most.
 fn decimal(number: &Number) -> String {
-    let value = number.to_f64();
+    digits(number.to_f64())
+}
+
+/// As [`decimal`].
+fn digits(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 {
         return "0".into();

@@ -40,29 +40,31 @@ impl Solid {
     }
 }
 
-/// One row per link, and one of the load: mass, centre of mass, radius of gyration about the axis of the largest moment, principal moments.
+/// One row per link, and one of the load: mass, centre of mass, principal moments, radius of gyration about the axis of the
+/// largest, and the box that has them.
 pub(super) fn table(manipulator: &Manipulator) -> String {
     use Align::{Left, Right};
     let mut table = Table::new([
         ("link", Left),
-        ("mass", Right),
-        ("com x", Right),
+        ("mass (kg)", Right),
+        ("com x (m)", Right),
         ("y", Right),
         ("z", Right),
-        ("radius of gyration", Right),
-        ("principal moments", Left),
+        ("principal moments (kg m²)", Left),
+        ("radius of gyration (m)", Right),
+        ("as a box (m)", Left),
     ]);
     let links =
         manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
     for (name, parts) in links.chain(manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load)))) {
         let Some(Solid { mass, com, inertia }) = Solid::of(manipulator, parts) else {
             let none = String::new;
-            table.row([name, "0".into(), none(), none(), none(), none(), none()]);
+            table.row([name, "0".into(), none(), none(), none(), none(), none(), none()]);
             continue;
         };
         let mut moments: Vec<f64> = inertia.symmetric_eigenvalues().iter().copied().collect();
         moments.sort_by(f64::total_cmp);
-        let rounding = moments[2].abs() * 1e-12;
+        let rounding = (moments[2].abs() + mass * com.norm_squared()) * 1e-12;
         let moments = moments.iter().map(|moment| if moment.abs() <= rounding { 0.0 } else { *moment }).collect::<Vec<_>>();
         table.row([
             name,
@@ -70,11 +72,34 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
             short(com.x),
             short(com.y),
             short(com.z),
-            short((moments[2].max(0.0) / mass).sqrt()),
             moments.iter().map(|moment| short(*moment)).collect::<Vec<_>>().join(", "),
+            short((moments[2].max(0.0) / mass).sqrt()),
+            as_box(mass, &moments),
         ]);
     }
     table.text()
+}
+
+/// The sides of the homogeneous cuboid with these moments about its centre, the longest first: I_x = m (y² + z²) / 12. None has those of a body
+/// that breaks the triangle inequality.
+fn as_box(mass: f64, moments: &[f64]) -> String {
+    let sum: f64 = moments.iter().sum();
+    if sum == 0.0 {
+        return "a point".into();
+    }
+    let rounding = sum * 1e-9;
+    let squares: Vec<f64> = moments.iter().map(|moment| 6.0 * (sum - 2.0 * moment) / mass).collect();
+    if squares.iter().any(|square| square * mass < -6.0 * rounding) {
+        return "no box has these".into();
+    }
+    let two = |side: f64| if side * side * mass <= 6.0 * rounding { "0".into() } else { format!("{}", rounded(side)) };
+    squares.iter().map(|square| two(square.max(0.0).sqrt())).collect::<Vec<_>>().join(" x ")
+}
+
+/// Two digits.
+fn rounded(value: f64) -> f64 {
+    let scale = 10f64.powi(1 - value.log10().floor() as i32);
+    (value * scale).round() / scale
 }
 
 /// Where gravity points, in words.
@@ -100,7 +125,7 @@ fn degrees(angle: f64) -> String {
 }
 
 /// Four digits.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -130,6 +155,15 @@ mod tests {
     #[test]
     fn numbers_have_four_digits() {
         assert_eq!([0.25, -0.021_234_5, 12_345.0, 1e-9].map(short), ["0.25", "-0.02123", "12345", "1.000e-9"]);
+    }
+
+    /// 1 kg, 0.3 m by 0.2 m by 0.1 m; a rod; moments of no body.
+    #[test]
+    fn moments_are_those_of_a_box() {
+        assert_eq!(as_box(1.0, &[0.05 / 12.0, 0.1 / 12.0, 0.13 / 12.0]), "0.3 x 0.2 x 0.1");
+        assert_eq!(as_box(12.0, &[0.0, 4.0, 4.0]), "2 x 0 x 0");
+        assert_eq!(as_box(1.0, &[0.1, 0.1, 0.5]), "no box has these");
+        assert_eq!(as_box(3.0, &[0.0; 3]), "a point");
     }
 
     /// Two halves of a rod are the rod: 1/12 m l² about its middle.

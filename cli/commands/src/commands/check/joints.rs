@@ -1,0 +1,181 @@
+//! The rows of an arm as written, with the values of their names, and beside them what limits and drives its joints.
+
+use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::description::{Convention, JointDescription, RobotDescription};
+use armgen_codegen::document::Expression;
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::{Joint, Manipulator, Row};
+use armgen_codegen::source::Source;
+
+use super::{decimal, digits};
+use crate::table::Align::{Left, Right};
+use crate::table::Table;
+
+/// One line per joint: the row as written.
+pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
+    let mut table = Table::new([
+        ("joint", Left),
+        ("type", Left),
+        ("a (m)", Right),
+        ("alpha (rad)", Right),
+        ("d (m)", Right),
+        ("theta (rad)", Right),
+        ("origin", Left),
+        ("axis", Left),
+    ]);
+    let written = description.joints.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
+    let urdf = matches!(description.convention.as_ref().map(|c| c.value), Some(Convention::Urdf));
+    for (i, joint) in manipulator.joints.iter().enumerate() {
+        let revolute = joint.kind == JointKind::Revolute;
+        let ([a, alpha, d, theta], [origin, axis]) = match written.get(i) {
+            None => Default::default(),
+            Some(row) if urdf => (Default::default(), urdf_row(source, row)),
+            Some(row) => (dh_row(source, row, i, manipulator), Default::default()),
+        };
+        table.row([
+            format!("{} {}", i + 1, joint.name),
+            if revolute { "revolute" } else { "prismatic" }.into(),
+            a,
+            alpha,
+            d,
+            theta,
+            origin,
+            axis,
+        ]);
+    }
+    table.text()
+}
+
+/// a, alpha, d and theta as written, with the value where that is not a number; the joint variable is added to theta or to d.
+fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manipulator) -> [String; 4] {
+    let joint = &manipulator.joints[i];
+    let written = [&row.a, &row.alpha, &row.d, &row.theta];
+    let mut texts = written.map(|value| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string()));
+    let moved = &mut texts[if joint.kind == JointKind::Revolute { 3 } else { 2 }];
+    *moved = match moved.strip_prefix('-') {
+        _ if moved == "0" => format!("q{}", i + 1),
+        Some(rest) if !rest.contains(['+', '-']) => format!("q{} - {}", i + 1, rest.trim_start()),
+        Some(_) => format!("q{} + ({moved})", i + 1),
+        None => format!("q{} + {moved}", i + 1),
+    };
+    let values = dh_values(&joint.row, manipulator);
+    let is_named = |value: &Option<Expression>| value.as_ref().is_some_and(|v| !v.names().is_empty());
+    std::array::from_fn(|k| match is_named(written[k]) {
+        true => format!("{} ({})", texts[k], digits(values[k])),
+        false => std::mem::take(&mut texts[k]),
+    })
+}
+
+/// a, alpha, d and theta of a Denavit-Hartenberg row: what its elements move along x, turn about x, move along z and turn about z.
+fn dh_values(row: &Row, manipulator: &Manipulator) -> [f64; 4] {
+    let mut values = [0.0; 4];
+    for element in row.before.elements.iter().chain(&row.after.elements) {
+        let along = |axis: usize| nominal(manipulator, &element.translation[axis]).to_f64();
+        let entry = |i: usize, j: usize| element.rotation[i][j].to_f64();
+        values[0] += along(0);
+        values[1] += f64::atan2(entry(2, 1), entry(1, 1));
+        values[2] += along(2);
+        values[3] += f64::atan2(entry(1, 0), entry(0, 0));
+    }
+    values
+}
+
+/// Translations of the origin, and the axis, as written.
+fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
+    let slice = |span| source.slice(span).to_string();
+    let origin = row.origin.iter().flat_map(|pose| &pose.elements).filter_map(|e| e.xyz.as_ref()).map(|xyz| slice(xyz.span));
+    let axis = row.axis.as_ref().map_or(String::new(), |axis| slice(axis.span));
+    [origin.collect::<Vec<_>>().join(" "), axis]
+}
+
+/// The limits of the joints, angles in degrees as well; nothing where there are none.
+pub(super) fn limits(manipulator: &Manipulator) -> Option<String> {
+    let mut table =
+        Table::new([("limits", Left), ("position", Left), ("", Left), ("velocity", Right), ("", Left), ("effort", Right)]);
+    let mut any = false;
+    for (i, joint) in manipulator.joints.iter().enumerate() {
+        let limits = &joint.limits;
+        any |= limits.position.is_some() || limits.velocity.is_some() || limits.effort.is_some();
+        let revolute = joint.kind == JointKind::Revolute;
+        let [angle, torque] = if revolute { ["rad", "N m"] } else { ["m", "N"] };
+        let degrees = |value: &Number| digits(value.to_f64().to_degrees());
+        let position = limits.position.as_ref();
+        let velocity = limits.velocity.as_ref();
+        table.row([
+            format!("{} {}", i + 1, joint.name),
+            position.map_or(String::new(), |[low, high]| format!("{} to {} {angle}", decimal(low), decimal(high))),
+            position
+                .filter(|_| revolute)
+                .map_or(String::new(), |[low, high]| format!("{} to {} deg", degrees(low), degrees(high))),
+            velocity.map_or(String::new(), |value| format!("{} {angle}/s", decimal(value))),
+            velocity.filter(|_| revolute).map_or(String::new(), |value| format!("{} deg/s", degrees(value))),
+            limits.effort.as_ref().map_or(String::new(), |value| format!("{} {torque}", decimal(value))),
+        ]);
+    }
+    any.then(|| table.text())
+}
+
+/// What drives the joints and what holds them back; nothing where the file says nothing of it.
+pub(super) fn drives(manipulator: &Manipulator) -> Option<String> {
+    let mut table = Table::new([
+        ("drive", Left),
+        ("ratio", Right),
+        ("rotor", Right),
+        ("at the joint", Right),
+        ("rotor's mass", Right),
+        ("viscous", Right),
+        ("Coulomb", Right),
+        ("offset", Right),
+        ("cubic", Right),
+        ("Stribeck", Left),
+        ("spring", Left),
+    ]);
+    let mut any = false;
+    for (i, joint) in manipulator.joints.iter().enumerate() {
+        let cells = drive(joint, manipulator);
+        any |= cells.iter().any(|cell| !cell.is_empty());
+        let [ratio, rotor, reflected, mass, viscous, coulomb, offset, cubic, stribeck, spring] = cells;
+        let name = format!("{} {}", i + 1, joint.name);
+        table.row([name, ratio, rotor, reflected, mass, viscous, coulomb, offset, cubic, stribeck, spring]);
+    }
+    any.then(|| table.text())
+}
+
+fn drive(joint: &Joint, manipulator: &Manipulator) -> [String; 10] {
+    let revolute = joint.kind == JointKind::Revolute;
+    let [inertia, torque, damping, cubed, rate, angle] = match revolute {
+        true => ["kg m²", "N m", "N m s", "N m s³", "rad/s", "rad"],
+        false => ["kg", "N", "N s/m", "N s³/m³", "m/s", "m"],
+    };
+    let number = |value: &Polynomial| nominal(manipulator, value);
+    let cell = |value: Option<&Polynomial>, unit: &str| match value.map(number).filter(|value| !value.is_zero()) {
+        Some(value) => format!("{} {unit}", decimal(&value)),
+        None => String::new(),
+    };
+    let motor = joint.motor.as_ref();
+    let rotor = motor.and_then(|motor| motor.inertia.as_ref());
+    // What the joint feels of its rotor and of the armature: ratio² I + armature.
+    let square = motor.map(|motor| &motor.ratio * &motor.ratio);
+    let reflected = rotor.zip(square.as_ref()).map(|(inertia, square)| square * inertia);
+    let felt = [&reflected, &joint.armature].into_iter().flatten().cloned().reduce(|a, b| &a + &b);
+    let at_rotor = motor.and_then(|motor| motor.viscous.as_ref()).zip(square.as_ref()).map(|(viscous, square)| square * viscous);
+    let viscous = [&at_rotor, &joint.viscous].into_iter().flatten().cloned().reduce(|a, b| &a + &b);
+    [
+        motor.map_or(String::new(), |motor| decimal(&number(&motor.ratio))),
+        cell(rotor, "kg m²"),
+        cell(felt.as_ref(), inertia),
+        cell(motor.map(|motor| &motor.mass), "kg"),
+        cell(viscous.as_ref(), damping),
+        cell(joint.coulomb.as_ref(), torque),
+        cell(joint.offset.as_ref(), torque),
+        cell(joint.cubic.as_ref(), cubed),
+        joint
+            .stribeck
+            .as_ref()
+            .map_or(String::new(), |s| format!("{} {torque} at {} {rate}", decimal(&number(&s.torque)), decimal(&s.velocity))),
+        joint.spring.as_ref().map_or(String::new(), |s| {
+            format!("{} {torque}/{angle} about {} {angle}", decimal(&number(&s.stiffness)), decimal(&number(&s.rest)))
+        }),
+    ]
+}

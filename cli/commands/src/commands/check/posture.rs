@@ -1,0 +1,179 @@
+//! The arm at q = 0: where its frames, axes and centres of mass are, and what gravity asks of its joints. A sign, a row or a frame that is wrong in
+//! the file is seen here beside a drawing.
+//!
+//! ```text
+//! T_i = T_(i-1) * before_i * after_i                                link frame i in the base frame (Siciliano et al., Eq. 2.50)
+//! g_i = -Σ_k m_k g0' (z_i × (p_k - o_i))   or   -Σ_k m_k g0' z_i    over the masses that joint i moves (Eq. 7.39)
+//! ```
+
+use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::kinds::JointKind;
+use armgen_codegen::manipulator::{Manipulator, PlacedBody, Placement};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+
+use super::bodies::short;
+use crate::table::{Align, Table};
+
+/// What is below this beside 1 is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// An arm at q = 0, in the base frame.
+struct Posture {
+    links: Vec<Isometry3<f64>>,
+    axes: Vec<Axis>,
+    flange: Isometry3<f64>,
+}
+
+/// The axis of a joint.
+struct Axis {
+    direction: Vector3<f64>,
+    point: Point3<f64>,
+}
+
+impl Posture {
+    fn of(manipulator: &Manipulator) -> Posture {
+        let (mut links, mut axes) = (Vec::<Isometry3<f64>>::new(), Vec::new());
+        for joint in &manipulator.joints {
+            let parent = joint.parent.map_or_else(Isometry3::identity, |link| links[link.0 as usize]);
+            let before = parent * isometry(manipulator, &joint.row.before.frame);
+            axes.push(Axis {
+                direction: before * Vector3::from(joint.row.axis.each_ref().map(Number::to_f64)),
+                point: before * Point3::origin(),
+            });
+            links.push(before * isometry(manipulator, &joint.row.after.frame));
+        }
+        let flange = links[manipulator.tip.0 as usize] * isometry(manipulator, &manipulator.tool.frame);
+        Posture { links, axes, flange }
+    }
+
+    /// The bodies that a link carries, in the base frame: mass, centre of mass.
+    fn masses<'a>(&'a self, manipulator: &'a Manipulator, link: usize) -> impl Iterator<Item = (f64, Point3<f64>)> + 'a {
+        let joint = &manipulator.joints[link];
+        let own = joint.link.iter().map(move |part| placed(manipulator, &self.links[link], part));
+        let load = manipulator.payload.iter().filter(move |_| manipulator.tip.0 as usize == link);
+        // The rotors of the joints after this one ride on its link.
+        let rotors = manipulator.joints.iter().filter(move |next| next.parent.is_some_and(|parent| parent.0 as usize == link));
+        let rotors = rotors.filter_map(|next| next.motor.as_ref()).map(move |motor| {
+            let place = Point3::from(motor.position.each_ref().map(|x| number(manipulator, x)));
+            (number(manipulator, &motor.mass), self.links[link] * place)
+        });
+        own.chain(load.map(move |part| placed(manipulator, &self.flange, part))).chain(rotors)
+    }
+
+    /// The torque or force of joint `i` that holds the arm against gravity; springs are not counted.
+    fn gravity(&self, manipulator: &Manipulator, i: usize) -> f64 {
+        let g0 = Vector3::from(manipulator.gravity.each_ref().map(|x| number(manipulator, x)));
+        let Axis { direction, point } = &self.axes[i];
+        let moved = (i..manipulator.dof()).filter(|&link| is_moved_by(manipulator, link, i));
+        let terms = moved.flat_map(|link| self.masses(manipulator, link)).map(|(mass, com)| match manipulator.joints[i].kind {
+            JointKind::Revolute => mass * g0.dot(&direction.cross(&(com - point))),
+            JointKind::Prismatic => mass * g0.dot(direction),
+        });
+        -terms.sum::<f64>()
+    }
+}
+
+/// Whether joint `i` moves `link`.
+fn is_moved_by(manipulator: &Manipulator, link: usize, i: usize) -> bool {
+    std::iter::successors(Some(link), |&link| manipulator.joints[link].parent.map(|parent| parent.0 as usize))
+        .any(|link| link == i)
+}
+
+fn number(manipulator: &Manipulator, value: &Polynomial) -> f64 {
+    nominal(manipulator, value).to_f64()
+}
+
+fn placed(manipulator: &Manipulator, frame: &Isometry3<f64>, part: &PlacedBody) -> (f64, Point3<f64>) {
+    let com = Point3::from(part.body.com.each_ref().map(|x| number(manipulator, x)));
+    (number(manipulator, &part.body.mass), frame * com)
+}
+
+fn isometry(manipulator: &Manipulator, frame: &Placement) -> Isometry3<f64> {
+    let turn = Matrix3::from_fn(|i, j| frame.rotation[i][j].to_f64());
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
+    let place = Vector3::from(frame.translation.each_ref().map(|x| number(manipulator, x)));
+    Isometry3::from_parts(Translation3::from(place), turn)
+}
+
+/// The frames of the links and what they carry, at q = 0.
+pub(super) fn table(manipulator: &Manipulator) -> String {
+    use Align::{Left, Right};
+    let posture = Posture::of(manipulator);
+    let mut table = Table::new([
+        ("at q = 0, in the base frame", Left),
+        ("joint axis", Left),
+        ("link frame at (m)", Left),
+        ("its z axis", Left),
+        ("centre of mass at (m)", Left),
+        ("held against gravity", Right),
+    ]);
+    for (i, (joint, axis)) in manipulator.joints.iter().zip(&posture.axes).enumerate() {
+        let frame = &posture.links[i];
+        let bodies: Vec<(f64, Point3<f64>)> = joint.link.iter().map(|part| placed(manipulator, frame, part)).collect();
+        let mass: f64 = bodies.iter().map(|(mass, _)| mass).sum();
+        let com = bodies.iter().map(|(m, com)| com.coords * (m / mass)).sum::<Vector3<f64>>();
+        let unit = if joint.kind == JointKind::Revolute { "N m" } else { "N" };
+        let held = posture.gravity(manipulator, i);
+        // As small as what sums of such numbers round by.
+        let held = if held.abs() < ROUNDING { 0.0 } else { held };
+        table.row([
+            format!("{} {}", i + 1, joint.name),
+            direction(&axis.direction),
+            point(&frame.translation.vector),
+            direction(&(frame * Vector3::z())),
+            if mass > 0.0 { point(&com) } else { String::new() },
+            if manipulator.is_massless() { String::new() } else { format!("{} {unit}", short(held)) },
+        ]);
+    }
+    let none = String::new;
+    let flange = &posture.flange;
+    table.row([
+        "end effector".into(),
+        none(),
+        point(&flange.translation.vector),
+        direction(&(flange * Vector3::z())),
+        none(),
+        none(),
+    ]);
+    table.text()
+}
+
+/// Three numbers in brackets.
+fn point(place: &Vector3<f64>) -> String {
+    let number = |x: f64| if x.abs() < ROUNDING { "0".to_owned() } else { short(x) };
+    format!("({}, {}, {})", number(place.x), number(place.y), number(place.z))
+}
+
+/// A direction by its name where it is along an axis of the base.
+fn direction(direction: &Vector3<f64>) -> String {
+    let largest = direction.iamax();
+    if (direction[largest].abs() - 1.0).abs() < ROUNDING {
+        let sign = if direction[largest] < 0.0 { "-" } else { "" };
+        return format!("{sign}{}0", ["x", "y", "z"][largest]);
+    }
+    point(direction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arm(text: &str) -> Manipulator {
+        armgen_codegen::validate::read(&armgen_codegen::source::Source::new("a.yaml", text)).0.expect("it is valid").0
+    }
+
+    /// A rod of 2 kg that lies along x0 and a slide along z0 that carries it: m g l/2 is what the hinge holds, m g the slide.
+    #[test]
+    fn what_is_held_is_weight_times_arm() {
+        let manipulator = arm("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {name: s, type: prismatic, a: 0, alpha: pi/2, d: 0, theta: 0, link: {mass: 0}}\n  \
+             - {name: h, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, link: {mass: 2, com: [-0.5, 0, 0], inertia: {yy: 1/6, zz: 1/6}}}\n\
+             tool: {xyz: [0, 0.25, 0]}\n");
+        let posture = Posture::of(&manipulator);
+        assert!((posture.gravity(&manipulator, 0) - 20.0).abs() < 1e-12);
+        assert!((posture.gravity(&manipulator, 1) - 10.0).abs() < 1e-12);
+        let text = table(&manipulator);
+        assert!(text.contains("2 h") && text.contains("-y0") && text.contains("10 N m"), "{text}");
+        assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
+    }
+}

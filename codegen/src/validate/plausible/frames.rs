@@ -1,0 +1,80 @@
+//! Numbers that look as if they were given in another frame than the one that is asked for.
+//!
+//! | kind | warns of | since |
+//! |---|---|---|
+//! | `coincident-axes` | two revolute joints, one after the other, that turn about one line | no arm spends two motors on one motion; angles of the standard convention in rows of the modified one, or the other way round, leave such a pair |
+//! | `inertia-about-frame` | a tensor with the products of inertia -m c_i c_j of its own centre of mass c, and moments to match | that is the tensor about the frame's origin of a body whose own axes are those of the frame (Steiner; Siciliano et al., Eq. B.67); armgen adds Steiner's terms itself |
+
+use super::{number, short, Arm};
+use crate::description::{BodyDescription, Convention, JointDescription};
+use crate::diagnostic::Code;
+use crate::kinds::JointKind;
+use crate::validate::{call, Context};
+
+/// How nearly axes are one line: the sine of the angle between them, and m.
+const ONE_LINE: f64 = 1e-9;
+/// How nearly the products are those of Steiner's theorem, as a part of the largest of these.
+const NEARLY: f64 = 0.05;
+/// Products smaller than this part of the largest moment say nothing.
+const TELLING: f64 = 0.15;
+
+impl Arm<'_> {
+    /// Two joints about one line.
+    pub(super) fn check_axes(&self, convention: Option<Convention>, context: &mut Context<'_>) {
+        let shift = match convention {
+            Some(Convention::Standard) => 0,
+            Some(Convention::Modified) => 1,
+            _ => return,
+        };
+        let revolute = |joint: &JointDescription| joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
+        for i in 1..self.joints.len() {
+            let (first, second) = (&self.joints[i - 1], &self.joints[i]);
+            // The row that holds a and alpha from the axis of the first to that of the second.
+            let row = &self.joints[i - 1 + shift];
+            let (Some(alpha), true) = (&row.alpha, revolute(first) && revolute(second)) else { continue };
+            let sine = number(&row.alpha, context).sin();
+            if number(&row.a, context).abs() > ONE_LINE || sine.abs() > ONE_LINE {
+                continue;
+            }
+            let message = format!("the joints {} and {} turn about one line", call(i - 1, first), call(i, second));
+            let help = match shift {
+                1 => "a row of the modified convention holds a and alpha of the link before it, those that the books call a_{i-1}, alpha_{i-1}: is this table one of the standard convention?",
+                _ => "a row of the standard convention holds a and alpha of its own link, up to the next axis: is this table one of the modified convention?",
+            };
+            context.report(Code::CoincidentAxes, alpha.span, message, "parallel to the axis before it, and a is 0", help);
+        }
+    }
+
+    /// A tensor about the origin of the frame where one about the centre of mass is asked for.
+    pub(super) fn check_reference(&self, i: usize, link: &BodyDescription, called: &str, context: &mut Context<'_>) {
+        let (Some(com), Some(inertia)) = (&link.com, &link.inertia) else { return };
+        if inertia.rotation.is_some() {
+            return;
+        }
+        let mass = self.masses[i];
+        let c = com.value.each_ref().map(|value| number(value, context));
+        let given = inertia.elements.each_ref().map(|value| number(value, context));
+        let size = c.iter().map(|x| x * x).sum::<f64>();
+        let steiner = [
+            mass * (size - c[0] * c[0]),
+            -mass * c[0] * c[1],
+            mass * (size - c[1] * c[1]),
+            -mass * c[0] * c[2],
+            -mass * c[1] * c[2],
+            mass * (size - c[2] * c[2]),
+        ];
+        let (moments, products) = ([0, 2, 5], [1, 3, 4]);
+        let largest_product = products.map(|k| steiner[k].abs()).into_iter().fold(0.0, f64::max);
+        let largest_moment = moments.map(|k| given[k]).into_iter().fold(0.0, f64::max);
+        let matches = products.iter().all(|&k| (given[k] - steiner[k]).abs() <= NEARLY * largest_product);
+        let own = moments.map(|k| given[k] - steiner[k]);
+        let is_a_body = own.iter().all(|moment| *moment >= 0.0) && own.iter().all(|m| 2.0 * m <= own.iter().sum::<f64>());
+        if largest_product < TELLING * largest_moment || !matches || !is_a_body {
+            return;
+        }
+        let message = format!("the inertia of the link of joint {called} has the products -m c_i c_j of its own centre of mass: it seems to be about the origin of the frame");
+        let [xx, yy, zz] = own.map(short);
+        let help = format!("give it about the centre of mass: about {{xx: {xx}, yy: {yy}, zz: {zz}}}");
+        context.report(Code::InertiaAboutFrame, inertia.key, message, "about the frame's origin?", help);
+    }
+}
