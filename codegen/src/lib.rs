@@ -38,6 +38,8 @@ pub mod kinds;
 #[doc(hidden)]
 pub mod manipulator;
 #[doc(hidden)]
+pub mod parallel;
+#[doc(hidden)]
 pub mod pass;
 #[doc(hidden)]
 pub mod program;

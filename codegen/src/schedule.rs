@@ -3,8 +3,6 @@
 mod selection;
 
 use std::collections::{BTreeMap, HashMap};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::OnceLock;
 
 use crate::catalogue::{self, Absent, Argument, Length, Quantity};
 use crate::derive::derivation::Derivation;
@@ -12,6 +10,7 @@ use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::exact::Number;
 use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::{self, Manipulator};
+use crate::parallel::parallel_map;
 pub use crate::pass::{Pass, Passes};
 use crate::program::{optimise, Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
@@ -83,30 +82,6 @@ fn joint(joint: &manipulator::Joint) -> Joint {
         velocity: joint.limits.velocity.clone(),
         effort: joint.limits.effort.clone(),
     }
-}
-
-/// As much stack as the main thread of a program has.
-const STACK: usize = 8 << 20;
-
-/// What `of` gives for each item, on as many threads as there are processors; the last items, which take longest, first.
-fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let results: Vec<OnceLock<R>> = items.iter().map(|_| OnceLock::new()).collect();
-    let left = AtomicUsize::new(items.len());
-    let work = || {
-        let next = || left.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1)).ok();
-        while let Some(before) = next() {
-            results[before - 1].get_or_init(|| of(&items[before - 1]));
-        }
-    };
-    std::thread::scope(|scope| {
-        let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        for _ in 1..threads.min(items.len()) {
-            // Where there are no more threads, those that there are do the work.
-            let _ = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
-        }
-        work();
-    });
-    results.into_iter().map(|result| result.into_inner().expect("every item is taken")).collect()
 }
 
 /// The cheapest program of a quantity; the first of equals, so that the choice is the same everywhere.

@@ -24,6 +24,7 @@ type Layers = &'static [(&'static str, &'static [&'static str])];
 /// From the text of a description to the text of a module; see the table of stages in ARCHITECTURE.md.
 const CODEGEN: Layers = &[
     ("kinds", &[]),
+    ("parallel", &[]),
     ("pass", &[]),
     ("scramble", &[]),
     ("source", &[]),
@@ -42,7 +43,7 @@ const CODEGEN: Layers = &[
         &["derive", "description", "diagnostic", "document", "exact", "kinds", "manipulator", "ring", "source", "suggest"],
     ),
     ("program", &["catalogue", "exact", "kinds", "pass", "ring", "scramble"]),
-    ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "pass", "program", "ring", "suggest"]),
+    ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "parallel", "pass", "program", "ring", "suggest"]),
     ("emit", &["catalogue", "exact", "inverse_kinematics", "kinds", "manipulator", "program", "ring", "source"]),
     ("show", &["catalogue", "derive", "exact", "pass", "program", "ring"]),
     ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source", "validate"]),

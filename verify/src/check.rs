@@ -7,6 +7,19 @@
 #[cfg(test)]
 mod tests;
 
+use armgen_codegen::parallel;
+
+/// What `of` gives for each item, on several threads; all make the checks that this one makes.
+pub(crate) fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    #[cfg(test)]
+    let left_out = tests::left_out();
+    parallel::parallel_map(items, |item| {
+        #[cfg(test)]
+        tests::leave_out(&left_out);
+        of(item)
+    })
+}
+
 /// A reason to refuse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Check {

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 use armgen_codegen::manipulator::Manipulator;
 
@@ -11,7 +12,7 @@ use crate::arithmetic::roots::dependent;
 use crate::arithmetic::tower::Tower;
 use crate::arithmetic::Arithmetic;
 use crate::base::{dependent_column, OwnParameters, Samples, FITTED};
-use crate::check::Check;
+use crate::check::{parallel_map, Check};
 use crate::claims::{Claims, Resolved};
 use crate::contract::{Promise, Sizes};
 use crate::divisors::{divisors, is_needed, needed};
@@ -65,13 +66,19 @@ pub struct Point<K: Arithmetic> {
     pub reference: Reference<K::Element>,
     /// What `base_regressor` is judged by, if the module has one.
     base: Option<Samples<K::Element>>,
-    constants: RefCell<BTreeMap<Formula, Option<K::Element>>>,
+    constants: Mutex<BTreeMap<Formula, Option<K::Element>>>,
+}
+
+/// A point of either kind.
+enum Drawn<M, E> {
+    Modular(M),
+    Exact(E),
 }
 
 impl<K: Arithmetic> Point<K> {
     /// Values of exact constants here; `None` if one divides by zero.
     pub fn literals(&self, formulas: &[Formula]) -> Option<Vec<K::Element>> {
-        let mut known = self.constants.borrow_mut();
+        let mut known = self.constants.lock().unwrap_or_else(PoisonError::into_inner);
         formulas
             .iter()
             .map(|formula| match known.get(formula) {
@@ -283,24 +290,37 @@ impl Checker {
         let count = if effort.points == 0 { 0 } else { needed.min(MOST_POINTS).max(effort.points) };
         log2_odds.values_mut().for_each(|odds| *odds *= count as f64);
         let mut stream = seed::stream(&manipulator, module, &claims, effort.seed);
-        let (mut points, mut exact) = (Vec::new(), Vec::new());
+        let mut fields = Vec::new();
         for _ in 0..count {
-            let mut field =
-                Prime::new(&mut stream, atoms, dependent).ok_or("the constants have too many square roots for a prime field")?;
-            let reference =
-                Reference::new(&mut field, &manipulator, &vector, Wanted { base: BaseParameters::Solved, pivots: divides })?;
+            let field = Prime::new(&mut stream, atoms, dependent);
+            fields.push(Drawn::Modular(field.ok_or("the constants have too many square roots for a prime field")?));
+        }
+        fields.extend((0..effort.exact_points).map_while(|_| Tower::new(&mut stream, atoms, dependent)).map(Drawn::Exact));
+        let modular = |mut field: Prime| {
+            let wanted = Wanted { base: BaseParameters::Solved, pivots: divides };
+            let reference = Reference::new(&mut field, &manipulator, &vector, wanted)?;
             let samples = match &base {
                 Some(base) => Some(Samples::draw(&mut field, &manipulator, &base.named, &reference, FITTED).ok_or(DIVIDED)?),
                 None => None,
             };
-            points.push(Point { arithmetic: field, reference, base: samples, constants: RefCell::default() });
-        }
-        for _ in 0..effort.exact_points {
-            let Some(mut tower) = Tower::new(&mut stream, atoms, dependent) else { break };
-            let reference =
-                Reference::new(&mut tower, &manipulator, &vector, Wanted { base: BaseParameters::Kept, pivots: false })?;
+            Ok::<_, String>(Point { arithmetic: field, reference, base: samples, constants: Mutex::default() })
+        };
+        let rational = |mut tower: Tower| {
+            let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
+            let reference = Reference::new(&mut tower, &manipulator, &vector, wanted)?;
             let samples = base.as_ref().and_then(|_| Samples::torques(&reference));
-            exact.push(Point { arithmetic: tower, reference, base: samples, constants: RefCell::default() });
+            Ok::<_, String>(Point { arithmetic: tower, reference, base: samples, constants: Mutex::default() })
+        };
+        let drawn = parallel_map(&fields, |field| match field {
+            Drawn::Modular(field) => modular(field.clone()).map(Drawn::Modular),
+            Drawn::Exact(tower) => rational(tower.clone()).map(Drawn::Exact),
+        });
+        let (mut points, mut exact) = (Vec::new(), Vec::new());
+        for point in drawn {
+            match point? {
+                Drawn::Modular(point) => points.push(point),
+                Drawn::Exact(point) => exact.push(point),
+            }
         }
         let sizes = sizes(&manipulator, &vector, base.as_ref());
         let asked = joints_asked(module.programs().map(|(_, program)| program));
@@ -367,7 +387,7 @@ impl Checker {
     /// All functions of a module, those that it lacks last.
     pub fn functions(&self, module: &Module) -> Vec<FunctionReport> {
         let mut reports: Vec<FunctionReport> =
-            module.functions.iter().map(|(name, function)| self.function(name, function, module.real)).collect();
+            parallel_map(&module.functions, |(name, function)| self.function(name, function, module.real));
         // An optional one is missing where the arm has it.
         let of_arm = |name: &str| !self.points.is_empty() && self.points.iter().all(|point| point.knows(name));
         let needed = |name: &String| !self.manipulator.is_massless() || of_arm(name);

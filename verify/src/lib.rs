@@ -95,7 +95,7 @@ use armgen_codegen::Generated;
 use sha2::{Digest, Sha256};
 
 use certificate::Certificate;
-use check::Check;
+use check::{parallel_map, Check};
 use checker::{Checker, Effort};
 use claims::Claims;
 use enclosure::Float;
@@ -274,12 +274,16 @@ fn fill(report: &mut Report, prepared: &Prepared) {
     let right = report.constants.iter().all(|constant| constant.verdict == Verdict::Equal)
         && report.functions.iter().all(|function| function.verdict == Verdict::Equal);
     let trial = right.then(|| Trial::new(module, &report.domain, checker));
-    for (function, trial) in report.functions.iter_mut().zip(trial.iter().cycle()) {
-        let Some(program) = module.program(&function.name) else { continue };
-        let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
-        let bound = bounds::of_function(program, &values, &report.domain, module, checker.claims());
-        function.unfit = trial.fault(program, &values);
-        function.bound = Some(bound);
+    if let Some(trial) = trial {
+        let of_floats = parallel_map(&report.functions, |function| {
+            let program = module.program(&function.name)?;
+            let values: Vec<Formula> = function.literals.iter().map(|literal| literal.value.clone()).collect();
+            let bound = bounds::of_function(program, &values, &report.domain, module, checker.claims());
+            Some((bound, trial.fault(program, &values)))
+        });
+        for (function, (bound, unfit)) in report.functions.iter_mut().zip(of_floats).filter_map(|(f, found)| Some((f, found?))) {
+            (function.bound, function.unfit) = (Some(bound), unfit);
+        }
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
     report.faults.extend(stated::faults(checker.manipulator(), module, report));

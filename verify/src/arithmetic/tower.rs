@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use dashu_base::BitTest;
-use dashu_int::IBig;
 
 use super::Arithmetic;
 use crate::element::Element;
@@ -226,11 +225,19 @@ impl Arithmetic for Tower {
         )
     }
 
-    /// A small fraction: one of some ten thousand.
+    /// A small integer, one of twenty thousand: sums of fractions take a common denominator of all that is drawn.
     fn draw(&mut self) -> Surd {
         let sign = if self.stream.below(2) == 0 { 1 } else { -1 };
-        let (numerator, denominator) = (sign * (1 + self.stream.below(127) as i64), 1 + self.stream.below(127));
-        self.rational(&Rational::from_parts(IBig::from(numerator), denominator.into()))
+        let size = 1 + self.stream.below(10_000) as i64;
+        self.integer(sign * size)
+    }
+
+    /// Of a small fraction t, one of some twenty thousand: with t = a/b the denominator is a² + b², shorter than that of an integer as long as both.
+    fn draw_angle(&mut self) -> (Surd, Surd) {
+        let sign = if self.stream.below(2) == 0 { 1 } else { -1 };
+        let (a, b) = (sign * (1 + self.stream.below(127) as i64), 1 + self.stream.below(127) as i64);
+        let of = |numerator: i64| self.rational(&Rational::from_parts(numerator.into(), (a * a + b * b).unsigned_abs().into()));
+        (of(2 * a * b), of(b * b - a * a))
     }
 }
 

@@ -26,6 +26,16 @@ pub(super) fn is_left_out(check: Check) -> bool {
     LEFT_OUT.with_borrow(|left_out| left_out.contains(&check))
 }
 
+/// What this thread leaves out.
+pub(super) fn left_out() -> Vec<Check> {
+    LEFT_OUT.with_borrow(Vec::clone)
+}
+
+/// So does this thread from now on.
+pub(super) fn leave_out(checks: &[Check]) {
+    LEFT_OUT.set(checks.to_vec());
+}
+
 /// A module that is right, and what belongs to it.
 struct Given {
     source: Source,

@@ -11,7 +11,7 @@ use std::cell::{Cell, RefCell};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use dashu_base::BitTest;
 
@@ -252,25 +252,38 @@ fn reachable(mut stack: Vec<Arc<Definition>>, known: impl Fn(&Definition) -> boo
 }
 
 /// Values of definitions in an arithmetic.
-#[derive(Clone, Debug)]
-pub struct Defined<E>(RefCell<BTreeMap<usize, Option<E>>>);
+#[derive(Debug)]
+pub struct Defined<E>(Mutex<BTreeMap<usize, Option<E>>>);
 
 impl<E> Default for Defined<E> {
     fn default() -> Defined<E> {
-        Defined(RefCell::default())
+        Defined(Mutex::default())
+    }
+}
+
+impl<E: Clone> Clone for Defined<E> {
+    fn clone(&self) -> Defined<E> {
+        Defined(Mutex::new(self.values().clone()))
+    }
+}
+
+impl<E> Defined<E> {
+    /// A value is put in whole: what another thread has left is right.
+    fn values(&self) -> MutexGuard<'_, BTreeMap<usize, Option<E>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl<E: Clone> Defined<E> {
     /// The value of a definition; `of` gives that of a formula.
     pub(super) fn get(&self, definition: &Arc<Definition>, of: impl Fn(&Formula) -> Option<E>) -> Option<E> {
-        let known = |index: usize| self.0.borrow().get(&index).cloned();
+        let known = |index: usize| self.values().get(&index).cloned();
         if let Some(value) = known(definition.index) {
             return value;
         }
-        for definition in reachable(vec![definition.clone()], |other| self.0.borrow().contains_key(&other.index)) {
+        for definition in reachable(vec![definition.clone()], |other| self.values().contains_key(&other.index)) {
             let value = of(&definition.formula);
-            self.0.borrow_mut().insert(definition.index, value);
+            self.values().insert(definition.index, value);
         }
         known(definition.index).flatten()
     }
