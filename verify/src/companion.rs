@@ -262,6 +262,14 @@ impl LaneTable {
         }
     }
 
+    /// The running bound of a step.
+    pub fn running(&self, step: usize) -> [f64; LANES] {
+        match &self.0 {
+            Sorts::Double(lanes) => lanes.running(step),
+            Sorts::Single(lanes) => lanes.running(step),
+        }
+    }
+
     /// The bound of the step that an entry is.
     pub fn bound(&mut self, entry: usize) -> [f64; LANES] {
         match &mut self.0 {

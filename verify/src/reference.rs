@@ -186,13 +186,25 @@ fn center_of_mass<E: Element>(arm: &Arm<E>, state: &State<E>) -> Option<Vec<E>> 
     (0..3).map(along).collect()
 }
 
-/// ∂τ/∂q and ∂τ/∂q̇ row by row, by dual numbers through Newton and Euler.
-fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> (Vec<Vec<E>>, Vec<Vec<E>>) {
+/// What torques are derived by.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum By {
+    Variables,
+    Rates,
+}
+
+/// ∂τ/∂q or ∂τ/∂q̇ row by row, by dual numbers through Newton and Euler.
+fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>, by: By) -> Vec<Vec<E>> {
     let n = arm.dof();
     let moving_arm = arm.map(&|e| Dual::constant(e));
     let still = vec![arm.zero.clone(); n];
-    let column = |along: &[E], rates: &[E]| -> Vec<E> {
-        let state = state.moving(along, rates);
+    let column = |k: usize| -> Vec<E> {
+        let mut unit = still.clone();
+        unit[k] = arm.one.clone();
+        let state = match by {
+            By::Variables => state.moving(&unit, &still),
+            By::Rates => state.moving(&still, &unit),
+        };
         let pose = Pose::new(&moving_arm, &state);
         let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: moving_arm.gravity.clone() };
         let torques = Moving::new(&moving_arm, &pose, motion).torques();
@@ -200,13 +212,8 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> (Vec<Vec<E>
         let springs = spring_torques(&moving_arm, &state.q);
         torques.iter().zip(friction).zip(springs).map(|((t, f), s)| t.plus(&f).plus(&s).rate).collect()
     };
-    let unit = |k: usize| -> Vec<E> { (0..n).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
-    let rows = |columns: Vec<Vec<E>>| -> Vec<Vec<E>> {
-        (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect()
-    };
-    let by_q = rows((0..n).map(|k| column(&unit(k), &still)).collect());
-    let by_dq = rows((0..n).map(|k| column(&still, &unit(k))).collect());
-    (by_q, by_dq)
+    let columns: Vec<Vec<E>> = (0..n).map(column).collect();
+    (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect()
 }
 
 fn identity<E: Element>(arm: &Arm<E>, n: usize) -> Vec<Vec<E>> {
@@ -254,11 +261,12 @@ fn derivatives_and_task<E: Element>(arm: &Arm<E>, state: &State<E>, task: &[usiz
     if let Some(inertia) = solve(&mobility, &identity(arm, task.len())) {
         values.insert("operational_inertia".into(), inertia.concat());
     }
-    let (by_q, by_dq) = torque_derivatives(arm, state);
+    let (by_q, by_dq) = (torque_derivatives(arm, state, By::Variables), torque_derivatives(arm, state, By::Rates));
     values.insert("inverse_dynamics_derivatives".into(), [by_q.concat(), by_dq.concat()].concat());
     let mut accelerated = state.clone();
     accelerated.ddq.clone_from(&values["forward_dynamics"]);
-    let (by_q, by_dq) = torque_derivatives(arm, &accelerated);
+    // B ddq knows no rates: by these the torques are derived as before.
+    let by_q = torque_derivatives(arm, &accelerated, By::Variables);
     let negative: Vec<Vec<E>> = inverse.iter().map(|row| row.iter().map(Element::negated).collect()).collect();
     let by_q = product(&negative, &|k, j| by_q[k][j].clone(), n);
     let by_dq = product(&negative, &|k, j| by_dq[k][j].clone(), n);

@@ -2,7 +2,7 @@
 //! as `x + 1e17 - 1e17` is.
 //!
 //! With u the unit roundoff of the scalar, n the number of joints, k that of axes neither parallel nor perpendicular to the next one beyond four, l the larger one of k and the joints beyond eight, S the largest size of an entry at some states, e the bound of the entry (over a box,
-//! or at a state in f64), and E the one of a plain program of the equations for that entry ([`mod@crate::yardstick`]):
+//! or at a state in f64, where it is the smaller of the two of [`mod@crate::companion`]), and E the one of a plain program of the equations for that entry ([`mod@crate::yardstick`]):
 //!
 //! ```text
 //! (a)  no value leaves the scalar anywhere in the wide box, or is above 2^64 max(1, S, |x|)³ there, x the arguments
@@ -37,14 +37,14 @@
 //! 2^(12 + 5n/2) u S instead of it, with S the largest entry of the function.
 //! Intervals say nothing behind a quotient in general; of `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::arithmetic::twofold::{self, pair, Circle, Pair, TwofoldArguments};
 use crate::arithmetic::wide::Wide;
 use crate::bounds::{corner, draw, two_digits, undivided_bounds, widened, Parameters};
 use crate::check::Check;
 use crate::checker::Checker;
-use crate::companion::{LaneArguments, Table};
+use crate::companion::{LaneArguments, LaneTable, Table};
 use crate::divisors::{needed, undivided_operands, Matrix};
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
@@ -191,8 +191,46 @@ impl Kind {
 struct Errors {
     /// Over the two boxes: bounds of the entries, and the largest size of a value.
     boxes: [(Vec<f64>, f64); 2],
-    /// State by state, in f64: values of the entries, and bounds of their errors.
-    states: Option<Vec<Vec<(f64, f64)>>>,
+    /// At states, in f64.
+    runs: Option<Runs>,
+}
+
+/// A text at all states, in f64.
+struct Runs {
+    table: LaneTable,
+    /// State by state: values of the entries, and bounds of their errors, running ones until smaller ones are asked for.
+    states: Vec<Vec<(f64, f64)>>,
+}
+
+/// What is asked of an entry: the largest bound at some states.
+struct Asked {
+    criterion: Criterion,
+    entry: usize,
+    states: StateSet,
+    allowed: f64,
+    size: f64,
+}
+
+/// States by number, one bit each.
+type StateSet = u64;
+const _: () = assert!(BATCHES * LANES <= StateSet::BITS as usize, "every state has a bit");
+
+fn set_of(states: impl Iterator<Item = usize>) -> StateSet {
+    states.fold(0, |set, state| set | 1 << state)
+}
+
+/// The states of a batch.
+fn set_of_batch(batch: usize) -> StateSet {
+    set_of(batch * LANES..(batch + 1) * LANES)
+}
+
+/// For which entries bounds by sensitivities are computed, which cost a run backwards each.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sensitivities {
+    /// All: what is shown are the smallest bounds.
+    Always,
+    /// Those whose running bound is more than what is allowed: either bound holds, so that one is enough.
+    WhereNeeded,
 }
 
 impl Errors {
@@ -290,7 +328,7 @@ impl<'a> Trial<'a> {
 
     /// What makes a function useless in floats, if it is.
     pub fn fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
-        let (errors, compared) = self.judge(program, values);
+        let (errors, compared) = self.judge(program, values, Sensitivities::WhereNeeded);
         self.leaves(&errors)
             .or_else(|| compared.iter().find_map(Compared::unfit))
             .or_else(|| self.divided_leaves(program).filter(|_| !undivided_operands(program).is_empty()))
@@ -298,23 +336,23 @@ impl<'a> Trial<'a> {
 
     /// All errors beside what is allowed of them.
     pub fn compared(&self, program: &Program, values: &[Formula]) -> Vec<Compared> {
-        self.judge(program, values).1
+        self.judge(program, values, Sensitivities::Always).1
     }
 
     /// The errors of what no quotient takes part in, and all beside what is allowed of them.
-    fn judge(&self, program: &Program, values: &[Formula]) -> (Errors, Vec<Compared>) {
+    fn judge(&self, program: &Program, values: &[Formula], sensitivities: Sensitivities) -> (Errors, Vec<Compared>) {
         let operands = undivided_operands(program);
         if operands.is_empty() {
-            let errors = self.errors(program, values);
+            let mut errors = self.errors(program, values);
             let yardsticks = self.plain.get(&program.name).map_or(&[][..], Vec::as_slice);
-            let mut compared = self.undivided(program, &errors, yardsticks);
+            let mut compared = self.undivided(program, &mut errors, yardsticks, sensitivities);
             compared.extend(self.measured(program, values, yardsticks));
             return (errors, compared);
         }
         let part = program.part(&operands);
-        let errors = self.errors(&part, values);
-        let mut compared = self.undivided(&part, &errors, &vec![self.of_operands(program); operands.len()]);
-        compared.extend(self.divided(program, values));
+        let mut errors = self.errors(&part, values);
+        let mut compared = self.undivided(&part, &mut errors, &vec![self.of_operands(program); operands.len()], sensitivities);
+        compared.extend(self.divided(program, values, sensitivities));
         compared.extend(self.measured(program, values, self.plain.get(&program.name).map_or(&[][..], Vec::as_slice)));
         (errors, compared)
     }
@@ -322,7 +360,7 @@ impl<'a> Trial<'a> {
     /// What rounding does to a function in which no quotient takes part.
     fn errors(&self, program: &Program, values: &[Formula]) -> Errors {
         let over = |domain: &Domain| undivided_bounds(program, values, domain, self.module.real);
-        Errors { boxes: self.boxes.each_ref().map(over), states: self.runs(program, values) }
+        Errors { boxes: self.boxes.each_ref().map(over), runs: self.runs(program, values) }
     }
 
     /// The largest of what operands of quotients can be part of: torques, Jacobian and inertia; of a centre of mass the moments are not among them.
@@ -354,7 +392,7 @@ impl<'a> Trial<'a> {
         if !errors.is_bounded(which) && Check::Leaves.is_made() {
             return Some(Unfit::Leaves(format!("a value can leave {} inside the box", real.name())));
         }
-        let size = size_of(errors.states.as_ref()?);
+        let size = size_of(&errors.runs.as_ref()?.states);
         if !size.is_finite() && Check::Headroom.is_made() {
             return Some(Unfit::Leaves("a value can leave f64 at a state of the box".into()));
         }
@@ -367,16 +405,22 @@ impl<'a> Trial<'a> {
     }
 
     /// What no quotient takes part in.
-    fn undivided(&self, program: &Program, errors: &Errors, yardsticks: &[Plain]) -> Vec<Compared> {
-        let Some(runs) = &errors.states else { return Vec::new() };
+    fn undivided(
+        &self,
+        program: &Program,
+        errors: &mut Errors,
+        yardsticks: &[Plain],
+        sensitivities: Sensitivities,
+    ) -> Vec<Compared> {
+        let Some(runs) = &errors.runs else { return Vec::new() };
         let real = self.module.real;
         let (unit, n) = (Float::F64.unit(), self.joints as f64);
-        let size = size_of(runs);
+        let (size, states) = (size_of(&runs.states), runs.states.len());
         // Where there is no yardstick, by sizes alone.
         let (wider, wider_than_states) = ((0.75 * self.long).exp2(), (2.0 * self.oblique).exp2());
         let by_size = wider_than_states * (12.0 + 2.5 * n).exp2() * (real.unit() * size + real.smallest_normal());
         let lost = wider * (4.0 + 0.5 * n).exp2() * unit * size;
-        let sized = Plain { states: vec![(lost, size); runs.len()], values: Vec::new(), boxes: [f64::INFINITY; 2] };
+        let sized = Plain { states: vec![(lost, size); states], values: Vec::new(), boxes: [f64::INFINITY; 2] };
         let plain = |k: usize| yardsticks.get(k).filter(|plain| !plain.states.is_empty()).unwrap_or(&sized);
         let place = |k: usize| program.outputs[k].place.clone();
         let mut compared = Vec::new();
@@ -402,16 +446,55 @@ impl<'a> Trial<'a> {
                 }
             }
         }
-        for k in 0..program.outputs.len() {
-            let all = plain(k);
-            let judged = |state: usize| is_finite(&all.states[state]).then(|| runs[state][k].1);
-            let random = worst((0..runs.len()).filter(|state| Kind::of(*state) == Kind::Random).filter_map(judged));
-            for (error, plain) in [(random, &all.random()), (worst((0..runs.len()).filter_map(judged)), all)] {
+        let mut asked = Vec::new();
+        for entry in 0..program.outputs.len() {
+            let all = plain(entry);
+            let finite = (0..states).filter(|&state| is_finite(&all.states[state]));
+            let random = finite.clone().filter(|&state| Kind::of(state) == Kind::Random);
+            for (states, plain) in [(set_of(random), &all.random()), (set_of(finite), all)] {
                 let allowed = wider * FACTOR * (plain.error() + f64::MIN_POSITIVE);
-                compared.push(Compared { criterion: Criterion::States, place: place(k), error, allowed, size: plain.size() });
+                asked.push(Asked { criterion: Criterion::States, entry, states, allowed, size: plain.size() });
             }
         }
+        if let Some(runs) = &mut errors.runs {
+            compared.extend(self.at_states(program, runs, &asked, sensitivities));
+        }
         compared
+    }
+
+    /// Bounds at states beside what is allowed there.
+    fn at_states(&self, program: &Program, runs: &mut Runs, asked: &[Asked], sensitivities: Sensitivities) -> Vec<Compared> {
+        let error = |runs: &Runs, asked: &Asked| {
+            let of_set = runs.states.iter().enumerate().filter(|(state, _)| asked.states >> state & 1 == 1);
+            worst(of_set.map(|(_, entries)| entries[asked.entry].1))
+        };
+        let open = |asked: &&Asked| sensitivities == Sensitivities::Always || exceeds(error(runs, asked), asked.allowed);
+        let open: Vec<&Asked> = asked.iter().filter(open).collect();
+        for (k, (_, lanes)) in self.batches.iter().enumerate() {
+            let states = set_of_batch(k);
+            let entries: BTreeSet<usize> =
+                open.iter().filter(|asked| asked.states & states != 0).map(|asked| asked.entry).collect();
+            if entries.is_empty() {
+                continue;
+            }
+            runs.table.run(lanes);
+            let mut known: BTreeMap<usize, [f64; LANES]> = BTreeMap::new();
+            for entry in entries {
+                let step = program.outputs[entry].step;
+                let bound = known.entry(step).or_insert_with(|| runs.table.bound(step));
+                for (state, bound) in runs.states[k * LANES..].iter_mut().zip(bound) {
+                    state[entry].1 = state[entry].1.min(*bound);
+                }
+            }
+        }
+        let compared = |asked: &Asked| Compared {
+            criterion: asked.criterion,
+            place: program.outputs[asked.entry].place.clone(),
+            error: error(runs, asked),
+            allowed: asked.allowed,
+            size: asked.size,
+        };
+        asked.iter().map(compared).collect()
     }
 
     /// Errors as they occur, of states of each kind within the limits.
@@ -468,10 +551,10 @@ impl<'a> Trial<'a> {
     }
 
     /// What divides, state by state.
-    fn divided(&self, program: &Program, values: &[Formula]) -> Vec<Compared> {
-        let (Some(runs), Some(plain)) = (self.runs(program, values), self.plain.get(&program.name)) else { return Vec::new() };
+    fn divided(&self, program: &Program, values: &[Formula], sensitivities: Sensitivities) -> Vec<Compared> {
+        let Some(plain) = self.plain.get(&program.name) else { return Vec::new() };
         let unit = Float::F64.unit();
-        let mut compared = Vec::new();
+        let mut asked = Vec::new();
         for state in self.judged() {
             let size = worst(plain.iter().map(|entry| entry.states[state].1));
             let lost = worst(plain.iter().map(|entry| entry.states[state].0)) / (unit * size);
@@ -479,13 +562,17 @@ impl<'a> Trial<'a> {
             if exceeds(lost, LOST) {
                 continue;
             }
-            for (k, entry) in plain.iter().enumerate() {
-                let allowed = FACTOR * (entry.states[state].0 + unit * size + f64::MIN_POSITIVE);
-                let (error, place) = (runs[state][k].1, program.outputs[k].place.clone());
-                compared.push(Compared { criterion: Criterion::Divided, place, error, allowed, size: entry.states[state].1 });
-            }
+            let states = set_of([state].into_iter());
+            asked.extend(plain.iter().enumerate().map(|(entry, plain)| {
+                let (error, size_of_entry) = plain.states[state];
+                let allowed = FACTOR * (error + unit * size + f64::MIN_POSITIVE);
+                Asked { criterion: Criterion::Divided, entry, states, allowed, size: size_of_entry }
+            }));
         }
-        compared
+        if asked.is_empty() {
+            return Vec::new();
+        }
+        self.runs(program, values).map_or_else(Vec::new, |mut runs| self.at_states(program, &mut runs, &asked, sensitivities))
     }
 
     /// That a value of what divides leaves the scalar at a state.
@@ -503,23 +590,21 @@ impl<'a> Trial<'a> {
             .then(|| Unfit::Leaves(format!("a value leaves {} at a state of the box", real.name())))
     }
 
-    /// Values and errors of the results in f64, state by state; the arguments are those of the module's scalar.
-    fn runs(&self, program: &Program, values: &[Formula]) -> Option<Vec<Vec<(f64, f64)>>> {
+    /// A text in f64, with running bounds; the arguments are those of the module's scalar.
+    fn runs(&self, program: &Program, values: &[Formula]) -> Option<Runs> {
         let errors = literal_errors(program, values, Float::F64);
         let mut table = Table::of(program, &errors, Float::F64).ok()?.lanes();
-        let mut runs = vec![Vec::with_capacity(program.outputs.len()); self.batches.len() * LANES];
-        for (k, (_, lanes)) in self.batches.iter().enumerate() {
+        let mut states = vec![Vec::with_capacity(program.outputs.len()); self.batches.len() * LANES];
+        for ((_, lanes), states) in self.batches.iter().zip(states.chunks_exact_mut(LANES)) {
             table.run(lanes);
-            let mut known: BTreeMap<usize, [f64; LANES]> = BTreeMap::new();
             for output in &program.outputs {
-                let (value, _) = table.step(output.step);
-                let error = *known.entry(output.step).or_insert_with(|| table.bound(output.step));
-                for lane in 0..LANES {
-                    runs[k * LANES + lane].push((value[lane], error[lane]));
+                let ((value, _), error) = (table.step(output.step), table.running(output.step));
+                for (lane, state) in states.iter_mut().enumerate() {
+                    state.push((value[lane], error[lane]));
                 }
             }
         }
-        Some(runs)
+        Some(Runs { table, states })
     }
 }
 

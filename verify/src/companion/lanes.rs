@@ -48,8 +48,8 @@ pub(super) struct Lanes {
     values: Vec<Many>,
     roundings: Vec<[Real; LANES]>,
     sensitivities: Vec<Many>,
-    /// The steps that a step stands on, last first, for each that is an entry; empty for running bounds.
-    cones: std::collections::BTreeMap<u32, Vec<u32>>,
+    /// The entries that are bounded by sensitivities, each with the steps that it stands on, last first, once it was asked for.
+    cones: std::collections::BTreeMap<u32, Option<Vec<u32>>>,
 }
 
 impl Lanes {
@@ -59,24 +59,6 @@ impl Lanes {
             super::Row::In(argument, _) => Some(*argument),
             _ => None,
         };
-        let cone = |entry: u32| {
-            let mut inside = vec![false; steps.len()];
-            inside[entry as usize] = true;
-            for i in (0..=entry as usize).rev().filter(|_| sensitive) {
-                if !inside[i] {
-                    continue;
-                }
-                match steps[i] {
-                    Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) | Step::Stribeck(..) => {}
-                    Step::Neg(a) => inside[a as usize] = true,
-                    Step::Add(a, b) | Step::Sub(a, b) | Step::Mul(a, b) | Step::Scale(a, b) | Step::Div(a, b) => {
-                        inside[a as usize] = true;
-                        inside[b as usize] = true;
-                    }
-                }
-            }
-            (0..=entry).rev().filter(|&i| sensitive && inside[i as usize]).collect()
-        };
         let many = || vec![Many::NOTHING; steps.len()];
         Lanes {
             inputs: rows.iter().map(input).collect(),
@@ -84,7 +66,7 @@ impl Lanes {
             values: many(),
             roundings: vec![[0.0; LANES]; steps.len()],
             sensitivities: many(),
-            cones: entries.iter().map(|&entry| (entry, cone(entry))).collect(),
+            cones: entries.iter().filter(|_| sensitive).map(|&entry| (entry, None)).collect(),
             steps,
         }
     }
@@ -147,15 +129,40 @@ impl Lanes {
         (many.value.map(f64::from), many.error.map(f64::from))
     }
 
+    /// The running bounds of a step, whatever bounds the companion has.
+    #[allow(clippy::useless_conversion)]
+    pub(super) fn running(&self, step: usize) -> [f64; LANES] {
+        self.values[step].error.map(|running| f64::from(finished(running, self.steps.len())))
+    }
+
     /// The bounds of a step that is an entry.
     #[allow(clippy::useless_conversion)]
     pub(super) fn bound(&mut self, entry: u32) -> [f64; LANES] {
-        let running = match self.cones.get(&entry) {
-            Some(cone) if !cone.is_empty() => backward_in_lanes(&self.steps, &self.values, &self.roundings, &mut self.sensitivities, cone),
-            _ => self.values[entry as usize].error,
-        };
-        running.map(|running| f64::from(finished(running, self.steps.len())))
+        let Some(cone) = self.cones.get_mut(&entry) else { return self.running(entry as usize) };
+        let cone = cone.get_or_insert_with(|| cone_of(&self.steps, entry));
+        let bound = backward_in_lanes(&self.steps, &self.values, &self.roundings, &mut self.sensitivities, cone);
+        bound.map(|bound| f64::from(finished(bound, self.steps.len())))
     }
+}
+
+/// The steps that an entry stands on, last first, itself the first one.
+fn cone_of(steps: &[Step], entry: u32) -> Vec<u32> {
+    let mut inside = vec![false; entry as usize + 1];
+    inside[entry as usize] = true;
+    for i in (0..=entry as usize).rev() {
+        if !inside[i] {
+            continue;
+        }
+        match steps[i] {
+            Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) | Step::Stribeck(..) => {}
+            Step::Neg(a) => inside[a as usize] = true,
+            Step::Add(a, b) | Step::Sub(a, b) | Step::Mul(a, b) | Step::Scale(a, b) | Step::Div(a, b) => {
+                inside[a as usize] = true;
+                inside[b as usize] = true;
+            }
+        }
+    }
+    (0..=entry).rev().filter(|&i| inside[i as usize]).collect()
 }
 
 /// [`backward`] in lanes; what it leaves in `sensitivities` is 0 again.
