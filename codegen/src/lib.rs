@@ -88,6 +88,8 @@ pub struct Generated {
     pub absent: Vec<Absent>,
     /// What the texts print.
     program: Module,
+    /// The module but for what notes are written into.
+    text: emit::rust::Text,
     origin: Origin,
     notes: Notes,
     /// The arm that they are of.
@@ -99,7 +101,7 @@ pub struct Generated {
 impl Generated {
     /// Prints the module again, with notes in its documentation.
     pub fn annotate(&mut self, notes: &Notes) {
-        self.module = emit::rust::print(&self.program, &self.origin, notes);
+        self.module = self.text.documented(&self.program, &self.origin, notes);
         self.notes = notes.clone();
     }
 
@@ -172,8 +174,10 @@ pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagn
         return (None, diagnostics);
     }
     let origin = Origin::of(source);
+    let text = emit::rust::Text::of(&module);
     let generated = Generated {
-        module: emit::rust::print(&module, &origin, &Notes::default()),
+        module: text.documented(&module, &origin, &Notes::default()),
+        text,
         runtime: emit::rust::print_runtime(&module, &origin),
         c: emit::c::print(&module, &origin),
         constants: module.constants(),

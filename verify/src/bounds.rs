@@ -18,6 +18,7 @@ use std::collections::BTreeMap;
 use armgen_codegen::emit::Notes;
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::parallel::parallel_map;
 
 use crate::arithmetic::wide::Wide;
 use crate::claims::Claims;
@@ -230,13 +231,11 @@ pub fn domain_of(manipulator: &Manipulator, module: &Module) -> Domain {
 /// The bounds of all functions that can be read, by name.
 pub fn of(manipulator: &Manipulator, module: &Module, claims: &Claims) -> BTreeMap<String, Bound> {
     let domain = domain_of(manipulator, module);
-    let mut bounds = BTreeMap::new();
-    for (name, function) in &module.functions {
-        let Ok(function) = function else { continue };
-        let values = claims.resolve(name, &function.program.literals, module.real).values;
-        bounds.insert(name.clone(), of_function(&function.program, &values, &domain, module, claims));
-    }
-    bounds
+    let bound = |(name, program): &(&str, &Program)| {
+        let values = claims.resolve(name, &program.literals, module.real).values;
+        (name.to_string(), of_function(program, &values, &domain, module, claims))
+    };
+    parallel_map(&module.programs().collect::<Vec<_>>(), bound).into_iter().collect()
 }
 
 /// A bound with two digits, rounded up.

@@ -19,6 +19,7 @@ use super::plain::asks_for_exponentials;
 use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
+use crate::parallel::parallel_map;
 use crate::program::{Function, Module};
 use crate::ring::Symbol;
 use body::Body;
@@ -33,24 +34,49 @@ const STRIBECK: &str = include_str!("rust/stribeck.rs");
 
 /// The emitted module as text.
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
-    let real = match module.scalar {
-        Scalar::F64 => quote!(f64),
-        Scalar::F32 => quote!(f32),
-    };
-    let constants = constants(module);
-    let functions = module.functions.iter().map(|f| function(module, f, notes.functions.get(&f.name())));
-    let private = private_block(module);
-    let batches = module.batch.map(|lanes| batch::modules(module, lanes));
-    let tokens = quote! {
-        /// The scalar of all functions.
-        #[allow(dead_code)]
-        pub type Real = #real;
-        #constants
-        #(#functions)*
-        #private
-        #batches
-    };
-    head(origin, &notes.head) + &absent(module) + &format(tokens)
+    Text::of(module).documented(module, origin, notes)
+}
+
+/// The text of a module, but for what notes are written into: its head and the documentation of its functions.
+#[derive(Clone, Debug)]
+pub struct Text {
+    before: String,
+    functions: Vec<String>,
+    after: String,
+}
+
+impl Text {
+    /// Function by function, side by side: what a formatter holds of a text is many times the text.
+    pub fn of(module: &Module) -> Text {
+        let real = match module.scalar {
+            Scalar::F64 => quote!(f64),
+            Scalar::F32 => quote!(f32),
+        };
+        let constants = constants(module);
+        let before = formatted(quote! {
+            /// The scalar of all functions.
+            #[allow(dead_code)]
+            pub type Real = #real;
+            #constants
+        });
+        let private = private_block(module);
+        let batches = module.batch.map(|lanes| batch::modules(module, lanes));
+        let functions = parallel_map(&module.functions, |f| formatted(function(module, f)));
+        Text { before, functions, after: formatted(quote!(#private #batches)) }
+    }
+
+    /// The whole text.
+    pub fn documented(&self, module: &Module, origin: &Origin, notes: &Notes) -> String {
+        let mut text = self.before.clone();
+        for (function, own) in module.functions.iter().zip(&self.functions) {
+            let note = notes.functions.get(&function.name()).map(String::as_str);
+            for line in documentation::lines(&common::described(function, module).blocks(false, note)) {
+                text += &format!("///{line}\n");
+            }
+            text += own;
+        }
+        head(origin, &notes.head) + &absent(module) + &spaced(&(text + &self.after))
+    }
 }
 
 /// What the arm does not have, and why.
@@ -81,9 +107,15 @@ pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
 }
 
 fn format(tokens: TokenStream) -> String {
-    let file = syn::parse2(tokens).expect("the emitted tokens are a Rust file");
-    let text = prettyplease::unparse(&file);
-    // A blank line between items reads better than the formatter's wall.
+    spaced(&formatted(tokens))
+}
+
+fn formatted(tokens: TokenStream) -> String {
+    prettyplease::unparse(&syn::parse2(tokens).expect("the emitted tokens are a Rust file"))
+}
+
+/// With a blank line between items, which reads better than the formatter's wall.
+fn spaced(text: &str) -> String {
     let mut spaced = String::with_capacity(text.len() + 1024);
     let mut previous = "";
     for line in text.lines() {
@@ -211,9 +243,8 @@ fn base_constants(module: &Module) -> Option<TokenStream> {
     })
 }
 
-fn function(module: &Module, function: &Function, note: Option<&String>) -> TokenStream {
-    let blocks = common::described(function, module).blocks(false, note.map(String::as_str));
-    let documentation = documentation::lines(&blocks);
+/// A function without its documentation.
+fn function(module: &Module, function: &Function) -> TokenStream {
     let name = format_ident!("{}", function.name());
     let arguments = function.arguments.iter().map(|&a| {
         let (name, length) = argument(a);
@@ -224,7 +255,6 @@ fn function(module: &Module, function: &Function, note: Option<&String>) -> Toke
     let Body { parts, lines, entries } = body::body(module, function);
     let (returns, result) = (type_of(function.quantity), result(function.quantity, &entries, &module.sizes()));
     quote! {
-        #(#[doc = #documentation])*
         #[allow(dead_code, clippy::all)]
         pub fn #name(#(#arguments),*) -> #returns {
             #ignored
