@@ -23,7 +23,7 @@ pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_
     for column in columns {
         let _ = write!(text, "<th scope=\"col\">{column}</th>");
     }
-    text += "<th scope=\"col\">limits</th><th scope=\"col\">line of the file</th></tr></thead>\n<tbody>\n";
+    text += "<th scope=\"col\">limits</th><th scope=\"col\" title=\"of the description\">line</th></tr></thead>\n<tbody>\n";
     for (i, row) in rows.iter().enumerate() {
         let number = i + 1;
         let _ = write!(

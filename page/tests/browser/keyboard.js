@@ -7,7 +7,7 @@
     document.addEventListener("focusin", () => {
         const element = document.activeElement;
         const style = getComputedStyle(element);
-        globalThis.visited.push([controls.indexOf(element), style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2]);
+        globalThis.visited.push([controls.indexOf(element), style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2, element.outerHTML.slice(0, 100)]);
     });
     globalThis.wanted = controls;
     return controls.length;
