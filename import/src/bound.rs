@@ -9,14 +9,14 @@
 //!
 //! where Q is the largest |q| of a slide. For the torques a Newton-Euler recursion runs over magnitudes of angular velocity, angular
 //! acceleration and acceleration and over their differences outwards, then over forces and moments inwards; products differ by
-//! |ab - a'b'| ≤ Δa |b| + |a'| Δb.
+//! |ab - a'b'| ≤ Δa |b| + |a'| Δb. What turns the whole arm about the direction of gravity changes no torque, and is left out of them.
 //!
 //! The box: q within its limits (none: ±pi rad, ±1 m), |dq| up to the velocity limit (none: 4 rad/s, 1 m/s), |ddq| ≤ 10.
 //! Sums are floats, rounded up at the end.
 
 use crate::body::Body;
 use crate::chain::{Arm, Row};
-use crate::pose::Pose;
+use crate::pose::{Pose, Turn};
 use crate::snap::Written;
 
 /// What a bound is multiplied by: more than all roundings here.
@@ -131,6 +131,23 @@ pub(crate) fn of(arm: &Arm) -> Bound {
     Bound { flange: flange * UP, orientation: orientation * UP, torque: torque(arm, &ways, &boxes) * UP }
 }
 
+/// By how much of its angle snapping turned the whole arm about z of the base alone, along which gravity points.
+fn about_gravity(arm: &Arm) -> f64 {
+    if arm.gravity[..2].iter().any(|component| component != "0") || arm.gravity_offset != 0.0 {
+        return 0.0;
+    }
+    let mut yaw = 0.0;
+    for pose in arm.rows.first().into_iter().flat_map(|row| &row.origin) {
+        // The last of the three turns is about z of the frame before.
+        let Turn::Rpy([roll, pitch, about_z]) = &pose.turn else { break };
+        yaw += about_z.offset;
+        if [roll, pitch].iter().any(|angle| !angle.is_zero() || angle.offset != 0.0) {
+            break;
+        }
+    }
+    yaw
+}
+
 /// Newton-Euler over magnitudes, in the axes of each link.
 fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
     const ACCELERATION: f64 = 10.0;
@@ -149,7 +166,8 @@ fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
         }
         steps.push((turned, lever));
         let (rate, change) = (Pair::new(dq, eta * dq), Pair::new(ACCELERATION, eta * ACCELERATION));
-        a = a.plus(dw.times(lever)).plus(w.times(w).times(lever)).turned(turned);
+        let felt = if j == 0 { turned - about_gravity(arm) } else { turned };
+        a = a.plus(dw.times(lever)).plus(w.times(w).times(lever)).turned(felt);
         (w, dw) = (w.turned(turned), dw.turned(turned));
         if row.prismatic {
             a = a.plus(change).plus(Pair::new(2.0, 0.0).times(w).times(rate));

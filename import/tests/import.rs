@@ -117,6 +117,28 @@ fn what_is_snapped_to_nothing_counts_in_the_bound() {
     assert!(flange(&text) > flange(EVERYTHING) + 0.99e-6);
 }
 
+/// A whole arm that is turned about the vertical feels the same gravity; one that is tilted does not.
+#[test]
+fn what_turns_the_arm_about_gravity_moves_no_torque() {
+    let bounds = |rpy: &str| {
+        let text = format!(
+            "<robot name='a'><link name='b'/><link name='l'><inertial><origin xyz='0.1 0 0'/><mass value='1'/>\
+             <inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial></link>\
+             <joint name='j' type='revolute'><parent link='b'/><child link='l'/><origin rpy='{rpy}' xyz='0 0 1'/><axis xyz='0 1 0'/>\
+             <limit lower='-1' upper='1' velocity='1' effort='1'/></joint></robot>"
+        );
+        let json = imported(&text, &Options::default()).report.to_json();
+        ["orientation", "torque"].map(|name| {
+            let (_, rest) = json.split_once(&format!("\"{name}\": ")).expect("a bound");
+            rest.split([',', '\n']).next().and_then(|number| number.trim().parse::<f64>().ok()).expect("a number")
+        })
+    };
+    let [orientation, torque] = bounds("0 0 0.7854");
+    assert!(orientation > 1e-6 && torque == 0.0, "{orientation} {torque}");
+    let [orientation, torque] = bounds("0.7854 0 0");
+    assert!(orientation > 1e-6 && torque > 1e-6, "{orientation} {torque}");
+}
+
 /// Limits of 1e6 and more are none, those below are kept, and the report counts what was left out.
 #[test]
 fn limits_beyond_any_arm_are_none() {

@@ -136,13 +136,14 @@ impl Case<'_> {
         assert!(base.iter().all(|&x| x != 0.0), "{}: a base parameter without effect", self.what);
         let all = matches!(self.description.regressor_choice(), RegressorChoice::Base);
         let count = robot.nominal().len();
-        let (mut base_rows, mut joined_rows): (Matrix, Matrix) = (Vec::new(), Vec::new());
+        let (mut base_rows, mut own_rows, mut joined_rows): (Matrix, Matrix, Matrix) = Default::default();
         for k in 0..(10 * n as u64 + 20) {
             let state = arguments(&random::state(n, 78_000 + k), &[]);
             let rows: Matrix = robot.call("base_regressor", &state).chunks(base.len()).map(<[f64]>::to_vec).collect();
             if all {
                 let own = Arguments { dqr: state.dq.clone(), ddqr: state.ddq.clone(), ..state.clone() };
                 let own = robot.call("regressor", &own);
+                own_rows.extend(own.chunks(count).map(<[f64]>::to_vec));
                 joined_rows.extend(own.chunks(count).zip(&rows).map(|(own, base)| [own, base].concat()));
             }
             base_rows.extend(rows);
@@ -150,7 +151,7 @@ impl Case<'_> {
         assert_eq!(rank(&base_rows), base.len(), "{}: base_regressor has full column rank", self.what);
         if all {
             // Its columns are combinations of those of the regressor of all base parameters.
-            assert_eq!(rank(&joined_rows), count, "{}: base_regressor by regressor", self.what);
+            assert_eq!(rank(&joined_rows), rank(&own_rows), "{}: base_regressor by regressor", self.what);
         }
 
         let (by_q, by_dq) = model.inverse_dynamics_derivatives(&a.q, &a.dq, &a.ddq);
@@ -231,19 +232,30 @@ impl Case<'_> {
         times(&rows, pi).iter().zip(self.robot.call("known_torque", a)).map(|(y, known)| y + known).collect()
     }
 
-    /// Base parameters: as many as the standard regressor has rank, spanning the same, independent.
+    /// Base parameters: as many as the standard regressor has rank where friction is known apart from all else, spanning the same, independent.
     fn judge_base_columns(&self) {
         let n = self.robot.dof();
         let (mut base, mut standard): (Matrix, Matrix) = Default::default();
+        let units = |count: usize| (0..count).map(move |k| (0..count).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>());
+        let count = self.robot.parameter_names().len();
+        let standards = self.model.standard_parameters().len();
+        // Rows of friction, and below them those of all else; `friction[column][joint]`.
+        let apart = |y: Matrix, friction: Vec<Vec<f64>>| -> Matrix {
+            let friction: Matrix = (0..n).map(|i| friction.iter().map(|column| column[i]).collect()).collect();
+            let rest = y.iter().zip(&friction).map(|(y, f)| y.iter().zip(f).map(|(y, f)| y - f).collect()).collect::<Matrix>();
+            [friction, rest].concat()
+        };
         for k in 0..(10 * n as u64 + 20) {
             let state = random::state(n, 77_000 + k);
             let y = self.robot.call("regressor", &arguments(&state, &[]));
-            base.extend(y.chunks(y.len() / n).map(<[f64]>::to_vec));
-            standard.extend(self.model.standard_regressor(&state.q, &state.dq, &state.dqr, &state.ddqr).y);
+            let of_unit = |pi: Vec<f64>| self.robot.call("friction_with", &arguments(&state, &pi));
+            base.extend(apart(y.chunks(count).map(<[f64]>::to_vec).collect(), units(count).map(of_unit).collect()));
+            let of_unit = |pi: Vec<f64>| self.model.with_standard_parameters(&pi).friction(&state.dq);
+            let y = self.model.standard_regressor(&state.q, &state.dq, &state.dqr, &state.ddqr).y;
+            standard.extend(apart(y, units(standards).map(of_unit).collect()));
         }
         let both: Matrix = base.iter().zip(&standard).map(|(b, s)| [b.as_slice(), s].concat()).collect();
         let (rank_of_base, rank_of_standard, rank_of_both) = (rank(&base), rank(&standard), rank(&both));
-        let count = self.robot.parameter_names().len();
         let found = (rank_of_base, rank_of_standard, rank_of_both);
         assert_eq!(found, (count, count, count), "{}: ranks of base, standard, both", self.what);
     }

@@ -85,7 +85,7 @@ const PAGE: Layers = &[
     ("bodies", &["rows"]),
     ("cost", &["html"]),
     ("equations", &["html"]),
-    ("logs", &["html"]),
+    ("logs", &["html", "rows"]),
     ("warnings", &["html"]),
     ("sheet", &["html", "rows", "warnings"]),
     ("document", &["bodies", "html", "rows", "sheet", "warnings"]),

@@ -16,13 +16,18 @@ use armgen_verify::verify_with;
 /// How many arms, from seed 0 on; another number with `ARMGEN_RANDOM_ARMS`.
 const ARMS: u64 = 24;
 
-fn arms() -> u64 {
-    std::env::var("ARMGEN_RANDOM_ARMS").map_or(ARMS, |text| text.parse().expect("ARMGEN_RANDOM_ARMS is a number"))
+/// In 96 the acceleration of the slide cancels in the torque of the first joint; in 360 an offset of friction, an armature and the weight on a slide
+/// are constant torques, which the base parameters of gravity and friction share out.
+const SINGULAR: [u64; 2] = [96, 360];
+
+fn arms() -> impl Iterator<Item = u64> {
+    let arms = std::env::var("ARMGEN_RANDOM_ARMS").map_or(ARMS, |text| text.parse().expect("ARMGEN_RANDOM_ARMS is a number"));
+    (0..arms).chain(SINGULAR.into_iter().filter(move |&seed| seed >= arms))
 }
 
 #[test]
 fn arms_of_poses_agree_with_the_oracle() {
-    for seed in 0..arms() {
+    for seed in arms() {
         let text = random::posed_arm(seed);
         let robot = Interpreted::with_options(&text, &Options::default()).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
         judge(
@@ -37,12 +42,12 @@ fn arms_of_poses_agree_with_the_oracle() {
 
 #[test]
 fn arms_of_poses_equal_their_equations_exactly() {
-    for seed in 0..arms() {
+    for seed in arms() {
         let text = random::posed_arm(seed);
         let source = Source::new("robot.yaml", text.clone());
         let (generated, said) = armgen_codegen::generate(&source, &Options::default());
         let generated = generated.unwrap_or_else(|| panic!("{}\n{text}", said.render(&source, Colour::Never)));
-        let effort = Effort { points: 2, exact_points: 0, seed };
+        let effort = Effort { points: 2, exact_points: 1, seed };
         let report = verify_with(&source, &generated.module, Claims::from_numbers(&generated.constants), effort);
         assert!(report.passed(), "seed {seed}: {}\n{text}", report.first_fault().unwrap_or_default());
     }
@@ -50,7 +55,7 @@ fn arms_of_poses_equal_their_equations_exactly() {
 
 #[test]
 fn every_part_of_the_format_occurs() {
-    let all: String = (0..arms()).map(random::posed_arm).collect();
+    let all: String = arms().map(random::posed_arm).collect();
     for part in [
         "urdf",
         "standard",

@@ -4,7 +4,8 @@
 //! as it is written and f* the same of the equations, as a plain program computes them ([`growth`](mod@crate::arithmetic::growth)):
 //!
 //! ```text
-//! degree of f in q[k], dq[k], ddq[k], ...                            at most that of f*
+//! degree of f in q[k], dq[k], tau[k]                                  at most that of f*
+//! degree of f in ddq[k], ddqr[k]                                      at most that of any entry of the function
 //! degree of f in all entries of an argument, and in all arguments     at most that of f*
 //! degree of f in pi[k]                                                at most that of any entry of the function, and 1
 //! degree of f in sin q[k], cos q[k]                                   at most twice that of f*, and a square
@@ -13,8 +14,8 @@
 //! ```
 //!
 //! A sine of one joint variable has its digits however large that is; a sum of two has lost those of the smaller one. So sums are those of frames,
-//! and in a function that does not depend on a variable there is no sum with it. Emitted functions have parameters and angles in common that cancel in
-//! single entries, and sines that a plain program multiplies out: those limits are wider.
+//! and in a function that does not depend on a variable there is no sum with it. Emitted functions have parameters, accelerations and angles in common that cancel
+//! in single entries, and sines that a plain program multiplies out: those limits are wider.
 //!
 //! Where a function divides, what no quotient takes part in is held to the largest degrees of torques, Jacobian and mass, and the whole to those in all
 //! entries of each argument but the joint variables.

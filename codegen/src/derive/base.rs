@@ -4,6 +4,7 @@
 //! Y_d = Y_b K the torque is Y_b (phi_b + K phi_d), and the entries of phi_b + K phi_d are the base parameters
 //! (Gautier and Khalil 1990). The rank and the choice of columns are found in the prime field from random states, where a state more never
 //! changes the answer but for odds of 1/p; each row of K is then solved for exactly, over the exact constants, from rational states.
+//! Friction is grouped with nothing else, so that gravity and friction keep their own parameters.
 
 use super::arm::{Arm, GroupingConvention};
 use super::newton_euler::Motion;
@@ -373,7 +374,10 @@ fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvent
     }
 
     let motion = Motion::with_reference(&mut pool, &arm);
-    let y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns, &mut Plan::default());
+    let mut y = columns_in_joint_frames(&mut pool, &arm, &motion, &columns, &mut Plan::default());
+    if !own {
+        y = with_friction_apart(&y, &columns);
+    }
     let dependence = dependence(&pool, &y);
     let mut base: Vec<(StandardParameter, Parameter)> = dependence
         .independent
@@ -393,6 +397,22 @@ fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvent
     base.sort_by_key(|(parameter, _)| *parameter);
     let (kept, entries) = base.into_iter().unzip();
     ParameterVector { entries, kind: ParameterKind::Base(kept) }
+}
+
+/// The rows of friction below those of all other torques. On a slide that gravity acts along, the torque of a mass less that of an armature is constant,
+/// and so is the torque of an offset of friction: a motion cannot tell the three apart, but a friction that holds part of the weight is none, and
+/// `gravity_with` and `friction_with` take them one by one.
+fn with_friction_apart(y: &[Vec<ExprId>], columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
+    let rows = |friction: bool| {
+        y.iter().map(move |row| {
+            let kept = row
+                .iter()
+                .zip(columns)
+                .map(|(&entry, column)| if column.is_friction() == friction { entry } else { ExprId::ZERO });
+            kept.collect()
+        })
+    };
+    rows(false).chain(rows(true)).collect()
 }
 
 /// What can be left after grouping: links without m, mcz and Iyy or the second moment along the axis (revolute) or without inertia

@@ -123,6 +123,12 @@ impl Inertial {
 }
 
 impl StandardParameter {
+    /// Whether its torque is one of friction.
+    pub fn is_friction(self) -> bool {
+        use StandardParameter::*;
+        matches!(self, RotorViscous(_) | Viscous(_) | Coulomb(_) | Offset(_) | Cubic(_) | Stribeck(_))
+    }
+
     /// All that a description gives, in the order of the regressor `standard`.
     pub fn all(manipulator: &Manipulator) -> Vec<StandardParameter> {
         let mut all = Vec::new();

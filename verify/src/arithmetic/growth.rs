@@ -86,13 +86,15 @@ impl Growth {
     }
 
     /// The first entry of an argument, or circle, in which this is of a higher degree than an entry of the equations allows, `all` being the largest of
-    /// all entries: of a parameter the degree of any entry and 1, of sines and cosines twice the entry's own and a square.
+    /// all entries: of a parameter the degree of any entry and 1, of an acceleration that of any entry, of sines and cosines twice the entry's own and a
+    /// square.
     pub fn entry_beyond(&self, own: &Growth, all: &Growth, growths: &Growths) -> Option<Beyond> {
         let found = self.0.as_ref()?;
         let degree = |growth: &Growth, k: usize| growth.0.as_ref().map_or(0, |powers| powers.each[k]);
         let circles = growths.circles();
         let most = |k: usize| match k {
             k if k < growths.parameters => degree(all, k).max(1),
+            k if growths.is_acceleration(k) => degree(all, k),
             k if k < circles => degree(own, k),
             k => degree(own, k).saturating_mul(2).saturating_add(2),
         };
@@ -162,6 +164,10 @@ impl Growths {
     /// Where those of sines and cosines begin.
     fn circles(&self) -> usize {
         self.parameters + (Argument::ALL.len() - 1) * self.joints
+    }
+
+    fn is_acceleration(&self, place: usize) -> bool {
+        [Argument::Ddq, Argument::Ddqr].iter().any(|&argument| (0..self.joints).any(|k| self.place(argument, k) == place))
     }
 
     /// What a place among the degrees is of.

@@ -45,6 +45,12 @@ pub enum Standard {
 const TEN: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz"];
 
 impl Standard {
+    /// Whether its torque is one of friction.
+    fn is_friction(self) -> bool {
+        use Standard::*;
+        matches!(self, RotorViscous(_) | Viscous(_) | Coulomb(_) | Offset(_) | Cubic(_) | Stribeck(_))
+    }
+
     /// All of an arm, in the order of the format.
     pub fn all(manipulator: &Manipulator) -> Vec<Standard> {
         let n = manipulator.joints.len();
@@ -274,7 +280,7 @@ impl<E: Element> KeptAlone<'_, E> {
     /// U(q) = -Σ g0'(m p + R h) + Σ ½ k (q - rest)², h the first moment in a frame at p.
     pub fn potential_energy(&self, state: &State<E>) -> E {
         let described = Pose::new(self.arm, state);
-        let links = (0..self.arm.dof()).map(|i| (&described.joints[i], self.ten(|k| Standard::Link(i, k))));
+        let links = (0..self.arm.dof()).map(|i| (&described.chosen[i], self.ten(|k| Standard::Link(i, k))));
         let load = self.arm.payload.as_ref().map(|_| (&described.tool, self.ten(Standard::Payload)));
         let of_bodies = links.chain(load).fold(self.arm.zero.clone(), |sum, (frame, ten)| {
             let h = [1, 2, 3].map(|k| ten[k].clone());
@@ -343,7 +349,8 @@ pub fn base_parameters(manipulator: &Manipulator, names: &[String]) -> Result<Ve
     names.iter().map(base).collect()
 }
 
-/// The matrix M of pi_base = M phi_standard, row by row; an error if the base columns are not independent or do not span all others.
+/// The matrix M of pi_base = M phi_standard, row by row; an error if the base columns are not independent or do not span all others, friction apart
+/// from all else.
 pub fn base_map<K: Arithmetic>(
     arithmetic: &mut K,
     arm: &Arm<K::Element>,
@@ -358,9 +365,16 @@ pub fn base_map<K: Arithmetic>(
         let state = State::draw(arithmetic, n).with_stribeck(arithmetic, fades);
         let y = standard_columns(arm, &state, base, LinkFrames::Joint);
         let full = standard_columns(arm, &state, all, LinkFrames::Described);
-        for row in 0..n {
-            left.push(y.iter().map(|column| column[row].clone()).collect::<Vec<_>>());
-            right.push(full.iter().map(|column| column[row].clone()).collect::<Vec<_>>());
+        // Friction and all else one by one: no friction is part of a weight, though on a slide both may be constant.
+        for (row, friction) in (0..n).flat_map(|row| [(row, false), (row, true)]) {
+            let part = |columns: &[Vec<K::Element>], of: &[Standard]| {
+                let entries = columns.iter().zip(of);
+                entries
+                    .map(|(column, p)| if p.is_friction() == friction { column[row].clone() } else { arm.zero.clone() })
+                    .collect::<Vec<_>>()
+            };
+            left.push(part(&y, base));
+            right.push(part(&full, all));
         }
     }
     // Rows that make the left side regular, then all rows as a test.

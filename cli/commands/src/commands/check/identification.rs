@@ -27,8 +27,11 @@ pub(super) fn report(model: &Model) -> String {
 
 /// How many columns `base_regressor` has, where it has fewer than a motion can identify.
 fn of_base_regressor(model: &Model) -> String {
-    let (own, all) = (model.base_parameters().len(), base_parameters(&model.manipulator, &model.field).len());
-    if own >= all {
+    let base = base_parameters(&model.manipulator, &model.field);
+    let (pool, y) = regressor_of(&model.manipulator, &model.field, &base);
+    let (own, all) = (model.base_parameters().len(), base.len());
+    // More of them than a motion can identify are those that keep friction apart.
+    if own >= rank(&pool, &y) {
         return String::new();
     }
     let (are, they) = if all - own == 1 { ("is", "it") } else { ("are", "them") };
@@ -52,8 +55,18 @@ fn of_regressor(model: &Model) -> String {
             for entry in &vector.entries {
                 table.row([entry.name.clone(), decimal(&entry.nominal), entry.meaning.clone()]);
             }
-            let title = "The minimal parameter set: a motion can identify each of these";
-            format!("  {title}, {} in all.\n\n{}", vector.len(), table.text())
+            let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
+            let rank = rank(&pool, &y);
+            let title = if rank == vector.len() {
+                format!("The minimal parameter set: a motion can identify each of these, {rank} in all.")
+            } else {
+                format!(
+                    "The minimal parameter set that keeps friction apart, {} in all: a motion can identify {rank} combinations of these.\n  \
+                     The weight on a slide and the offset of its friction are both constant: the weight must be known from elsewhere.",
+                    vector.len()
+                )
+            };
+            format!("  {title}\n\n{}", table.text())
         }
         ParameterKind::Standard(_) => {
             let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
