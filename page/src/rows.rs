@@ -1,11 +1,10 @@
 //! The rows of a description: each value as it is written, its number, its place.
 
-use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
 use armgen_codegen::description::{
     Convention, JointDescription, PoseDescription, PoseElement, RobotDescription, RotationDescription,
 };
 use armgen_codegen::document::Expression;
-use armgen_codegen::exact::Polynomial;
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator, Placement, Pose};
 use armgen_codegen::source::Source;
@@ -86,24 +85,18 @@ fn row(
     written: &JointDescription,
     skip: usize,
 ) -> Row {
-    let number = |p: &Polynomial| nominal(manipulator, p).to_f64();
     let frames = |elements: &[Placement]| -> Vec<Frame> { elements.iter().map(|e| frame(manipulator, e)).collect() };
     let before = &joint.row.before.elements[skip..];
     let text = |value: &Option<Expression>| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string());
-    let (turn, twist) = match convention {
-        Convention::Standard => (before.last(), joint.row.after.elements.last()),
-        Convention::Modified => (before.last(), before.first()),
-        Convention::Urdf => (None, None),
+    let numbers = match convention {
+        Convention::Standard | Convention::Modified => {
+            denavit_hartenberg(manipulator, &joint.row, convention == Convention::Modified)
+        }
+        Convention::Urdf => None,
     };
-    let denavit_hartenberg = turn.zip(twist).map(|(turn, twist)| {
-        let angle = |of: &Placement, i: usize, j: usize| of.rotation[i][j].to_f64().atan2(of.rotation[j][j].to_f64());
+    let denavit_hartenberg = numbers.map(|[a, alpha, d, theta]| {
         let value = |value, number| Value { written: text(value), number };
-        [
-            value(&written.a, number(&twist.translation[0])),
-            value(&written.alpha, angle(twist, 2, 1)),
-            value(&written.d, number(&turn.translation[2])),
-            value(&written.theta, angle(turn, 1, 0)),
-        ]
+        [value(&written.a, a), value(&written.alpha, alpha), value(&written.d, d), value(&written.theta, theta)]
     });
     Row {
         name: joint.name.clone(),

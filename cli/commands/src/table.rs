@@ -28,6 +28,11 @@ impl Table {
         self.rows.push(cells.into());
     }
 
+    /// Whether a cell beyond the first of its row holds something.
+    pub(crate) fn says_more_than_names(&self) -> bool {
+        self.rows.iter().flat_map(|row| &row[1..]).any(|cell| !cell.is_empty())
+    }
+
     /// The table, each line indented by two and ended by a line break; no header if no column has a name, no column that is empty.
     pub(crate) fn text(&self) -> String {
         let header: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();

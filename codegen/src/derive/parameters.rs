@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use crate::exact::{Number, Polynomial, Rational};
 use crate::kinds::ParameterId;
-use crate::manipulator::{Body, LinkId, Manipulator, PlacedBody};
+use crate::manipulator::{Body, LinkId, Manipulator, PlacedBody, Placement, Row};
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// One of the parameters in which the dynamics of every arm are linear.
@@ -327,6 +327,17 @@ pub enum View<'a> {
 /// The value of a standard parameter at the nominal values of all names.
 pub fn nominal(manipulator: &Manipulator, value: &Polynomial) -> Number {
     value.evaluate(&|id| manipulator.parameters[id.0 as usize].nominal.clone())
+}
+
+/// a, alpha, d and theta of a Denavit-Hartenberg row at the nominal values of all names, without `base`. Its last two elements before the motion are
+/// Rx(alpha) Tx(a) and Rz(theta) Tz(d) in the modified convention; in the standard one the first of these stands last after it.
+pub fn denavit_hartenberg(manipulator: &Manipulator, row: &Row, modified: bool) -> Option<[f64; 4]> {
+    let before = &row.before.elements;
+    let turn = before.last()?;
+    let twist = if modified { before.get(before.len().checked_sub(2)?)? } else { row.after.elements.last()? };
+    let along = |of: &Placement, axis: usize| nominal(manipulator, &of.translation[axis]).to_f64();
+    let angle = |of: &Placement, i: usize, j: usize| of.rotation[i][j].to_f64().atan2(of.rotation[j][j].to_f64());
+    Some([along(twist, 0), angle(twist, 2, 1), along(turn, 2), angle(turn, 1, 0)])
 }
 
 impl View<'_> {

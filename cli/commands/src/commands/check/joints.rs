@@ -1,11 +1,10 @@
 //! The rows of an arm as written, with the values of their names, and beside them what limits and drives its joints.
 
-use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
 use armgen_codegen::description::{Convention, JointDescription, RobotDescription};
-use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{Joint, Manipulator, Row};
+use armgen_codegen::manipulator::{Joint, Manipulator};
 use armgen_codegen::source::Source;
 
 use super::{decimal, digits};
@@ -25,13 +24,13 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
         ("axis", Left),
     ]);
     let written = description.joints.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
-    let urdf = matches!(description.convention.as_ref().map(|c| c.value), Some(Convention::Urdf));
+    let convention = description.convention.as_ref().map(|c| c.value);
     for (i, joint) in manipulator.joints.iter().enumerate() {
         let revolute = joint.kind == JointKind::Revolute;
         let ([a, alpha, d, theta], [origin, axis]) = match written.get(i) {
             None => Default::default(),
-            Some(row) if urdf => (Default::default(), urdf_row(source, row)),
-            Some(row) => (dh_row(source, row, i, manipulator), Default::default()),
+            Some(row) if convention == Some(Convention::Urdf) => (Default::default(), urdf_row(source, row)),
+            Some(row) => (dh_row(source, row, i, manipulator, convention == Some(Convention::Modified)), Default::default()),
         };
         table.row([
             format!("{} {}", i + 1, joint.name),
@@ -48,7 +47,7 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
 }
 
 /// a, alpha, d and theta as written, with the value where that is not a number; the joint variable is added to theta or to d.
-fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manipulator) -> [String; 4] {
+fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manipulator, modified: bool) -> [String; 4] {
     let joint = &manipulator.joints[i];
     let written = [&row.a, &row.alpha, &row.d, &row.theta];
     let mut texts = written.map(|value| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string()));
@@ -59,26 +58,14 @@ fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manip
         Some(_) => format!("q{} + ({moved})", i + 1),
         None => format!("q{} + {moved}", i + 1),
     };
-    let values = dh_values(&joint.row, manipulator);
-    let is_named = |value: &Option<Expression>| value.as_ref().is_some_and(|v| !v.names().is_empty());
-    std::array::from_fn(|k| match is_named(written[k]) {
-        true => format!("{} ({})", texts[k], digits(values[k])),
-        false => std::mem::take(&mut texts[k]),
-    })
-}
-
-/// a, alpha, d and theta of a Denavit-Hartenberg row: what its elements move along x, turn about x, move along z and turn about z.
-fn dh_values(row: &Row, manipulator: &Manipulator) -> [f64; 4] {
-    let mut values = [0.0; 4];
-    for element in row.before.elements.iter().chain(&row.after.elements) {
-        let along = |axis: usize| nominal(manipulator, &element.translation[axis]).to_f64();
-        let entry = |i: usize, j: usize| element.rotation[i][j].to_f64();
-        values[0] += along(0);
-        values[1] += f64::atan2(entry(2, 1), entry(1, 1));
-        values[2] += along(2);
-        values[3] += f64::atan2(entry(1, 0), entry(0, 0));
+    if let Some(values) = denavit_hartenberg(manipulator, &joint.row, modified) {
+        for ((text, value), written) in texts.iter_mut().zip(values).zip(written) {
+            if written.as_ref().is_some_and(|expression| !expression.names().is_empty()) {
+                *text += &format!(" ({})", digits(value));
+            }
+        }
     }
-    values
+    texts
 }
 
 /// Translations of the origin, and the axis, as written.
@@ -93,10 +80,8 @@ fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
 pub(super) fn limits(manipulator: &Manipulator) -> Option<String> {
     let mut table =
         Table::new([("limits", Left), ("position", Left), ("", Left), ("velocity", Right), ("", Left), ("effort", Right)]);
-    let mut any = false;
     for (i, joint) in manipulator.joints.iter().enumerate() {
         let limits = &joint.limits;
-        any |= limits.position.is_some() || limits.velocity.is_some() || limits.effort.is_some();
         let revolute = joint.kind == JointKind::Revolute;
         let [angle, torque] = if revolute { ["rad", "N m"] } else { ["m", "N"] };
         let degrees = |value: &Number| digits(value.to_f64().to_degrees());
@@ -113,7 +98,7 @@ pub(super) fn limits(manipulator: &Manipulator) -> Option<String> {
             limits.effort.as_ref().map_or(String::new(), |value| format!("{} {torque}", decimal(value))),
         ]);
     }
-    any.then(|| table.text())
+    table.says_more_than_names().then(|| table.text())
 }
 
 /// What drives the joints and what holds them back; nothing where the file says nothing of it.
@@ -131,18 +116,13 @@ pub(super) fn drives(manipulator: &Manipulator) -> Option<String> {
         ("Stribeck", Left),
         ("spring", Left),
     ]);
-    let mut any = false;
     for (i, joint) in manipulator.joints.iter().enumerate() {
-        let cells = drive(joint, manipulator);
-        any |= cells.iter().any(|cell| !cell.is_empty());
-        let [ratio, rotor, reflected, mass, viscous, coulomb, offset, cubic, stribeck, spring] = cells;
-        let name = format!("{} {}", i + 1, joint.name);
-        table.row([name, ratio, rotor, reflected, mass, viscous, coulomb, offset, cubic, stribeck, spring]);
+        table.row(drive(i, joint, manipulator));
     }
-    any.then(|| table.text())
+    table.says_more_than_names().then(|| table.text())
 }
 
-fn drive(joint: &Joint, manipulator: &Manipulator) -> [String; 10] {
+fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 11] {
     let revolute = joint.kind == JointKind::Revolute;
     let [inertia, torque, damping, cubed, rate, angle] = match revolute {
         true => ["kg m²", "N m", "N m s", "N m s³", "rad/s", "rad"],
@@ -162,6 +142,7 @@ fn drive(joint: &Joint, manipulator: &Manipulator) -> [String; 10] {
     let at_rotor = motor.and_then(|motor| motor.viscous.as_ref()).zip(square.as_ref()).map(|(viscous, square)| square * viscous);
     let viscous = [&at_rotor, &joint.viscous].into_iter().flatten().cloned().reduce(|a, b| &a + &b);
     [
+        format!("{} {}", i + 1, joint.name),
         motor.map_or(String::new(), |motor| decimal(&number(&motor.ratio))),
         cell(rotor, "kg m²"),
         cell(felt.as_ref(), inertia),
@@ -178,4 +159,27 @@ fn drive(joint: &Joint, manipulator: &Manipulator) -> [String; 10] {
             format!("{} {torque}/{angle} about {} {angle}", decimal(&number(&s.stiffness)), decimal(&number(&s.rest)))
         }),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A name's value stands behind it, whatever `base` puts before the first row.
+    #[test]
+    fn values_are_those_of_the_row() {
+        for convention in ["standard", "modified"] {
+            let text = format!(
+                "name: a\nconvention: {convention}\ngravity: [0, 0, -9.81]\nbase: {{xyz: [0.5, 0, 1], rpy: [0.1, 0, pi/2]}}\n\
+                 parameters: {{l: 0.2, w: 0.7, h: 0.3, t: 0.1}}\njoints:\n  \
+                 - {{name: j, type: revolute, a: l, alpha: w, d: -h, theta: t, link: {{mass: 1, inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n"
+            );
+            let source = Source::new("a.yaml", text);
+            let (manipulator, _) = armgen_codegen::validate::read(&source).0.expect("it is valid");
+            let description = RobotDescription::parse(&source).0.expect("it can be read");
+            let text = rows(&source, &description, &manipulator);
+            let row = text.lines().nth(1).expect("a row").split("  ").filter(|cell| !cell.is_empty()).map(str::trim);
+            assert_eq!(row.skip(2).collect::<Vec<_>>(), ["l (0.2)", "w (0.7)", "-h (-0.3)", "q1 + t (0.1)"], "{convention}");
+        }
+    }
 }
