@@ -60,7 +60,7 @@ use std::sync::OnceLock;
 
 pub use catalogue::Absent;
 pub use derive::Model;
-use diagnostic::Diagnostics;
+use diagnostic::{Diagnostic, Diagnostics};
 use emit::c::CFace;
 use emit::{Language, Notes, Origin};
 use exact::Number;
@@ -72,6 +72,7 @@ use program::Module;
 pub use program::Trig;
 pub use schedule::{Options, Selection, UnknownFunctions};
 use source::Source;
+use validate::Places;
 
 /// The text of an emitted module and of the trait implementation that goes with it.
 #[derive(Clone, Debug)]
@@ -163,16 +164,28 @@ impl Generated {
     }
 }
 
+/// The programs of all functions of an arm; the fault, if a number in them does not fit the scalar. (It is large, but rare.)
+#[doc(hidden)]
+pub fn programs(model: &Model, places: &Places, options: &Options) -> Result<Module, Box<Diagnostic>> {
+    let module = schedule::module(model, options);
+    match module.out_of_range() {
+        Some(value) => Err(Box::new(validate::product_out_of_range(places, options.scalar, value))),
+        None => Ok(module),
+    }
+}
+
 /// From text to text: the module if the description is valid, and all there is to say about the description.
 pub fn generate(source: &Source, options: &Options) -> (Option<Generated>, Diagnostics) {
     let (valid, mut diagnostics) = validate::read_for(source, options.scalar);
     let Some((manipulator, places)) = valid else { return (None, diagnostics) };
     let model = Model::new(manipulator);
-    let module = schedule::module(&model, options);
-    if let Some(value) = module.out_of_range() {
-        diagnostics.push(validate::product_out_of_range(&places, options.scalar, value));
-        return (None, diagnostics);
-    }
+    let module = match programs(&model, &places, options) {
+        Ok(module) => module,
+        Err(fault) => {
+            diagnostics.push(*fault);
+            return (None, diagnostics);
+        }
+    };
     let origin = Origin::of(source);
     let text = emit::rust::Text::of(&module);
     let generated = Generated {

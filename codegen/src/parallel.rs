@@ -1,4 +1,4 @@
-//! The same work for many items at a time. Results stand in the order of the items, so that nothing depends on threads.
+//! Work at the same time: the same for many items, or two works. Results stand in the order of the items, so that nothing depends on threads.
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::OnceLock;
@@ -25,4 +25,14 @@ pub fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R +
         work();
     });
     results.into_iter().map(|result| result.into_inner().expect("every item is taken")).collect()
+}
+
+/// The results of both, found at the same time where there is a second thread.
+pub fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {
+    std::thread::scope(|scope| {
+        let beside = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, &first).ok();
+        let second = second();
+        let first = beside.map_or_else(&first, |thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        (first, second)
+    })
 }

@@ -106,15 +106,18 @@ fn every_digit_is_kept_where_nothing_is_snapped() {
     assert!(every.report.to_json().contains("\"torque\": 0.0"));
 }
 
+/// A number of the report's bound.
+fn bound(imported: &Imported, name: &str) -> f64 {
+    let json = imported.report.to_json();
+    let (_, rest) = json.split_once(&format!("\"{name}\": ")).expect("a bound");
+    rest.split([',', '\n']).next().and_then(|number| number.trim().parse().ok()).expect("a number")
+}
+
 #[test]
 fn what_is_snapped_to_nothing_counts_in_the_bound() {
     let text = EVERYTHING.replace("<origin xyz=\"0 0 0.5\"/>", "<origin xyz=\"0 0 0.5\" rpy=\"1e-6 0 0\"/>");
-    let flange = |text: &str| {
-        let json = imported(text, &options()).report.to_json();
-        let (_, rest) = json.split_once("\"orientation\": ").expect("a bound");
-        rest.split([',', '\n']).next().and_then(|number| number.trim().parse::<f64>().ok()).expect("a number")
-    };
-    assert!(flange(&text) > flange(EVERYTHING) + 0.99e-6);
+    let orientation = |text: &str| bound(&imported(text, &options()), "orientation");
+    assert!(orientation(&text) > orientation(EVERYTHING) + 0.99e-6);
 }
 
 /// A whole arm that is turned about the vertical feels the same gravity; one that is tilted does not.
@@ -127,11 +130,8 @@ fn what_turns_the_arm_about_gravity_moves_no_torque() {
              <joint name='j' type='revolute'><parent link='b'/><child link='l'/><origin rpy='{rpy}' xyz='0 0 1'/><axis xyz='0 1 0'/>\
              <limit lower='-1' upper='1' velocity='1' effort='1'/></joint></robot>"
         );
-        let json = imported(&text, &Options::default()).report.to_json();
-        ["orientation", "torque"].map(|name| {
-            let (_, rest) = json.split_once(&format!("\"{name}\": ")).expect("a bound");
-            rest.split([',', '\n']).next().and_then(|number| number.trim().parse::<f64>().ok()).expect("a number")
-        })
+        let imported = imported(&text, &Options::default());
+        ["orientation", "torque"].map(|name| bound(&imported, name))
     };
     let [orientation, torque] = bounds("0 0 0.7854");
     assert!(orientation > 1e-6 && torque == 0.0, "{orientation} {torque}");

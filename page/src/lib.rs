@@ -30,7 +30,7 @@ use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::program::{Module, Trig};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_codegen::{schedule, validate, Model, Scalar};
+use armgen_codegen::{programs, validate, Model, Scalar};
 use serde_json::{json, Value};
 
 /// The functions that a page computes with, if the arm has them.
@@ -79,11 +79,13 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     let (description, _) = RobotDescription::parse(source);
     let description = description.unwrap_or_default();
     let model = Model::new(manipulator);
-    let mut module = schedule::module(&model, &Options { trig: Trig::Fast, ..Options::default() });
-    if let Some(value) = module.out_of_range() {
-        diagnostics.push(validate::product_out_of_range(&places, Scalar::F64, value));
-        return Ok((None, diagnostics));
-    }
+    let mut module = match programs(&model, &places, &Options { trig: Trig::Fast, ..Options::default() }) {
+        Ok(module) => module,
+        Err(fault) => {
+            diagnostics.push(*fault);
+            return Ok((None, diagnostics));
+        }
+    };
     let cost = cost::table(&module);
     let equations = equations::Equations::new(&model);
     let left_out = keep_what_is_used(&mut module);

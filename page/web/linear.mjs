@@ -1,5 +1,5 @@
 /**
- * Small linear algebra: eigenvalues of symmetric matrices by Jacobi's rotations, determinants by elimination, and what follows of a Jacobian
+ * Small linear algebra: eigenvalues of symmetric matrices by Jacobi's rotations, determinants and systems by elimination, and what follows of a Jacobian
  * (manipulability, ellipsoids, condition).
  */
 
@@ -46,25 +46,47 @@ export function eigen(symmetric) {
     return { values: order.map((i) => a[i][i]), vectors: v.map((row) => order.map((i) => row[i])) };
 }
 
-/** By elimination with the largest pivot. @param {Matrix} matrix */
-export function determinant(matrix) {
-    const a = matrix.map((row) => row.slice());
-    let product = 1;
+/**
+ * Brings a matrix, in place, to triangular form by elimination with the largest pivot; b, if given, goes along. The sign of the rows' order, 0 where
+ * a pivot is 0.
+ *
+ * @param {Matrix} a @param {number[]} [b]
+ */
+function eliminate(a, b) {
+    let sign = 1;
     for (let k = 0; k < a.length; k++) {
         let pivot = k;
         for (let i = k + 1; i < a.length; i++) if (Math.abs(a[i][k]) > Math.abs(a[pivot][k])) pivot = i;
         if (a[pivot][k] === 0) return 0;
         if (pivot !== k) {
             [a[pivot], a[k]] = [a[k], a[pivot]];
-            product = -product;
+            if (b) [b[pivot], b[k]] = [b[k], b[pivot]];
+            sign = -sign;
         }
-        product *= a[k][k];
         for (let i = k + 1; i < a.length; i++) {
             const factor = a[i][k] / a[k][k];
             for (let j = k; j < a.length; j++) a[i][j] -= factor * a[k][j];
+            if (b) b[i] -= factor * b[k];
         }
     }
-    return product;
+    return sign;
+}
+
+/** By elimination with the largest pivot. @param {Matrix} matrix */
+export function determinant(matrix) {
+    const a = matrix.map((row) => row.slice());
+    const sign = eliminate(a);
+    return sign === 0 ? 0 : a.reduce((product, row, k) => product * row[k], sign);
+}
+
+/** Solves A x = b in place; null where it cannot. @param {Matrix} a @param {number[]} b */
+export function solve(a, b) {
+    if (eliminate(a, b) === 0) return null;
+    for (let k = b.length - 1; k >= 0; k--) {
+        for (let j = k + 1; j < b.length; j++) b[k] -= a[k][j] * b[j];
+        b[k] /= a[k][k];
+    }
+    return b.some(Number.isNaN) ? null : b;
 }
 
 /** J J'. @param {Matrix} j */

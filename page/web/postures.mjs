@@ -3,7 +3,7 @@
 import { byId, html } from "./dom.mjs";
 import { inUnit, short, unitName } from "./format.mjs";
 import { Arm } from "./scene.mjs";
-import { MOST, posturesAt } from "./search.mjs";
+import { alike, MOST, posturesAt } from "./search.mjs";
 
 /** How long the arm rests before postures are searched for, ms. */
 const REST = 150;
@@ -28,7 +28,7 @@ export function postures(data, state, picture) {
     /** The posture of the list under the pointer or in focus. */
     let lit = -1;
     const near = (a, b, scale) => Math.abs(a - b) < 1e-9 * scale;
-    const isShown = (q) => data.rows.every((row, i) => (row.type === "revolute" ? Math.abs(Math.sin((q[i] - state.q[i]) / 2)) < 1e-9 : near(q[i], state.q[i], picture.arm.size)));
+    const isShown = (q) => alike(data.rows, q, state.q, picture.arm.size, 1e-9);
     picture.ghosts.push(() => {
         if (!at || !details.open) return [];
         return at.arms.flatMap((arm, k) => {

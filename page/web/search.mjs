@@ -6,6 +6,7 @@
  * A search can miss a posture. That none is missing says what `armgen generate --ik` writes.
  */
 
+import { solve } from "./linear.mjs";
 import { add, column, cross, dot, norm, origin, scale, subtract } from "./vector.mjs";
 
 /** Places that the search starts from, and steps from each. */
@@ -39,28 +40,6 @@ function apart(from, to) {
     return [...subtract(origin(to), origin(from)), ...scale(sine, size === 0 ? 0 : Math.atan2(size, cosine) / size)];
 }
 
-/** Solves A x = b in place, by elimination with the largest pivot; null where it cannot. @param {number[][]} a @param {number[]} b */
-function solve(a, b) {
-    const n = b.length;
-    for (let k = 0; k < n; k++) {
-        let pivot = k;
-        for (let i = k + 1; i < n; i++) if (Math.abs(a[i][k]) > Math.abs(a[pivot][k])) pivot = i;
-        if (!(Math.abs(a[pivot][k]) > 0)) return null;
-        [a[k], a[pivot]] = [a[pivot], a[k]];
-        [b[k], b[pivot]] = [b[pivot], b[k]];
-        for (let i = k + 1; i < n; i++) {
-            const factor = a[i][k] / a[k][k];
-            for (let j = k; j < n; j++) a[i][j] -= factor * a[k][j];
-            b[i] -= factor * b[k];
-        }
-    }
-    for (let k = n - 1; k >= 0; k--) {
-        for (let j = k + 1; j < n; j++) b[k] -= a[k][j] * b[j];
-        b[k] /= a[k][k];
-    }
-    return b;
-}
-
 /** The same angle from -pi on, below pi. @param {number} x */
 function turned(x) {
     return x - 2 * Math.PI * Math.floor((x + Math.PI) / (2 * Math.PI));
@@ -71,6 +50,19 @@ function settled(x, limits) {
     const angle = turned(x);
     const turns = [0, 1, -1].map((k) => angle + 2 * Math.PI * k);
     return turns.find((turn) => limits && turn >= limits[0] && turn <= limits[1]) ?? angle;
+}
+
+/**
+ * Whether two postures are nearly the same, turns apart.
+ *
+ * @param {{type: string}[]} rows @param {number[]} one @param {number[]} other @param {number} size of the arm
+ * @param {number} within half an angle, or a length over the size
+ */
+export function alike(rows, one, other, size, within) {
+    return rows.every((row, i) => {
+        const by = one[i] - other[i];
+        return (row.type === "revolute" ? Math.abs(Math.sin(by / 2)) : Math.abs(by) / size) < within;
+    });
 }
 
 /**
@@ -90,11 +82,6 @@ export function posturesAt(module, rows, task, q, held, size) {
     const unit = (i) => (rows[i].type === "revolute" ? 1 : size);
     const scaled = (e) => e.map((x, i) => (i < 3 ? x / size : x));
     const oriented = task.some((row) => row >= 3);
-    const same = (one, other) =>
-        rows.every((row, i) => {
-            const by = one[i] - other[i];
-            return (row.type === "revolute" ? Math.abs(Math.sin(by / 2)) : Math.abs(by) / size) < 1e-4;
-        });
     const found = [q];
     for (const part of sequence(free.length, STARTS)) {
         const at = q.slice();
@@ -110,7 +97,7 @@ export function posturesAt(module, rows, task, q, held, size) {
                 const all = oriented ? whole : whole.slice(0, 3);
                 if (Math.max(...all.map(Math.abs)) > 1e-10) break;
                 const posture = at.map((x, i) => (rows[i].type === "revolute" ? settled(x, rows[i].limits) : x));
-                if (!found.some((other) => same(other, posture))) found.push(posture);
+                if (!found.some((other) => alike(rows, other, posture, size, 1e-4))) found.push(posture);
                 if (found.length > MOST) return undefined;
                 break;
             }

@@ -166,17 +166,23 @@ impl Growths {
         self.parameters + (Argument::ALL.len() - 1) * self.joints
     }
 
+    /// The argument, none for a sine and cosine, and the index that a place among the degrees is of.
+    fn entry(&self, place: usize) -> (Option<Argument>, usize) {
+        match place.checked_sub(self.parameters) {
+            None => (Some(Argument::Pi), place),
+            Some(beyond) => (Argument::ALL.get(beyond / self.joints + 1).copied(), beyond % self.joints),
+        }
+    }
+
     fn is_acceleration(&self, place: usize) -> bool {
-        [Argument::Ddq, Argument::Ddqr].iter().any(|&argument| (0..self.joints).any(|k| self.place(argument, k) == place))
+        matches!(self.entry(place).0, Some(Argument::Ddq | Argument::Ddqr))
     }
 
     /// What a place among the degrees is of.
     fn name(&self, place: usize) -> String {
-        let Some(beyond) = place.checked_sub(self.parameters) else { return format!("`pi[{place}]`") };
-        let (k, index) = (beyond / self.joints, beyond % self.joints);
-        match Argument::ALL.get(k + 1) {
-            Some(argument) => format!("`{}[{index}]`", argument.name()),
-            None => format!("sine and cosine of `q[{index}]`"),
+        match self.entry(place) {
+            (Some(argument), index) => format!("`{}[{index}]`", argument.name()),
+            (None, index) => format!("sine and cosine of `q[{index}]`"),
         }
     }
 

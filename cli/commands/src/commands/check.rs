@@ -12,7 +12,8 @@ use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
-use armgen_codegen::schedule::{self, Options};
+use armgen_codegen::parallel::both;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_codegen::{derive, inverse_kinematics, validate, Model};
 
@@ -55,11 +56,11 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
         both(
             || summary(&source, &description, &model, &diagnostics),
             // Only its programs show whether products of valid numbers still fit the scalar.
-            || schedule::module(&model, &Options::default()).out_of_range().cloned(),
+            || armgen_codegen::programs(&model, &places, &Options::default()).err(),
         )
     });
-    if let Some(value) = too_large {
-        diagnostics.push(validate::product_out_of_range(&places, Scalar::F64, &value));
+    if let Some(fault) = too_large {
+        diagnostics.push(*fault);
         terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
         return Err(FAULTY);
     }
@@ -71,19 +72,6 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
         DONE
     };
     Ok((summary, code))
-}
-
-/// As much stack as the main thread of a program has.
-const STACK: usize = 8 << 20;
-
-/// The results of both, found at the same time where there is a second thread.
-fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B) -> (A, B) {
-    std::thread::scope(|scope| {
-        let beside = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, &first).ok();
-        let second = second();
-        let first = beside.map_or_else(&first, |thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
-        (first, second)
-    })
 }
 
 /// What is left to the reader.
@@ -130,7 +118,7 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     let links = manipulator.joints.iter().flat_map(|j| &j.link).map(|part| &part.body.mass);
     let total = links.chain(rotors).fold(Number::zero(), |sum, mass| &sum + &at_nominal(mass));
     let without = if manipulator.payload.is_some() { ", the payload not counted" } else { "" };
-    row("mass that moves", format!("{} kg{without}", decimal(&total)));
+    row("mass of links and rotors", format!("{} kg{without}", decimal(&total)));
     if let Some(payload) = &manipulator.payload {
         row("payload", format!("{} kg", decimal(&at_nominal(&payload.body.mass))));
     }

@@ -8,16 +8,16 @@ use nalgebra::{Matrix3, Vector3};
 use crate::table::{Align, Table};
 
 /// A body with mass, in the frame of what carries it.
-struct Solid {
-    mass: f64,
-    com: Vector3<f64>,
+pub(super) struct Solid {
+    pub(super) mass: f64,
+    pub(super) com: Vector3<f64>,
     /// About the centre of mass.
     inertia: Matrix3<f64>,
 }
 
 impl Solid {
     /// Bodies in one frame as one (Steiner); `None` without mass.
-    fn of(manipulator: &Manipulator, parts: &[PlacedBody]) -> Option<Solid> {
+    pub(super) fn of(manipulator: &Manipulator, parts: &[PlacedBody]) -> Option<Solid> {
         let number = |p: &Polynomial| nominal(manipulator, p).to_f64();
         let solids: Vec<Solid> = parts
             .iter()

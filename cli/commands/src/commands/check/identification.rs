@@ -12,6 +12,7 @@ use armgen_codegen::exact::Number;
 use armgen_codegen::Model;
 
 use super::decimal;
+use crate::input::counted;
 use crate::table::{Align, Table};
 
 /// A line of this length or less.
@@ -22,16 +23,17 @@ pub(super) fn report(model: &Model) -> String {
     if model.manipulator.is_massless() {
         return "  Nothing in the arm has mass or inertia: its module holds frames, Jacobians and their rates.\n".into();
     }
-    of_regressor(model) + &of_base_regressor(model)
-}
-
-/// How many columns `base_regressor` has, where it has fewer than a motion can identify.
-fn of_base_regressor(model: &Model) -> String {
     let base = base_parameters(&model.manipulator, &model.field);
     let (pool, y) = regressor_of(&model.manipulator, &model.field, &base);
-    let (own, all) = (model.base_parameters().len(), base.len());
-    // More of them than a motion can identify are those that keep friction apart.
-    if own >= rank(&pool, &y) {
+    let rank = rank(&pool, &y);
+    of_regressor(model, rank) + &of_base_regressor(model, base.len(), rank)
+}
+
+/// How many columns of `all` base parameters `base_regressor` has, where it has fewer than the `rank` that a motion can identify. (Of all there are
+/// more where they keep friction apart.)
+fn of_base_regressor(model: &Model, all: usize, rank: usize) -> String {
+    let own = model.base_parameters().len();
+    if own >= rank {
         return String::new();
     }
     let (are, they) = if all - own == 1 { ("is", "it") } else { ("are", "them") };
@@ -43,7 +45,8 @@ fn of_base_regressor(model: &Model) -> String {
     )
 }
 
-fn of_regressor(model: &Model) -> String {
+/// The regressor that the description chooses; `rank` is that of all parameters.
+fn of_regressor(model: &Model, rank: usize) -> String {
     let vector = &model.parameters;
     if vector.is_empty() {
         return "  The regressor has no parameters: nothing of this arm acts on the torques.\n".into();
@@ -55,8 +58,6 @@ fn of_regressor(model: &Model) -> String {
             for entry in &vector.entries {
                 table.row([entry.name.clone(), decimal(&entry.nominal), entry.meaning.clone()]);
             }
-            let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
-            let rank = rank(&pool, &y);
             let title = if rank == vector.len() {
                 format!("The minimal parameter set: a motion can identify each of these, {rank} in all.")
             } else {
@@ -69,8 +70,6 @@ fn of_regressor(model: &Model) -> String {
             format!("  {title}\n\n{}", table.text())
         }
         ParameterKind::Standard(_) => {
-            let (pool, y) = regressor_of(&model.manipulator, &model.field, vector);
-            let rank = rank(&pool, &y);
             format!(
                 "  The regressor has {} and rank {rank}: a motion can identify {} of them.\n  \
                  With `regressor: base` this program lists them.\n",
@@ -83,11 +82,6 @@ fn of_regressor(model: &Model) -> String {
             of_names(&names, &dependence(&pool, &y))
         }
     }
-}
-
-/// `1 parameter`, `2 parameters`.
-fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 fn of_names(names: &[&str], dependence: &Dependence) -> String {

@@ -9,10 +9,10 @@
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{Manipulator, PlacedBody, Placement};
+use armgen_codegen::manipulator::{LinkId, Manipulator, PlacedBody, Placement};
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-use super::bodies::short;
+use super::bodies::{short, Solid};
 use crate::table::{Align, Table};
 
 /// What is below this beside 1 is rounding.
@@ -47,18 +47,26 @@ impl Posture {
         Posture { links, axes, flange }
     }
 
-    /// The bodies that a link carries, in the base frame: mass, centre of mass.
+    /// Mass and centre of mass of bodies in a frame, in the base frame; none without mass.
+    fn placed(manipulator: &Manipulator, frame: &Isometry3<f64>, parts: &[PlacedBody]) -> Option<(f64, Point3<f64>)> {
+        Solid::of(manipulator, parts).map(|solid| (solid.mass, frame * Point3::from(solid.com)))
+    }
+
+    fn of_link(&self, manipulator: &Manipulator, link: usize) -> Option<(f64, Point3<f64>)> {
+        Posture::placed(manipulator, &self.links[link], &manipulator.joints[link].link)
+    }
+
+    /// What a link carries: itself, the load, and the rotors of the joints after it.
     fn masses<'a>(&'a self, manipulator: &'a Manipulator, link: usize) -> impl Iterator<Item = (f64, Point3<f64>)> + 'a {
-        let joint = &manipulator.joints[link];
-        let own = joint.link.iter().map(move |part| placed(manipulator, &self.links[link], part));
-        let load = manipulator.payload.iter().filter(move |_| manipulator.tip.0 as usize == link);
-        // The rotors of the joints after this one ride on its link.
-        let rotors = manipulator.joints.iter().filter(move |next| next.parent.is_some_and(|parent| parent.0 as usize == link));
-        let rotors = rotors.filter_map(|next| next.motor.as_ref()).map(move |motor| {
+        let is_here = move |id: LinkId| id.0 as usize == link;
+        let load = manipulator.payload.iter().filter(move |_| is_here(manipulator.tip));
+        let load = load.filter_map(|part| Posture::placed(manipulator, &self.flange, std::slice::from_ref(part)));
+        let driven = manipulator.joints.iter().filter(move |next| next.parent.is_some_and(is_here));
+        let rotors = driven.filter_map(|next| next.motor.as_ref()).map(move |motor| {
             let place = Point3::from(motor.position.each_ref().map(|x| number(manipulator, x)));
             (number(manipulator, &motor.mass), self.links[link] * place)
         });
-        own.chain(load.map(move |part| placed(manipulator, &self.flange, part))).chain(rotors)
+        self.of_link(manipulator, link).into_iter().chain(load).chain(rotors)
     }
 
     /// The torque or force of joint `i` that holds the arm against gravity; springs are not counted.
@@ -84,11 +92,6 @@ fn number(manipulator: &Manipulator, value: &Polynomial) -> f64 {
     nominal(manipulator, value).to_f64()
 }
 
-fn placed(manipulator: &Manipulator, frame: &Isometry3<f64>, part: &PlacedBody) -> (f64, Point3<f64>) {
-    let com = Point3::from(part.body.com.each_ref().map(|x| number(manipulator, x)));
-    (number(manipulator, &part.body.mass), frame * com)
-}
-
 fn isometry(manipulator: &Manipulator, frame: &Placement) -> Isometry3<f64> {
     let turn = Matrix3::from_fn(|i, j| frame.rotation[i][j].to_f64());
     let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
@@ -110,9 +113,6 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
     ]);
     for (i, (joint, axis)) in manipulator.joints.iter().zip(&posture.axes).enumerate() {
         let frame = &posture.links[i];
-        let bodies: Vec<(f64, Point3<f64>)> = joint.link.iter().map(|part| placed(manipulator, frame, part)).collect();
-        let mass: f64 = bodies.iter().map(|(mass, _)| mass).sum();
-        let com = bodies.iter().map(|(m, com)| com.coords * (m / mass)).sum::<Vector3<f64>>();
         let unit = if joint.kind == JointKind::Revolute { "N m" } else { "N" };
         let held = posture.gravity(manipulator, i);
         // As small as what sums of such numbers round by.
@@ -122,7 +122,7 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
             direction(&axis.direction),
             point(&frame.translation.vector),
             direction(&(frame * Vector3::z())),
-            if mass > 0.0 { point(&com) } else { String::new() },
+            posture.of_link(manipulator, i).map_or(String::new(), |(_, com)| point(&com.coords)),
             if manipulator.is_massless() { String::new() } else { format!("{} {unit}", short(held)) },
         ]);
     }
