@@ -33,7 +33,7 @@ mod evaluate;
 
 use std::collections::{BTreeMap, HashMap};
 use std::hash::BuildHasherDefault;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use crate::exact::{Number, Polynomial};
 use crate::scramble::scramble;
@@ -215,11 +215,11 @@ pub struct Pool {
     field: Field,
     nodes: Vec<Node>,
     fingerprints: Vec<Fingerprint>,
-    constants: Vec<Rc<Number>>,
-    constant_nodes: BTreeMap<Rc<Number>, ExprId>,
+    constants: Vec<Arc<Number>>,
+    constant_nodes: BTreeMap<Arc<Number>, ExprId>,
     /// Look-up only: its order reaches nothing.
     known: HashMap<Fingerprint, ExprId, BuildHasherDefault<FingerprintHasher>>,
-    at_origin: Vec<Option<Rc<Number>>>,
+    at_origin: Vec<Option<Arc<Number>>>,
     symbols: BTreeMap<Symbol, ExprId>,
     /// Whether constants are known by their fingerprints alone.
     fingerprints_only: bool,

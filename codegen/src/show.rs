@@ -41,6 +41,7 @@ use crate::derive::{
     determinant::{Factor, Zeros},
 };
 use crate::exact::Number;
+use crate::parallel::parallel_map;
 use crate::pass::Passes;
 use crate::program::optimise;
 use crate::ring::normal_form::NormalForm;
@@ -208,10 +209,28 @@ impl Sheet {
 
     /// The same in another style.
     pub fn in_style(model: &Model, items: &[Item], reading: Reading, style: Style) -> Sheet {
+        let all = parallel_map(items, |&item| Ok(derived(model, item, reading)?.shown(model, item, style)));
+        Sheet::of(model, items, all)
+    }
+
+    /// With the numbers of the description, and what reads otherwise with the names of its parameters.
+    pub fn in_both_readings(model: &Model, items: &[Item], style: Style) -> [Sheet; 2] {
+        let all = parallel_map(items, |&item| {
+            let (nominal, symbolic) = (derived(model, item, Reading::Nominal)?, derived(model, item, Reading::Symbolic)?);
+            let named = !symbolic.derivation.is_the_same_as(&nominal.derivation);
+            let named = if named { symbolic.shown(model, item, style) } else { Vec::new() };
+            Ok((nominal.shown(model, item, style), named))
+        });
+        let (nominal, symbolic) = all.into_iter().map(|both| (both.clone().map(|(nominal, _)| nominal), both.map(|(_, named)| named))).unzip();
+        [nominal, symbolic].map(|all| Sheet::of(model, items, all))
+    }
+
+    /// Of what was found for each item, or why there is none of it.
+    fn of(model: &Model, items: &[Item], all: Vec<Result<Vec<Shown>, String>>) -> Sheet {
         let mut seen = BTreeSet::new();
         let mut sheet = Sheet { robot: model.manipulator.name.clone(), quantities: Vec::new(), absent: Vec::new() };
-        for &item in items {
-            match shown(model, item, reading, style) {
+        for (item, shown) in items.iter().zip(all) {
+            match shown {
                 Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),
                 Err(reason) => sheet.absent.push(Absent { function: item.name(), reason }),
             }
@@ -325,37 +344,55 @@ impl Shown {
     }
 }
 
-/// The matrices of an item, or why there is none.
-fn shown(model: &Model, item: Item, reading: Reading, style: Style) -> Result<Vec<Shown>, String> {
+/// What is shown of an item, before it has a form.
+struct Derived {
+    derivation: Derivation,
+    /// Of the determinant: its closed form where it is short, and its factors.
+    determinant: Option<(Option<NormalForm>, Vec<Factor>)>,
+}
+
+/// The entries of an item, or why there is none.
+fn derived(model: &Model, item: Item, reading: Reading) -> Result<Derived, String> {
     let view = match (item, reading) {
         (Item::With(_), _) => View::Vector(&model.parameters),
         (_, Reading::Nominal) => View::Nominal,
         (_, Reading::Symbolic) => View::Symbolic,
     };
-    let missing = |quantity: &Quantity, with| (quantity.missing)(model, with).map_or(Ok(()), Err);
-    let parameters = match item {
-        Item::With(_) => model.parameters.entries.iter().map(|entry| entry.name.clone()).collect(),
-        _ => model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+    let (quantity, with) = match item {
+        Item::Determinant => {
+            let found = derive::determinant::determinant(model, view)?;
+            let closed = found.form.filter(|form| form.len() <= CLOSED_FORM_TERMS);
+            let derivation = Derivation { pool: found.pool, entries: vec![found.value], method: "minors", parallel: Vec::new() };
+            return Ok(Derived { derivation, determinant: Some((closed, found.factors)) });
+        }
+        Item::Plain(quantity) | Item::Element(quantity, _) => (quantity, false),
+        Item::With(quantity) => (quantity, true),
     };
-    let names = Names { parameters, style };
-    Ok(match item {
-        Item::Determinant => vec![determinant(model, view, &names)?],
-        Item::Plain(quantity) => {
-            missing(quantity, false)?;
-            let of_names = [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
-            let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
-            parts(model, quantity, quantity.name, &derivation.unwrap_or_else(|| quantity.by_recursion(model, view)), &names)
+    (quantity.missing)(model, with).map_or(Ok(()), Err)?;
+    let plain = matches!(item, Item::Plain(_));
+    let of_names = plain && [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
+    let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
+    Ok(Derived { derivation: derivation.unwrap_or_else(|| quantity.by_recursion(model, view)), determinant: None })
+}
+
+impl Derived {
+    /// The matrices of the item that it was derived for.
+    fn shown(self, model: &Model, item: Item, style: Style) -> Vec<Shown> {
+        let parameters = match item {
+            Item::With(_) => model.parameters.entries.iter().map(|entry| entry.name.clone()).collect(),
+            _ => model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
+        };
+        let names = Names { parameters, style };
+        match item {
+            Item::Determinant => vec![determinant(model, self, &names)],
+            Item::Plain(quantity) => parts(model, quantity, quantity.name, self.derivation, &names),
+            Item::Element(quantity, i) => {
+                let all = parts(model, quantity, quantity.name, self.derivation, &names);
+                all.into_iter().skip(i).take(1).collect()
+            }
+            Item::With(quantity) => parts(model, quantity, &quantity.function_name(true), self.derivation, &names),
         }
-        Item::Element(quantity, i) => {
-            missing(quantity, false)?;
-            let all = parts(model, quantity, quantity.name, &quantity.by_recursion(model, view), &names);
-            all.into_iter().skip(i).take(1).collect()
-        }
-        Item::With(quantity) => {
-            missing(quantity, true)?;
-            parts(model, quantity, &quantity.function_name(true), &quantity.by_recursion(model, view), &names)
-        }
-    })
+    }
 }
 
 /// What symbols are called, and how quantities are shown.
@@ -365,14 +402,15 @@ struct Names {
 }
 
 /// The matrices of a quantity: of each part of its result, or of each element of a list.
-fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation, names: &Names) -> Vec<Shown> {
+fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: Derivation, names: &Names) -> Vec<Shown> {
     let sizes = model.sizes();
-    let mut entries = derivation.entries.as_slice();
+    let all_entries = derivation.entries.clone();
+    let mut entries = all_entries.as_slice();
     let mut all = Vec::new();
+    let of = |entries: &[ExprId]| Derivation { entries: entries.to_vec(), ..derivation.clone() };
     for part in quantity.result {
         let (own, rest) = entries.split_at(part.len(&sizes));
         entries = rest;
-        let of = |entries: &[ExprId]| Derivation { entries: entries.to_vec(), ..derivation.clone() };
         match part.element {
             Some(element) => {
                 let size = part.rows().of(&sizes) * part.columns().of(&sizes);
@@ -393,10 +431,8 @@ fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: &Derivation
 }
 
 /// The determinant with its factors; its closed form if that is not too long.
-fn determinant(model: &Model, view: View<'_>, names: &Names) -> Result<Shown, String> {
-    let found = derive::determinant::determinant(model, view)?;
-    let closed = found.form.filter(|form| form.len() <= CLOSED_FORM_TERMS).map(|form| vec![form]);
-    let derivation = Derivation { pool: found.pool, entries: vec![found.value], method: "minors", parallel: Vec::new() };
+fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
+    let (closed, factors) = derived.determinant.unwrap_or_default();
     let shown = Shown {
         name: DETERMINANT.into(),
         symbol: ["det J(q)".into(), "\\det J(q)".into()],
@@ -404,13 +440,13 @@ fn determinant(model: &Model, view: View<'_>, names: &Names) -> Result<Shown, St
         rows: 1,
         columns: 1,
         column_names: None,
-        factors: (!found.factors.is_empty()).then_some(found.factors),
+        factors: (!factors.is_empty()).then_some(factors),
         content: Content::Closed(Vec::new()),
         parameters: names.parameters.clone(),
         velocities: model.manipulator.stribeck_velocities(),
         digits: names.style.digits,
     };
-    Ok(in_form(shown, closed, derivation, names.style.form))
+    in_form(shown, closed.map(|form| vec![form]), derived.derivation, names.style.form)
 }
 
 fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], derivation: Derivation, names: &Names) -> Shown {
@@ -440,15 +476,20 @@ fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], d
 /// The quantity with its content in a form.
 fn in_form(shown: Shown, closed: Option<Vec<NormalForm>>, derivation: Derivation, form: Form) -> Shown {
     let closed = closed.filter(|_| form != Form::Steps).map(Content::Closed);
-    if let Some(content) = &closed {
-        let shown = Shown { content: content.clone(), ..shown.clone() };
-        if form == Form::Closed || shown.is_table() {
-            return shown;
+    let closed = match closed {
+        Some(content) if form == Form::Closed => return Shown { content, ..shown },
+        Some(content) => {
+            let shown = Shown { content, ..shown.clone() };
+            if shown.is_table() {
+                return shown;
+            }
+            Some(shown.content)
         }
-    }
+        None => None,
+    };
     let derivation = without_turn(derivation);
     let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, Passes::NONE);
-    let fewer = Derivation { pool, entries, ..derivation.clone() };
+    let fewer = Derivation { pool, entries, method: derivation.method, parallel: derivation.parallel.clone() };
     let steps = [derivation, fewer].map(|derivation| Content::Program(Box::new(derivation)));
     shown.with_shortest(closed.into_iter().chain(steps))
 }

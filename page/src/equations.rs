@@ -5,7 +5,8 @@
 use std::fmt::Write;
 
 use armgen_codegen::catalogue::Absent;
-use armgen_codegen::show::{Form, Item, Reading, Sheet, Shown, Style};
+use armgen_codegen::parallel::parallel_map;
+use armgen_codegen::show::{Form, Item, Sheet, Shown, Style};
 use armgen_codegen::Model;
 use serde_json::{json, Map, Value};
 
@@ -38,13 +39,11 @@ impl Equations {
     pub(crate) fn new(model: &Model) -> Equations {
         // Closed forms wherever there are some: a page folds them up.
         let closed = Style { form: Form::Closed, digits: None };
-        let [nominal, symbolic] =
-            [Reading::Nominal, Reading::Symbolic].map(|reading| Sheet::in_style(model, &Item::all(), reading, closed));
-        let of = |shown: &Shown| {
+        let [nominal, symbolic] = Sheet::in_both_readings(model, &Item::all(), closed);
+        let mut quantities = parallel_map(&nominal.quantities, |shown| {
             let other = symbolic.quantities.iter().find(|other| other.name == shown.name);
             quantity(&nominal.robot, shown, other)
-        };
-        let mut quantities: Vec<Quantity> = nominal.quantities.iter().map(of).collect();
+        });
         leave_out(&mut quantities);
         let factors = nominal.quantities.iter().find(|shown| shown.factors.is_some());
         Equations {

@@ -4,7 +4,7 @@
 //! constant where both are equal in the field and enclosures of 96 bits overlap.
 
 use std::borrow::Cow;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::field::Element;
 use super::{ConstantId, ExprId, Node, Pool};
@@ -143,7 +143,7 @@ impl Pool {
         let (size, element) = if negative { (-&value, self.field.neg(element)) } else { (value, element) };
         let id = ConstantId(self.constants.len() as u32);
         let expr = self.push(Node::Constant(id), [element; 2]);
-        let size = Rc::new(size);
+        let size = Arc::new(size);
         self.constants.push(size.clone());
         self.constant_nodes.insert(size, expr);
         expr.signed(negative)

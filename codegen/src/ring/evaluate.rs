@@ -1,7 +1,7 @@
 //! Exact evaluation: over exact constants and, through the fingerprints, over the prime field.
 
 use std::collections::HashMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::{AngleSum, ExprId, Node, Pool, Symbol};
 use crate::exact::Number;
@@ -83,7 +83,7 @@ impl Pool {
             .collect();
             if pending.is_empty() {
                 let value = self.combine(self.nodes[index], &origin, |e| self.origin_value(e));
-                self.at_origin[index] = Some(Rc::new(value_if_short(value)));
+                self.at_origin[index] = Some(Arc::new(value_if_short(value)));
                 stack.pop();
             } else {
                 stack.extend(pending);

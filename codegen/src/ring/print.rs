@@ -3,6 +3,8 @@
 //! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1)` and parameter names, with
 //! numbers as exact fractions: a formula that a computer-algebra system reads.
 
+use std::rc::Rc;
+
 use dashu_base::{Abs, Signed};
 
 use super::normal_form::{Harmonic, NormalForm, Powers};
@@ -261,11 +263,11 @@ impl Printer<'_> {
     }
 
     /// A sum of products: of each a coefficient and its factors, printed already, with their powers; those below 0 are divided by.
-    pub fn sum_of_products<'t>(&self, terms: impl IntoIterator<Item = (&'t Number, &'t [(String, i32)])>) -> String {
+    pub fn sum_of_products<'t>(&self, terms: impl IntoIterator<Item = (&'t Number, &'t [(Rc<str>, i32)])>) -> String {
         let mut sum = Sum::default();
         for (coefficient, factors) in terms {
-            let part = |(name, power): &(String, i32)| match power.unsigned_abs() {
-                1 => name.clone(),
+            let part = |(name, power): &(Rc<str>, i32)| match power.unsigned_abs() {
+                1 => name.to_string(),
                 power => self.power(name, power as i32),
             };
             let (above, below): (Vec<_>, Vec<_>) = factors.iter().partition(|(_, power)| *power > 0);

@@ -1,6 +1,7 @@
 //! Expressions as numbered steps: what is used more than once gets a name, what is used once is written where it is used, up to a length.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::borrow::Cow;
+use std::rc::Rc;
 
 use super::Formulas;
 use crate::derive::Derivation;
@@ -15,7 +16,7 @@ const OPERANDS_IN_A_STEP: usize = 6;
 #[derive(Clone)]
 struct Term {
     coefficient: Number,
-    factors: Vec<(String, i32)>,
+    factors: Vec<(Rc<str>, i32)>,
 }
 
 /// What is written for a node: a sum of products, so that equal terms are collected, constants multiplied, and signs taken in.
@@ -27,8 +28,8 @@ impl Text {
         Text(if value.is_zero() { Vec::new() } else { vec![Term { coefficient: value, factors: Vec::new() }] })
     }
 
-    fn factor(name: String) -> Text {
-        Text(vec![Term { coefficient: Number::one(), factors: vec![(name, 1)] }])
+    fn factor(name: &str) -> Text {
+        Text(vec![Term { coefficient: Number::one(), factors: vec![(name.into(), 1)] }])
     }
 
     /// How many operands it shows.
@@ -37,12 +38,12 @@ impl Text {
         self.0.iter().map(of).sum()
     }
 
-    fn signed(&self, negated: bool) -> Text {
+    fn signed(&self, negated: bool) -> Cow<'_, Text> {
         let of = |term: &Term| Term { coefficient: -&term.coefficient, factors: term.factors.clone() };
         if negated {
-            Text(self.0.iter().map(of).collect())
+            Cow::Owned(Text(self.0.iter().map(of).collect()))
         } else {
-            self.clone()
+            Cow::Borrowed(self)
         }
     }
 
@@ -78,7 +79,7 @@ impl Text {
         match &self.0[..] {
             [] => None,
             [term] => Some(term.clone()),
-            _ => Some(Term { coefficient: Number::one(), factors: vec![(self.in_parentheses(printer), 1)] }),
+            _ => Some(Term { coefficient: Number::one(), factors: vec![(self.in_parentheses(printer).into(), 1)] }),
         }
     }
 
@@ -95,8 +96,8 @@ impl Text {
             ([Term { coefficient, factors }], _) if coefficient.is_one() && matches!(factors[..], [(_, 1)]) => {
                 factors[0].0.clone()
             }
-            (_, Notation::Text) => self.in_parentheses(printer),
-            (_, Notation::Latex) => self.print(printer),
+            (_, Notation::Text) => self.in_parentheses(printer).into(),
+            (_, Notation::Latex) => self.print(printer).into(),
         };
         Text(vec![Term { coefficient: Number::one(), factors: vec![(name, -1)] }])
     }
@@ -110,54 +111,59 @@ impl Text {
 pub(super) fn formulas(derivation: &Derivation, printer: &Printer<'_>, letter: &str) -> Formulas {
     let pool = &derivation.pool;
     let order = order(derivation);
-    let mut uses: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut uses = vec![0usize; pool.len()];
     for &expr in &order {
         // t + t is written as 2 t, and uses t once.
-        let used: BTreeSet<usize> = operands(pool.node(expr)).iter().map(|e| e.index()).collect();
-        used.into_iter().for_each(|index| *uses.entry(index).or_default() += 1);
+        let mut used = operands(pool.node(expr)).into_iter().flatten().map(ExprId::index);
+        let first = used.next();
+        for index in first.into_iter().chain(used.filter(|&index| Some(index) != first)) {
+            uses[index] += 1;
+        }
     }
-    derivation.entries.iter().for_each(|e| *uses.entry(e.index()).or_default() += 1);
+    derivation.entries.iter().for_each(|e| uses[e.index()] += 1);
 
     let mut steps: Vec<(String, String)> = Vec::new();
-    let mut texts: BTreeMap<usize, Text> = BTreeMap::new();
+    let mut texts: Vec<Option<Text>> = vec![None; pool.len()];
     for expr in order {
-        let of = |e: ExprId| texts[&e.index()].signed(e.is_negated());
-        let text = match pool.node(expr) {
+        let of = |e: ExprId| texts[e.index()].as_ref().expect("operands come first").signed(e.is_negated());
+        let node = pool.node(expr);
+        let text = match node {
             Node::Constant(_) => Text::constant(pool.as_constant(expr).expect("a constant")),
-            Node::Symbol(symbol) => Text::factor(printer.symbol(symbol)),
-            Node::Add(a, b) => of(a).plus(&of(b)),
+            Node::Symbol(symbol) => Text::factor(&printer.symbol(symbol)),
+            Node::Add(a, b) => of(a).into_owned().plus(&of(b)),
             Node::Mul(a, b) => of(a).times(&of(b), printer),
             Node::Reciprocal(a) => of(a).reciprocal(printer),
         };
-        let leaf = operands(pool.node(expr)).is_empty();
-        let text = if leaf || (uses[&expr.index()] == 1 && text.operands() <= OPERANDS_IN_A_STEP) {
+        let leaf = matches!(node, Node::Constant(_) | Node::Symbol(_));
+        let text = if leaf || (uses[expr.index()] == 1 && text.operands() <= OPERANDS_IN_A_STEP) {
             text
         } else {
             let name = match printer.notation {
                 Notation::Text => format!("{letter}{}", steps.len() + 1),
                 Notation::Latex => format!("{letter}_{{{}}}", steps.len() + 1),
             };
-            steps.push((name.clone(), text.print(printer)));
-            Text::factor(name)
+            let factor = Text::factor(&name);
+            steps.push((name, text.print(printer)));
+            factor
         };
-        texts.insert(expr.index(), text);
+        texts[expr.index()] = Some(text);
     }
     let entries = derivation
         .entries
         .iter()
         .map(|&e| match pool.as_constant(e) {
             Some(value) => printer.number(&value),
-            None => texts[&e.index()].signed(e.is_negated()).print(printer),
+            None => texts[e.index()].as_ref().expect("entries are in the order").signed(e.is_negated()).print(printer),
         })
         .collect();
     Formulas { steps, entries }
 }
 
-fn operands(node: Node) -> Vec<ExprId> {
+fn operands(node: Node) -> [Option<ExprId>; 2] {
     match node {
-        Node::Constant(_) | Node::Symbol(_) => vec![],
-        Node::Add(a, b) | Node::Mul(a, b) => vec![a, b],
-        Node::Reciprocal(a) => vec![a],
+        Node::Constant(_) | Node::Symbol(_) => [None; 2],
+        Node::Add(a, b) | Node::Mul(a, b) => [Some(a), Some(b)],
+        Node::Reciprocal(a) => [Some(a), None],
     }
 }
 
@@ -176,7 +182,8 @@ fn order(derivation: &Derivation) -> Vec<ExprId> {
                 order.push(expr);
             } else {
                 stack.push((expr, true));
-                stack.extend(operands(derivation.pool.node(expr)).iter().rev().map(|e| (e.unsigned(), false)));
+                let [first, second] = operands(derivation.pool.node(expr));
+                stack.extend([second, first].into_iter().flatten().map(|e| (e.unsigned(), false)));
             }
         }
     }

@@ -93,10 +93,13 @@ fn chosen(found: &[Found], set: usize) -> Vec<&Found> {
 
 /// The cost of the circuit with some of the sums.
 fn weight(circuit: &mut Circuit, chosen: &[&Found]) -> usize {
-    let before = take(circuit, chosen);
     let additions: usize = chosen.iter().map(|one| one.additions).sum();
-    let weight = circuit.operations() + additions + SINE_COSINE_COST * pairs(circuit);
-    before.into_iter().for_each(|(gate, was)| circuit.gates[gate as usize] = was);
+    let mut weight = 0;
+    circuit.attempt(|circuit| {
+        take(circuit, chosen);
+        weight = circuit.operations() + additions + SINE_COSINE_COST * pairs(circuit);
+        false
+    });
     weight
 }
 
@@ -106,10 +109,11 @@ fn take_if_cheaper(circuit: &mut Circuit, chosen: &[&Found]) {
     }
 }
 
-/// Replaces gates by the leaves of sums; returns the gates that it replaced.
-fn take(circuit: &mut Circuit, chosen: &[&Found]) -> Vec<(GateId, Gate)> {
-    let replaced = chosen.iter().flat_map(|one| &one.replaced);
-    replaced.map(|&(gate, leaf)| (gate, std::mem::replace(&mut circuit.gates[gate as usize], Gate::Sum(vec![leaf])))).collect()
+/// Replaces gates by the leaves of sums.
+fn take(circuit: &mut Circuit, chosen: &[&Found]) {
+    for &(gate, leaf) in chosen.iter().flat_map(|one| &one.replaced) {
+        circuit.gates.set(gate, Gate::Sum(vec![leaf]));
+    }
 }
 
 /// Pairs of sine and cosine that the outputs need.

@@ -25,7 +25,7 @@ pub(super) fn remove_cancelled(circuit: &mut Circuit) -> usize {
         });
         let Some(gate) = cancelled else { break };
         let (gates, values) = (circuit.gates.clone(), circuit.values.clone());
-        circuit.gates[gate as usize] = Gate::Sum(Vec::new());
+        circuit.gates.set(gate, Gate::Sum(Vec::new()));
         propagate_zeros(circuit, &order);
         if circuit.outputs.iter().map(|&output| circuit.value(output)).eq(expected.iter().copied()) {
             removed += 1;
@@ -92,7 +92,7 @@ fn propagate_zeros(circuit: &mut Circuit, order: &[GateId]) {
                 (Gate::Reciprocal(inner), value)
             }
         };
-        circuit.gates[gate as usize] = new;
+        circuit.gates.set(gate, new);
         circuit.values[gate as usize] = value;
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::hash::BuildHasherDefault;
+use std::ops::Deref;
 
 use crate::ring::field::{Element, Field};
 use crate::ring::{ExprId, Fingerprint, FingerprintHasher, Node, Pool, Symbol};
@@ -32,12 +33,36 @@ pub(super) enum Gate {
     Reciprocal(GateId),
 }
 
+/// Gates, and while a change of them is tried, those that it has replaced.
+#[derive(Clone, Default)]
+pub(super) struct Gates {
+    all: Vec<Gate>,
+    replaced: Option<Vec<(GateId, Gate)>>,
+}
+
+impl Gates {
+    pub(super) fn set(&mut self, id: GateId, gate: Gate) {
+        let before = std::mem::replace(&mut self.all[id as usize], gate);
+        if let Some(replaced) = &mut self.replaced {
+            replaced.push((id, before));
+        }
+    }
+}
+
+impl Deref for Gates {
+    type Target = [Gate];
+
+    fn deref(&self) -> &[Gate] {
+        &self.all
+    }
+}
+
 /// Gates and outputs. Gates that no output needs any more stay, and count for nothing.
 pub(super) struct Circuit {
     pub(super) field: Field,
     /// The pool that the leaves are of, with the constants that merging brings.
     pub(super) constants: Pool,
-    pub(super) gates: Vec<Gate>,
+    pub(super) gates: Gates,
     pub(super) values: Vec<Fingerprint>,
     pub(super) outputs: Vec<Edge>,
     /// The gate of a value or of its negative, by the lesser of the two, and whether that is the negative.
@@ -46,6 +71,12 @@ pub(super) struct Circuit {
     filter: Vec<u64>,
     /// The first gate of each constant and symbol.
     leaves: HashMap<ExprId, GateId>,
+}
+
+/// What stands for a factor in the product that takes it in.
+enum Inner<'a> {
+    Product(&'a [GateId]),
+    Other(GateId),
 }
 
 impl Edge {
@@ -64,7 +95,7 @@ impl Circuit {
         let mut circuit = Circuit {
             field: pool.field().clone(),
             constants: pool.clone(),
-            gates: Vec::new(),
+            gates: Gates::default(),
             values: Vec::new(),
             outputs: Vec::new(),
             known: HashMap::default(),
@@ -110,7 +141,7 @@ impl Circuit {
                 self.leaves.insert(expr, id);
             }
         }
-        self.gates.push(gate);
+        self.gates.all.push(gate);
         self.values.push(value);
         id
     }
@@ -218,9 +249,30 @@ impl Circuit {
         uses
     }
 
+    /// Makes a change, and takes it back unless it says of itself that it is to stay; the same is returned.
+    pub(super) fn attempt(&mut self, change: impl FnOnce(&mut Circuit) -> bool) -> bool {
+        let gates = self.gates.len();
+        debug_assert!(self.gates.replaced.is_none(), "one change is tried at a time");
+        self.gates.replaced = Some(Vec::new());
+        let kept = change(self);
+        let replaced = self.gates.replaced.take().unwrap_or_default();
+        if !kept {
+            for (id, before) in replaced.into_iter().rev() {
+                self.gates.all[id as usize] = before;
+            }
+            self.gates.all.truncate(gates);
+            self.values.truncate(gates);
+        }
+        kept
+    }
+
     /// Operations: k - 1 of a sum or product of k, one of a reciprocal.
     pub(super) fn operations(&self) -> usize {
-        let uses = self.uses();
+        self.operations_of(&self.uses())
+    }
+
+    /// The same where the uses are known.
+    pub(super) fn operations_of(&self, uses: &[u32]) -> usize {
         (0..self.gates.len()).filter(|&i| uses[i] > 0).map(|i| self.cost(i as GateId)).sum()
     }
 
@@ -233,8 +285,8 @@ impl Circuit {
         }
     }
 
-    /// Takes sums of one use into the sums that use them, and products into products.
-    pub(super) fn flatten(&mut self) {
+    /// Takes sums of one use into the sums that use them, and products into products; how often each gate is used then.
+    pub(super) fn flatten(&mut self) -> Vec<u32> {
         loop {
             let uses = self.uses();
             let mut changed = false;
@@ -242,42 +294,54 @@ impl Circuit {
                 if uses[id] == 0 {
                     continue;
                 }
-                match &self.gates[id] {
-                    Gate::Sum(terms) => {
-                        let flat: Vec<Edge> = terms
-                            .iter()
-                            .flat_map(|&term| match &self.gates[term.gate as usize] {
-                                Gate::Sum(inner) if uses[term.gate as usize] == 1 || inner.len() == 1 => {
-                                    inner.iter().map(|t| t.flipped(term.negated)).collect()
-                                }
-                                _ => vec![term],
-                            })
-                            .collect();
-                        if flat != *terms {
-                            self.gates[id] = Gate::Sum(flat);
-                            changed = true;
+                // Most gates hold nothing that is taken in.
+                let flat = match &self.gates[id] {
+                    Gate::Sum(terms) if terms.iter().any(|t| self.inner_sum(t.gate, &uses).is_some()) => {
+                        let mut flat: Vec<Edge> = Vec::with_capacity(terms.len() + 1);
+                        for &term in terms {
+                            match self.inner_sum(term.gate, &uses) {
+                                Some(inner) => flat.extend(inner.iter().map(|t| t.flipped(term.negated))),
+                                None => flat.push(term),
+                            }
                         }
+                        Gate::Sum(flat)
                     }
-                    Gate::Product(factors) => {
-                        let flat: Vec<GateId> = factors
-                            .iter()
-                            .flat_map(|&factor| match &self.gates[factor as usize] {
-                                Gate::Product(inner) if uses[factor as usize] == 1 => inner.clone(),
-                                Gate::Sum(inner) if inner.len() == 1 && !inner[0].negated => vec![inner[0].gate],
-                                _ => vec![factor],
-                            })
-                            .collect();
-                        if flat != *factors {
-                            self.gates[id] = Gate::Product(flat);
-                            changed = true;
+                    Gate::Product(factors) if factors.iter().any(|&f| self.inner_product(f, &uses).is_some()) => {
+                        let mut flat: Vec<GateId> = Vec::with_capacity(factors.len() + 1);
+                        for &factor in factors {
+                            match self.inner_product(factor, &uses) {
+                                Some(Inner::Product(inner)) => flat.extend(inner),
+                                Some(Inner::Other(gate)) => flat.push(gate),
+                                None => flat.push(factor),
+                            }
                         }
+                        Gate::Product(flat)
                     }
-                    Gate::Leaf(_) | Gate::Reciprocal(_) => {}
-                }
+                    _ => continue,
+                };
+                self.gates.set(id as GateId, flat);
+                changed = true;
             }
             if !changed {
-                return;
+                return uses;
             }
+        }
+    }
+
+    /// The terms of a gate that a sum takes in.
+    fn inner_sum(&self, gate: GateId, uses: &[u32]) -> Option<&[Edge]> {
+        match &self.gates[gate as usize] {
+            Gate::Sum(inner) if uses[gate as usize] == 1 || inner.len() == 1 => Some(inner),
+            _ => None,
+        }
+    }
+
+    /// What a product takes in for a gate.
+    fn inner_product(&self, gate: GateId, uses: &[u32]) -> Option<Inner<'_>> {
+        match &self.gates[gate as usize] {
+            Gate::Product(inner) if uses[gate as usize] == 1 => Some(Inner::Product(inner)),
+            Gate::Sum(inner) if inner.len() == 1 && !inner[0].negated => Some(Inner::Other(inner[0].gate)),
+            _ => None,
         }
     }
 
@@ -346,7 +410,8 @@ impl Circuit {
     pub(super) fn above(&self, order: &[GateId], gate: GateId) -> Vec<bool> {
         let mut above = vec![false; self.gates.len()];
         above[gate as usize] = true;
-        for &other in order {
+        let own = order.iter().position(|&other| other == gate).unwrap_or(0);
+        for &other in &order[own..] {
             let mut depends = above[other as usize];
             self.each_operand(other, |operand| depends |= above[operand as usize]);
             above[other as usize] = depends;

@@ -57,7 +57,7 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
             }
         }
         if let Some((_, replacement)) = best {
-            circuit.gates[gate as usize] = replacement;
+            circuit.gates.set(gate, replacement);
             (order, uses) = (circuit.order(), circuit.uses());
         }
     }

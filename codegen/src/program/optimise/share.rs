@@ -1,7 +1,5 @@
 //! Common factors of a sum, pairs of terms of several sums, pairs of factors of several products.
 
-use std::collections::BTreeMap;
-
 use super::circuit::{Circuit, Edge, Gate, GateId};
 
 /// A step that saves operations.
@@ -22,12 +20,13 @@ struct Candidate {
     users: Vec<GateId>,
 }
 
-/// Does what saves most, as long as anything saves: in each round all steps of the greatest saving that do not touch each other.
-pub(super) fn share(circuit: &mut Circuit) {
+/// Does what saves most, as long as anything saves: in each round all steps of the greatest saving that do not touch each other; how
+/// often each gate is used then.
+pub(super) fn share(circuit: &mut Circuit) -> Vec<u32> {
+    let mut uses = circuit.uses();
     loop {
-        let uses = circuit.uses();
         let candidates = candidates(circuit, &uses);
-        let Some(most) = candidates.iter().map(|candidate| candidate.gain).max() else { return };
+        let Some(most) = candidates.iter().map(|candidate| candidate.gain).max() else { return uses };
         let mut touched = vec![false; circuit.gates.len()];
         for Candidate { step, users, .. } in candidates.into_iter().filter(|candidate| candidate.gain == most) {
             if users.iter().any(|&user| touched[user as usize]) {
@@ -40,80 +39,85 @@ pub(super) fn share(circuit: &mut Circuit) {
                 Step::Factor(sum, factor) => take_factor(circuit, &uses, sum, factor),
             }
         }
-        circuit.flatten();
+        uses = circuit.flatten();
     }
 }
 
+/// Two operands, with the sign of the second relative to the first.
+type Pair = (GateId, GateId, bool);
+
 /// All steps that save something, in a fixed order.
 fn candidates(circuit: &Circuit, uses: &[u32]) -> Vec<Candidate> {
-    let mut terms: BTreeMap<(GateId, GateId, bool), (usize, Vec<GateId>)> = BTreeMap::new();
-    let mut factors: BTreeMap<(GateId, GateId), (usize, Vec<GateId>)> = BTreeMap::new();
+    // Pairs of a sum or product, with their number in it.
+    let mut terms: Vec<(Pair, GateId, usize)> = Vec::new();
+    let mut factors: Vec<(Pair, GateId, usize)> = Vec::new();
     let mut all: Vec<Candidate> = Vec::new();
     for (id, gate) in circuit.gates.iter().enumerate().filter(|&(id, _)| uses[id] > 0) {
         let id = id as GateId;
         match gate {
             Gate::Sum(list) => {
-                for (pair, count) in pairs_apart(list.iter().copied()) {
-                    let (sum, users) = terms.entry(pair).or_default();
-                    *sum += count;
-                    users.push(id);
-                }
-                let mut common: BTreeMap<GateId, Vec<GateId>> = BTreeMap::new();
+                pairs_apart(list.iter().copied(), |pair, count| terms.push((pair, id, count)));
+                let mut common: Vec<(GateId, GateId)> = Vec::new();
                 for term in list.iter().filter(|t| uses[t.gate as usize] == 1) {
                     if let Gate::Product(list) = &circuit.gates[term.gate as usize] {
-                        let mut seen: Vec<GateId> = list.clone();
-                        seen.sort_unstable();
-                        seen.dedup();
-                        seen.into_iter().for_each(|f| common.entry(f).or_default().push(term.gate));
+                        let once = list.iter().enumerate().filter(|&(k, factor)| !list[..k].contains(factor));
+                        common.extend(once.map(|(_, &factor)| (factor, term.gate)));
                     }
                 }
-                for (factor, mut users) in common.into_iter().filter(|(_, users)| users.len() > 1) {
-                    let gain = users.len() - 1;
-                    users.push(id);
-                    all.push(Candidate { step: Step::Factor(id, factor), gain, users });
+                common.sort_by_key(|&(factor, _)| factor);
+                for of_factor in common.chunk_by(|a, b| a.0 == b.0).filter(|of_factor| of_factor.len() > 1) {
+                    let users = of_factor.iter().map(|&(_, term)| term).chain([id]).collect();
+                    all.push(Candidate { step: Step::Factor(id, of_factor[0].0), gain: of_factor.len() - 1, users });
                 }
             }
             Gate::Product(list) => {
-                for ((a, b, _), count) in pairs_apart(list.iter().map(|&factor| Edge::new(factor, false))) {
-                    let (sum, users) = factors.entry((a, b)).or_default();
-                    *sum += count;
-                    users.push(id);
-                }
+                pairs_apart(list.iter().map(|&factor| Edge::new(factor, false)), |pair, count| factors.push((pair, id, count)));
             }
             Gate::Leaf(_) | Gate::Reciprocal(_) => {}
         }
     }
-    let pairs = terms
-        .into_iter()
-        .map(|((a, b, negated), (count, users))| (Step::Terms(a, b, negated), count, users))
-        .chain(factors.into_iter().map(|((a, b), (count, users))| (Step::Factors(a, b), count, users)));
-    all.extend(pairs.filter(|(_, count, _)| *count > 1).map(|(step, count, users)| Candidate { step, gain: count - 1, users }));
+    let mut offer = |mut pairs: Vec<(Pair, GateId, usize)>, step: fn(Pair) -> Step| {
+        pairs.sort_unstable();
+        for of_pair in pairs.chunk_by(|a, b| a.0 == b.0) {
+            let count: usize = of_pair.iter().map(|(_, _, count)| count).sum();
+            if count > 1 {
+                let users = of_pair.iter().map(|&(_, user, _)| user).collect();
+                all.push(Candidate { step: step(of_pair[0].0), gain: count - 1, users });
+            }
+        }
+    };
+    offer(terms, |(a, b, negated)| Step::Terms(a, b, negated));
+    offer(factors, |(a, b, _)| Step::Factors(a, b));
     all
 }
 
-/// How often each pair of operands, of one sign or of two, occurs in a list without sharing an operand with another: what is counted here is
-/// saved, so that the sharing ends.
-fn pairs_apart(list: impl Iterator<Item = Edge>) -> Vec<((GateId, GateId, bool), usize)> {
+/// Tells how often each pair of operands, of one sign or of two, occurs in a list without sharing an operand with another: what is counted here
+/// is saved, so that the sharing ends.
+fn pairs_apart(list: impl Iterator<Item = Edge>, mut tell: impl FnMut(Pair, usize)) {
+    let mut edges: Vec<Edge> = list.collect();
+    edges.sort_unstable();
     // How often each operand stands there without and with a sign.
-    let mut counts: BTreeMap<GateId, [usize; 2]> = BTreeMap::new();
-    for edge in list {
-        counts.entry(edge.gate).or_default()[usize::from(edge.negated)] += 1;
-    }
-    let counts: Vec<(GateId, [usize; 2])> = counts.into_iter().collect();
-    let mut pairs = Vec::new();
+    let counts = edges.chunk_by(|a, b| a.gate == b.gate).map(|all| {
+        let minus = all.iter().filter(|edge| edge.negated).count();
+        (all[0].gate, [all.len() - minus, minus])
+    });
+    let counts: Vec<(GateId, [usize; 2])> = counts.collect();
+    let mut tell = |pair, count| {
+        if count > 0 {
+            tell(pair, count);
+        }
+    };
     for (k, &(a, [plus, minus])) in counts.iter().enumerate() {
-        pairs.push(((a, a, false), plus / 2 + minus / 2));
-        pairs.push(((a, a, true), plus.min(minus)));
+        tell((a, a, false), plus / 2 + minus / 2);
+        tell((a, a, true), plus.min(minus));
         for &(b, [other_plus, other_minus]) in &counts[k + 1..] {
-            pairs.push(((a, b, false), plus.min(other_plus) + minus.min(other_minus)));
-            pairs.push(((a, b, true), plus.min(other_minus) + minus.min(other_plus)));
+            tell((a, b, false), plus.min(other_plus) + minus.min(other_minus));
+            tell((a, b, true), plus.min(other_minus) + minus.min(other_plus));
         }
     }
-    pairs.retain(|(_, count)| *count > 0);
-    pairs
 }
 
-fn pair(a: Edge, b: Edge) -> (GateId, GateId, bool) {
+fn pair(a: Edge, b: Edge) -> Pair {
     (a.gate.min(b.gate), a.gate.max(b.gate), a.negated != b.negated)
 }
 
@@ -139,7 +143,7 @@ fn share_terms(circuit: &mut Circuit, users: &[GateId], a: GateId, b: GateId, ne
             list.remove(j);
             list[i] = shared.flipped(first.negated);
         }
-        circuit.gates[id as usize] = Gate::Sum(list);
+        circuit.gates.set(id, Gate::Sum(list));
     }
 }
 
@@ -166,8 +170,8 @@ fn share_factors(circuit: &mut Circuit, users: &[GateId], a: GateId, b: GateId) 
             list.remove(j);
         }
         // A factor that is left alone is no product.
-        circuit.gates[id as usize] =
-            if let [only] = list[..] { Gate::Sum(vec![Edge::new(only, false)]) } else { Gate::Product(list) };
+        let gate = if let [only] = list[..] { Gate::Sum(vec![Edge::new(only, false)]) } else { Gate::Product(list) };
+        circuit.gates.set(id, gate);
     }
 }
 
@@ -204,13 +208,13 @@ fn take_factor(circuit: &mut Circuit, uses: &[u32], sum: GateId, factor: GateId)
     let inner = circuit.push(Gate::Sum(inner), value);
     let product = vec![factor, inner];
     if rest.is_empty() && !flip {
-        circuit.gates[sum as usize] = Gate::Product(product);
+        circuit.gates.set(sum, Gate::Product(product));
         return;
     }
     let value = circuit.product_value(&product);
     let product = circuit.push(Gate::Product(product), value);
     rest.push(Edge::new(product, flip));
-    circuit.gates[sum as usize] = Gate::Sum(rest);
+    circuit.gates.set(sum, Gate::Sum(rest));
 }
 
 #[cfg(test)]
@@ -239,7 +243,9 @@ mod tests {
     fn a_pair_counts_as_often_as_it_can_be_taken() {
         let list = |terms: &[(GateId, bool)]| terms.iter().map(|&(gate, negated)| Edge::new(gate, negated)).collect::<Vec<_>>();
         let count = |terms: &[(GateId, bool)], pair: (GateId, GateId, bool)| {
-            pairs_apart(list(terms).into_iter()).iter().find(|(p, _)| *p == pair).map_or(0, |(_, count)| *count)
+            let mut found = 0;
+            pairs_apart(list(terms).into_iter(), |p, count| found += if p == pair { count } else { 0 });
+            found
         };
         // a b^4: one of a and b, two of b and b. Two of the first would be shared and taken apart for ever.
         let power = [(1, false), (2, false), (2, false), (2, false), (2, false)];

@@ -40,8 +40,8 @@ pub(super) fn sums_from_sums(circuit: &mut Circuit) -> usize {
         }
         let Some(terms) = rewritten(circuit, &forms, &order, target) else { continue };
         if keep_if_cheaper(circuit, &mut best, |circuit| {
-            circuit.gates[target as usize] = Gate::Sum(terms);
-            circuit.tidy();
+            circuit.gates.set(target, Gate::Sum(terms));
+            circuit.tidy()
         }) {
             order = circuit.order();
             forms = self::forms(circuit, &order);
@@ -74,9 +74,9 @@ pub(super) fn write_out(circuit: &mut Circuit) -> usize {
         let constant = form.constant;
         if keep_if_cheaper(circuit, &mut best, |circuit| {
             written.extend(constant_term(circuit, constant));
-            circuit.gates[target as usize] = Gate::Sum(written);
+            circuit.gates.set(target, Gate::Sum(written));
             circuit.tidy();
-            share(circuit);
+            share(circuit)
         }) {
             order = circuit.order();
             forms = self::forms(circuit, &order);
@@ -119,8 +119,8 @@ pub(super) fn shift_constants(circuit: &mut Circuit) -> usize {
             let difference = circuit.constants.sub(form.constant, constant.signed(negated));
             if keep_if_cheaper(circuit, &mut best, |circuit| {
                 let sum = [Edge::new(other, negated)].into_iter().chain(constant_term(circuit, difference)).collect();
-                circuit.gates[target as usize] = Gate::Sum(sum);
-                circuit.tidy();
+                circuit.gates.set(target, Gate::Sum(sum));
+                circuit.tidy()
             }) {
                 order = circuit.order();
                 forms = self::forms(circuit, &order);
@@ -131,18 +131,16 @@ pub(super) fn shift_constants(circuit: &mut Circuit) -> usize {
     before - best
 }
 
-/// Changes the circuit, and takes the change back unless it has fewer operations than the best so far.
-fn keep_if_cheaper(circuit: &mut Circuit, best: &mut usize, change: impl FnOnce(&mut Circuit)) -> bool {
-    let (gates, values) = (circuit.gates.clone(), circuit.values.len());
-    change(circuit);
-    let found = circuit.operations();
-    if found < *best {
-        *best = found;
-        return true;
-    }
-    circuit.gates = gates;
-    circuit.values.truncate(values);
-    false
+/// Changes the circuit, and takes the change back unless it has fewer operations than the best so far. The change gives how often each gate is
+/// used after it.
+fn keep_if_cheaper(circuit: &mut Circuit, best: &mut usize, change: impl FnOnce(&mut Circuit) -> Vec<u32>) -> bool {
+    circuit.attempt(|circuit| {
+        let uses = change(circuit);
+        let found = circuit.operations_of(&uses);
+        let cheaper = found < *best;
+        *best = found.min(*best);
+        cheaper
+    })
 }
 
 /// A constant as a term of a sum; none for 0.

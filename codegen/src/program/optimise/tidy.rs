@@ -6,26 +6,35 @@ use super::circuit::{Circuit, Edge, Gate, GateId};
 use crate::ring::ExprId;
 
 impl Circuit {
-    /// Takes sums and products of one use into those that use them, and tidies them up, until nothing changes.
-    pub(super) fn tidy(&mut self) {
+    /// Takes sums and products of one use into those that use them, and tidies them up, until nothing changes; how often each gate is used then.
+    pub(super) fn tidy(&mut self) -> Vec<u32> {
         loop {
-            self.flatten();
-            if !self.merge() {
-                return;
+            let uses = self.flatten();
+            if !self.merge(&uses) {
+                return uses;
             }
         }
     }
 
-    fn merge(&mut self) -> bool {
-        let uses = self.uses();
+    fn merge(&mut self, uses: &[u32]) -> bool {
         let mut changed = false;
+        // The last sum that a gate was seen in.
+        let mut seen: Vec<usize> = vec![usize::MAX; self.gates.len()];
         for id in 0..self.gates.len() {
             if uses[id] == 0 {
                 continue;
             }
             changed |= match &self.gates[id] {
-                Gate::Sum(terms) => self.merge_terms(id, &terms.clone(), &uses),
-                Gate::Product(factors) => self.merge_factors(id, &factors.clone()),
+                // Most sums hold one constant at most, and everything else once.
+                Gate::Sum(terms) => {
+                    let constants = terms.iter().filter(|t| self.constant(t.gate).is_some()).count();
+                    let repeated = |t: &Edge| std::mem::replace(&mut seen[t.gate as usize], id) == id;
+                    (constants > 1 || terms.iter().any(repeated)) && self.merge_terms(id as GateId, &terms.clone(), uses)
+                }
+                Gate::Product(factors) => {
+                    let constants = factors.iter().filter(|&&f| self.constant(f).is_some()).count();
+                    constants > 1 && self.merge_factors(id as GateId, &factors.clone())
+                }
                 Gate::Leaf(_) | Gate::Reciprocal(_) => false,
             };
         }
@@ -33,7 +42,7 @@ impl Circuit {
     }
 
     /// One constant a sum; x - x gone; x + x with x = k y, that nothing else uses, as (2 k) y.
-    fn merge_terms(&mut self, id: usize, terms: &[Edge], uses: &[u32]) -> bool {
+    fn merge_terms(&mut self, id: GateId, terms: &[Edge], uses: &[u32]) -> bool {
         let (constants, others): (Vec<Edge>, Vec<Edge>) = terms.iter().partition(|t| self.constant(t.gate).is_some());
         let mut counts: BTreeMap<GateId, i64> = BTreeMap::new();
         for term in &others {
@@ -88,12 +97,12 @@ impl Circuit {
             let gate = self.push_constant_or_one(sum.unsigned());
             merged.push(Edge::new(gate, sum.is_negated()));
         }
-        self.gates[id] = Gate::Sum(merged);
+        self.gates.set(id, Gate::Sum(merged));
         true
     }
 
     /// One constant a product.
-    fn merge_factors(&mut self, id: usize, factors: &[GateId]) -> bool {
+    fn merge_factors(&mut self, id: GateId, factors: &[GateId]) -> bool {
         let (constants, mut others): (Vec<GateId>, Vec<GateId>) = factors.iter().partition(|&&f| self.constant(f).is_some());
         if constants.len() < 2 || others.is_empty() {
             return false;
@@ -107,7 +116,8 @@ impl Circuit {
             return false;
         }
         others.extend(self.push_constant(product));
-        self.gates[id] = if let [only] = others[..] { Gate::Sum(vec![Edge::new(only, false)]) } else { Gate::Product(others) };
+        let gate = if let [only] = others[..] { Gate::Sum(vec![Edge::new(only, false)]) } else { Gate::Product(others) };
+        self.gates.set(id, gate);
         true
     }
 
