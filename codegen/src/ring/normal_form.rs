@@ -11,6 +11,7 @@
 //! computed up to a number of terms and given up beyond.
 
 use std::cmp::Reverse;
+use std::collections::btree_map::Entry;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -97,22 +98,29 @@ impl NormalForm {
 
     /// Adds a term; `harmonic` is in its canonical form.
     pub fn add_term(&mut self, harmonic: Harmonic, factors: Powers, coefficient: Number) {
-        let key = (harmonic, factors);
-        let sum = self.terms.get(&key).map_or_else(|| coefficient.clone(), |c| c.plus(&coefficient));
-        if sum.is_zero() {
-            self.terms.remove(&key);
-        } else {
-            self.terms.insert(key, sum);
+        match self.terms.entry((harmonic, factors)) {
+            Entry::Vacant(place) => {
+                if !coefficient.is_zero() {
+                    place.insert(coefficient);
+                }
+            }
+            Entry::Occupied(mut own) => {
+                let sum = own.get().plus(&coefficient);
+                if sum.is_zero() {
+                    own.remove();
+                } else {
+                    own.insert(sum);
+                }
+            }
         }
     }
 
     /// self + sign · other.
-    fn plus(&self, other: &NormalForm, negate: bool) -> NormalForm {
-        let mut sum = self.clone();
+    fn plus(mut self, other: &NormalForm, negate: bool) -> NormalForm {
         for ((harmonic, factors), c) in &other.terms {
-            sum.add_term(harmonic.clone(), factors.clone(), if negate { -c } else { c.clone() });
+            self.add_term(harmonic.clone(), factors.clone(), if negate { -c } else { c.clone() });
         }
-        sum
+        self
     }
 
     fn negated(&self) -> NormalForm {
@@ -169,17 +177,24 @@ fn add_harmonic(form: &mut NormalForm, mut angles: Vec<(u16, i32)>, sine: bool, 
 }
 
 fn combine(a: &Harmonic, b: &Harmonic, sign: i32) -> Vec<(u16, i32)> {
-    let mut sum: BTreeMap<u16, i32> = a.angles.iter().copied().collect();
-    for (i, k) in &b.angles {
-        *sum.entry(*i).or_default() += sign * k;
+    let mut sum = a.angles.clone();
+    for &(i, k) in &b.angles {
+        match sum.binary_search_by_key(&i, |(i, _)| *i) {
+            Ok(at) => sum[at].1 += sign * k,
+            Err(at) => sum.insert(at, (i, sign * k)),
+        }
     }
-    sum.into_iter().filter(|(_, k)| *k != 0).collect()
+    sum.retain(|(_, k)| *k != 0);
+    sum
 }
 
 fn merge(a: &Powers, b: &Powers) -> Powers {
-    let mut powers: BTreeMap<Symbol, u32> = a.iter().copied().collect();
-    for (symbol, power) in b {
-        *powers.entry(*symbol).or_default() += power;
+    let mut powers = a.clone();
+    for &(symbol, power) in b {
+        match powers.binary_search_by_key(&symbol, |(symbol, _)| *symbol) {
+            Ok(at) => powers[at].1 += power,
+            Err(at) => powers.insert(at, (symbol, power)),
+        }
     }
     // sign(dq)² is not 1 at rest, but sign(dq)³ is sign(dq).
     for (symbol, power) in &mut powers {
@@ -187,7 +202,7 @@ fn merge(a: &Powers, b: &Powers) -> Powers {
             *power = 2 - *power % 2;
         }
     }
-    powers.into_iter().collect()
+    powers
 }
 
 impl Pool {
@@ -275,9 +290,25 @@ impl Pool {
                 }
             }
         }
+        // How often each form is still asked for: the last asks for it itself, not for a copy.
+        let mut left = vec![0usize; self.len()];
+        exprs.iter().for_each(|e| left[e.index()] += 1);
+        for index in (0..self.len()).filter(|&i| needed[i]) {
+            if let Node::Add(a, b) | Node::Mul(a, b) = self.nodes[index] {
+                left[a.index()] += 1;
+                left[b.index()] += 1;
+            }
+        }
         let mut forms: Vec<Option<Rc<NormalForm>>> = vec![None; self.len()];
         for index in (0..self.len()).filter(|&i| needed[i]) {
-            let of = |e: ExprId| forms[e.index()].clone();
+            let mut of = |e: ExprId| {
+                left[e.index()] -= 1;
+                if left[e.index()] == 0 {
+                    forms[e.index()].take()
+                } else {
+                    forms[e.index()].clone()
+                }
+            };
             let form = match self.nodes[index] {
                 Node::Constant(id) => {
                     let value = &self.constants[id.0 as usize];
@@ -286,8 +317,14 @@ impl Pool {
                         .or(Some(NormalForm::default()))
                 }
                 Node::Symbol(symbol) => Some(symbol_form(symbol, self.field().turn())),
-                Node::Add(a, b) => of(a).zip(of(b)).map(|(a, fb)| a.plus(&fb, b.is_negated())).filter(|sum| sum.len() <= limit),
-                Node::Mul(a, b) => of(a).zip(of(b)).and_then(|(a, b)| a.times(&b, limit)),
+                Node::Add(a, b) => {
+                    let both = of(a).zip(of(b));
+                    both.map(|(a, fb)| Rc::unwrap_or_clone(a).plus(&fb, b.is_negated())).filter(|sum| sum.len() <= limit)
+                }
+                Node::Mul(a, b) => {
+                    let both = of(a).zip(of(b));
+                    both.and_then(|(a, b)| a.times(&b, limit))
+                }
                 Node::Reciprocal(_) => None,
             };
             if !go_on(form.is_some()) {

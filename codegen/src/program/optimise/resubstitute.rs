@@ -3,6 +3,8 @@
 //! A gate whose removal frees several operations, its own and those of what only it needs, is tried as a + b, a - b and a b of any two gates
 //! that do not depend on it: for each a, the fingerprint that b would need to have is looked up. What a and b need stays, and is not gained.
 
+use std::cell::OnceCell;
+
 use super::circuit::{Circuit, Edge, Gate, GateId};
 use crate::ring::field::Element;
 use crate::ring::Fingerprint;
@@ -21,6 +23,12 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
     let zero = [circuit.field.zero(); 2];
     let inverses = inverses(circuit, &all);
     let (mut order, mut uses) = (all.clone(), circuit.uses());
+    // Gates with the first halves of their values and inverses, those that are 0 left out.
+    let firsts = |circuit: &Circuit, order: &[GateId]| -> Vec<(GateId, Element, Element)> {
+        let values = order.iter().map(|&a| (a, circuit.values[a as usize], inverses[a as usize][0]));
+        values.filter(|(_, value, _)| *value != zero).map(|(a, value, inverse)| (a, value[0], inverse)).collect()
+    };
+    let mut operands = firsts(circuit, &order);
     for &gate in all.iter().rev() {
         if uses[gate as usize] == 0 || circuit.cost(gate) == 0 {
             continue;
@@ -30,35 +38,40 @@ pub(super) fn resubstitute(circuit: &mut Circuit) -> usize {
         if total < 2 {
             continue;
         }
-        let above = circuit.above(&order, gate);
+        // Few offers gain anything, and only those ask for it.
+        let above: OnceCell<Vec<bool>> = OnceCell::new();
         let mut best: Option<(usize, Gate)> = None;
         let value = circuit.values[gate as usize];
-        for &a in order.iter().filter(|&&a| circuit.values[a as usize] != zero && !above[a as usize]) {
+        for &(a, first, first_inverse) in &operands {
             let mut offer = |b: Option<Edge>, make: &dyn Fn(Edge) -> Gate| {
-                let Some(b) = b.filter(|b| !above[b.gate as usize] && uses[b.gate as usize] > 0) else { return };
+                let Some(b) = b.filter(|b| uses[b.gate as usize] > 0) else { return };
                 let gain = total.saturating_sub(kept_for(circuit, &freed, &[a, b.gate]) + 1);
-                if gain > best.as_ref().map_or(0, |(most, _)| *most) {
+                if gain <= best.as_ref().map_or(0, |(most, _)| *most) {
+                    return;
+                }
+                let above = above.get_or_init(|| circuit.above(&order, gate));
+                if !above[a as usize] && !above[b.gate as usize] {
                     best = Some((gain, make(b)));
                 }
             };
-            let of_a = circuit.values[a as usize];
+            let of_a = || circuit.values[a as usize];
             // Most values belong to no gate; the filter rejects them by their first half.
-            if circuit.may_hold(circuit.field.sub(value[0], of_a[0])) {
-                let minus_a = of_a.map(|x| circuit.field.neg(x));
+            if circuit.may_hold(circuit.field.sub(value[0], first)) {
+                let minus_a = of_a().map(|x| circuit.field.neg(x));
                 offer(circuit.find(&circuit.plus(&value, &minus_a)), &|b| Gate::Sum(vec![Edge::new(a, false), b]));
             }
-            if circuit.may_hold(circuit.field.add(value[0], of_a[0])) {
-                offer(circuit.find(&circuit.plus(&value, &of_a)), &|b| Gate::Sum(vec![Edge::new(a, true), b]));
+            if circuit.may_hold(circuit.field.add(value[0], first)) {
+                offer(circuit.find(&circuit.plus(&value, &of_a())), &|b| Gate::Sum(vec![Edge::new(a, true), b]));
             }
-            let inverse = &inverses[a as usize];
-            if circuit.may_hold(circuit.field.mul(value[0], inverse[0])) {
-                let quotient = circuit.times(&value, inverse);
+            if circuit.may_hold(circuit.field.mul(value[0], first_inverse)) {
+                let quotient = circuit.times(&value, &inverses[a as usize]);
                 offer(circuit.find(&quotient).filter(|b| !b.negated), &|b| Gate::Product(vec![a, b.gate]));
             }
         }
         if let Some((_, replacement)) = best {
             circuit.gates.set(gate, replacement);
             (order, uses) = (circuit.order(), circuit.uses());
+            operands = firsts(circuit, &order);
         }
     }
     before - circuit.operations()
