@@ -28,6 +28,7 @@ mod steps;
 mod text;
 
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 use crate::catalogue::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
 use crate::catalogue::{self, Absent, Length, Quantity, ResultPart, Typeset};
@@ -131,6 +132,8 @@ pub struct Shown {
     pub factors: Option<Vec<Factor>>,
     /// Digits of constants; none: exactly.
     pub digits: Option<u8>,
+    /// The entries in plain text, once they have been asked for.
+    text: OnceLock<Formulas>,
 }
 
 /// The entries of a quantity.
@@ -221,7 +224,8 @@ impl Sheet {
             let named = if named { symbolic.shown(model, item, style) } else { Vec::new() };
             Ok((nominal.shown(model, item, style), named))
         });
-        let (nominal, symbolic) = all.into_iter().map(|both| (both.clone().map(|(nominal, _)| nominal), both.map(|(_, named)| named))).unzip();
+        let (nominal, symbolic) =
+            all.into_iter().map(|both| (both.clone().map(|(nominal, _)| nominal), both.map(|(_, named)| named))).unzip();
         [nominal, symbolic].map(|all| Sheet::of(model, items, all))
     }
 
@@ -252,12 +256,12 @@ impl Shown {
 
     /// Whether it is a matrix of closed forms that fits a table.
     fn is_table(&self) -> bool {
-        self.table(&self.formulas(Notation::Text)).is_some()
+        self.table(self.plain_text()).is_some()
     }
 
     /// How many characters the steps and the entries take, spaces apart; of a symmetric matrix those of the upper half.
     fn length(&self) -> usize {
-        let Formulas { steps, entries } = self.formulas(Notation::Text);
+        let Formulas { steps, entries } = self.plain_text();
         let symmetric = self.is_symmetric();
         let shown = |k: &usize| !symmetric || k / self.columns <= k % self.columns;
         let entries = (0..entries.len()).filter(shown).map(|k| entries[k].as_str()).filter(|entry| *entry != "0");
@@ -268,8 +272,13 @@ impl Shown {
 
     /// The same with the content that is the shortest, the first of equals.
     fn with_shortest(self, contents: impl IntoIterator<Item = Content>) -> Shown {
-        let all = contents.into_iter().map(|content| Shown { content, ..self.clone() });
+        let all = contents.into_iter().map(|content| Shown { content, text: OnceLock::new(), ..self.clone() });
         all.min_by_key(Shown::length).unwrap_or(self)
+    }
+
+    /// The entries as formulas in plain text.
+    fn plain_text(&self) -> &Formulas {
+        self.text.get_or_init(|| self.formulas(Notation::Text))
     }
 
     /// The entries as formulas.
@@ -445,6 +454,7 @@ fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
         parameters: names.parameters.clone(),
         velocities: model.manipulator.stribeck_velocities(),
         digits: names.style.digits,
+        text: OnceLock::new(),
     };
     in_form(shown, closed.map(|form| vec![form]), derived.derivation, names.style.form)
 }
@@ -469,6 +479,7 @@ fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], d
         velocities: model.manipulator.stribeck_velocities(),
         factors: None,
         digits: names.style.digits,
+        text: OnceLock::new(),
     };
     in_form(shown, closed, derivation, names.style.form)
 }

@@ -11,9 +11,12 @@ import { condition, determinant, manipulability } from "./linear.mjs";
 /** A factor is near zero below this part of what it can be. */
 const NEAR = 0.02;
 
+/** From this condition number on a posture is called singular. */
+const SINGULAR = 1000;
+
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     rowNames?: string[], columnNames?: string[], near?: () => string, remark?: string}} Quantity
+ *     rowNames?: string[], columnNames?: string[], near?: () => string}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
@@ -56,14 +59,17 @@ function quantities(data, state) {
         const of = () => evaluate(factor, lookup);
         const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? "⚠ near zero: singular" : "");
         const shown = text.length < 60 ? text.replaceAll("*", " ") : "see the equations";
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${shown}`, "", of, where), near });
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${shown}; ${where}`, "", of), near });
     });
-    list.push(scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())));
+    // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
+    const told = data.determinant?.factors?.length > 0 || data.task.length > n;
+    const singular = () => (told || condition(task()) < SINGULAR ? "" : "⚠ singular, or nearly so");
+    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), near: singular });
     list.push(scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())));
     if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m²", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
         list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "kg m²/s", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
-        list.push(scalar("skew_symmetry", "Ḃ − 2C", "Largest entry of its symmetric part, 0 but for the differences that Ḃ is taken by", "", () => skewSymmetry(state)));
+        list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, 0 but for the differences that Ḃ is taken by", "", () => skewSymmetry(state)));
     }
     if (has("gravity")) list.push(vector("gravity", "g", "Gravity term", "N m", n, () => robot.gravity(state.q), joints));
     if (has("friction")) list.push(vector("friction", "F", "Friction", "N m", n, () => robot.friction(state.dq), joints));
@@ -81,8 +87,8 @@ function vector(name, symbol, title, unit, rows, of, rowNames) {
     return { name, symbol, title, unit, rows, columns: 0, of, rowNames };
 }
 
-function scalar(name, symbol, title, unit, of, remark = "") {
-    return { name, symbol, title, unit, rows: 0, columns: 0, of, remark };
+function scalar(name, symbol, title, unit, of) {
+    return { name, symbol, title, unit, rows: 0, columns: 0, of };
 }
 
 /** Roll, pitch and yaw of a frame; at pitch = ±90 degrees roll is taken as 0. @param {number[][]} t */
@@ -124,11 +130,13 @@ function table(quantity) {
     };
     // A lone number stands on a line of its own, which nothing folds away.
     const [whole, first] = rows === 0 ? ["div", "p"] : ["details", "summary"];
-    const head = html(first, {}, html("b", {}, symbol), ` ${title}${unit ? `, ${unit}` : ""}`);
+    const head = html(first, {}, html("b", {}, symbol));
     const element = html(whole, { open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
-        head.append(" = ", cell(0, 0), quantity.remark ? html("span", { class: "small" }, `  ${quantity.remark}`) : "", said);
+        // The number before the words: after them its unit would look like a symbol that it is the value of.
+        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title}`));
     } else {
+        head.append(` ${title}${unit ? `, ${unit}` : ""}`);
         const rowName = (i) => `${i} ${quantity.rowNames?.[i - 1] ?? ""}`;
         const body = html("tbody");
         for (let i = 1; i <= rows; i++) {

@@ -29,7 +29,7 @@ impl Serialize for Sheet {
 
 impl Serialize for Shown {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let formulas = self.formulas(Notation::Text);
+        let formulas = self.plain_text();
         let rows: Vec<&[String]> = formulas.entries.chunks(self.columns.max(1)).collect();
         let mut shown = serializer.serialize_struct("Shown", 9)?;
         shown.serialize_field("name", &self.name)?;

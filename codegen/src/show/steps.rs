@@ -15,7 +15,7 @@ const OPERANDS_IN_A_STEP: usize = 6;
 /// A product: an exact coefficient, and factors as they are printed, with their powers.
 #[derive(Clone)]
 struct Term {
-    coefficient: Number,
+    coefficient: Rc<Number>,
     factors: Vec<(Rc<str>, i32)>,
 }
 
@@ -25,11 +25,11 @@ struct Text(Vec<Term>);
 
 impl Text {
     fn constant(value: Number) -> Text {
-        Text(if value.is_zero() { Vec::new() } else { vec![Term { coefficient: value, factors: Vec::new() }] })
+        Text(if value.is_zero() { Vec::new() } else { vec![Term { coefficient: Rc::new(value), factors: Vec::new() }] })
     }
 
     fn factor(name: &str) -> Text {
-        Text(vec![Term { coefficient: Number::one(), factors: vec![(name.into(), 1)] }])
+        Text(vec![Term { coefficient: Rc::new(Number::one()), factors: vec![(name.into(), 1)] }])
     }
 
     /// How many operands it shows.
@@ -39,7 +39,7 @@ impl Text {
     }
 
     fn signed(&self, negated: bool) -> Cow<'_, Text> {
-        let of = |term: &Term| Term { coefficient: -&term.coefficient, factors: term.factors.clone() };
+        let of = |term: &Term| Term { coefficient: Rc::new(-&*term.coefficient), factors: term.factors.clone() };
         if negated {
             Cow::Owned(Text(self.0.iter().map(of).collect()))
         } else {
@@ -51,7 +51,7 @@ impl Text {
     fn plus(mut self, other: &Text) -> Text {
         for term in &other.0 {
             match self.0.iter_mut().find(|own| own.factors == term.factors) {
-                Some(own) => own.coefficient += &term.coefficient,
+                Some(own) => *Rc::make_mut(&mut own.coefficient) += &term.coefficient,
                 None => self.0.push(term.clone()),
             }
         }
@@ -63,7 +63,11 @@ impl Text {
     fn times(&self, other: &Text, printer: &Printer<'_>) -> Text {
         let (Some(left), Some(right)) = (self.as_product(printer), other.as_product(printer)) else { return Text(Vec::new()) };
         let mut product = left;
-        product.coefficient = &product.coefficient * &right.coefficient;
+        if product.coefficient.is_one() {
+            product.coefficient = right.coefficient;
+        } else if !right.coefficient.is_one() {
+            product.coefficient = Rc::new(&*product.coefficient * &*right.coefficient);
+        }
         for (name, power) in right.factors {
             match product.factors.iter_mut().find(|(own, _)| *own == name) {
                 Some((_, own)) => *own += power,
@@ -79,7 +83,7 @@ impl Text {
         match &self.0[..] {
             [] => None,
             [term] => Some(term.clone()),
-            _ => Some(Term { coefficient: Number::one(), factors: vec![(self.in_parentheses(printer).into(), 1)] }),
+            _ => Some(Term { coefficient: Rc::new(Number::one()), factors: vec![(self.in_parentheses(printer).into(), 1)] }),
         }
     }
 
@@ -99,11 +103,11 @@ impl Text {
             (_, Notation::Text) => self.in_parentheses(printer).into(),
             (_, Notation::Latex) => self.print(printer).into(),
         };
-        Text(vec![Term { coefficient: Number::one(), factors: vec![(name, -1)] }])
+        Text(vec![Term { coefficient: Rc::new(Number::one()), factors: vec![(name, -1)] }])
     }
 
     fn print(&self, printer: &Printer<'_>) -> String {
-        printer.sum_of_products(self.0.iter().map(|term| (&term.coefficient, &term.factors[..])))
+        printer.sum_of_products(self.0.iter().map(|term| (&*term.coefficient, &term.factors[..])))
     }
 }
 

@@ -21,7 +21,7 @@ impl Sheet {
 
 impl Shown {
     pub(super) fn text(&self) -> String {
-        let formulas = self.formulas(Notation::Text);
+        let formulas = self.plain_text();
         let mut text = format!("{}: {}", self.name, self.symbol[0]);
         match (self.rows, self.columns) {
             (1, 1) => {}
@@ -35,9 +35,9 @@ impl Shown {
             let count = formulas.steps.len();
             write!(text, ", in {count} {}", if count == 1 { "step" } else { "steps" }).expect("writing to a string");
         }
-        match self.table(&formulas) {
+        match self.table(formulas) {
             Some(table) => text + "\n" + &table,
-            None => self.lines(text, &formulas),
+            None => self.lines(text, formulas),
         }
     }
 
