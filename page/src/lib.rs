@@ -21,7 +21,7 @@ mod script;
 mod sheet;
 mod warnings;
 
-pub use logs::{Figure, Log, Run, Verdict};
+pub use logs::{Figure, Log, Run, Verdict, SAMPLES};
 
 use armgen_codegen::description::{Convention, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;

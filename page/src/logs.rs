@@ -8,7 +8,7 @@ use crate::html::{escape, pack};
 use crate::rows::Row;
 
 /// At most so many samples are kept of a log: more are not seen.
-const SAMPLES: usize = 2000;
+pub const SAMPLES: usize = 2000;
 
 /// What begins the name of the column of a joint's position.
 const POSITION: &str = "q_";
@@ -135,14 +135,13 @@ pub(crate) fn data(runs: &[Run], rows: &[Row]) -> Value {
 /// The section.
 pub(crate) fn section(runs: &[Run]) -> String {
     let mut text = String::from(CONTROLS);
+    let all: Vec<&Verdict> = runs.iter().flat_map(|run| &run.verdicts).collect();
+    if !all.is_empty() {
+        let _ = writeln!(text, "<p>All runs together:{}</p>", as_expected(&all));
+    }
     for run in runs {
         let name = escape(&run.name);
-        let met = run.verdicts.iter().filter(|verdict| verdict.met).count();
-        let verdict = match (run.verdicts.len(), met) {
-            (0, _) => String::new(),
-            (all, met) if all == met => format!(" <span class=\"met\">{met} of {all} as expected</span>"),
-            (all, met) => format!(" <strong class=\"unmet\">{met} of {all} as expected</strong>"),
-        };
+        let verdict = as_expected(&run.verdicts.iter().collect::<Vec<_>>());
         let _ = writeln!(
             text,
             "<details class=\"run\" data-log=\"{name}\"><summary><b>{name}</b> {}{verdict}</summary>",
@@ -164,6 +163,16 @@ pub(crate) fn section(runs: &[Run]) -> String {
         text += "<div class=\"plots\"></div><div class=\"figures\"></div></details>\n";
     }
     text
+}
+
+/// How many of the verdicts are as expected; nothing where there are none.
+fn as_expected(verdicts: &[&Verdict]) -> String {
+    let met = verdicts.iter().filter(|verdict| verdict.met).count();
+    match (verdicts.len(), met) {
+        (0, _) => String::new(),
+        (all, met) if all == met => format!(" <span class=\"met\">{met} of {all} as expected</span>"),
+        (all, met) => format!(" <strong class=\"unmet\">{met} of {all} as expected</strong>"),
+    }
 }
 
 const CONTROLS: &str = "<div class=\"controls\" id=\"playback\"><button type=\"button\" id=\"log-play\" aria-pressed=\"false\">play</button>\

@@ -86,8 +86,11 @@ function written(equation, form, exact) {
     if (fits(form)) {
         host.append(matrix(equation, form, options));
     } else {
-        host.append(html("p", {}, math("math", {}, symbolElement(form.symbol, options)), note(form)));
-        list(host, lines(equation, form), options);
+        const all = lines(equation, form);
+        const head = html("p", {}, math("math", {}, symbolElement(form.symbol, options)), note(form));
+        const body = html("div");
+        host.append(head, ...entryChoice(all, (chosen) => list(body, chosen, { ...options, count: 0 })), body);
+        list(body, all, options);
     }
     if (form.factors) {
         host.append(html("p", {}, "Factors:"));
@@ -163,22 +166,50 @@ function entryName(equation, form, i, j, options) {
     if (form.rows === 1 && form.columns === 1) return symbolElement(form.symbol, options);
     const letter = equation.letter.split("_");
     const own = letter.length > 1 ? `${letter[1]},` : "";
-    const large = form.rows > 9 || form.columns > 9;
-    const index = equation.columnNames ? `${i + 1},` : form.columns === 1 ? `${i + 1}` : `${i + 1}${large ? "," : ""}${j + 1}`;
-    const below = math("mrow", {}, math("mn", {}, own + index));
+    const below = math("mrow", {}, math("mn", {}, own + entryIndex(equation, form, i, j)));
     if (equation.columnNames) below.append(nameElement(equation.columnNames[j], options));
     options.count += 4;
     return math("msub", {}, math("mi", {}, letter[0]), below);
 }
 
+/** Its numbers: 12, 3, or that of the row before the name of the column. @param {Equation} equation @param {Form} form @param {number} i @param {number} j */
+function entryIndex(equation, form, i, j) {
+    const large = form.rows > 9 || form.columns > 9;
+    return equation.columnNames ? `${i + 1},` : form.columns === 1 ? `${i + 1}` : `${i + 1}${large ? "," : ""}${j + 1}`;
+}
+
+/** The same in plain text: b12, g3. @param {Equation} equation @param {Form} form @param {number} i @param {number} j */
+function entryLabel(equation, form, i, j) {
+    return `${equation.letter} ${entryIndex(equation, form, i, j)} ${equation.columnNames?.[j] ?? ""}`.trim().replace(/^(\w) (\d)/, "$1$2");
+}
+
+/** A choice of one entry, which is then shown with the steps that it needs alone; nothing where there are no steps. @param {any[]} all @param {(chosen: any[]) => void} show */
+function entryChoice(all, show) {
+    const entries = all.filter((line) => line.entry !== "");
+    if (entries.length < 2 || entries.length === all.length) return [];
+    const select = html("select", {}, html("option", { value: "" }, "all"), ...entries.map((line) => html("option", { value: line.entry }, line.label)));
+    select.addEventListener("change", () => show(select.value === "" ? all : needed(all, select.value)));
+    return [html("p", { class: "controls entries" }, html("label", {}, "entry ", select))];
+}
+
+/** The line of an entry, and after it the steps that it needs, in their order. @param {any[]} all @param {string} entry */
+export function needed(all, entry) {
+    const steps = new Map(all.filter((line) => line.entry === "").map((line) => [line.label, line]));
+    const found = new Set(all.filter((line) => line.entry === entry));
+    const [first] = found;
+    // A set that grows is gone through to its new end.
+    for (const line of found) for (const name of line.text.match(/[A-Za-z_]\w*/g) ?? []) if (steps.has(name)) found.add(steps.get(name));
+    return [first, ...all.filter((line) => line !== first && found.has(line))];
+}
+
 /** Steps and entries that are not zero; of a symmetric matrix the upper half. @param {Equation} equation @param {Form} form */
 function lines(equation, form) {
     const symmetric = isSymmetric(form);
-    const all = (form.steps ?? []).map(([name, text]) => ({ name: (options) => nameElement(name, options), text, entry: "" }));
+    const all = (form.steps ?? []).map(([name, text]) => ({ name: (options) => nameElement(name, options), label: name, text, entry: "" }));
     form.entries.forEach((row, i) =>
         row.forEach((text, j) => {
             if (text === "0" || (symmetric && j < i)) return;
-            all.push({ name: (options) => entryName(equation, form, i, j, options), text, entry: `${i + 1},${j + 1}` });
+            all.push({ name: (options) => entryName(equation, form, i, j, options), label: entryLabel(equation, form, i, j), text, entry: `${i + 1},${j + 1}` });
         }),
     );
     return all;
@@ -189,7 +220,7 @@ function list(host, all, options) {
     let next = 0;
     const table = html("div", { class: "lines scroll", tabindex: 0, role: "region", "aria-label": "Formulas" });
     const more = html("button", { type: "button" });
-    host.append(table, more);
+    host.replaceChildren(table, more);
     const slice = (until) => {
         const end = Math.min(until, options.count + SLICE);
         while (next < all.length && options.count < end) {
@@ -197,7 +228,8 @@ function list(host, all, options) {
             const row = math("mrow", {}, name(options), math("mo", {}, "="), mathml(parse(text), options));
             table.append(html("div", { "data-entry": entry || undefined }, math("math", {}, row)));
         }
-        const busy = next < all.length && options.count < until;
+        // Of lines that others have taken the place of no more are set.
+        const busy = host.firstChild === table && next < all.length && options.count < until;
         table.setAttribute("aria-busy", String(busy));
         more.hidden = busy || next === all.length;
         more.textContent = `show ${Math.min(all.length - next, next)} more of ${all.length - next} lines`;

@@ -79,10 +79,18 @@ export function logs(data, state, picture) {
     const opened = new Map();
     let moving = 0;
 
+    // The sample that is shown, and where the cursors stand as long as the pointer is in no plot.
+    let k = 0;
+    const mark = () => {
+        for (const chart of active?.charts ?? []) {
+            const left = chart.valToPos(active.log.columns[0][k], "x");
+            if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
+        }
+    };
     const show = (t, fromChart) => {
         if (!active) return;
         const { log } = active;
-        const k = sampleAt(log.columns[0], t);
+        k = sampleAt(log.columns[0], t);
         time.value = String(t);
         value.textContent = `${short(Number(t.toPrecision(5)))} s`;
         if (active.places.length > 0) {
@@ -91,11 +99,7 @@ export function logs(data, state, picture) {
             if (rates.length > 0) state.dq = rates.map(Number);
             if (q.every((x) => x !== null)) state.move(q);
         }
-        if (fromChart) return;
-        for (const chart of active.charts) {
-            const left = chart.valToPos(log.columns[0][k], "x");
-            if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
-        }
+        if (!fromChart) mark();
     };
     /** Follows a run: from its start, or from where it was followed until now. @param {any} run */
     const choose = (run) => {
@@ -181,6 +185,8 @@ export function logs(data, state, picture) {
         run.over = over && { log: over.log, places: placesOf(over.log) };
         if (over) run.trails.push(...trails(over.log, run.over.places).map(({ path, kind }) => ({ path, kind: `${kind} other` })));
         run.charts = plots(run.log).map((plot) => chart(run.host, run.log, plot, run.name, over));
+        // A pointer that leaves takes its cursor with it.
+        for (const one of run.charts) one.over.addEventListener("mouseleave", () => setTimeout(() => active === run && mark()));
         // Charts draw themselves once this task is done; their cursor is set then.
         await null;
         choose(run);

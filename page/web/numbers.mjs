@@ -55,7 +55,7 @@ function quantities(data, state) {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
         const zero = data.determinant.singular[k];
-        const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : (zero ?? "zero where several joints together make it so");
+        const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}${rounded(zero)}` : (zero ?? "zero where several joints together make it so");
         const of = () => evaluate(factor, lookup);
         const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? "⚠ near zero: singular" : "");
         const shown = text.length < 60 ? text.replaceAll("*", " ") : "see the equations";
@@ -77,6 +77,12 @@ function quantities(data, state) {
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
     if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));
     return list;
+}
+
+/** The number of a zero such as `q3 = atan(-4318/203) mod pi`, for whom it is to be typed; nothing for one that is plain. @param {string} zero */
+function rounded(zero) {
+    const angle = /= (.*atan.*) mod/.exec(zero)?.[1];
+    return angle === undefined ? "" : ` (${short(evaluate(parse(angle), () => Math.PI))})`;
 }
 
 function matrix(name, symbol, title, unit, rows, columns, of) {

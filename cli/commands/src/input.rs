@@ -17,13 +17,23 @@ use armgen_verify::reader::LONGEST;
 use crate::terminal;
 use crate::{FAULTY, UNREADABLE};
 
+/// What is said of a file that is too long, but for a log.
+const OTHERS_ARE_SHORT: &str = "no file that armgen reads or writes is";
+
 /// The text of a file, or the exit code after a message that says why there is none.
 pub(crate) fn source(path: &Path) -> Result<Source, u8> {
-    Ok(Source::new(path.display().to_string(), text(path)?))
+    Ok(Source::new(path.display().to_string(), text(path, OTHERS_ARE_SHORT)?))
 }
 
-/// The text of a file as it is; why it cannot be had goes to standard error.
-fn text(path: &Path) -> Result<String, u8> {
+/// The text of a log, which may well be longer than what is read: whoever has it is told what to do.
+pub(crate) fn log(path: &Path) -> Result<Source, u8> {
+    let samples = armgen_page::SAMPLES;
+    let remedy = format!("a page keeps {samples} samples at most, so give it the first line and, of the others, every tenth");
+    Ok(Source::new(path.display().to_string(), text(path, &remedy)?))
+}
+
+/// The text of a file as it is; why it cannot be had goes to standard error, and what is said of one that is too long.
+fn text(path: &Path, of_long: &str) -> Result<String, u8> {
     let name = path.display().to_string();
     let mut bytes = Vec::new();
     // Never more than that, whatever the file is: a device may have no end.
@@ -33,7 +43,7 @@ fn text(path: &Path) -> Result<String, u8> {
         UNREADABLE
     })?;
     if bytes.len() > LONGEST {
-        terminal::error(&format!("{name} is longer than {} MiB: no file that armgen reads or writes is", LONGEST >> 20));
+        terminal::error(&format!("{name} is longer than {} MiB: {of_long}", LONGEST >> 20));
         return Err(UNREADABLE);
     }
     String::from_utf8(bytes).map_err(|error| {
@@ -46,7 +56,7 @@ fn text(path: &Path) -> Result<String, u8> {
 
 /// A file that armgen has written: its text is what it is judged by, so a byte order mark in front of it, which reading drops, is refused.
 pub(crate) fn written(path: &Path) -> Result<Source, u8> {
-    let (name, text) = (path.display().to_string(), text(path)?);
+    let (name, text) = (path.display().to_string(), text(path, OTHERS_ARE_SHORT)?);
     if text.starts_with('\u{feff}') {
         terminal::error(&format!("{name} begins with a byte order mark, which no file that armgen writes does"));
         return Err(FAULTY);

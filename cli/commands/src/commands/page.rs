@@ -36,7 +36,7 @@ pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
 
 /// A log by the name of its file.
 fn read(path: &Path, others: &[Run]) -> Result<Run, u8> {
-    let source = input::source(path)?;
+    let source = input::log(path)?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let refuse = |reason: &str| {
         terminal::error(&format!("{}: {reason}", path.display()));
