@@ -82,8 +82,10 @@ export function logs(data, state, picture) {
     // The sample that is shown, and where the cursors stand as long as the pointer is in no plot.
     let k = 0;
     const mark = () => {
-        for (const chart of active?.charts ?? []) {
-            const left = chart.valToPos(active.log.columns[0][k], "x");
+        if (!active) return;
+        const { charts, log } = active;
+        for (const chart of charts) {
+            const left = chart.valToPos(log.columns[0][k], "x");
             if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
         }
     };
