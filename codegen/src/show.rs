@@ -216,17 +216,19 @@ impl Sheet {
         Sheet::of(model, items, all)
     }
 
-    /// With the numbers of the description, and what reads otherwise with the names of its parameters.
+    /// With the numbers of the description, and what holds names of its parameters with these.
     pub fn in_both_readings(model: &Model, items: &[Item], style: Style) -> [Sheet; 2] {
-        let all = parallel_map(items, |&item| {
-            let (nominal, symbolic) = (derived(model, item, Reading::Nominal)?, derived(model, item, Reading::Symbolic)?);
-            let named = !symbolic.derivation.is_the_same_as(&nominal.derivation);
-            let named = if named { symbolic.shown(model, item, style) } else { Vec::new() };
-            Ok((nominal.shown(model, item, style), named))
+        let nominal = Sheet::in_style(model, items, Reading::Nominal, style);
+        if model.manipulator.parameters.is_empty() {
+            let symbolic = Sheet { quantities: Vec::new(), ..nominal.clone() };
+            return [nominal, symbolic];
+        }
+        let named = parallel_map(items, |&item| {
+            let derived = derived(model, item, Reading::Symbolic)?;
+            let named = derived.derivation.pool.has_parameters(&derived.derivation.entries);
+            Ok(if named { derived.shown(model, item, style) } else { Vec::new() })
         });
-        let (nominal, symbolic) =
-            all.into_iter().map(|both| (both.clone().map(|(nominal, _)| nominal), both.map(|(_, named)| named))).unzip();
-        [nominal, symbolic].map(|all| Sheet::of(model, items, all))
+        [nominal, Sheet::of(model, items, named)]
     }
 
     /// Of what was found for each item, or why there is none of it.

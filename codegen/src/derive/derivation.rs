@@ -33,11 +33,6 @@ pub struct Derivation {
 pub const CLOSED_FORM_TERMS: usize = 300;
 
 impl Derivation {
-    /// Whether another one has the same entries, formed by the same operations from the same inputs and constants.
-    pub(crate) fn is_the_same_as(&self, other: &Derivation) -> bool {
-        self.entries.len() == other.entries.len() && self.pool.is_the_same_as(&self.entries, &other.pool, &other.entries)
-    }
-
     /// The closed form of every entry, if none is too long.
     pub fn closed_forms(&self) -> Option<Vec<NormalForm>> {
         self.pool.all_normal_forms(&self.entries, CLOSED_FORM_TERMS)

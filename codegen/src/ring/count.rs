@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{AngleSum, ExprId, Node, Pool};
+use super::{AngleSum, ExprId, Node, Pool, Symbol};
 
 /// A division counts like so many additions.
 pub(crate) const DIVISION_COST: usize = 4;
@@ -44,5 +44,11 @@ impl Pool {
             _ => None,
         };
         (0..self.len()).filter(|&index| needed[index]).filter_map(angle).collect()
+    }
+
+    /// Whether a parameter is left as a symbol in expressions.
+    pub(crate) fn has_parameters(&self, exprs: &[ExprId]) -> bool {
+        let needed = self.reachable(exprs);
+        (0..self.len()).any(|index| needed[index] && matches!(self.nodes[index], Node::Symbol(Symbol::Parameter(_))))
     }
 }

@@ -238,28 +238,6 @@ impl Pool {
         exprs.iter().map(|e| done[e.index()].signed(e.is_negated())).collect()
     }
 
-    /// Whether expressions of another pool are the same by node and operand, and not by value alone.
-    pub(crate) fn is_the_same_as(&self, exprs: &[ExprId], other: &Pool, others: &[ExprId]) -> bool {
-        let [needed, others_needed] = [self.needed(exprs), other.needed(others)];
-        let indices = |needed: Vec<bool>| (0..needed.len()).filter(move |&i| needed[i]);
-        let (own, theirs): (Vec<usize>, Vec<usize>) = (indices(needed).collect(), indices(others_needed).collect());
-        if own.len() != theirs.len() {
-            return false;
-        }
-        // Where a node of this pool stands in the other.
-        let mut there = vec![ExprId::ZERO; self.len()];
-        own.iter().zip(&theirs).for_each(|(&index, &at)| there[index] = other.expr(at));
-        let there = |e: ExprId| there[e.index()].signed(e.is_negated());
-        let same = |(&index, &at): (&usize, &usize)| match (self.nodes[index], other.nodes[at]) {
-            (Node::Constant(a), Node::Constant(b)) => self.constants[a.0 as usize] == other.constants[b.0 as usize],
-            (Node::Symbol(a), Node::Symbol(b)) => a == b,
-            (Node::Add(a, b), Node::Add(c, d)) | (Node::Mul(a, b), Node::Mul(c, d)) => there(a) == c && there(b) == d,
-            (Node::Reciprocal(a), Node::Reciprocal(b)) => there(a) == b,
-            _ => false,
-        };
-        own.iter().zip(&theirs).all(same) && exprs.iter().zip(others).all(|(&a, &b)| there(a) == b)
-    }
-
     /// Which nodes the expressions need.
     fn needed(&self, exprs: &[ExprId]) -> Vec<bool> {
         let mut needed = vec![false; self.len()];
