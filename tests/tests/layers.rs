@@ -45,7 +45,7 @@ const CODEGEN: Layers = &[
     ("program", &["catalogue", "exact", "kinds", "pass", "ring", "scramble"]),
     ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "parallel", "pass", "program", "ring", "suggest"]),
     ("emit", &["catalogue", "exact", "inverse_kinematics", "kinds", "manipulator", "parallel", "program", "ring", "source"]),
-    ("show", &["catalogue", "derive", "exact", "pass", "program", "ring"]),
+    ("show", &["catalogue", "derive", "exact", "parallel", "pass", "program", "ring"]),
     ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source", "validate"]),
 ];
 
