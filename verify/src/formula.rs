@@ -177,6 +177,14 @@ impl Formula {
         }
     }
 
+    /// What it is the sum of.
+    fn terms(&self) -> &[Formula] {
+        match self {
+            Formula::Sum(terms) => terms,
+            other => std::slice::from_ref(other),
+        }
+    }
+
     /// Whether it is written with a minus sign in front.
     fn leads_negative(&self) -> bool {
         match self {
@@ -262,8 +270,7 @@ impl Element for Formula {
             (Formula::Rational(a), Formula::Rational(b)) => Formula::Rational(a + b),
             (zero, other) if zero.is_zero() => other.clone(),
             (other, zero) if zero.is_zero() => other.clone(),
-            (Formula::Sum(terms), other) => Formula::Sum([terms.as_slice(), std::slice::from_ref(other)].concat()),
-            (a, b) => Formula::Sum(vec![a.clone(), b.clone()]),
+            (a, b) => Formula::Sum([a.terms(), b.terms()].concat()),
         }
     }
     fn minus(&self, other: &Self) -> Self {
@@ -302,7 +309,10 @@ impl fmt::Display for Formula {
                     match (i, term.leads_negative()) {
                         (0, _) => write!(f, "{term}")?,
                         (_, false) => write!(f, " + {term}")?,
-                        (_, true) => write!(f, " - {}", term.negated())?,
+                        (_, true) => match term.negated() {
+                            sum @ Formula::Sum(_) => write!(f, " - ({sum})")?,
+                            term => write!(f, " - {term}")?,
+                        },
                     }
                 }
                 Ok(())
@@ -413,6 +423,7 @@ fn root_of_rational(value: &Rational) -> Result<Formula, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arithmetic::wide::Wide;
 
     #[test]
     fn numbers_and_roots_take_one_form() {
@@ -429,6 +440,22 @@ mod tests {
             assert!(Formula::parse(wrong).is_err(), "{wrong}");
         }
         assert!(Formula::parse(&"(".repeat(100)).is_err());
+    }
+
+    /// What is calculated is printed as what reads back as it, whatever stands first in a sum.
+    #[test]
+    fn results_are_read_as_they_are_printed() {
+        let parse = |text: &str| Formula::parse(text).expect("a formula");
+        let all = ["-3/50", "2*sin(3/5)", "-1/50*sin(3/5) - 7/100*cos(3/5)", "1/10 - 3/10*(2 - sin(3/5))"].map(parse);
+        let of_two = |x: &Formula, y: &Formula| [x.plus(y), x.minus(y), y.minus(x), x.times(y), x.negated()];
+        for (x, y) in all.iter().flat_map(|x| all.iter().map(move |y| (x, y))) {
+            for z in of_two(x, y).iter().flat_map(|z| of_two(z, x)) {
+                let text = z.to_string();
+                assert_eq!(parse(&text).to_string(), text);
+                let value = |z: &Formula| Wide::from_formula(z).expect("a number").to_f64();
+                assert!((value(&parse(&text)) - value(&z)).abs() < 1e-14, "{text}");
+            }
+        }
     }
 
     #[test]

@@ -4,8 +4,8 @@
 //! as it is written and f* the same of the equations, as a plain program computes them ([`growth`](mod@crate::arithmetic::growth)):
 //!
 //! ```text
-//! degree of f in q[k], dq[k], tau[k]                                  at most that of f*
-//! degree of f in ddq[k], ddqr[k]                                      at most that of any entry of the function
+//! degree of f in q[k], tau[k]                                         at most that of f*
+//! degree of f in dq[k], dqr[k], ddq[k], ddqr[k]                       at most that of any entry, and where the function does not take q that of f*
 //! degree of f in all entries of an argument, and in all arguments     at most that of f*
 //! degree of f in pi[k]                                                at most that of any entry of the function, and 1
 //! degree of f in sin q[k], cos q[k]                                   at most twice that of f*, and a square
@@ -14,7 +14,7 @@
 //! ```
 //!
 //! A sine of one joint variable has its digits however large that is; a sum of two has lost those of the smaller one. So sums are those of frames,
-//! and in a function that does not depend on a variable there is no sum with it. Emitted functions have parameters, accelerations and angles in common that cancel
+//! and in a function that does not depend on a variable there is no sum with it. Emitted functions have parameters, rates, accelerations and angles in common that cancel
 //! in single entries, and sines that a plain program multiplies out: those limits are wider.
 //!
 //! Where a function divides, what no quotient takes part in is held to the largest degrees of torques, Jacobian and mass, and the whole to those in all
@@ -40,7 +40,6 @@ use crate::program::{Angle, Argument, Program, Step};
 use crate::reference::{BaseParameters, Reference, Wanted};
 
 const BASE_REGRESSOR: &str = "base_regressor";
-const JACOBIAN_DOT: &str = "geometric_jacobian_dot";
 
 /// Joints, one a bit.
 type Joints = u64;
@@ -161,9 +160,9 @@ impl Powers {
         if operands.is_empty() {
             let all = most(own);
             return found.iter().zip(own).zip(&program.outputs).find_map(|((found, own), output)| {
-                // Rates of angles that a column shares with another cancel there.
-                let of_entry = if program.name == JACOBIAN_DOT { &all } else { own };
-                let beyond = found.entry_beyond(of_entry, &all, &self.growths).or_else(|| found.total_beyond(own));
+                // Without frames that pass rates on, none cancels.
+                let of_motion = if program.arguments.contains(&Argument::Q) { &all } else { own };
+                let beyond = found.entry_beyond(own, of_motion, &all, &self.growths).or_else(|| found.total_beyond(own));
                 Some(say(&output.place, beyond.or_else(|| found.sum_beyond(own))?))
             });
         }
@@ -173,7 +172,7 @@ impl Powers {
             [_, Matrix::Mobility, ..] => self.mobility.clone(),
             _ => self.torques.clone(),
         };
-        let of_parts = most(&run(&program.part(&operands))).entry_beyond(&parts, &parts, &self.growths);
+        let of_parts = most(&run(&program.part(&operands))).entry_beyond(&parts, &parts, &parts, &self.growths);
         let of_whole = most(&found).total_beyond(&most(own)).filter(|beyond| beyond.of != "`q`");
         of_parts.or(of_whole).map(|beyond| say("", beyond))
     }

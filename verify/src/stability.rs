@@ -363,7 +363,8 @@ impl<'a> Trial<'a> {
         Errors { boxes: self.boxes.each_ref().map(over), runs: self.runs(program, values) }
     }
 
-    /// The largest of what operands of quotients can be part of: torques, Jacobian and inertia; of a centre of mass the moments are not among them.
+    /// The largest of what operands of quotients can be part of: torques, those that are given among them, Jacobian and inertia; of a centre of mass
+    /// the moments are not among them.
     fn of_operands(&self, program: &Program) -> Plain {
         let names: &[&str] = match needed(&program.name) {
             [Matrix::Mass | Matrix::MassWith, ..] => return Plain::default(),
@@ -380,6 +381,19 @@ impl<'a> Trial<'a> {
                 *most = (larger(most.0, own.0), larger(most.1, own.1));
             }
             most.boxes = [0, 1].map(|k| larger(most.boxes[k], plain.boxes[k]));
+        }
+        if program.arguments.contains(&Argument::Tau) {
+            // A torque that is given is rounded once where the equations take it, however small those of the arm are.
+            let size = |tau: &[f64]| worst(tau.iter().map(|tau| tau.abs()));
+            let unit = Float::F64.unit();
+            for (most, state) in most.states.iter_mut().zip(self.states()) {
+                let given = size(&state.tau);
+                *most = (larger(most.0, unit * given), larger(most.1, given));
+            }
+            for (most, domain) in most.boxes.iter_mut().zip(&self.boxes) {
+                let ends = domain.of(Argument::Tau).into_iter().map(|(low, high)| low.abs().max(high.abs()));
+                *most = larger(*most, unit * worst(ends));
+            }
         }
         most
     }

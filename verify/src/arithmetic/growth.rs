@@ -86,15 +86,15 @@ impl Growth {
     }
 
     /// The first entry of an argument, or circle, in which this is of a higher degree than an entry of the equations allows, `all` being the largest of
-    /// all entries: of a parameter the degree of any entry and 1, of an acceleration that of any entry, of sines and cosines twice the entry's own and a
-    /// square.
-    pub fn entry_beyond(&self, own: &Growth, all: &Growth, growths: &Growths) -> Option<Beyond> {
+    /// all entries: of a parameter the degree of any entry and 1, of a rate or an acceleration that of `of_motion`, of sines and cosines twice the
+    /// entry's own and a square.
+    pub fn entry_beyond(&self, own: &Growth, of_motion: &Growth, all: &Growth, growths: &Growths) -> Option<Beyond> {
         let found = self.0.as_ref()?;
         let degree = |growth: &Growth, k: usize| growth.0.as_ref().map_or(0, |powers| powers.each[k]);
         let circles = growths.circles();
         let most = |k: usize| match k {
             k if k < growths.parameters => degree(all, k).max(1),
-            k if growths.is_acceleration(k) => degree(all, k),
+            k if growths.is_of_motion(k) => degree(of_motion, k),
             k if k < circles => degree(own, k),
             k => degree(own, k).saturating_mul(2).saturating_add(2),
         };
@@ -174,8 +174,8 @@ impl Growths {
         }
     }
 
-    fn is_acceleration(&self, place: usize) -> bool {
-        matches!(self.entry(place).0, Some(Argument::Ddq | Argument::Ddqr))
+    fn is_of_motion(&self, place: usize) -> bool {
+        matches!(self.entry(place).0, Some(Argument::Dq | Argument::Dqr | Argument::Ddq | Argument::Ddqr))
     }
 
     /// What a place among the degrees is of.

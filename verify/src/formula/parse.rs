@@ -110,7 +110,11 @@ impl Parser<'_> {
             }
             return Ok(Formula::Rational(sum));
         }
-        Ok(if terms.len() == 1 { terms.remove(0) } else { Formula::Sum(terms) })
+        if terms.len() == 1 {
+            return Ok(terms.remove(0));
+        }
+        // A sum in parentheses is terms of this one.
+        Ok(Formula::Sum(terms.iter().flat_map(Formula::terms).cloned().collect()))
     }
 
     /// Counts the work of a product or a sum of numbers of so many words.
