@@ -38,6 +38,20 @@ pub enum UnitWrench {
 
 type Fork = (Pass, Place);
 
+/// Where a search starts. It is a descent and ends in a local minimum, so that one that starts elsewhere may end lower.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Start {
+    /// Added to the choice at forks with many wrench frames.
+    pub wrench_frame: usize,
+    /// The way taken for each origin, the last one where there are fewer: 0 where the description has it, 1 and on at feet.
+    pub origin: usize,
+}
+
+impl Start {
+    /// The plain ways.
+    pub const PLAIN: Start = Start { wrench_frame: 0, origin: 0 };
+}
+
 /// The ways taken at the forks of a derivation.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
@@ -45,8 +59,7 @@ pub struct Plan {
     /// How many ways each fork met so far has.
     forks: BTreeMap<Fork, usize>,
     without: Passes,
-    /// Where forks with many ways begin to count them.
-    start: usize,
+    start: Start,
     /// In tests: ways drawn by this seed where none is chosen.
     #[cfg(test)]
     scattered: Option<u64>,
@@ -74,14 +87,19 @@ impl Plan {
         self.without.insert(pass);
     }
 
-    /// Added to the choice at forks with many ways. The search is a descent and ends in a local minimum; it is restarted from several initial
-    /// choices.
-    pub fn start(&self) -> usize {
+    /// Added to the choice at forks with many wrench frames.
+    pub fn first_wrench_frame(&self) -> usize {
         if self.has(Pass::WrenchFrame) {
-            self.start
+            self.start.wrench_frame
         } else {
             0
         }
+    }
+
+    /// The way taken at a fork with so many.
+    fn current(&self, fork: Fork, ways: usize) -> usize {
+        let first = if fork.0 == Pass::OriginAlongAxis { self.start.origin.min(ways - 1) } else { 0 };
+        self.ways.get(&fork).copied().filter(|&way| way < ways).unwrap_or(first)
     }
 
     /// Which of `ways` to take at a fork.
@@ -97,11 +115,11 @@ impl Plan {
             ) as usize
                 % ways;
         }
-        self.ways.get(&(pass, place)).copied().filter(|&way| way < ways).unwrap_or(0)
+        self.current((pass, place), ways)
     }
 
     /// The cheapest of the plans that searches from several starts find, which share `effort`.
-    pub fn search_from(self, starts: &[usize], mut effort: usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> Plan {
+    pub fn search_from(self, starts: &[Start], mut effort: usize, cost: &mut dyn FnMut(&mut Plan) -> (usize, usize)) -> Plan {
         let found = starts.iter().map(|&start| Plan { start, ..self.clone() }.search(&mut effort, cost));
         found.min_by_key(|(cost, _)| *cost).map_or(self.clone(), |(_, plan)| plan)
     }
@@ -114,7 +132,7 @@ impl Plan {
             let before = best;
             let forks: Vec<(Fork, usize)> = self.forks.iter().map(|(&fork, &ways)| (fork, ways)).collect();
             for (fork, ways) in forks {
-                let current = self.ways.get(&fork).copied().unwrap_or(0);
+                let current = self.current(fork, ways);
                 for way in (0..ways).filter(|&way| way != current) {
                     if *effort == 0 {
                         return (best, self);
@@ -149,7 +167,7 @@ mod tests {
             (20 - [0, 3, 5, 4][slide] - 2 * extra, 1)
         };
         let best = |without, effort| {
-            let mut plan = Plan::new(without).search_from(&[0], effort, &mut { cost });
+            let mut plan = Plan::new(without).search_from(&[Start::PLAIN], effort, &mut { cost });
             cost(&mut plan).0
         };
         assert_eq!(best(Passes::NONE, 100), 11);

@@ -11,7 +11,7 @@ use super::derivation::{Derivation, OVER_GROUPED_BODIES, OVER_THE_LINKS};
 use super::model::{Model, Sizes};
 use super::parameters::View;
 use super::passes::{self, RewriteScope};
-use super::plan::Plan;
+use super::plan::{Plan, Start};
 use crate::pass::{Pass, Passes};
 use crate::ring::count::{DIVISION_COST, SINE_COSINE_COST};
 use crate::ring::{ExprId, Pool};
@@ -179,7 +179,7 @@ pub struct Recursion {
     /// Passes that it cannot use.
     pub without: &'static [Pass],
     /// Where searches for its plan start.
-    pub starts: &'static [usize],
+    pub starts: &'static [Start],
 }
 
 /// What a derivation is for.
@@ -231,7 +231,7 @@ impl Recursion {
         fn as_asked<'a>(_: &'a Model, view: View<'a>) -> View<'a> {
             view
         }
-        Recursion { entries, rewriting, view: as_asked, prepare: |_, _| (), without: &[], starts: &[0] }
+        Recursion { entries, rewriting, view: as_asked, prepare: |_, _| (), without: &[], starts: &[Start::PLAIN] }
     }
 }
 

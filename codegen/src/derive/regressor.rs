@@ -16,14 +16,15 @@ use std::collections::BTreeMap;
 use super::arm::Arm;
 use super::newton_euler::{deflection, inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{Inertial, ParameterKind, ParameterVector, StandardParameter};
-use super::plan::{self, Place, Plan};
+use super::plan::{self, Place, Plan, Start};
 use super::wrench::{along, wrench_outward};
 use crate::pass::Pass;
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
-/// Where searches for the plan of a regressor start: 0: wrenches stay at their link and are felt by twists; 5 = 2·2 + 1: they go two links towards the base and are felt by moments.
-pub(crate) static STARTS: [usize; 2] = [0, 5];
+/// Where searches for the plan of a regressor start: plainly, where wrenches stay at their link and are felt by twists; with 5 = 2·2 + 1, where they go
+/// two links towards the base and are felt by moments.
+pub(crate) static STARTS: [Start; 2] = [Start::PLAIN, Start { wrench_frame: 5, ..Start::PLAIN }];
 
 /// Y, for an arm whose parameters are symbols (named parameters) or for the standard parameters of any arm.
 pub fn regressor(pool: &mut Pool, arm: &Arm, vector: &ParameterVector) -> Vec<Vec<ExprId>> {
@@ -244,7 +245,8 @@ fn link_columns(
     }
     // Two forms (twist, moment) for each link of the path where a wrench may stop; one at the base, behind which no joint is left.
     let ways = 2 * path.len() - 1;
-    let forces = (plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::UnitWrench::Force), ways) + plan.start()) % ways;
+    let forces =
+        (plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::UnitWrench::Force), ways) + plan.first_wrench_frame()) % ways;
     // Couples go as far as forces (way 0), so that one set of twists will do, or stop elsewhere.
     let couples = match plan.way(Pass::WrenchFrame, Place::Regressor(place, plan::UnitWrench::Couple), path.len()) {
         0 => (forces / 2).min(path.len().saturating_sub(2)),

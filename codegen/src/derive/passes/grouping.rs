@@ -7,7 +7,8 @@
 //! vanish; another way moves as much as makes an entry of the parent vanish. The second moments of a link behind a prismatic joint never
 //! change their direction: all six move.
 //!
-//! The origin of a joint frame is free along the joint axis: at the foot of either common normal, or where Sxz or Syz vanishes.
+//! The origin of a joint frame is free along the joint axis: at the foot of either common normal, where Sxz or Syz vanishes, or, where frames
+//! are asked for, beside the end effector.
 
 use super::super::arm::{Arm, Body};
 use super::super::plan::{Place, Plan};
@@ -17,7 +18,7 @@ use crate::ring::{ExprId, Pool};
 /// Regroups the parameters of all links towards the base.
 pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     for i in (0..arm.dof()).rev() {
-        choose_origin(pool, arm, plan, i);
+        choose_origin(pool, arm, plan, i, false);
         if !plan.has(Pass::Grouping) {
             continue;
         }
@@ -31,10 +32,10 @@ pub(super) fn group(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     }
 }
 
-/// Chooses the origins alone.
+/// Chooses the origins alone, for functions that the end effector may enter.
 pub(super) fn choose_origins(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan) {
     for i in (0..arm.dof()).rev() {
-        choose_origin(pool, arm, plan, i);
+        choose_origin(pool, arm, plan, i, true);
     }
 }
 
@@ -92,8 +93,8 @@ fn regroup(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, kind: usiz
     }
 }
 
-/// Moves the origin of joint frame i along its axis.
-fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
+/// Moves the origin of joint frame i along its axis, to the foot of the end effector too where that counts.
+fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize, end_effector_counts: bool) {
     if !plan.has(Pass::OriginAlongAxis) {
         return;
     }
@@ -114,6 +115,10 @@ fn choose_origin(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, i: usize) {
             let inverse = pool.reciprocal(h[k]);
             shifts.push(pool.mul(s[k], inverse));
         }
+    }
+    // Data sheets differ in whether the last link or the tool reaches to the flange.
+    if end_effector_counts && arm.tip == i {
+        shifts.push(arm.tool_origin[2]);
     }
     let mut ways: Vec<ExprId> = Vec::new();
     for shift in shifts {

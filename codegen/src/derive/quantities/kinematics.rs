@@ -8,6 +8,7 @@
 
 use crate::derive::arm::Arm;
 use crate::derive::passes::RewriteScope;
+use crate::derive::plan::Start;
 use crate::derive::quantity::{Argument, Documentation, Element, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::ring::matrix::{Matrix, Vector, IDENTITY, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -15,6 +16,10 @@ use crate::ring::{ExprId, Pool, Symbol};
 /// In the order of the emitted module.
 pub(super) static DECLARED: [&Quantity; 5] =
     [&DIRECT_KINEMATICS, &LINK_FRAMES, &GEOMETRIC_JACOBIAN, &GEOMETRIC_JACOBIAN_DOT, &LINK_JACOBIANS];
+
+/// Where searches for their plans start: with origins as the rows have them, and at either foot of the common normals, so that costs do not depend
+/// on the convention of the rows.
+static STARTS: [Start; 3] = [Start::PLAIN, Start { origin: 1, ..Start::PLAIN }, Start { origin: 2, ..Start::PLAIN }];
 
 /// T_e(q).
 pub static DIRECT_KINEMATICS: Quantity = Quantity {
@@ -30,7 +35,7 @@ pub static DIRECT_KINEMATICS: Quantity = Quantity {
         "the 4 x 4 homogeneous transformation `t[row][column]`: the columns of the rotation are the axes of the end-effector frame in the base \
          frame, the last column is its origin in m.",
     ),
-    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()),
+    recursion: Recursion { starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| direct_kinematics(pool, arm).concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -53,7 +58,7 @@ pub static LINK_FRAMES: Quantity = Quantity {
         "a 4 x 4 homogeneous transformation for each link, `t[link][row][column]`, the frames as the description's convention defines them; \
          translations in m.",
     ),
-    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| link_frames(pool, arm).concat().concat()),
+    recursion: Recursion { starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| link_frames(pool, arm).concat().concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -77,7 +82,10 @@ pub static GEOMETRIC_JACOBIAN: Quantity = Quantity {
         "(v_e, omega_e) = J(q) dq                                          (Siciliano et al., Sect. 3.1)",
         "`j[row][joint]`, 6 rows: three linear (velocity of the end-effector frame's origin, m/s), then three angular (rad/s).",
     ),
-    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian(pool, arm).concat()),
+    recursion: Recursion {
+        starts: &STARTS,
+        ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian(pool, arm).concat())
+    },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -101,7 +109,10 @@ pub static GEOMETRIC_JACOBIAN_DOT: Quantity = Quantity {
         "d/dt (v_e, omega_e) = J ddq + (dJ/dt) dq",
         "`j[row][joint]`, 6 rows: three linear, then three angular, in the base frame.",
     ),
-    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian_dot(pool, arm).concat()),
+    recursion: Recursion {
+        starts: &STARTS,
+        ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| geometric_jacobian_dot(pool, arm).concat())
+    },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("Kinematics"),
@@ -129,7 +140,7 @@ pub static LINK_JACOBIANS: Quantity = Quantity {
         "`j[link][row][joint]`, 6 rows each: three linear (velocity of the origin of the frame that {link_frames} gives, m/s), then three \
          angular (rad/s). Joints beyond a link have columns of zeros.",
     ),
-    recursion: Recursion::new(RewriteScope::Frames, |pool, arm, _, _| link_jacobians(pool, arm).concat().concat()),
+    recursion: Recursion { starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, _, _| link_jacobians(pool, arm).concat().concat()) },
     missing: Quantity::NEVER_MISSING,
     gathers: &[],
     interface: Some("LinkJacobians"),
