@@ -41,7 +41,7 @@ impl Solid {
 }
 
 /// One row per link, and one of the load: mass, centre of mass, principal moments, radius of gyration about the axis of the
-/// largest, and the box that has them.
+/// largest, the box that has them, and its density: metal has up to 8000 kg/m³, and links, which are hollow, about that of water.
 pub(super) fn table(manipulator: &Manipulator) -> String {
     use Align::{Left, Right};
     let mut table = Table::new([
@@ -53,13 +53,14 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
         ("principal moments (kg m²)", Left),
         ("radius of gyration (m)", Right),
         ("as a box (m)", Left),
+        ("of density (kg/m³)", Right),
     ]);
     let links =
         manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
     for (name, parts) in links.chain(manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load)))) {
         let Some(Solid { mass, com, inertia }) = Solid::of(manipulator, parts) else {
             let none = String::new;
-            table.row([name, "0".into(), none(), none(), none(), none(), none(), none()]);
+            table.row([name, "0".into(), none(), none(), none(), none(), none(), none(), none()]);
             continue;
         };
         let mut moments: Vec<f64> = inertia.symmetric_eigenvalues().iter().copied().collect();
@@ -75,6 +76,7 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
             moments.iter().map(|moment| short(*moment)).collect::<Vec<_>>().join(", "),
             short((moments[2].max(0.0) / mass).sqrt()),
             as_box(mass, &moments),
+            density(mass, &moments).map(short).unwrap_or_default(),
         ]);
     }
     table.text()
@@ -88,12 +90,25 @@ fn as_box(mass: f64, moments: &[f64]) -> String {
         return "a point".into();
     }
     let rounding = sum * 1e-9;
-    let squares: Vec<f64> = moments.iter().map(|moment| 6.0 * (sum - 2.0 * moment) / mass).collect();
+    let squares = squared_sides(mass, moments);
     if squares.iter().any(|square| square * mass < -6.0 * rounding) {
         return "no box has these".into();
     }
     let two = |side: f64| if side * side * mass <= 6.0 * rounding { "0".into() } else { format!("{}", rounded(side)) };
     squares.iter().map(|square| two(square.max(0.0).sqrt())).collect::<Vec<_>>().join(" x ")
+}
+
+fn squared_sides(mass: f64, moments: &[f64]) -> Vec<f64> {
+    let sum: f64 = moments.iter().sum();
+    moments.iter().map(|moment| 6.0 * (sum - 2.0 * moment) / mass).collect()
+}
+
+/// The density of that box, if it has a volume.
+fn density(mass: f64, moments: &[f64]) -> Option<f64> {
+    let squares = squared_sides(mass, moments);
+    let largest = squares.iter().copied().fold(0.0, f64::max);
+    let is_thick = squares.iter().all(|square| *square > largest * 1e-9);
+    is_thick.then(|| rounded(mass / squares.iter().product::<f64>().sqrt()))
 }
 
 /// Two digits.
@@ -164,6 +179,9 @@ mod tests {
         assert_eq!(as_box(12.0, &[0.0, 4.0, 4.0]), "2 x 0 x 0");
         assert_eq!(as_box(1.0, &[0.1, 0.1, 0.5]), "no box has these");
         assert_eq!(as_box(3.0, &[0.0; 3]), "a point");
+        assert_eq!(density(6.0, &[0.3 / 12.0, 0.6 / 12.0, 0.78 / 12.0]), Some(1000.0));
+        assert_eq!(density(12.0, &[0.0, 4.0, 4.0]), None);
+        assert_eq!(density(3.0, &[0.0; 3]), None);
     }
 
     /// Two halves of a rod are the rod: 1/12 m l² about its middle.

@@ -1,7 +1,7 @@
 //! The rows of an arm as written, with the values of their names, and beside them what limits and drives its joints.
 
 use armgen_codegen::derive::parameters::{denavit_hartenberg, nominal};
-use armgen_codegen::description::{Convention, JointDescription, RobotDescription};
+use armgen_codegen::description::{Convention, JointDescription, PoseDescription, RobotDescription, RotationDescription};
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator};
@@ -11,7 +11,7 @@ use super::{decimal, digits};
 use crate::table::Align::{Left, Right};
 use crate::table::Table;
 
-/// One line per joint: the row as written.
+/// One line per joint: the row as written; what stands before the first and after the last one.
 pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator: &Manipulator) -> String {
     let mut table = Table::new([
         ("joint", Left),
@@ -43,7 +43,9 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
             axis,
         ]);
     }
-    table.text()
+    let ends = [("base", &description.base), ("tool", &description.tool)];
+    let ends = ends.into_iter().filter_map(|(name, end)| Some(format!("{name}: {}\n", pose(source, end.as_ref()?))));
+    table.text() + &ends.collect::<String>()
 }
 
 /// a, alpha, d and theta as written, with the value where that is not a number; the joint variable is added to theta or to d.
@@ -68,12 +70,26 @@ fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manip
     texts
 }
 
-/// Translations of the origin, and the axis, as written.
+/// The origin and the axis, as written.
 fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
-    let slice = |span| source.slice(span).to_string();
-    let origin = row.origin.iter().flat_map(|pose| &pose.elements).filter_map(|e| e.xyz.as_ref()).map(|xyz| slice(xyz.span));
-    let axis = row.axis.as_ref().map_or(String::new(), |axis| slice(axis.span));
-    [origin.collect::<Vec<_>>().join(" "), axis]
+    let axis = row.axis.as_ref().map_or(String::new(), |axis| source.slice(axis.span).to_string());
+    [row.origin.as_ref().map_or(String::new(), |origin| pose(source, origin)), axis]
+}
+
+/// A pose as written: translations by their numbers alone, rotations after their key.
+fn pose(source: &Source, pose: &PoseDescription) -> String {
+    let slice = |span| source.slice(span);
+    let elements = pose.elements.iter().map(|element| {
+        let rotation = element.rotation.as_ref().map(|rotation| match rotation {
+            RotationDescription::Rpy(angles) => format!("rpy {}", slice(angles.span)),
+            RotationDescription::Quat(quaternion) => format!("quat {}", slice(quaternion.span)),
+            RotationDescription::AxisAngle(axis, angle) => format!("axis {} angle {}", slice(axis.span), slice(angle.span)),
+            RotationDescription::XyAxes(axes) => format!("xyaxes {}", slice(axes.span)),
+        });
+        let translation = element.xyz.as_ref().map(|xyz| slice(xyz.span).to_owned());
+        translation.into_iter().chain(rotation).collect::<Vec<_>>().join(" ")
+    });
+    elements.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 /// The limits of the joints, angles in degrees as well; nothing where there are none.

@@ -136,7 +136,20 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
         none(),
         none(),
     ]);
-    table.text()
+    table.text() + &outside(manipulator)
+}
+
+/// A line where the posture is outside the limits of joints.
+fn outside(manipulator: &Manipulator) -> String {
+    let joints = manipulator.joints.iter().filter(|joint| {
+        let zero = |[low, high]: &[Number; 2]| low.to_f64() <= 0.0 && 0.0 <= high.to_f64();
+        joint.limits.position.as_ref().is_some_and(|position| !zero(position))
+    });
+    let names: Vec<&str> = joints.map(|joint| joint.name.as_str()).collect();
+    match names.is_empty() {
+        true => String::new(),
+        false => format!("q = 0 is outside the limits of {}\n", names.join(", ")),
+    }
 }
 
 /// Three numbers in brackets.
