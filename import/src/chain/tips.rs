@@ -37,23 +37,27 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         format!("{}{}", names.join(", "), if links.len() > NAMED { ", ..." } else { "" })
     };
     if groups.len() > 1 {
-        let leaves: Vec<(usize, usize)> =
-            groups.iter().flat_map(|(last, leaves)| leaves.iter().map(|&l| (l, count[last]))).collect();
-        let all: Vec<String> = leaves
-            .iter()
-            .take(NAMED)
-            .map(|&(leaf, joints)| {
-                let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
-                format!("`{}` ({joints})", shown(&tree.links[leaf].name))
-            })
-            .collect();
-        let more = if leaves.len() > NAMED { ", ..." } else { "" };
+        // The arm is among the longest chains; leaves that fixed joints alone part are one choice.
+        let mut chains: Vec<(&[usize], usize)> = groups.iter().map(|(last, leaves)| (leaves.as_slice(), count[last])).collect();
+        chains.sort_by_key(|&(_, joints)| std::cmp::Reverse(joints));
+        let chain = |&(leaves, joints): &(&[usize], usize)| {
+            let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
+            let others = match leaves.len() - 1 {
+                0 => String::new(),
+                1 => ", and 1 leaf fixed to its last link".to_owned(),
+                n => format!(", and {n} leaves fixed to its last link"),
+            };
+            format!("`{}` ({joints}{others})", shown(&tree.links[leaves[0]].name))
+        };
+        let all: Vec<String> = chains.iter().take(NAMED).map(chain).collect();
+        let more = chains.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!(", and {more} more") } else { String::new() };
         let message = format!("several links may be the tip: {}{more}", all.join(", "));
-        let first = leaves[0].0;
-        let help = format!("choose one: `--tip {}`", shown(&tree.links[first].name));
-        let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[first].span, message, "may be the tip", help);
-        for &(leaf, _) in leaves.iter().skip(1).take(3) {
-            fault = fault.also(tree.links[leaf].span, "may be the tip, too");
+        let tips: Vec<usize> = chains.iter().map(|(leaves, _)| leaves[0]).collect();
+        let help = format!("choose one: `--tip {}`", shown(&tree.links[tips[0]].name));
+        let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[tips[0]].span, message, "may be the tip", help);
+        for &tip in tips.iter().skip(1).take(3) {
+            fault = fault.also(tree.links[tip].span, "may be the tip, too");
         }
         diagnostics.push(fault);
         return None;
