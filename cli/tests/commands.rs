@@ -296,7 +296,8 @@ fn products_out_of_range_are_told_before_anything_is_printed() {
 
 #[test]
 fn a_certificate_is_written_and_verified_again() {
-    let functions = armgen_codegen::catalogue::functions().count();
+    // Friction of this arm does not grow with its load.
+    let functions = armgen_codegen::catalogue::functions().filter(|(quantity, _)| quantity.name != "load_friction").count();
     for scalar in ["f64", "f32"] {
         let (folder, yaml) = (folder(&format!("verify_{scalar}")), file("robots/scara.yaml"));
         let (module, certificate) = (folder.join("robot.rs"), folder.join("robot.cert.json"));

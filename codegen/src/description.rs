@@ -124,6 +124,8 @@ pub struct FrictionDescription {
     pub offset: Value,
     /// Coefficient of the cube of the rate.
     pub cubic: Value,
+    /// How many times the joint's gravity torque is added to dry friction.
+    pub load: Value,
     /// What fades as the joint begins to move.
     pub stribeck: Option<StribeckDescription>,
 }

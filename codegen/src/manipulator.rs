@@ -103,6 +103,8 @@ pub struct Joint {
     pub offset: Option<Polynomial>,
     /// Cubic friction, N m s³ or N s³/m³: the torque is cubic · dq³.
     pub cubic: Option<Polynomial>,
+    /// Friction that grows with the joint's load, without unit, at least 0: the torque is load · |g| · sign(dq), g the joint's entry of g(q).
+    pub load: Option<Number>,
     /// Friction that fades as the joint begins to move.
     pub stribeck: Option<Stribeck>,
     /// A spring between the joint and the link that carries it.
@@ -252,6 +254,11 @@ impl Manipulator {
     /// Whether joints have Stribeck friction.
     pub fn has_stribeck(&self) -> bool {
         self.joints.iter().any(|joint| joint.stribeck.is_some())
+    }
+
+    /// Whether friction of joints grows with their load.
+    pub fn has_load_friction(&self) -> bool {
+        self.joints.iter().any(|joint| joint.load.as_ref().is_some_and(|load| !load.is_zero()))
     }
 
     /// Number of joints.

@@ -54,6 +54,10 @@ pub enum Operation {
     Multiply,
     /// a / b
     Divide,
+    /// sign(a), with sign(0) = 0: the right operand is a, too
+    Sign,
+    /// sign(-a), likewise
+    OppositeSign,
 }
 
 /// One step.
@@ -132,6 +136,8 @@ pub struct Module {
     pub has_more_friction: bool,
     /// Whether friction has a part that fades as a joint begins to move.
     pub has_stribeck: bool,
+    /// Whether friction grows with the load of a joint.
+    pub has_load_friction: bool,
     /// Rows of the task in the geometric Jacobian.
     pub task: Vec<usize>,
     /// Parameters.

@@ -31,7 +31,7 @@ mod constants;
 pub(crate) mod count;
 mod evaluate;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::BuildHasherDefault;
 use std::sync::Arc;
 
@@ -58,6 +58,10 @@ pub enum Symbol {
     RateSign(u16),
     /// exp(-|dq_i| / v_i), v_i the Stribeck velocity of the joint: an input here, tied to dq_i by nothing but its derivative.
     Stribeck(u16),
+    /// |g_i(q)|: an input here, tied to q by nothing but its derivative; the pool keeps g_i ([`Pool::set_gravity`]).
+    GravitySize(u16),
+    /// sign(g_i(q)), with sign(0) = 0: likewise, of derivative 0.
+    GravitySign(u16),
     /// ddq_i.
     Acceleration(u16),
     /// dqr_i, the reference rate.
@@ -154,6 +158,8 @@ impl Symbol {
             | Symbol::Rate(i)
             | Symbol::RateSign(i)
             | Symbol::Stribeck(i)
+            | Symbol::GravitySize(i)
+            | Symbol::GravitySign(i)
             | Symbol::Acceleration(i)
             | Symbol::ReferenceRate(i)
             | Symbol::ReferenceAcceleration(i)
@@ -221,6 +227,8 @@ pub struct Pool {
     known: HashMap<Fingerprint, ExprId, BuildHasherDefault<FingerprintHasher>>,
     at_origin: Vec<Option<Arc<Number>>>,
     symbols: BTreeMap<Symbol, ExprId>,
+    /// g_i of the symbols that stand for its size and its sign.
+    gravity: BTreeMap<u16, ExprId>,
     /// Whether constants are known by their fingerprints alone.
     fingerprints_only: bool,
 }
@@ -285,6 +293,7 @@ impl Pool {
             known: HashMap::default(),
             at_origin: Vec::new(),
             symbols: BTreeMap::new(),
+            gravity: BTreeMap::new(),
             fingerprints_only: false,
         };
         assert_eq!((pool.constant(&Number::zero()), pool.constant(&Number::one())), (ExprId::ZERO, ExprId::ONE));
@@ -298,6 +307,37 @@ impl Pool {
         let mut copy = self.clone();
         copy.fingerprints_only = true;
         copy
+    }
+
+    /// Says what g_i is, of whose size and sign there are symbols.
+    pub fn set_gravity(&mut self, joint: u16, torque: ExprId) {
+        self.gravity.insert(joint, torque);
+    }
+
+    /// g_i, where it is known.
+    pub fn gravity(&self, joint: u16) -> Option<ExprId> {
+        self.gravity.get(&joint).copied()
+    }
+
+    /// The expressions, and behind them g_i of each joint whose size or sign they use, with these joints: all that is computed for the expressions.
+    pub fn with_gravity(&self, exprs: &[ExprId]) -> (Vec<ExprId>, Vec<u16>) {
+        if self.gravity.is_empty() {
+            return (exprs.to_vec(), Vec::new());
+        }
+        let needed = self.reachable(exprs);
+        let symbol = |index: usize| match self.nodes[index] {
+            Node::Symbol(Symbol::GravitySize(i) | Symbol::GravitySign(i)) => Some(i),
+            _ => None,
+        };
+        let used: BTreeSet<u16> = (0..self.len()).filter(|&index| needed[index]).filter_map(symbol).collect();
+        let (joints, torques): (Vec<u16>, Vec<ExprId>) = used.into_iter().filter_map(|i| Some((i, self.gravity(i)?))).unzip();
+        (exprs.iter().copied().chain(torques).collect(), joints)
+    }
+
+    /// Takes from expressions what [`Pool::with_gravity`] put behind them.
+    pub fn take_gravity(&mut self, exprs: &mut Vec<ExprId>, joints: &[u16]) {
+        let torques = exprs.split_off(exprs.len() - joints.len());
+        self.gravity = joints.iter().copied().zip(torques).collect();
     }
 
     /// Makes room for so many nodes in all.
@@ -389,6 +429,8 @@ impl Pool {
             Symbol::Torque(i) => value(8, i),
             Symbol::Parameter(i) => value(9, i),
             Symbol::Stribeck(i) => value(10, i),
+            Symbol::GravitySize(i) => value(11, i),
+            Symbol::GravitySign(i) => value(12, i),
         }
     }
 

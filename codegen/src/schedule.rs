@@ -47,6 +47,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
             continue;
         }
         match (quantity.missing)(model, with_parameters) {
+            Some(_) if !quantity.documentation.said_missing && options.functions.is_all() => {}
             Some(reason) => absent.push(Absent { function: quantity.function_name(with_parameters), reason }),
             None => wanted.push((quantity, with_parameters)),
         }
@@ -61,6 +62,7 @@ pub fn module(model: &Model, options: &Options) -> Module {
         has_springs: manipulator.has_springs(),
         has_more_friction: manipulator.has_more_friction(),
         has_stribeck: manipulator.has_stribeck(),
+        has_load_friction: manipulator.has_load_friction(),
         task: manipulator.task_rows(),
         parameters: model.parameters.entries.clone(),
         base_parameters: matches!(model.parameters.kind, ParameterKind::Base(_)),
@@ -91,10 +93,11 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
     let recursion = quantity.by_search(model, view, without, EFFORT);
     let closed = if without.contains(Pass::ClosedForm) { Vec::new() } else { recursion.by_closed_form() };
     // A closed form that is far longer than the recursion does not become shorter than it.
-    let most = CLOSED_FORM_FACTOR * recursion.pool.operations(&recursion.entries, DIVISION_COST);
+    let operations = |of: &Derivation| of.pool.operations(&of.pool.with_gravity(&of.entries).0, DIVISION_COST);
+    let most = CLOSED_FORM_FACTOR * operations(&recursion);
     closed
         .into_iter()
-        .filter(|closed| closed.pool.operations(&closed.entries, DIVISION_COST) <= most)
+        .filter(|closed| operations(closed) <= most)
         .chain([recursion])
         .map(|derivation| {
             let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, without);
@@ -131,6 +134,24 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
                 continue;
             }
             let (operation, a, b) = match pool.node(expr) {
+                // |g| = sign(g) g, both the one value that is computed for g.
+                Node::Symbol(symbol @ (Symbol::GravitySize(i) | Symbol::GravitySign(i))) => {
+                    let torque = pool.gravity(i).expect("sizes and signs are of a torque of the pool");
+                    if !ready {
+                        stack.extend([(expr, true), (torque.unsigned(), false)]);
+                        continue;
+                    }
+                    let own = operand(pool, &done, torque);
+                    let is_size = matches!(symbol, Symbol::GravitySize(_));
+                    let operation = if torque.is_negated() && !is_size { Operation::OppositeSign } else { Operation::Sign };
+                    steps.push(Step { operation, left: own.clone(), right: own.clone() });
+                    if is_size {
+                        let sign = Operand::Step(steps.len() as u32 - 1);
+                        steps.push(Step { operation: Operation::Multiply, left: sign, right: own });
+                    }
+                    done.insert(expr.index(), steps.len() as u32 - 1);
+                    continue;
+                }
                 Node::Constant(_) | Node::Symbol(_) => continue,
                 Node::Add(a, b) => (if b.is_negated() { Operation::Subtract } else { Operation::Add }, a, b),
                 Node::Mul(a, b) => (Operation::Multiply, a, b),
@@ -159,6 +180,7 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
 fn operand(pool: &Pool, done: &HashMap<usize, u32>, expr: ExprId) -> Operand {
     match pool.node(expr) {
         Node::Constant(_) => Operand::Constant(pool.as_constant(expr.unsigned()).unwrap_or_else(Number::zero)),
+        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_)) => Operand::Step(done[&expr.index()]),
         Node::Symbol(symbol) => Operand::Input(symbol),
         Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => Operand::Step(done[&expr.index()]),
     }

@@ -161,6 +161,14 @@ impl Item {
         functions.chain([Item::Determinant]).collect()
     }
 
+    /// Whether it is said of an arm that lacks it, asked or not.
+    fn said_missing(self) -> bool {
+        match self {
+            Item::Plain(quantity) | Item::Element(quantity, _) | Item::With(quantity) => quantity.documentation.said_missing,
+            Item::Determinant => true,
+        }
+    }
+
     /// What a name stands for; nothing if it is no name of a quantity of an arm with `dof` joints.
     pub fn named(name: &str, dof: usize) -> Vec<Item> {
         if name == DETERMINANT {
@@ -235,9 +243,11 @@ impl Sheet {
     fn of(model: &Model, items: &[Item], all: Vec<Result<Vec<Shown>, String>>) -> Sheet {
         let mut seen = BTreeSet::new();
         let mut sheet = Sheet { robot: model.manipulator.name.clone(), quantities: Vec::new(), absent: Vec::new() };
+        let everything = items == Item::all();
         for (item, shown) in items.iter().zip(all) {
             match shown {
                 Ok(all) => sheet.quantities.extend(all.into_iter().filter(|shown| seen.insert(shown.name.clone()))),
+                Err(_) if everything && !item.said_missing() => {}
                 Err(reason) => sheet.absent.push(Absent { function: item.name(), reason }),
             }
         }

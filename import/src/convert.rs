@@ -257,8 +257,8 @@ impl Converter<'_> {
         text.push("    link:".into());
         self.link(joint, k, row, text);
         self.motor(joint, k, before, text);
-        let FrictionDescription { viscous, coulomb, offset, cubic, stribeck } = &joint.friction;
-        let friction = [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic)];
+        let FrictionDescription { viscous, coulomb, offset, cubic, load, stribeck } = &joint.friction;
+        let friction = [("viscous", viscous), ("coulomb", coulomb), ("offset", offset), ("cubic", cubic), ("load", load)];
         let mut friction = self.given(&friction);
         friction.extend(stribeck.as_ref().map(|StribeckDescription { torque, velocity, .. }| {
             format!("stribeck: {{{}}}", self.given(&[("torque", torque), ("velocity", velocity)]).join(", "))

@@ -351,8 +351,11 @@ impl Writer<'_> {
         joints_with("a URDF has no rotors; left out at", |joint| joint.motor.is_some());
         joints_with("a URDF has no armature; left out at", |joint| joint.armature.is_some());
         joints_with("a URDF has no springs; left out at", |joint| joint.spring.is_some());
-        joints_with("a URDF's friction has no `offset`, no `cubic` and no `stribeck`; left out at", |joint| {
-            joint.friction.offset.is_some() || joint.friction.cubic.is_some() || joint.friction.stribeck.is_some()
+        joints_with("a URDF's friction has no `offset`, `cubic`, `load` and `stribeck`; left out at", |joint| {
+            joint.friction.offset.is_some()
+                || joint.friction.cubic.is_some()
+                || joint.friction.load.is_some()
+                || joint.friction.stribeck.is_some()
         });
         joints_with("a URDF demands `effort` and `velocity`; 0 stands for one that is not given at", |joint| {
             let prismatic = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);

@@ -42,6 +42,7 @@ const FUNCTIONS: &[&str] = &[
     "coriolis_matrix",
     "gravity",
     "friction",
+    "load_friction",
     "inverse_dynamics",
     "kinetic_energy",
     "potential_energy",

@@ -73,6 +73,7 @@ function quantities(data, state) {
     }
     if (has("gravity")) list.push(vector("gravity", "g", "Gravity term", "N m", n, () => robot.gravity(state.q), joints));
     if (has("friction")) list.push(vector("friction", "F", "Friction", "N m", n, () => robot.friction(state.dq), joints));
+    if (has("load_friction")) list.push(vector("load_friction", "Fₗ", "Friction that grows with the load, Fₗ |g| sign(q̇)", "N m", n, () => robot.loadFriction(state.q, state.dq), joints));
     if (has("inverse_dynamics")) list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "N m", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
     if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));

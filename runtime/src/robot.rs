@@ -78,6 +78,13 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     /// the description has besides.
     fn friction(&self, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
+    /// Friction torque that grows with the load of its joint, F_l |g_i(q)| sign(dq_i), beside [`friction`](Dynamics::friction) on the left of the
+    /// equation of motion: part of `inverse_dynamics` and `forward_dynamics`, and of no regressor. 0 for robots that have none.
+    fn load_friction(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N> {
+        let _ = (q, dq);
+        SVector::zeros()
+    }
+
     /// B, C and g at one state, sharing their work.
     fn equations_of_motion(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> EquationsOfMotion<Self::Real, N>;
 

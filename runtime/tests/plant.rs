@@ -77,6 +77,21 @@ fn energy_adds_up_with_torques_and_friction() {
     below("residual, J", energy.residual.abs(), 1e-8);
 }
 
+/// A slide that falls: F_l |g| brakes it, a force that does not change.
+#[test]
+fn energy_adds_up_with_friction_that_grows_with_the_load() {
+    let arm = Scara::<f64> { load: 0.25, ..Scara::loaded().frictionless() };
+    let start = State { q: vector![0.3, 1.1, 0.2, 0.4], dq: vector![0.0, 0.0, 0.5, 0.0] };
+    let mut plant = Plant::new(&arm, start, Integrator::RungeKutta4 { substeps: 1 }).with_audit();
+    for _ in 0..500 {
+        plant.advance(&Vector4::zeros(), 1e-3).unwrap();
+    }
+    let (energy, way) = (plant.energy().unwrap(), plant.state().q[2] - 0.2);
+    below("work of friction, J", (energy.dissipated - 0.25 * 15.0 * 9.81 * way).abs(), 1e-9);
+    assert!(way > 0.3, "it falls: {way}");
+    below("residual, J", energy.residual.abs(), 1e-9);
+}
+
 fn with_sensor(sensor: Sensor<f64, 4>) -> Result<f64, RunError<armgen_runtime::control::ControlError>> {
     let (model, plant, trajectory) = (ghost::nominal(), ghost::loaded(), ghost::ghost::<f64>());
     let gains = ([5000.0, 5000.0, 10000.0, 5000.0], [50.0, 50.0, 100.0, 50.0]);

@@ -78,6 +78,9 @@ pub fn run(module: &Module, function: &Function, arguments: &Arguments) -> Vec<f
             Operation::Subtract => a - b,
             Operation::Multiply => a * b,
             Operation::Divide => a / b,
+            Operation::Sign | Operation::OppositeSign if a == 0.0 => 0.0,
+            Operation::Sign => a.signum(),
+            Operation::OppositeSign => -a.signum(),
         });
     }
     let output = |o: &armgen_codegen::program::Output| {
@@ -115,6 +118,7 @@ fn operand(function: &Function, turn: f64, values: &[f64], arguments: &Arguments
             rate => rate.signum(),
         },
         Symbol::Stribeck(i) => (-given(Argument::Dq, &a.dq, i).abs() / function.stribeck[&i].to_f64()).exp(),
+        Symbol::GravitySize(_) | Symbol::GravitySign(_) => panic!("a step of a program, and no input"),
         Symbol::Acceleration(i) => given(Argument::Ddq, &a.ddq, i),
         Symbol::ReferenceRate(i) => given(Argument::Dqr, &a.dqr, i),
         Symbol::ReferenceAcceleration(i) => given(Argument::Ddqr, &a.ddqr, i),

@@ -119,7 +119,8 @@ impl Case<'_> {
         self.check("Y pi + tau_known", &tau, &model.inverse_dynamics_4(q, dq, dqr, ddqr));
         let with_own = Arguments { dqr: dq.clone(), ddqr: ddq.clone(), ..a.clone() };
         let tau = self.torque(&with_own, &robot.nominal());
-        self.check("Y(q, dq, dq, ddq) pi + tau_known", &tau, &robot.call("inverse_dynamics", &a));
+        let whole = robot.call("inverse_dynamics", &a);
+        self.check("Y(q, dq, dq, ddq) pi + tau_known", &tau, &self.without_load_friction("load_friction", &a, &whole));
     }
 
     /// The functions that no formula gives: base regressor, operational inertia, derivatives of forward dynamics.
@@ -132,7 +133,7 @@ impl Case<'_> {
 
         let base = robot.nominal_base();
         let y: Matrix = robot.call("base_regressor", a).chunks(base.len()).map(<[f64]>::to_vec).collect();
-        self.check("Y_b pi_b", &times(&y, &base), &model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
+        self.check("Y_b pi_b", &times(&y, &base), &model.inverse_dynamics_4(&a.q, &a.dq, &a.dq, &a.ddq));
         assert!(base.iter().all(|&x| x != 0.0), "{}: a base parameter without effect", self.what);
         let all = matches!(self.description.regressor_choice(), RegressorChoice::Base);
         let count = robot.nominal().len();
@@ -222,6 +223,14 @@ impl Case<'_> {
         self.check("tau with joints at rest", &tau, &self.model.inverse_dynamics(&a.q, &a.dq, &a.ddq));
         let tau = self.torque(&a, &a.pi);
         self.check("Y pi with joints at rest", &tau, &self.model.inverse_dynamics_4(&a.q, &a.dq, &a.dqr, &a.ddqr));
+    }
+
+    /// Torques without friction that grows with the load, which is no part of the regressor.
+    fn without_load_friction(&self, function: &str, a: &Arguments, tau: &[f64]) -> Vec<f64> {
+        match self.robot.has(function) {
+            true => minus(tau, &self.robot.call(function, a)),
+            false => tau.to_vec(),
+        }
     }
 
     /// Y pi + tau_known of the robot itself.
@@ -347,7 +356,8 @@ impl Case<'_> {
         let both: Vec<f64> =
             (0..n).map(|i| (viscous[i] + cubic[i] * a.dq[i] * a.dq[i]) * a.dq[i] + coulomb[i] + offset[i]).collect();
         self.check("friction_with by Y", &call("friction_with"), &both);
-        self.check("tau_with by Y", &call("inverse_dynamics_with"), &tau(&a.dq, &a.dq, &a.ddq));
+        let whole = call("inverse_dynamics_with");
+        self.check("tau_with by Y", &self.without_load_friction("load_friction_with", a, &whole), &tau(&a.dq, &a.dq, &a.ddq));
         let rows: Matrix = b.chunks(n).map(<[f64]>::to_vec).collect();
         self.check("T_with", &call("kinetic_energy_with"), &[0.5 * dot(&a.dq, &times(&rows, &a.dq))]);
         let parts = [b, c, call("gravity_with")].concat();

@@ -80,6 +80,8 @@ pub struct Joint {
     pub offset: Option<f64>,
     /// Coefficient of the cube of the rate, if given.
     pub cubic: Option<f64>,
+    /// How many times its gravity torque is added to its dry friction.
+    pub load: f64,
     /// Stribeck friction at the lowest rates, if given.
     pub stribeck: Option<f64>,
     /// The rate at which 1/e of it is left.

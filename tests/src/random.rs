@@ -94,7 +94,7 @@ pub fn arm(seed: u64) -> String {
 }
 
 /// A random arm of what rows of Denavit and Hartenberg do not need: rows with origin and axis, poses in all writings, a base, tensors in turned
-/// axes, attached bodies, armatures, springs, friction with an offset, a cubic and a Stribeck part.
+/// axes, attached bodies, armatures, springs, friction with an offset, a cubic and a Stribeck part, and with a part that grows with the load.
 pub fn posed_arm(seed: u64) -> String {
     let mut random = Random::new(seed ^ 0x7053_0000);
     let random = &mut random;
@@ -158,7 +158,9 @@ pub fn posed_arm(seed: u64) -> String {
                 ", offset: 1/3, cubic: -0.002",
                 ", stribeck: {torque: 1.25, velocity: 0.05}",
             ]);
-            writeln!(text, "    friction: {{viscous: 0.2, coulomb: 3{more}}}").expect("text");
+            // Drawn by the seed alone: the other arms stay what they are.
+            let load = if seed % 7 == 2 { ", load: 0.08" } else { "" };
+            writeln!(text, "    friction: {{viscous: 0.2, coulomb: 3{more}{load}}}").expect("text");
         }
         if random.chance(20) {
             let rest = random.one_of(&["", ", rest: -0.3", ", rest: pi/3"]);

@@ -91,7 +91,7 @@ fn nothing_is_left_out() {
                 _ => None,
             })
             .collect();
-        assert_eq!(functions, expected(&absent(robot.text)), "{}", robot.module);
+        assert_eq!(functions, expected(&absent(robot.text), &robot.description()), "{}", robot.module);
         assert_eq!(robot.narrow, robot.module.ends_with("_f32"));
     }
     let modules: BTreeSet<&str> = ALL.iter().map(|robot| robot.module).collect();
@@ -128,7 +128,10 @@ fn obey_the_laws() {
             check("dB/dt - 2C is skew", &n_matrix, &opposite);
 
             let rows = |m: &[f64]| m.chunks(n).map(<[f64]>::to_vec).collect::<Vec<_>>();
-            let (b_ddq, c_dq, f) = (times(&rows(&b), &s.ddq), times(&rows(&c), &s.dq), call("friction"));
+            let (b_ddq, c_dq, mut f) = (times(&rows(&b), &s.ddq), times(&rows(&c), &s.dq), call("friction"));
+            if robot.has("load_friction") {
+                f = f.iter().zip(call("load_friction")).map(|(f, load)| f + load).collect();
+            }
             let sum: Vec<f64> = (0..n).map(|i| b_ddq[i] + c_dq[i] + f[i] + g[i]).collect();
             check("tau = B ddq + C dq + F + g", &call("inverse_dynamics"), &sum);
             check("T = ½ dq' B dq", &call("kinetic_energy"), &[0.5 * dot(&s.dq, &times(&rows(&b), &s.dq))]);
@@ -211,7 +214,7 @@ impl Functions for Planted<'_> {
 fn planted_errors_are_seen() {
     for robot in ["scara", "scara4", "base_set"].map(emitted) {
         let text = robot.description();
-        for function in expected(&absent(robot.text)) {
+        for function in expected(&absent(robot.text), &text) {
             let planted = Planted { robot, function: &function };
             let judged = std::panic::catch_unwind(|| judge("planted", &planted, &text, 3, tolerance(robot)));
             assert!(judged.is_err(), "{}: an error in {function} is not seen", robot.module);

@@ -71,6 +71,7 @@ fn every_part_of_the_format_occurs() {
         "offset:",
         "cubic:",
         "stribeck:",
+        "load:",
         "spring:",
         "rest:",
         "payload",

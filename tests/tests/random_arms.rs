@@ -54,6 +54,6 @@ fn check_without(seed: u64, without: Passes, how: &str) {
         .unwrap_or_else(|faults| panic!("seed {seed}{how}:\n{faults}\n{text}"));
     let names: Vec<String> = robot.module.functions.iter().map(|f| f.name()).collect();
     let absent: Vec<String> = robot.module.absent.iter().map(|absent| absent.function.clone()).collect();
-    assert_eq!(names, expected(&absent));
+    assert_eq!(names, expected(&absent, &text));
     judge(&format!("arm {seed}{how}"), &robot, &text, seed, Tolerance { values: ORACLE, residual: FORWARD_RESIDUAL });
 }

@@ -169,7 +169,7 @@ fn certify_arm(seed: u64, joints: usize, text: &str, seen: &mut Seen) {
     assert!(report.passed(), "seed {seed}: {}\n{text}", report.first_fault().unwrap_or_default());
     let certified: Vec<&str> = report.functions.iter().map(|function| function.name.as_str()).collect();
     let absent: Vec<String> = generated.absent.iter().map(|absent| absent.function.clone()).collect();
-    assert_eq!(certified, expected(&absent), "seed {seed}");
+    assert_eq!(certified, expected(&absent, text), "seed {seed}");
     let untried: Vec<_> = report.identities.iter().filter_map(|i| i.holds.as_ref().err().map(|why| (&i.name, why))).collect();
     let (manipulator, _) = validate::read(&source).0.expect("it was generated from");
     assert_eq!(manipulator.dof(), joints, "seed {seed}");

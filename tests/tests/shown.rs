@@ -100,8 +100,10 @@ fn check(what: &str, text: &str) {
         ddqr: state.ddqr,
         tau: tau.clone(),
     };
-    let variables =
-        state_names(&[("q", &a.q), ("dq", &a.dq), ("ddq", &a.ddq), ("dqr", &a.dqr), ("ddqr", &a.ddqr), ("tau", &tau)]);
+    let g = if program.has("gravity") { program.call("gravity", &a) } else { Vec::new() };
+    let vectors: [(&str, &[f64]); 7] =
+        [("q", &a.q), ("dq", &a.dq), ("ddq", &a.ddq), ("dqr", &a.dqr), ("ddqr", &a.ddqr), ("tau", &tau), ("g", &g)];
+    let variables = state_names(&vectors);
     let items: Vec<Item> = Item::names().iter().flat_map(|name| Item::named(name, dof)).collect();
     let forms = [Form::Shortest, Form::Closed, Form::Steps];
     for (reading, form) in [Reading::Nominal, Reading::Symbolic].into_iter().flat_map(|reading| forms.map(|form| (reading, form)))

@@ -155,7 +155,11 @@ impl<E: Element> Samples<E> {
 
     /// The state of a reference with the torques there alone.
     pub fn torques(reference: &Reference<E>) -> Option<Samples<E>> {
-        let torques = reference.values.get("inverse_dynamics")?.clone();
+        let mut torques = reference.values.get("inverse_dynamics")?.clone();
+        // What grows with the load is no combination of columns.
+        if let Some(load) = reference.values.get("load_friction") {
+            torques = torques.iter().zip(load).map(|(torque, load)| torque.minus(load)).collect();
+        }
         Some(Samples(vec![Sample { state: reference.state.clone(), torques, columns: BTreeMap::new() }]))
     }
 

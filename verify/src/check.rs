@@ -63,7 +63,7 @@ pub(crate) enum Check {
     Angles,
     /// Bodies: sines of the angles that are asked for, and of no others.
     Lanes,
-    /// Bodies: signs and exponentials are of rates.
+    /// Bodies: exponentials are of rates.
     Signs,
     /// Bodies: numbers are the shortest decimals.
     Shortest,

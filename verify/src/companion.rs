@@ -9,6 +9,7 @@
 //! sine, cosine      e = 2 u |s|: one unit in the last place; of a sum of k angles besides k u (|q_1| + ... + |q_k|),
 //!                   a constant angle among them, with what its literal is off by
 //! exponential       e = (2 + 2 |dq| / v) u exp(-|dq| / v), and 1e-17 where that is taken to be 0
+//! sign of a value   e = 0; 2 where |x| ≤ e_x
 //! literal           e = u |c|, 0 where the float is the exact value
 //! ```
 //!
@@ -22,6 +23,7 @@ use crate::claims::Claims;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
+use crate::marked::{marked, LOAD, STRIBECK};
 use crate::program::{Angle, Argument, Program, Step};
 use crate::ranges::{is_power_of_two, literal_errors};
 use crate::reader::{Constant, Module};
@@ -37,6 +39,7 @@ macro_rules! face {
             }
             include!("companion/template.rs");
             include!("companion/stribeck.rs");
+            include!("companion/sign.rs");
             include!("reader/sines/stribeck.rs");
             include!("companion/lanes.rs");
 
@@ -101,6 +104,7 @@ macro_rules! face {
                     Row::Cos(joint) => Step::Cos(joint),
                     Row::Sign(joint) => Step::Sign(joint),
                     Row::Stribeck(joint, velocity) => Step::Stribeck(joint, velocity as Real),
+                    Row::SignOf(a) => Step::SignOf(a),
                     Row::Neg(a) => Step::Neg(a),
                     Row::Add(a, b) => Step::Add(a, b),
                     Row::Sub(a, b) => Step::Sub(a, b),
@@ -125,6 +129,7 @@ enum Row {
     Cos(u32),
     Sign(u32),
     Stribeck(u32, f64),
+    SignOf(u32),
     Neg(u32),
     Add(u32, u32),
     Sub(u32, u32),
@@ -182,6 +187,7 @@ impl Table {
                 Step::Cosine(angle) => Row::Cos(number_of(angle)),
                 Step::Sign(joint) => Row::Sign(*joint as u32),
                 Step::Stribeck(joint, velocity) => Row::Stribeck(*joint as u32, program.literals[*velocity].value),
+                Step::SignOf(a) => Row::SignOf(number(a)),
                 Step::Negate(a) => Row::Neg(number(a)),
                 Step::Add(a, b) => Row::Add(number(a), number(b)),
                 Step::Subtract(a, b) => Row::Sub(number(a), number(b)),
@@ -301,22 +307,16 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     }
     let _ =
         write!(text, "/// Sine and cosine of an angle in rad.\nfn sin_cos(x: Real) -> (Real, Real) {{\n    {sincos}(x)\n}}\n\n");
-    // What only Stribeck friction needs.
-    const MARK: &str = " // with Stribeck friction";
-    let fades = module.programs().any(|(_, program)| program.steps.iter().any(|step| matches!(step, Step::Stribeck(..))));
-    if fades {
-        text += &[include_str!("reader/sines/stribeck.rs"), include_str!("companion/stribeck.rs")]
-            .map(|part| format!("{part}\n"))
-            .concat();
-    }
+    let has = |wanted: fn(&Step) -> bool| module.programs().any(|(_, program)| program.steps.iter().any(wanted));
+    let (fades, loaded) = (has(|step| matches!(step, Step::Stribeck(..))), has(|step| matches!(step, Step::SignOf(_))));
+    let parts = [
+        (include_str!("reader/sines/stribeck.rs"), fades),
+        (include_str!("companion/stribeck.rs"), fades),
+        (include_str!("companion/sign.rs"), loaded),
+    ];
+    parts.iter().filter(|(_, wanted)| *wanted).for_each(|(part, _)| text += &format!("{part}\n"));
     let template = include_str!("companion/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
-    for line in template.split_inclusive('\n') {
-        match line.trim_end().strip_suffix(MARK) {
-            None => text += line,
-            Some(line) if fades => text += &format!("{line}\n"),
-            Some(_) => {}
-        }
-    }
+    text += &marked(template, "//", &[(STRIBECK, fades), (LOAD, loaded)]);
     Ok(text)
 }
 

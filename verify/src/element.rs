@@ -16,6 +16,9 @@ pub trait Element: Clone + PartialEq + Debug {
     fn inverse(&self) -> Option<Self>;
     /// Whether this is 0.
     fn is_zero(&self) -> bool;
+    /// Its sign: 0 of 0, and opposite for opposite numbers. Where numbers have no order it is a random one that follows from the number alone: an
+    /// equality there holds for any odd function, and so for the sign.
+    fn sign(&self) -> Self;
     /// How many bits it is written with, where that can grow.
     fn bits(&self) -> usize {
         0
@@ -45,6 +48,15 @@ impl Element for f64 {
     fn is_zero(&self) -> bool {
         *self == 0.0
     }
+    fn sign(&self) -> f64 {
+        if *self > 0.0 {
+            1.0
+        } else if *self < 0.0 {
+            -1.0
+        } else {
+            *self
+        }
+    }
     fn over(&self, other: &f64) -> Option<f64> {
         Some(self / other)
     }
@@ -69,7 +81,24 @@ impl Element for f32 {
     fn is_zero(&self) -> bool {
         *self == 0.0
     }
+    fn sign(&self) -> f32 {
+        if *self > 0.0 {
+            1.0
+        } else if *self < 0.0 {
+            -1.0
+        } else {
+            *self
+        }
+    }
     fn over(&self, other: &f32) -> Option<f32> {
         Some(self / other)
     }
+}
+
+/// A number that looks random and follows from another (Steele, Lea and Flood 2014, SplitMix64).
+pub(crate) fn scrambled(value: u64) -> u64 {
+    let z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }

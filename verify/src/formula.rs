@@ -289,6 +289,14 @@ impl Element for Formula {
             other => Some(Formula::Power(Box::new(other.clone()), -1)),
         }
     }
+    fn sign(&self) -> Self {
+        match self {
+            Formula::Rational(value) if value.is_zero() => self.clone(),
+            Formula::Rational(value) => Formula::Rational(Rational::from(if value.is_negative() { -1 } else { 1 })),
+            // There is no formula for it, and none is asked for where formulas calculate: in kinematics.
+            other => other.clone(),
+        }
+    }
     fn is_zero(&self) -> bool {
         self.as_rational().is_some_and(Rational::is_zero)
     }

@@ -62,6 +62,14 @@ impl Running<'_> {
         entries.ok_or(format!("`{name}` has no value"))
     }
 
+    /// Torques without friction that grows with the load, of modules that have it.
+    fn without_load_friction(&self, torques: Entries, state: &State<Residue>) -> Result<Entries, String> {
+        if !self.has("load_friction") {
+            return Ok(torques);
+        }
+        Ok(torques.iter().zip(&self.run("load_friction", state)?).map(|(torque, load)| torque.minus(load)).collect())
+    }
+
     fn state(&self) -> &State<Residue> {
         &self.point.reference.state
     }
@@ -105,14 +113,14 @@ const IDENTITIES: [Identity; 10] = [
         state.ddqr.clone_from(&state.ddq);
         let (y, known) = (run.run("regressor", &state)?, run.run("known_torque", &state)?);
         let nominal = run.nominal()?;
-        let tau = run.run("inverse_dynamics", &state)?;
+        let tau = run.without_load_friction(run.run("inverse_dynamics", &state)?, &state)?;
         Ok(nominal.is_empty() && known == tau || !nominal.is_empty() && sum(&rows(&y, &nominal), &known) == tau)
     }),
     ("Y_b pi_b = tau", |run| {
         let state = run.state();
         let y = run.run("base_regressor", state)?;
         let nominal = run.point.literals(run.nominal_base).ok_or("the nominal base parameters are not known")?;
-        let tau = run.run("inverse_dynamics", state)?;
+        let tau = run.without_load_friction(run.run("inverse_dynamics", state)?, state)?;
         let n = tau.len();
         Ok(y.len() == n * nominal.len() && (nominal.is_empty() || rows(&y, &nominal) == tau))
     }),
@@ -139,7 +147,7 @@ const IDENTITIES: [Identity; 10] = [
         let moving = state.moving(&state.dq, &state.ddq);
         let power = run.rates("kinetic_energy", &moving)?[0].plus(&run.rates("potential_energy", &moving)?[0]);
         let (tau, f) = (run.run("inverse_dynamics", state)?, run.run("friction", state)?);
-        let net: Entries = tau.iter().zip(&f).map(|(tau, f)| tau.minus(f)).collect();
+        let net = run.without_load_friction(tau.iter().zip(&f).map(|(tau, f)| tau.minus(f)).collect(), state)?;
         Ok(power == dot(&net, &state.dq))
     }),
     ("forward dynamics inverts inverse dynamics", |run| {

@@ -25,6 +25,8 @@ pub fn idle_steps(program: &Program, point: &mut Point<Prime>, literals: &[Formu
         let mut add = |to: usize, amount| adjoint[to] = adjoint[to].plus(&amount);
         match step {
             Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {}
+            // Its derivative is 0.
+            Step::SignOf(_) => {}
             Step::Negate(a) => add(*a, own.negated()),
             Step::Add(a, b) => {
                 add(*a, own);

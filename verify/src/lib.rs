@@ -60,6 +60,7 @@ pub mod identities;
 pub mod influence;
 mod interval;
 pub mod inverse_kinematics;
+mod marked;
 #[doc(hidden)]
 pub mod powers;
 #[doc(hidden)]

@@ -70,6 +70,8 @@ pub enum Step {
     Cosine(Angle),
     /// Sign of a joint rate.
     Sign(usize),
+    /// Sign of a value.
+    SignOf(usize),
     /// exp(-|dq| / v) of a joint rate, v a literal.
     Stribeck(usize, usize),
     /// -a
@@ -88,7 +90,7 @@ impl Step {
     /// The steps that it takes.
     pub fn operands(&self) -> [Option<usize>; 2] {
         match self {
-            Step::Negate(a) => [Some(*a), None],
+            Step::Negate(a) | Step::SignOf(a) => [Some(*a), None],
             Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => [Some(*a), Some(*b)],
             Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {
                 [None, None]
@@ -218,6 +220,7 @@ impl Program {
         for (i, step) in self.steps.iter().enumerate().filter(|&(i, _)| needed[i]) {
             number[i] = steps.len();
             steps.push(match step {
+                Step::SignOf(a) => Step::SignOf(number[*a]),
                 Step::Negate(a) => Step::Negate(number[*a]),
                 Step::Add(a, b) => Step::Add(number[*a], number[*b]),
                 Step::Subtract(a, b) => Step::Subtract(number[*a], number[*b]),
@@ -271,6 +274,7 @@ impl Program {
                 Step::Cosine(angle) => Some(wave(angle).1),
                 Step::Sign(joint) => Some(inputs.sign(*joint)),
                 Step::Stribeck(joint, velocity) => Some(inputs.stribeck(*joint, &literals[*velocity])),
+                Step::SignOf(a) => of(a).map(Element::sign),
                 Step::Negate(a) => of(a).map(Element::negated),
                 Step::Add(a, b) => both(a, b).map(|(a, b)| a.plus(b)),
                 Step::Subtract(a, b) => both(a, b).map(|(a, b)| a.minus(b)),
@@ -307,7 +311,7 @@ impl Program {
         for (i, step) in self.steps.iter().enumerate() {
             touched[i] = match step {
                 Step::Literal(index) | Step::Stribeck(_, index) => *index == literal,
-                Step::Negate(a) => touched[*a],
+                Step::Negate(a) | Step::SignOf(a) => touched[*a],
                 Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => touched[*a] || touched[*b],
                 Step::Sine(angle) | Step::Cosine(angle) => angle.turn.is_some_and(|(k, _)| self.turns[k] == literal),
                 Step::Input(..) | Step::Sign(_) => false,

@@ -63,6 +63,22 @@ impl Range {
         Range::of(&[at(most) - 1e-15, at(least)], 4.0 * real.unit() + 1e-17)
     }
 
+    /// The sign of a value that is known to so much: of one that can be 0 it is as wrong as the value is beside its size, since where the value is as
+    /// small as its error, its sign can be any, which no bound over a box counts.
+    pub(crate) fn sign(&self) -> Range {
+        let size = self.size();
+        if self.low > self.error {
+            Range::exact(1.0, 1.0)
+        } else if self.high < -self.error {
+            Range::exact(-1.0, -1.0)
+        } else if size == 0.0 {
+            Range::exact(0.0, 0.0)
+        } else {
+            let error = self.error / size;
+            Range { low: -1.0, high: 1.0, error: if error <= 2.0 { error } else { 2.0 } }
+        }
+    }
+
     /// No bound at all.
     pub(crate) const ANYTHING: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY, error: f64::INFINITY };
 
@@ -164,6 +180,7 @@ pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Opti
             Step::Stribeck(joint, literal) => {
                 Range::stribeck(domain.of(Argument::Dq)[*joint], program.literals[*literal].value, real)
             }
+            Step::SignOf(a) => of(a).sign(),
             Step::Negate(a) => {
                 let a = of(a);
                 Range { low: -a.high, high: -a.low, ..a }

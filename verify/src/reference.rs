@@ -11,8 +11,8 @@ use crate::divisors::{Matrix, Pivots};
 use crate::element::Element;
 use crate::equations::arm::{Arm, Frame};
 use crate::equations::lagrange::{
-    accelerations, coriolis_matrix, friction, gravity, inertia_derivatives, inertia_matrix, potential_energy, spring_torques,
-    times_vector, Parts,
+    accelerations, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix, load_friction,
+    potential_energy, spring_torques, times_vector, Parts,
 };
 use crate::equations::newton_euler::{Motion, Moving};
 use crate::equations::parameters::{
@@ -44,7 +44,7 @@ impl Promise {
 }
 
 /// All functions that the checker knows. Written apart from the generator's catalogue; a test compares the two.
-pub const PROMISES: [Promise; 23] = [
+pub const PROMISES: [Promise; 24] = [
     promise("direct_kinematics", &["q"], Returned::One(FRAME)),
     promise("link_frames", &["q"], Returned::One(&[N, Length::Of(4), Length::Of(4)])),
     promise("geometric_jacobian", &["q"], Returned::One(JACOBIAN)),
@@ -54,6 +54,7 @@ pub const PROMISES: [Promise; 23] = [
     promise("coriolis_matrix", &["q", "dq"], Returned::One(SQUARE)).with_parameters(),
     promise("gravity", &["q"], Returned::One(VECTOR)).with_parameters(),
     promise("friction", &["dq"], Returned::One(VECTOR)).with_parameters(),
+    promise("load_friction", &["q", "dq"], Returned::One(VECTOR)).with_parameters().not_of_every_arm(),
     promise(
         "equations_of_motion",
         &["q", "dq"],
@@ -141,7 +142,11 @@ fn of_parts<E: Element>(arm: &Arm<E>, state: &State<E>, parts: Parts<E>, values:
     let mut put = |name: &str, value: Vec<E>| values.insert(format!("{name}{suffix}"), value);
     let (half, Parts { b, c, g, f, u }) = (arm.half(), parts);
     let sum = |a: &[E], b: &[E]| -> Vec<E> { a.iter().zip(b).map(|(a, b)| a.plus(b)).collect() };
-    let rest = sum(&sum(&times_vector(&c, &state.dq), &f), &g);
+    let mut rest = sum(&sum(&times_vector(&c, &state.dq), &f), &g);
+    if let Some(load) = load_friction(arm, state, &g) {
+        rest = sum(&rest, &load);
+        put("load_friction", load);
+    }
     let without_friction = sum(&sum(&times_vector(&b, &state.ddq), &times_vector(&c, &state.dq)), &g);
     let momentum = times_vector(&b, &state.dq);
     let kinetic = state.dq.iter().zip(&momentum).fold(arm.zero.clone(), |t, (rate, p)| t.plus(&rate.times(p))).times(&half);
@@ -210,7 +215,12 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>, by: By) -> Vec
         let torques = Moving::new(&moving_arm, &pose, motion).torques();
         let friction = friction(&moving_arm, &state, &state.dq);
         let springs = spring_torques(&moving_arm, &state.q);
-        torques.iter().zip(friction).zip(springs).map(|((t, f), s)| t.plus(&f).plus(&s).rate).collect()
+        let rates = torques.iter().zip(friction).zip(springs).map(|((t, f), s)| t.plus(&f).plus(&s).rate);
+        let of_load = has_load_friction(arm).then(|| load_friction(&moving_arm, &state, &gravity(&moving_arm, &state))).flatten();
+        match of_load {
+            Some(load) => rates.zip(load).map(|(rate, load)| rate.plus(&load.rate)).collect(),
+            None => rates.collect(),
+        }
     };
     let columns: Vec<Vec<E>> = (0..n).map(column).collect();
     (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect()

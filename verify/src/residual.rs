@@ -49,6 +49,8 @@ pub struct Equations {
     pub friction: Program,
     /// Exact values of its literals.
     pub friction_literals: Vec<Wide>,
+    /// Friction that grows with the load, and the exact values of its literals.
+    pub load_friction: Option<(Program, Vec<Wide>)>,
 }
 
 impl Equations {
@@ -64,7 +66,8 @@ impl Equations {
         };
         let (motion, motion_literals) = program("equations_of_motion")?;
         let (friction, friction_literals) = program("friction")?;
-        Some(Equations { motion, motion_literals, friction, friction_literals })
+        let load_friction = program("load_friction");
+        Some(Equations { motion, motion_literals, friction, friction_literals, load_friction })
     }
 
     /// B x - r in lanes for accelerations x.
@@ -76,7 +79,10 @@ impl Equations {
             Some(program.outputs.iter().map(|output| scratch[output.step]).collect::<Vec<Twofold>>())
         };
         let motion = outputs(&self.motion, &self.motion_literals)?;
-        let friction = outputs(&self.friction, &self.friction_literals)?;
+        let mut friction = outputs(&self.friction, &self.friction_literals)?;
+        if let Some((load, literals)) = &self.load_friction {
+            friction = friction.iter().zip(outputs(load, literals)?).map(|(f, l)| f.plus(&l)).collect();
+        }
         let row = |i: usize| {
             let rest = friction[i].plus(&motion[2 * n * n + i]).minus(&arguments.entry(Argument::Tau, i));
             (0..n).fold(rest, |sum, j| {
@@ -91,7 +97,11 @@ impl Equations {
     fn at(&self, arguments: &Arguments<f64>, wide: &WideArguments) -> Option<(Vec<Vec<Wide>>, Vec<Wide>)> {
         let n = arguments.q.len();
         let motion = self.motion.run(wide, &self.motion_literals).into_iter().collect::<Option<Vec<Wide>>>()?;
-        let friction = self.friction.run(wide, &self.friction_literals).into_iter().collect::<Option<Vec<Wide>>>()?;
+        let run = |program: &Program, literals: &[Wide]| program.run(wide, literals).into_iter().collect::<Option<Vec<Wide>>>();
+        let mut friction = run(&self.friction, &self.friction_literals)?;
+        if let Some((load, literals)) = &self.load_friction {
+            friction = friction.iter().zip(run(load, literals)?).map(|(f, l)| f.plus(&l)).collect();
+        }
         let square = |first: usize| -> Vec<Vec<Wide>> { motion[first..first + n * n].chunks(n).map(<[Wide]>::to_vec).collect() };
         let (b, c) = (square(0), square(n * n));
         let right = (0..n).map(|i| {
@@ -378,7 +388,7 @@ pub fn residual(
     for step in &program.steps {
         divided.push(match step {
             Step::Divide(..) => true,
-            Step::Negate(a) => divided[*a],
+            Step::Negate(a) | Step::SignOf(a) => divided[*a],
             Step::Multiply(a, b) if constant(*a, *b) || constant(*b, *a) => true,
             Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) => divided[*a] || divided[*b],
             _ => false,

@@ -130,6 +130,7 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
                 parts.add(&literals[*velocity]);
                 parts.finish()
             }
+            Step::SignOf(a) => one("sign of", a),
             Step::Negate(a) => one("negate", a),
             Step::Add(a, b) => either("add", a, b),
             Step::Subtract(a, b) => two("subtract", &steps[*a], &steps[*b]),
@@ -181,6 +182,10 @@ fn of_description(manipulator: &Manipulator) -> Hash {
                 arm.word(word);
                 arm.optional(value);
             }
+        }
+        if let Some(load) = &joint.load {
+            arm.word("load");
+            arm.number(load);
         }
         if let Some(stribeck) = &joint.stribeck {
             arm.word("stribeck");

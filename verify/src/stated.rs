@@ -101,6 +101,7 @@ fn described<'a>(manipulator: &Manipulator, gravity: &'a [Number; 3], name: &str
         has_springs: manipulator.has_springs(),
         has_more_friction: manipulator.has_more_friction(),
         has_stribeck: manipulator.has_stribeck(),
+        has_load_friction: manipulator.has_load_friction(),
         turned_joint: turned,
         cost: operations(&function.program),
         method,
@@ -186,7 +187,7 @@ fn absent(model: &Model, module: &Module) -> Vec<String> {
     let is_there = |name: &String| module.functions.iter().any(|(other, _)| other == name);
     let of = |(quantity, with_parameters): (&'static Quantity, bool)| {
         let name = Some(quantity.function_name(with_parameters)).filter(|name| !is_there(name))?;
-        let reason = (quantity.missing)(model, with_parameters)?;
+        let reason = (quantity.missing)(model, with_parameters).filter(|_| quantity.documentation.said_missing)?;
         Some(format!("There is no `{name}`: {reason}."))
     };
     catalogue::functions().filter_map(of).collect()

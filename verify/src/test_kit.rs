@@ -20,6 +20,7 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
+use crate::marked::{marked, LOAD};
 use crate::program::Inputs;
 use crate::reader::Module;
 use crate::reference::{BaseParameters, Reference, Wanted};
@@ -103,6 +104,8 @@ struct Kit {
     sizes: Sizes,
     states: Vec<Arguments<f64>>,
     values: Vec<Value>,
+    /// Whether friction grows with the load.
+    loaded: bool,
 }
 
 impl Kit {
@@ -117,7 +120,8 @@ impl Kit {
         let mut fine = Fine(Stream::new(1));
         let mut stream = Stream::new(20_240_229);
         let present = |name: &str| module.functions.iter().any(|(f, _)| f == name);
-        let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes, states: Vec::new(), values: Vec::new() };
+        let (states, values, loaded) = (Vec::new(), Vec::new(), present("load_friction"));
+        let mut kit = Kit { robot: manipulator.name.clone(), real: module.real, sizes, states, values, loaded };
         for index in 0..STATES {
             let arguments = arguments(&mut stream, manipulator.joints.len(), sizes.p);
             let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;
@@ -181,7 +185,8 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
         "/// Function, number of the state, value on this machine, value from the equations.\n#[rustfmt::skip]\n\
          fn values() -> Vec<(&'static str, usize, Vec<Real>, Vec<Real>)> {{\n    vec![\n{values}    ]\n}}\n"
     );
-    text += include_str!("test_kit/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
+    let template = include_str!("test_kit/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
+    text += &marked(template, "//", &[(LOAD, kit.loaded)]);
     Ok(text)
 }
 

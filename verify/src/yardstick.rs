@@ -200,6 +200,9 @@ impl Element for Range {
             Some(Range::ANYTHING)
         }
     }
+    fn sign(&self) -> Range {
+        Range::sign(self)
+    }
     fn is_zero(&self) -> bool {
         point(self) == Some(0.0)
     }

@@ -243,7 +243,7 @@ fn steps_that_no_emitted_body_has_are_refused() {
         ("q.0", "`.` where an emitted module has `[`"),
         ("q", "`;` where an emitted module has `[`"),
         ("dq[0]", "`dq` is not an argument of the function"),
-        ("sign(q[0])", "the sign of something that is not a joint rate"),
+        ("sign(q[0])", "`sign` is called, and the module does not have it"),
         ("sin_cos(q[0])", "`sin_cos` is not a value"),
         ("t2", "`t2` is not a value that is given before"),
         ("Real::INFINITY", "`Real` is not a value"),

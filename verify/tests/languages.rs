@@ -64,7 +64,7 @@ fn check_same(name: &str, generated: &Generated, scalar: Scalar) {
 
 #[test]
 fn other_languages_do_the_operations_of_rust_in_its_order() {
-    for name in ["scara", "scara4", "modified_prismatic", "single_joint", "dry_friction"] {
+    for name in ["scara", "scara4", "modified_prismatic", "single_joint", "dry_friction", "load_friction"] {
         check_read(name, Scalar::F64);
     }
     check_read("base_set", Scalar::F32);
@@ -146,10 +146,10 @@ fn every_comment_is_that_of_armgen() {
 
 #[test]
 fn all_languages_have_the_bits_of_rust() {
-    for name in ["scara", "modified_prismatic", "dry_friction"] {
+    for name in ["scara", "modified_prismatic", "dry_friction", "load_friction"] {
         run::check(name, Scalar::F64, 500, run::Effort::Short);
     }
-    for name in ["scara4", "dry_friction"] {
+    for name in ["scara4", "dry_friction", "load_friction"] {
         run::check(name, Scalar::F32, 500, run::Effort::Short);
     }
 }

@@ -23,7 +23,7 @@ use armgen_verify::program::Program;
 use armgen_verify::reader::{Constant, Module};
 use armgen_verify::report::Verdict;
 use armgen_verify::stream::Stream;
-use armgen_verify::{constants, prepare};
+use armgen_verify::{constants, prepare, verify_with};
 
 use mutation::Mutable;
 
@@ -163,10 +163,32 @@ fn check(name: &str, scalar: Scalar, wanted: usize) -> usize {
 
 #[test]
 fn some_changes_are_found() {
-    for name in ["scara4", "scara", "modified_prismatic"] {
+    for name in ["scara4", "scara", "modified_prismatic", "load_friction"] {
         assert_eq!(check(name, Scalar::F64, 120), 5, "{name}: every kind of change occurs");
     }
     assert_eq!(check("base_set", Scalar::F32, 120), 5);
+}
+
+/// What is no size of the gravity torque of its joint is none of the equations.
+#[test]
+fn the_size_of_another_value_is_found() {
+    let source = common::source("load_friction");
+    let generated = common::generate(&source, Scalar::F64);
+    let claims = Claims::from_numbers(&generated.constants);
+    let begins = "pub fn load_friction(";
+    let at = generated.module.find(begins).expect("the function");
+    let (before, function) = generated.module.split_at(at);
+    for changed in
+        ["sign(t2) * t3", "sign(t3) * t2", "t3", "sign(dq[3]) * t3", "sign(-t3) * t3", "sign(t3 + 0.5) * t3", "sign(t3)"]
+    {
+        let function = function.replacen("sign(t3) * t3", changed, 1);
+        let report = verify_with(&source, format!("{before}{function}").as_str(), claims.clone(), Effort::default());
+        let of_function = report.functions.iter().find(|report| report.name == "load_friction").expect("a report on it");
+        match &of_function.verdict {
+            Verdict::Different { entry, .. } => assert_eq!(entry, "[3]", "{changed}"),
+            other => panic!("{changed}: {other:?}"),
+        }
+    }
 }
 
 #[test]

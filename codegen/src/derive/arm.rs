@@ -81,6 +81,8 @@ pub struct Joint {
     pub offset: ExprId,
     /// Coefficient of the cube of the rate.
     pub cubic: ExprId,
+    /// How many times its gravity torque is added to its dry friction.
+    pub load: ExprId,
     /// Stribeck friction at the lowest rates.
     pub stribeck: ExprId,
     /// The rate at which 1/e of it is left; 1 where there is none.
@@ -413,6 +415,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let armature = given(pool, StandardParameter::Armature(index));
     let offset = given(pool, StandardParameter::Offset(index));
     let cubic = given(pool, StandardParameter::Cubic(index));
+    let load = joint.load.as_ref().map_or(ExprId::ZERO, |load| pool.constant(load));
     let stribeck = given(pool, StandardParameter::Stribeck(index));
     let stribeck_velocity = joint.stribeck.as_ref().map_or(ExprId::ONE, |stribeck| pool.constant(&stribeck.velocity));
     let stiffness = given(pool, StandardParameter::Stiffness(index));
@@ -444,6 +447,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         coulomb,
         offset,
         cubic,
+        load,
         stribeck,
         stribeck_velocity,
         stiffness,

@@ -75,6 +75,8 @@ fn field_values(pool: &Pool, y: &[Vec<ExprId>], state: u64) -> Vec<Vec<Element>>
             Symbol::Torque(i) => (8, i),
             Symbol::Parameter(i) => (9, i),
             Symbol::Stribeck(i) => (10, i),
+            Symbol::GravitySize(i) => (11, i),
+            Symbol::GravitySign(i) => (12, i),
         };
         field.from_u64(scramble(scramble(state << 8 | kind) ^ u64::from(index)))
     };

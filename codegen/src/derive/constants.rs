@@ -50,6 +50,7 @@ fn constants(manipulator: &Manipulator) -> Vec<Number> {
         );
     }
     numbers.extend(manipulator.joints.iter().filter_map(|joint| Some(joint.stribeck.as_ref()?.velocity.clone())));
+    numbers.extend(manipulator.joints.iter().filter_map(|joint| joint.load.clone()));
     numbers.extend(manipulator.parameters.iter().map(|p| p.nominal.clone()));
     numbers.extend(manipulator.gravity.iter().flat_map(|p| p.terms().map(|(_, c)| c.clone())));
     numbers

@@ -41,10 +41,12 @@ impl Derivation {
     /// The derivations from the closed form, if there is one: one for each order in which its products can be formed, and the same in
     /// the rates of links with parallel axes about these.
     pub fn by_closed_form(&self) -> Vec<Derivation> {
-        let Some(forms) = self.closed_forms() else { return Vec::new() };
+        let (all, joints) = self.pool.with_gravity(&self.entries);
+        let Some(forms) = self.pool.all_normal_forms(&all, CLOSED_FORM_TERMS) else { return Vec::new() };
         let derivation = |forms: &[NormalForm], arrangement, meaning: &mut dyn FnMut(&mut Pool, Symbol) -> ExprId| {
             let mut pool = Pool::new(self.pool.field().clone());
-            let entries = forms.iter().map(|form| pool.from_normal_form_in(form, arrangement, meaning)).collect();
+            let mut entries = forms.iter().map(|form| pool.from_normal_form_in(form, arrangement, meaning)).collect();
+            pool.take_gravity(&mut entries, &joints);
             Derivation { pool, entries, method: CLOSED_FORM, parallel: self.parallel.clone() }
         };
         let mut all: Vec<Derivation> = Arrangement::ALL
@@ -68,7 +70,8 @@ impl Derivation {
             return None;
         }
         let mut pool = Pool::new(self.pool.field().clone());
-        let entries = self.pool.rewritten(&self.entries, &mut pool, &mut |pool, symbol| {
+        let (all, _) = self.pool.with_gravity(&self.entries);
+        let entries = self.pool.rewritten(&all, &mut pool, &mut |pool, symbol| {
             let own = pool.symbol(symbol);
             let Some((rate, (before, opposite))) = moving(symbol).zip(self.before(symbol)) else {
                 return own;
@@ -76,7 +79,7 @@ impl Derivation {
             let before = pool.symbol(rate(before));
             pool.sub(own, before).signed(opposite)
         });
-        (entries != self.entries || pool.len() != self.pool.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
+        (entries != all || pool.len() != self.pool.len()).then(|| pool.all_normal_forms(&entries, CLOSED_FORM_TERMS))?
     }
 
     /// The joint before the symbol's own whose axis is parallel, and whether it points the other way.

@@ -12,6 +12,7 @@ pub mod inertia;
 pub mod inverse_dynamics;
 pub mod kinematics;
 pub mod kinetic_energy;
+pub mod load_friction;
 pub mod momentum;
 pub mod operational_inertia;
 pub mod regressor;
@@ -19,12 +20,13 @@ pub mod regressor;
 use super::quantity::Quantity;
 
 /// All quantities, file by file, in the order of the emitted module.
-pub(crate) static DECLARED: [&[&Quantity]; 15] = [
+pub(crate) static DECLARED: [&[&Quantity]; 16] = [
     &kinematics::DECLARED,
     &[&inertia::INERTIA_MATRIX],
     &[&coriolis::CORIOLIS_MATRIX],
     &[&gravity::GRAVITY],
     &[&friction::FRICTION],
+    &[&load_friction::LOAD_FRICTION],
     &[&equations_of_motion::EQUATIONS_OF_MOTION],
     &[&inverse_dynamics::INVERSE_DYNAMICS],
     &[&forward_dynamics::FORWARD_DYNAMICS],

@@ -164,6 +164,10 @@ pub struct Documentation {
     pub more_friction: Option<&'static str>,
     /// What Stribeck friction adds, said of arms that have it.
     pub stribeck: Option<&'static str>,
+    /// What friction that grows with the load adds, said of arms that have it.
+    pub load: Option<&'static str>,
+    /// Whether a module that lacks the function says so; one of which it does not is not asked for by most arms, and its trait knows what it is there.
+    pub said_missing: bool,
 }
 
 /// The derivation of a quantity by recursion over the links.
@@ -206,6 +210,8 @@ impl Documentation {
             springs: None,
             more_friction: None,
             stribeck: None,
+            load: None,
+            said_missing: true,
         }
     }
 
@@ -217,6 +223,11 @@ impl Documentation {
     /// The same with what Stribeck friction adds.
     pub const fn with_stribeck(self, stribeck: &'static str) -> Documentation {
         Documentation { stribeck: Some(stribeck), ..self }
+    }
+
+    /// The same with what friction that grows with the load adds.
+    pub const fn with_load(self, load: &'static str) -> Documentation {
+        Documentation { load: Some(load), ..self }
     }
 
     /// The same with what more friction adds.
@@ -406,6 +417,7 @@ impl Quantity {
                 pool.reserve(nodes);
                 let entries = derive(&mut pool, plan);
                 nodes = pool.len();
+                let (entries, _) = pool.with_gravity(&entries);
                 let pairs = pool.angles(&entries).len();
                 (pool.operations(&entries, DIVISION_COST) + SINE_COSINE_COST * pairs, pool.len())
             });

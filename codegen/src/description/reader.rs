@@ -75,7 +75,8 @@ const INERTIA: &[Key] = &[
 ];
 const MOTOR: &[Key] =
     &[optional("ratio"), optional("inertia"), optional("mass"), optional("position"), optional("axis"), optional("viscous")];
-const FRICTION: &[Key] = &[optional("viscous"), optional("coulomb"), optional("offset"), optional("cubic"), optional("stribeck")];
+const FRICTION: &[Key] =
+    &[optional("viscous"), optional("coulomb"), optional("offset"), optional("cubic"), optional("load"), optional("stribeck")];
 const STRIBECK: &[Key] = &[required("torque", "torque: 2.5"), required("velocity", "velocity: 0.05")];
 const SPRING: &[Key] = &[required("stiffness", "stiffness: 200"), optional("rest")];
 const POSE: &[Key] =
@@ -188,6 +189,7 @@ impl Reader<'_> {
                 coulomb: self.field(&fields, "coulomb"),
                 offset: self.field(&fields, "offset"),
                 cubic: self.field(&fields, "cubic"),
+                load: self.field(&fields, "load"),
             }),
             spring: fields.get("spring").and_then(|(key, node)| {
                 let fields = self.mapping(node, "`spring`", key, SPRING)?;

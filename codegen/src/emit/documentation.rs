@@ -86,6 +86,8 @@ pub struct Described<'a> {
     pub has_more_friction: bool,
     /// Whether friction has a part that fades as a joint begins to move.
     pub has_stribeck: bool,
+    /// Whether friction grows with the load of a joint.
+    pub has_load_friction: bool,
     /// The joint whose variable it turns by a constant angle, counted from 1.
     pub turned_joint: Option<usize>,
     /// Its operations in words.
@@ -103,6 +105,7 @@ pub(super) fn described<'a>(function: &Function, module: &'a Module) -> Describe
         has_springs: module.has_springs,
         has_more_friction: module.has_more_friction,
         has_stribeck: module.has_stribeck,
+        has_load_friction: module.has_load_friction,
         turned_joint: turned_joint(function),
         cost: cost(&Cost::of(function)),
         method: function.method,
@@ -127,8 +130,19 @@ impl Described<'_> {
 
     /// `allocates`: whether its results take memory of their own in the language; `note`: what is said behind all else.
     pub(super) fn blocks(&self, allocates: bool, note: Option<&str>) -> Vec<Block> {
-        let Documentation { title, formula, result, result_with, failure, names_gravity, springs, more_friction, stribeck } =
-            self.quantity.documentation;
+        let Documentation {
+            title,
+            formula,
+            result,
+            result_with,
+            failure,
+            names_gravity,
+            springs,
+            more_friction,
+            stribeck,
+            load,
+            ..
+        } = self.quantity.documentation;
         let (result, failure) = match self.with_parameters {
             false => (result, failure[0]),
             true => (result_with.unwrap_or(result), failure[1]),
@@ -142,7 +156,8 @@ impl Described<'_> {
             .filter(|_| self.has_springs)
             .into_iter()
             .chain(more_friction.filter(|_| self.has_more_friction))
-            .chain(stribeck.filter(|_| self.has_stribeck));
+            .chain(stribeck.filter(|_| self.has_stribeck))
+            .chain(load.filter(|_| self.has_load_friction));
         blocks.extend(of_joints.map(Block::text));
         if self.with_parameters {
             blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));

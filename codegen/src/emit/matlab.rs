@@ -13,7 +13,6 @@ use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Operation, Trig};
-use crate::ring::Symbol;
 
 const CHECK: &str = include_str!("matlab/check.m");
 const SIGN: &str = include_str!("matlab/sign.m");
@@ -62,6 +61,7 @@ impl Syntax for Matlab {
             Operation::Subtract => "-",
             Operation::Multiply => ".*",
             Operation::Divide => "./",
+            Operation::Sign | Operation::OppositeSign => unreachable!("a listing writes the sign of one operand"),
         }
     }
 }
@@ -253,7 +253,7 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
     }
     let symbols = function.symbols();
     let sines = symbols.iter().any(|symbol| symbol.angle().is_some());
-    let signs = symbols.iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)));
+    let signs = function.takes_signs();
     let sines_text = if module.trig == Trig::Fast { FAST } else { STD };
     let blocks = [(true, CHECK), (sines, sines_text), (signs, SIGN), (!function.stribeck.is_empty(), STRIBECK)];
     for (wanted, block) in blocks {

@@ -14,8 +14,8 @@ pub(super) trait Syntax {
     /// A constant, with its sign.
     fn number(&self, value: &Number) -> String;
 
-    /// The sign of an entry.
-    fn sign(&self, entry: &str) -> String;
+    /// The sign of an entry or of another value.
+    fn sign(&self, value: &str) -> String;
 
     /// What is left of Stribeck friction at an entry, at a velocity.
     fn stribeck(&self, entry: &str, velocity: &str) -> String;
@@ -32,6 +32,7 @@ pub(super) trait Syntax {
             Operation::Subtract => "-",
             Operation::Multiply => "*",
             Operation::Divide => "/",
+            Operation::Sign | Operation::OppositeSign => unreachable!("a listing writes the sign of one operand"),
         }
     }
 }
@@ -48,6 +49,7 @@ pub(super) fn expression(of: &Expression, syntax: &dyn Syntax) -> String {
         Expression::Operation(operation, left, right) => {
             format!("{} {} {}", expression(left, syntax), syntax.operator(*operation), expression(right, syntax))
         }
+        Expression::Sign(inner) => syntax.sign(&expression(inner, syntax)),
         Expression::Negation(inner) => format!("-{}", expression(inner, syntax)),
         Expression::Brackets(inner) => format!("({})", expression(inner, syntax)),
     }
@@ -71,7 +73,7 @@ pub(super) fn reads_an_argument(of: &Expression) -> bool {
         Expression::Stribeck(..) => true,
         Expression::Constant(_) | Expression::Step(_) => false,
         Expression::Operation(_, left, right) => reads_an_argument(left) || reads_an_argument(right),
-        Expression::Negation(inner) | Expression::Brackets(inner) => reads_an_argument(inner),
+        Expression::Sign(inner) | Expression::Negation(inner) | Expression::Brackets(inner) => reads_an_argument(inner),
     }
 }
 
@@ -126,7 +128,7 @@ pub(super) fn places(quantity: &'static Quantity, sizes: &Sizes) -> Vec<(&'stati
 
 /// Whether any function of a module uses a sign.
 pub(super) fn asks_for_signs(module: &Module) -> bool {
-    module.functions.iter().flat_map(Function::symbols).any(|symbol| matches!(symbol, Symbol::RateSign(_)))
+    module.functions.iter().any(Function::takes_signs)
 }
 
 /// Whether any function of a module has Stribeck friction.

@@ -15,7 +15,7 @@ use quote::{format_ident, quote, ToTokens};
 
 use super::documentation::{self as common, Block, Described};
 use super::origin::{Notes, Origin};
-use super::plain::asks_for_exponentials;
+use super::plain::{asks_for_exponentials, asks_for_signs};
 use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -297,9 +297,8 @@ pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
 /// Sine and cosine, the sign of a rate and what is left of Stribeck friction: the only calls in the module.
 fn private_block(module: &Module) -> TokenStream {
     let all: Vec<Vec<Symbol>> = module.functions.iter().map(Function::symbols).collect();
-    let uses = |wanted: fn(&Symbol) -> bool| all.iter().flatten().any(wanted);
     let sin_cos = asks_for_sines(module).then(|| sincos::functions(module, &all));
-    let sign = uses(|s| matches!(s, Symbol::RateSign(_))).then(|| {
+    let sign = asks_for_signs(module).then(|| {
         quote! {
             /// Sign of a rate: 0 at rest, not a number for what is not a number.
             #[inline]

@@ -32,6 +32,7 @@ impl Cost {
                 Operation::Add | Operation::Subtract => cost.add += 1,
                 Operation::Multiply => cost.mul += 1,
                 Operation::Divide => cost.div += 1,
+                Operation::Sign | Operation::OppositeSign => {}
             }
         }
         let operands = function.steps.iter().flat_map(|step| [&step.left, &step.right]);

@@ -48,6 +48,8 @@ pub enum Expression {
     Step(usize),
     /// An operation.
     Operation(Operation, Box<Expression>, Box<Expression>),
+    /// The sign of what is inside.
+    Sign(Box<Expression>),
     /// What is inside, negated.
     Negation(Box<Expression>),
     /// What is inside, in brackets.
@@ -102,7 +104,13 @@ impl Argument {
     /// The argument that a symbol is an entry of, or a function of an entry of.
     pub fn of(symbol: Symbol) -> Argument {
         match symbol {
-            Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) | Symbol::Position(_) => Argument::Q,
+            Symbol::Sine(_)
+            | Symbol::Cosine(_)
+            | Symbol::SineOf(_)
+            | Symbol::CosineOf(_)
+            | Symbol::Position(_)
+            | Symbol::GravitySize(_)
+            | Symbol::GravitySign(_) => Argument::Q,
             Symbol::Rate(_) | Symbol::RateSign(_) | Symbol::Stribeck(_) => Argument::Dq,
             Symbol::Acceleration(_) => Argument::Ddq,
             Symbol::ReferenceRate(_) => Argument::Dqr,
@@ -179,6 +187,12 @@ impl Function {
         symbols
     }
 
+    /// Whether it takes the sign of a rate or of another value.
+    pub fn takes_signs(&self) -> bool {
+        self.steps.iter().any(|step| matches!(step.operation, Operation::Sign | Operation::OppositeSign))
+            || self.symbols().iter().any(|symbol| matches!(symbol, Symbol::RateSign(_)))
+    }
+
     /// The arguments that its lines use, in order: those of which only sines and cosines are used not among them.
     pub fn used_arguments(&self) -> Vec<Argument> {
         let symbols = self.symbols();
@@ -243,7 +257,11 @@ impl Expression {
             Expression::Constant(value) => value.to_f64().is_sign_negative(),
             Expression::Operation(_, left, _) => left.is_signed(),
             Expression::Negation(_) => true,
-            Expression::Input(_) | Expression::Stribeck(..) | Expression::Step(_) | Expression::Brackets(_) => false,
+            Expression::Input(_)
+            | Expression::Stribeck(..)
+            | Expression::Step(_)
+            | Expression::Sign(_)
+            | Expression::Brackets(_) => false,
         }
     }
 
@@ -261,7 +279,9 @@ impl Expression {
                 left.collect_constants(constants);
                 right.collect_constants(constants);
             }
-            Expression::Negation(inner) | Expression::Brackets(inner) => inner.collect_constants(constants),
+            Expression::Sign(inner) | Expression::Negation(inner) | Expression::Brackets(inner) => {
+                inner.collect_constants(constants)
+            }
         }
     }
 
@@ -281,7 +301,7 @@ impl Expression {
                 left.collect_names(names);
                 right.collect_names(names);
             }
-            Expression::Negation(inner) | Expression::Brackets(inner) => inner.collect_names(names),
+            Expression::Sign(inner) | Expression::Negation(inner) | Expression::Brackets(inner) => inner.collect_names(names),
         }
     }
 }
@@ -326,6 +346,18 @@ impl Listing {
         };
         for (Step { operation, left, right }, uses) in function.steps.iter().zip(uses) {
             let (left, right) = (operand(&made, left), operand(&made, right));
+            if let Operation::Sign | Operation::OppositeSign = operation {
+                let of = if *operation == Operation::Sign { left.expression } else { left.expression.negated() };
+                let expression = Expression::Sign(Box::new(of));
+                made.push(if uses == 1 {
+                    Made { expression, operands: 1 }
+                } else {
+                    let name = lines.len() + 1;
+                    lines.push(Line { name, value: expression });
+                    Made { expression: Expression::Step(name), operands: 1 }
+                });
+                continue;
+            }
             let operands = left.operands + right.operands;
             let (left, right) = (left.expression.inside(*operation, false), right.expression.inside(*operation, true));
             let expression = Expression::Operation(*operation, Box::new(left), Box::new(right));
@@ -407,9 +439,11 @@ mod tests {
                     Operation::Subtract => '-',
                     Operation::Multiply => '*',
                     Operation::Divide => '/',
+                    Operation::Sign | Operation::OppositeSign => unreachable!("of one operand"),
                 };
                 format!("{} {sign} {}", text(left), text(right))
             }
+            Expression::Sign(inner) => format!("sign({})", text(inner)),
             Expression::Negation(inner) => format!("-{}", text(inner)),
             Expression::Brackets(inner) => format!("({})", text(inner)),
         }

@@ -37,7 +37,9 @@ pub(crate) fn optimise(
     parallel: &[Option<(u16, bool)>],
     without: Passes,
 ) -> (Pool, Vec<ExprId>) {
-    let mut circuit = Circuit::of(pool, entries);
+    // Torques of gravity are outputs here: their sizes and signs are taken.
+    let (all, joints) = pool.with_gravity(entries);
+    let mut circuit = Circuit::of(pool, &all);
     if circuit.gates.len() > GATES {
         return (pool.clone(), entries.to_vec());
     }
@@ -70,11 +72,12 @@ pub(crate) fn optimise(
             break;
         }
     }
-    let built = circuit.to_pool();
-    for (&before, &after) in entries.iter().zip(&built.1) {
-        assert_eq!(pool.fingerprint(before), built.0.fingerprint(after), "an optimised expression is the one that it replaces");
+    let (mut built, mut found) = circuit.to_pool();
+    for (&before, &after) in all.iter().zip(&found) {
+        assert_eq!(pool.fingerprint(before), built.fingerprint(after), "an optimised expression is the one that it replaces");
     }
-    built
+    built.take_gravity(&mut found, &joints);
+    (built, found)
 }
 
 #[cfg(test)]

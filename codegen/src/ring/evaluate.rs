@@ -115,6 +115,8 @@ impl Pool {
                 Symbol::Torque(_) => 8,
                 Symbol::Parameter(_) => 9,
                 Symbol::Stribeck(_) => 10,
+                Symbol::GravitySize(_) => 11,
+                Symbol::GravitySign(_) => 12,
             };
             let drawn = draw(number, kind, symbol.index());
             Number::from(match symbol {
@@ -182,5 +184,7 @@ fn rational_value(symbol: Symbol, number: u64) -> Number {
         Symbol::Torque(i) => small(8, i),
         Symbol::Parameter(i) => small(9, i),
         Symbol::Stribeck(i) => small(10, i),
+        Symbol::GravitySize(i) => small(11, i),
+        Symbol::GravitySign(i) => small(12, i),
     })
 }

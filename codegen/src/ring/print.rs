@@ -1,6 +1,6 @@
 //! Expressions as formulas: plain text and LaTeX.
 //!
-//! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1)` and parameter names, with
+//! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1) abs(g1) sign(g1)` and parameter names, with
 //! numbers as exact fractions: a formula that a computer-algebra system reads.
 
 use std::rc::Rc;
@@ -71,6 +71,12 @@ impl Printer<'_> {
                 } else {
                     format!("e^{{-|\\dot q_{{{k}}}|/({velocity})}}")
                 };
+            }
+            Symbol::GravitySize(i) => {
+                return if text { format!("abs(g{})", i + 1) } else { format!("|g_{{{}}}|", i + 1) };
+            }
+            Symbol::GravitySign(i) => {
+                return if text { format!("sign(g{})", i + 1) } else { format!("\\operatorname{{sign}} g_{{{}}}", i + 1) };
             }
             Symbol::Parameter(i) => {
                 let name = &self.parameters[usize::from(i)];

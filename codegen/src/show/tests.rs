@@ -47,6 +47,20 @@ fn numbers_or_names() {
 }
 
 #[test]
+fn load_friction_is_shown_by_the_size_of_gravity() {
+    let text = PENDULUM.replace("    link:", "    friction: {coulomb: 1/4, load: 1/20}\n    link:");
+    for (name, expected) in [
+        ("load_friction", "load_friction: F_l(q, dq)\n  fl = 1/20*sign(dq1)*abs(g1)"),
+        (
+            "inverse_dynamics",
+            "inverse_dynamics: tau(q, dq, ddq)\n  tau = 981/100*cos(q1) + 51/100*ddq1 + sign(dq1)*(1/4 + 1/20*abs(g1))",
+        ),
+    ] {
+        assert_eq!(sheet(&text, &[name], Reading::Nominal).text().trim_end(), expected);
+    }
+}
+
+#[test]
 fn an_entry_too_long_for_a_closed_form_becomes_steps() {
     let sheet = sheet(PENDULUM, &["forward_dynamics"], Reading::Symbolic);
     assert_eq!(
@@ -169,7 +183,7 @@ fn in_style(text: &str, name: &str, style: Style) -> Shown {
 #[test]
 fn the_shortest_form_is_no_longer_than_the_others() {
     let mut kinds = BTreeSet::new();
-    for item in Item::all() {
+    for item in Item::all().into_iter().filter(|item| item.said_missing()) {
         let name = item.name();
         let of = |form| in_style(TWO_LINKS, &name, Style { form, digits: None });
         let (shortest, closed, steps) = (of(Form::Shortest), of(Form::Closed), of(Form::Steps));

@@ -44,6 +44,10 @@ pub(super) fn joint(
     };
     let offset = optional(&description.friction.offset, context);
     let cubic = optional(&description.friction.cubic, context);
+    let load = match &description.friction.load {
+        Some(load) => self::load(load, &called, context).map(Some),
+        None => Some(None),
+    };
     let stribeck = match &description.friction.stribeck {
         Some(stribeck) => self::stribeck(stribeck, &called, context).map(Some),
         None => Some(None),
@@ -70,10 +74,24 @@ pub(super) fn joint(
         coulomb: coulomb?,
         offset: offset?,
         cubic: cubic?,
+        load: load?,
         stribeck: stribeck?,
         spring: spring?,
         armature: armature?,
     })
+}
+
+/// A number and no name of a parameter: the torque is a product with masses.
+fn load(given: &Expression, called: &str, context: &mut Context<'_>) -> Option<Number> {
+    let load = context.number(given)?;
+    if load.sign() == Ordering::Less {
+        let message = format!("the load friction of joint {called} is negative");
+        let help =
+            "give how many times the size of the joint's gravity torque its friction grows by, at least 0: friction takes energy";
+        context.report(Code::NegativeFriction, given.span, message, format!("this is {}", text_of(&load)), help);
+        return None;
+    }
+    Some(load)
 }
 
 fn stribeck(description: &StribeckDescription, called: &str, context: &mut Context<'_>) -> Option<Stribeck> {

@@ -80,6 +80,8 @@ pub enum Role {
     Axis,
     /// A friction coefficient.
     Friction,
+    /// How friction grows with the load of a joint.
+    LoadFriction,
     /// The velocity at which Stribeck friction fades.
     StribeckVelocity,
     /// The stiffness of a spring.
@@ -108,6 +110,7 @@ impl Role {
             Role::RotorPosition => "the position of a rotor",
             Role::Axis => "the direction of an axis",
             Role::Friction => "a friction coefficient",
+            Role::LoadFriction => "the load friction of a joint",
             Role::StribeckVelocity => "the velocity of Stribeck friction",
             Role::Stiffness => "the stiffness of a spring",
             Role::SpringRest => "the rest of a spring",
@@ -144,6 +147,7 @@ pub(super) fn expressions(description: &RobotDescription) -> Vec<(Role, &Express
         all.value(Role::Friction, &joint.friction.coulomb);
         all.value(Role::Friction, &joint.friction.offset);
         all.value(Role::Friction, &joint.friction.cubic);
+        all.value(Role::LoadFriction, &joint.friction.load);
         if let Some(stribeck) = &joint.friction.stribeck {
             all.value(Role::Friction, &stribeck.torque);
             all.value(Role::StribeckVelocity, &stribeck.velocity);

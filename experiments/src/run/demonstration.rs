@@ -142,11 +142,15 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
 
     /// What the joints may miss by, rad or m.
     ///
-    /// A held torque has the wrong sign of Coulomb friction while a rate passes zero: a disturbance of up to 2 F_c, which moves the error
-    /// by no more than B⁻¹ 2 F_c / K_P.
+    /// A held torque has the wrong sign of Coulomb friction, with what grows with the load, while a rate passes zero: a disturbance of up to 2 F_c, which
+    /// moves the error by no more than B⁻¹ 2 F_c / K_P.
     fn bounds(&self, postures: &[SVector<f64, N>]) -> SVector<f64, N> {
-        let friction = self.nominal.friction(&SVector::repeat(f64::MIN_POSITIVE)).abs() * 2.0;
-        postures.iter().filter_map(|q| self.nominal.inertia_matrix(q).cholesky()).fold(SVector::repeat(EXPECTED), |bounds, b| {
+        let creeping = SVector::repeat(f64::MIN_POSITIVE);
+        let friction = |q: &SVector<f64, N>| {
+            (self.nominal.friction(&creeping) + self.nominal.load_friction(q, &SVector::repeat(1.0))).abs() * 2.0
+        };
+        let inertia = |q: &SVector<f64, N>| Some((self.nominal.inertia_matrix(q).cholesky()?, friction(q)));
+        postures.iter().filter_map(inertia).fold(SVector::repeat(EXPECTED), |bounds, (b, friction)| {
             bounds.sup(&((b.inverse().abs() * friction) / GAINS.0).add_scalar(EXPECTED))
         })
     }

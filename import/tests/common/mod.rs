@@ -33,7 +33,7 @@ joints:
   - name: slide
     type: prismatic
     axis: [0.6, 0, 0.8]
-    friction: {coulomb: 2, offset: -1/4, cubic: 1e-3, stribeck: {torque: 0.5, velocity: 0.1}}
+    friction: {coulomb: 2, offset: -1/4, cubic: 1e-3, load: 1/40, stribeck: {torque: 0.5, velocity: 0.1}}
     spring: {stiffness: 40, rest: -0.1}
     link: {mass: 0, attached: [{mass: 2, inertia: {xx: 1, yy: 1, zz: 1}}]}
 tool: [{xyz: [0, 0, 0.1]}, {rpy: [0, 1, 0]}]
@@ -94,6 +94,7 @@ pub(crate) fn state(arm: &Manipulator) -> [Vec<f64>; 2] {
         }
         let passive = [&joint.viscous, &joint.coulomb, &joint.offset, &joint.cubic, &joint.armature];
         rotors.extend(passive.map(|value| value.as_ref().map_or(0.0, number)));
+        rotors.extend(joint.load.iter().map(|load| load.to_f64()));
         rotors.extend(joint.stribeck.iter().flat_map(|stribeck| [number(&stribeck.torque), stribeck.velocity.to_f64()]));
         rotors.extend(joint.spring.iter().flat_map(|spring| [number(&spring.stiffness), number(&spring.rest)]));
         let q = [0.3, -0.7, 1.1, 0.4][k % 4];

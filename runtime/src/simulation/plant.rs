@@ -31,7 +31,7 @@ pub struct Energy<T> {
     pub potential: T,
     /// Work of the torques since the start, int tau' dq dt.
     pub supplied: T,
-    /// Work of friction since the start, int F(dq)' dq dt, positive where friction brakes.
+    /// Work of friction since the start, int F' dq dt with all friction in F, positive where friction brakes.
     pub dissipated: T,
     /// What does not add up: T + U - (T + U at the start) - supplied + dissipated. Zero but for the error of integration.
     pub residual: T,
@@ -104,7 +104,7 @@ impl<'a, T: RealField + Copy, R: Dynamics<N, Real = T>, const N: usize> Plant<'a
         let rate = |_: T, x: &Moving<T, N>| Moving {
             q: x.dq,
             dq: robot.forward_dynamics(&x.q, &x.dq, tau),
-            dissipated: if audits { robot.friction(&x.dq).dot(&x.dq) } else { T::zero() },
+            dissipated: if audits { (robot.friction(&x.dq) + robot.load_friction(&x.q, &x.dq)).dot(&x.dq) } else { T::zero() },
         };
         let mut x = Moving { q: self.state.q, dq: self.state.dq, dissipated: T::zero() };
         match self.integrator {

@@ -14,6 +14,8 @@ pub const NOMINAL: [f64; 14] = [20.0, 20.0, 10.0, 4.0, 4.0, 1.0, 0.01, 0.01, 0.0
 #[derive(Clone, Copy, Debug)]
 pub struct Scara<T> {
     pub parameters: SVector<T, 14>,
+    /// How many times what gravity asks of the slide its dry friction is.
+    pub load: T,
 }
 
 fn l<T: RealField>(x: f64) -> T {
@@ -22,7 +24,7 @@ fn l<T: RealField>(x: f64) -> T {
 
 impl<T: RealField + Copy> Scara<T> {
     pub fn nominal() -> Self {
-        Self { parameters: SVector::from_fn(|i, _| l(NOMINAL[i])) }
+        Self { parameters: SVector::from_fn(|i, _| l(NOMINAL[i])), load: T::zero() }
     }
 
     /// The nominal arm with 5 kg at its end effector: the mass of link 3 is 15.
@@ -151,16 +153,25 @@ impl<T: RealField + Copy> Dynamics<4> for Scara<T> {
         self.viscous().component_mul(dq)
     }
 
+    fn load_friction(&self, q: &Vector4<T>, dq: &Vector4<T>) -> Vector4<T> {
+        let sign = |rate: T| if rate == T::zero() { rate } else { rate.signum() };
+        vector![T::zero(), T::zero(), self.load * self.gravity(q)[2].abs() * sign(dq[2]), T::zero()]
+    }
+
     fn equations_of_motion(&self, q: &Vector4<T>, dq: &Vector4<T>) -> EquationsOfMotion<T, 4> {
         EquationsOfMotion { inertia: self.inertia_matrix(q), coriolis: self.coriolis_matrix(q, dq), gravity: self.gravity(q) }
     }
 
     fn inverse_dynamics(&self, q: &Vector4<T>, dq: &Vector4<T>, ddq: &Vector4<T>) -> Vector4<T> {
-        self.inertia_matrix(q) * ddq + self.coriolis_matrix(q, dq) * dq + self.friction(dq) + self.gravity(q)
+        self.inertia_matrix(q) * ddq
+            + self.coriolis_matrix(q, dq) * dq
+            + self.friction(dq)
+            + self.load_friction(q, dq)
+            + self.gravity(q)
     }
 
     fn forward_dynamics(&self, q: &Vector4<T>, dq: &Vector4<T>, tau: &Vector4<T>) -> Vector4<T> {
-        let rest = tau - self.coriolis_matrix(q, dq) * dq - self.friction(dq) - self.gravity(q);
+        let rest = tau - self.coriolis_matrix(q, dq) * dq - self.friction(dq) - self.load_friction(q, dq) - self.gravity(q);
         match self.inertia_matrix(q).cholesky() {
             Some(b) => b.solve(&rest),
             None => rest * (T::zero() / T::zero()),

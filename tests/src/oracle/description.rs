@@ -163,6 +163,7 @@ struct FrictionText {
     coulomb: Option<Text>,
     offset: Option<Text>,
     cubic: Option<Text>,
+    load: Option<Text>,
     #[serde(default)]
     stribeck: StribeckText,
 }
@@ -469,6 +470,7 @@ fn joint(text: &JointText, base: Option<PoseText>, modified: bool, numbers: &Num
         coulomb: numbers.some(&text.friction.coulomb)?,
         offset: numbers.some(&text.friction.offset)?,
         cubic: numbers.some(&text.friction.cubic)?,
+        load: numbers.some(&text.friction.load)?.unwrap_or(0.0),
         stribeck: numbers.some(&text.friction.stribeck.torque)?,
         stribeck_velocity: numbers.some(&text.friction.stribeck.velocity)?.unwrap_or(1.0),
         stiffness: numbers.some(&text.spring.stiffness)?,

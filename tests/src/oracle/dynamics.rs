@@ -221,13 +221,19 @@ impl Model {
         self.viscous().iter().zip(cubic).zip(dqr).zip(coulomb).map(|(((f, s), x), c)| (f + s) * x + c).collect()
     }
 
+    /// F_l |g| sign(dq), springs part of g.
+    pub fn load_friction(&self, q: &[f64], dq: &[f64]) -> Vec<f64> {
+        let along = |(joint, &rate): (&super::Joint, &f64)| if rate == 0.0 { 0.0 } else { joint.load * rate.signum() };
+        self.joints.iter().zip(dq).map(along).zip(self.gravity(q)).map(|(along, g)| along * g.abs()).collect()
+    }
+
     /// B ddq + C dq + friction + g.
     pub fn inverse_dynamics(&self, q: &[f64], dq: &[f64], ddq: &[f64]) -> Vec<f64> {
         let tau = self.with_springs(q, self.newton_euler(q, dq, ddq, self.gravity));
-        tau.iter().zip(self.friction(dq)).map(|(a, b)| a + b).collect()
+        tau.iter().zip(self.friction(dq)).zip(self.load_friction(q, dq)).map(|((a, b), c)| a + b + c).collect()
     }
 
-    /// B ddqr + C(q, dq) dqr + F_v dqr + F_c sign(dq) + g: the four-argument form.
+    /// B ddqr + C(q, dq) dqr + F_v dqr + F_c sign(dq) + g: the four-argument form, without friction that grows with the load.
     pub fn inverse_dynamics_4(&self, q: &[f64], dq: &[f64], dqr: &[f64], ddqr: &[f64]) -> Vec<f64> {
         let rest = vec![0.0; self.dof()];
         let mut tau = self.with_springs(q, self.newton_euler(q, &rest, ddqr, self.gravity));
@@ -328,8 +334,11 @@ impl Model {
             let moved = |v: &[f64]| Dual::along(v, &unit);
             let to_q = self.with_springs(&moved(q), self.newton_euler(&moved(q), &fixed(dq), &fixed(ddq), self.gravity));
             let to_dq = self.newton_euler(&fixed(q), &moved(dq), &fixed(ddq), self.gravity);
+            let weight = self.with_springs(&moved(q), self.newton_euler(&moved(q), &fixed(&rest), &fixed(&rest), self.gravity));
             for i in 0..n {
-                by_q[i][k] = to_q[i].derivative;
+                let (g, along) = (&weight[i], if dq[i] == 0.0 { 0.0 } else { self.joints[i].load * dq[i].signum() });
+                let sign = if g.value == 0.0 { 0.0 } else { g.value.signum() };
+                by_q[i][k] = to_q[i].derivative + along * sign * g.derivative;
                 by_dq[i][k] = to_dq[i].derivative + if i == k { slope[k] } else { 0.0 };
             }
         }

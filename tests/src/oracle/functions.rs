@@ -18,6 +18,7 @@ impl Model {
             "coriolis_matrix" => self.coriolis_matrix(q, dq).concat(),
             "gravity" => self.gravity(q),
             "friction" => self.friction(dq),
+            "load_friction" => self.load_friction(q, dq),
             "equations_of_motion" => {
                 [self.inertia_matrix(q).concat(), self.coriolis_matrix(q, dq).concat(), self.gravity(q)].concat()
             }

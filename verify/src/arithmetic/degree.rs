@@ -131,6 +131,12 @@ impl Element for Degree {
         Some(Degree { table: self.table.clone(), size: Some((0.0, 0.0, 0.0)), divisors })
     }
 
+    /// Drawn at random, as an input is.
+    fn sign(&self) -> Self {
+        let size = self.size.map(|_| (1.0, 0.0, 0.0));
+        Degree { table: self.table.clone(), size, divisors: BTreeMap::new() }
+    }
+
     fn is_zero(&self) -> bool {
         self.size.is_none()
     }

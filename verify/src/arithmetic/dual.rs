@@ -42,6 +42,10 @@ impl<E: Element> Element for Dual<E> {
         let rate = self.rate.times(&value).times(&value).negated();
         Some(Dual { value, rate })
     }
+    /// A constant: at 0, where it jumps, too.
+    fn sign(&self) -> Self {
+        Dual::constant(&self.value.sign())
+    }
     fn is_zero(&self) -> bool {
         self.value.is_zero() && self.rate.is_zero()
     }

@@ -132,6 +132,10 @@ impl Element for Growth {
         debug_assert_eq!(Argument::ALL[0], Argument::Pi);
         Some(Growth(Some(Arc::new(Powers { totals: std::array::from_fn(of), each: vec![0; powers.each.len()].into() }))))
     }
+    fn sign(&self) -> Growth {
+        let constant = |powers: &Arc<Powers>| Arc::new(Powers { totals: [0; TOTALS], each: vec![0; powers.each.len()].into() });
+        Growth(self.0.as_ref().map(constant))
+    }
     fn is_zero(&self) -> bool {
         self.0.is_none()
     }

@@ -4,13 +4,14 @@
 //! passed over. About 2^62/(ln 2^62.5 · 8) = 2^53 primes of this kind exist: an equality that holds by chance modulo one of them is found
 //! by the next, as every point has a prime of its own.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use dashu_base::{Signed, UnsignedAbs};
 use dashu_int::UBig;
 
 use super::Arithmetic;
-use crate::element::Element;
+use crate::element::{scrambled, Element};
 use crate::formula::definitions::Defined;
 use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
 use crate::stream::Stream;
@@ -98,6 +99,15 @@ impl Element for Residue {
     }
     fn inverse(&self) -> Option<Self> {
         (!self.is_zero()).then(|| self.power(self.prime - 2))
+    }
+    fn sign(&self) -> Self {
+        let opposite = self.negated();
+        let random = |value: u64| Residue { value: 1 + scrambled(value ^ self.prime) % (self.prime - 1), prime: self.prime };
+        match self.value.cmp(&opposite.value) {
+            Ordering::Less => random(self.value),
+            Ordering::Equal => *self,
+            Ordering::Greater => random(opposite.value).negated(),
+        }
     }
     fn is_zero(&self) -> bool {
         self.value == 0

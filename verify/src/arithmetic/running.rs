@@ -83,6 +83,11 @@ impl Element for Running {
             })
         })
     }
+    /// Not known where the value cannot be told from 0.
+    fn sign(&self) -> Running {
+        let told = |k: usize| self.value[k].abs() > self.error[k] || self.error[k] == 0.0;
+        Running { value: self.value.map(|x| x.sign()), error: std::array::from_fn(|k| if told(k) { 0.0 } else { 2.0 }) }
+    }
     fn is_zero(&self) -> bool {
         self.value == [0.0; LANES] && self.error == [0.0; LANES]
     }

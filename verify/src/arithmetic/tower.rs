@@ -6,10 +6,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use dashu_base::BitTest;
+use dashu_base::{BitTest, Signed};
 
 use super::Arithmetic;
-use crate::element::Element;
+use crate::element::{scrambled, Element};
 use crate::formula::definitions::Defined;
 use crate::formula::{root_from_coprime, Atoms, Dependent, Formula, Rational, Root};
 use crate::stream::Stream;
@@ -119,6 +119,15 @@ impl Element for Surd {
     }
     fn inverse(&self) -> Option<Self> {
         Some(Surd { coordinates: invert(&self.squares.0, &self.coordinates)?, squares: self.squares.clone() })
+    }
+    fn sign(&self) -> Self {
+        let Some(first) = self.coordinates.iter().find(|x| !x.is_zero()) else { return self.clone() };
+        let of = if first.is_negative() { negate(&self.coordinates) } else { self.coordinates.clone() };
+        let digits = of.iter().flat_map(|x| format!("{x} ").into_bytes());
+        let size = 1 + (digits.fold(0, |hash, digit| scrambled(hash ^ u64::from(digit))) % 10_000) as i64;
+        let mut coordinates = vec![Rational::ZERO; of.len()];
+        coordinates[0] = Rational::from(if first.is_negative() { -size } else { size });
+        Surd { coordinates, squares: self.squares.clone() }
     }
     fn is_zero(&self) -> bool {
         is_zero(&self.coordinates)

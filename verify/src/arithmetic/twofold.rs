@@ -289,6 +289,7 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
                     (high, exact.minus(&Wide::from_f64(high)).to_f64())
                 })
             }
+            Step::SignOf(a) => Twofold::exact(values[*a].high.map(|x| x.sign())),
             Step::Negate(a) => {
                 let a = &values[*a];
                 Twofold::of(|lane| negated(a.at(lane)))

@@ -192,6 +192,14 @@ impl Element for Wide {
         Some(Wide { negative: self.negative, exponent: inverse.exponent - (self.exponent + 256), words: inverse.words })
     }
 
+    fn sign(&self) -> Self {
+        match (*self == ZERO, self.negative) {
+            (true, _) => ZERO,
+            (false, true) => Wide::from_f64(-1.0),
+            (false, false) => Wide::from_f64(1.0),
+        }
+    }
+
     fn is_zero(&self) -> bool {
         *self == ZERO
     }

@@ -259,14 +259,6 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     let fast = given("scara", &Options { trig: Trig::Fast, ..Options::default() });
     let lanes = "let ([_, _, _, _], [c2, c9, _, _]) = sin_cos_four(1, q[1], q[1], q[1], q[1]);";
     tally.module(&fast, B, "let (_, c2) = sin_cos_one(q[1]);", lanes, &[(Lanes, "none of the first 1 angles")]);
-    let single_joint = given("single_joint", &Options::default());
-    tally.module(
-        &single_joint,
-        "pub fn inverse_dynamics(",
-        "sign(dq[",
-        "sign(q[",
-        &[(Signs, "the sign of something that is not a joint rate")],
-    );
     let dry = given("dry_friction", &Options::default());
     let known = "pub fn known_torque(";
     let of_rates = [(Signs, "Stribeck friction of something that is not a joint rate")];

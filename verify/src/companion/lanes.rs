@@ -93,6 +93,7 @@ impl Lanes {
                 }
                 Step::Sign(joint) => Many::of(|lane| sign(side.arguments.dq[joint as usize][lane])),
                 Step::Stribeck(joint, velocity) => Many::of(|lane| fading(side.arguments.dq[joint as usize][lane], velocity)),
+                Step::SignOf(a) => Many::of(|lane| sign_of(values[a as usize].at(lane))),
                 Step::Neg(a) => Many::of(|lane| negated(values[a as usize].at(lane))),
                 Step::Add(a, b) => {
                     let (a, b) = both(a, b);
@@ -155,6 +156,8 @@ fn cone_of(steps: &[Step], entry: u32) -> Vec<u32> {
         }
         match steps[i] {
             Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) | Step::Stribeck(..) => {}
+            // As an input, off by what its rounding is.
+            Step::SignOf(_) => {}
             Step::Neg(a) => inside[a as usize] = true,
             Step::Add(a, b) | Step::Sub(a, b) | Step::Mul(a, b) | Step::Scale(a, b) | Step::Div(a, b) => {
                 inside[a as usize] = true;
@@ -186,6 +189,7 @@ fn backward_in_lanes(
         }
         match steps[i] {
             Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) | Step::Stribeck(..) => {}
+            Step::SignOf(_) => {}
             Step::Neg(a) => add(&mut sensitivities[a as usize], &active, |lane| negated(own.at(lane))),
             Step::Add(a, b) => {
                 add(&mut sensitivities[a as usize], &active, |lane| own.at(lane));

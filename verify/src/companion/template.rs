@@ -16,6 +16,8 @@ enum Step {
     Sign(u32),
     /// What is left of Stribeck friction at a joint rate, and its velocity. // with Stribeck friction
     Stribeck(u32, Real), // with Stribeck friction
+    /// Sign of a value. // with load friction
+    SignOf(u32), // with load friction
     /// -a
     Neg(u32),
     /// a + b
@@ -179,6 +181,7 @@ fn forward(steps: &[Step], angles: &[Angle<'_>], given: &Given<'_>, values: &mut
             }
             Step::Sign(joint) => sign(given.dq[joint as usize]),
             Step::Stribeck(joint, velocity) => fading(given.dq[joint as usize], velocity), // with Stribeck friction
+            Step::SignOf(a) => sign_of(of(a)), // with load friction
             Step::Neg(a) => negated(of(a)),
             Step::Add(a, b) => plus(of(a), of(b)),
             Step::Sub(a, b) => plus(of(a), negated(of(b))),
@@ -197,6 +200,7 @@ fn rounding(step: &Step, value: &Bounded) -> Real {
         Step::Scale(..) => 0.0,
         Step::Lit(..) | Step::Sin(_) | Step::Cos(_) => value.error,
         Step::Stribeck(..) => value.error, // with Stribeck friction
+        Step::SignOf(_) => value.error, // with load friction
         Step::Add(..) | Step::Sub(..) => UNIT * value.value.abs(),
         Step::Mul(..) => UNIT * value.value.abs() + TINY,
         Step::Div(..) => 2.0 * UNIT * value.value.abs() + TINY,
@@ -226,6 +230,7 @@ fn backward(steps: &[Step], values: &[Bounded], sensitivities: &mut [Bounded], e
         match steps[i] {
             Step::In(..) | Step::Lit(..) | Step::Sin(_) | Step::Cos(_) | Step::Sign(_) => {}
             Step::Stribeck(..) => {} // with Stribeck friction
+            Step::SignOf(_) => {} // with load friction
             Step::Neg(a) => add(a, negated(own)),
             Step::Add(a, b) => {
                 add(a, own);

@@ -73,6 +73,8 @@ pub struct Joint<E> {
     pub offset: E,
     /// Coefficient of the cube of the rate.
     pub cubic: E,
+    /// How many times its gravity torque is added to its dry friction.
+    pub load: E,
     /// Stribeck friction at the lowest rates.
     pub stribeck: E,
     /// The rate at which 1/e of it is left; 1 where there is none.
@@ -211,6 +213,10 @@ impl<K: Arithmetic> Builder<'_, K> {
             coulomb: self.optional(joint.coulomb.as_ref())?,
             offset: self.optional(joint.offset.as_ref())?,
             cubic: self.optional(joint.cubic.as_ref())?,
+            load: match &joint.load {
+                Some(load) => self.number(load)?,
+                None => self.arithmetic.integer(0),
+            },
             stribeck: self.optional(joint.stribeck.as_ref().map(|stribeck| &stribeck.torque))?,
             stribeck_velocity: match &joint.stribeck {
                 Some(stribeck) => self.number(&stribeck.velocity)?,
@@ -306,6 +312,7 @@ impl<E: Element> Arm<E> {
             coulomb: f(&joint.coulomb),
             offset: f(&joint.offset),
             cubic: f(&joint.cubic),
+            load: f(&joint.load),
             stribeck: f(&joint.stribeck),
             stribeck_velocity: f(&joint.stribeck_velocity),
             stiffness: f(&joint.stiffness),

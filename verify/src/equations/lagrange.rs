@@ -176,6 +176,17 @@ pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<
         .collect()
 }
 
+/// Whether friction of a joint grows with its load.
+pub fn has_load_friction<E: Element>(arm: &Arm<E>) -> bool {
+    arm.joints.iter().any(|joint| !joint.load.is_zero())
+}
+
+/// F_l |g_i| sign_i with |g| = sign(g) g; nothing where no joint has it.
+pub fn load_friction<E: Element>(arm: &Arm<E>, state: &State<E>, g: &[E]) -> Option<Vec<E>> {
+    let of_joint = |((joint, sign), g): ((&Joint<E>, &E), &E)| joint.load.times(&g.sign().times(g)).times(sign);
+    has_load_friction(arm).then(|| arm.joints.iter().zip(&state.signs).zip(g).map(of_joint).collect())
+}
+
 /// M v.
 pub fn times_vector<E: Element>(m: &[Vec<E>], v: &[E]) -> Vec<E> {
     m.iter()

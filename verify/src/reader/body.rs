@@ -327,14 +327,13 @@ impl<'a> Compiler<'a, '_, '_> {
             Kind::Number => self.literal()?,
             Kind::Word if token.is("sign") => {
                 self.parser.expect("sign(")?;
-                let place = self.parser.peek();
-                let (argument, joint, _) = self.entry()?;
-                if argument != Argument::Dq && Check::Signs.is_made() {
-                    return Err(place.fault("the sign of something that is not a joint rate"));
-                }
+                let of = self.sum(brackets)?;
                 self.parser.expect(")")?;
                 self.shared.calls.insert("sign");
-                self.push(Step::Sign(joint))?
+                self.push(match self.program.steps[of] {
+                    Step::Input(Argument::Dq, joint) => Step::Sign(joint),
+                    _ => Step::SignOf(of),
+                })?
             }
             Kind::Word if token.is("stribeck") => {
                 self.parser.expect("stribeck(")?;

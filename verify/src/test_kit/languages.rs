@@ -8,11 +8,13 @@ use super::{list, Kit, Value};
 use crate::contract::Length;
 use crate::enclosure::Float;
 use crate::float::Arguments;
+use crate::marked::{marked, LOAD};
 use crate::reader::{camel, in_the_name_of};
 
-/// The template of a language, behind its line BEGIN.
-fn template(text: &'static str) -> &'static str {
-    text.split_once("BEGIN").and_then(|(_, rest)| rest.split_once('\n')).map_or("", |(_, rest)| rest)
+/// The template of a language, behind its line BEGIN; `sign`: how its comments begin.
+fn template(text: &'static str, sign: &str, kit: &Kit) -> String {
+    let template = text.split_once("BEGIN").and_then(|(_, rest)| rest.split_once('\n')).map_or("", |(_, rest)| rest);
+    marked(template, sign, &[(LOAD, kit.loaded)])
 }
 
 /// Arguments by name.
@@ -69,7 +71,7 @@ fn javascript(kit: &Kit, module: &str) -> String {
         let call = format!("robot.{name}({})", arguments(value, &|name| format!("STATES[{state}].{name}")));
         let _ = writeln!(text, "    [\"{name}\", {state}, {call}, [{}]],", list(&value.entries, kit.real));
     }
-    text + "];\n\n" + template(include_str!("template.mjs"))
+    text + "];\n\n" + &template(include_str!("template.mjs"), "//", kit)
 }
 
 fn python(kit: &Kit, module: &str) -> String {
@@ -91,7 +93,7 @@ fn python(kit: &Kit, module: &str) -> String {
         let call = format!("robot.{name}({})", arguments(value, &|name| format!("STATES[{state}][\"{name}\"]")));
         let _ = writeln!(text, "        (\"{name}\", {state}, {call}, [{}]),", list(&value.entries, kit.real));
     }
-    text + "    ]\n\n\n" + template(include_str!("template.py"))
+    text + "    ]\n\n\n" + &template(include_str!("template.py"), "#", kit)
 }
 
 fn matlab(kit: &Kit, module: &str, comment: &str) -> String {
@@ -114,7 +116,7 @@ fn matlab(kit: &Kit, module: &str, comment: &str) -> String {
         let _ = writeln!(text, "    [{}] = {call};", results.join(", "));
         let _ = writeln!(text, "    compare('{name}', {state}, [{}], [{}]);", found.join("; "), column(&value.entries));
     }
-    text + &template(include_str!("template.m")).replace("robot.", &format!("{module}."))
+    text + &template(include_str!("template.m"), "%", kit).replace("robot.", &format!("{module}."))
 }
 
 fn c(kit: &Kit, module: &str) -> String {
@@ -133,7 +135,8 @@ fn c(kit: &Kit, module: &str) -> String {
         let _ = writeln!(text, "static const robot_real state_{name}[{}][{length}] = {{{}}};", kit.states.len(), rows.join(", "));
     }
     text += "\nstatic void values(void);\n\n";
-    let (before_main, main) = template(include_str!("template.c")).split_once("int main(void)").unwrap_or_default();
+    let template = template(include_str!("template.c"), "/*", kit);
+    let (before_main, main) = template.split_once("int main(void)").unwrap_or_default();
     text += before_main;
     text += "/* Values on this machine and from the equations. */\nstatic void values(void)\n{\n";
     for (state, _) in kit.states.iter().enumerate() {

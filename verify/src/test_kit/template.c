@@ -83,6 +83,7 @@ static void at(const vector q, const vector dq, const vector ddq, const vector t
     static robot_real y[ROBOT_DOF][ROBOT_PARAMETERS];
     matrix b, c, before, after, inertia, coriolis, l;
     vector g, f, tau, solved, a, sum, place, known, gravity;
+    vector load; /* with load friction */
     double size;
     int i, j, k;
 
@@ -90,6 +91,10 @@ static void at(const vector q, const vector dq, const vector ddq, const vector t
     robot_coriolis_matrix(q, dq, c);
     robot_gravity(q, g);
     robot_friction(dq, f);
+    robot_load_friction(q, dq, load); /* with load friction */
+    for (i = 0; i < ROBOT_DOF; ++i) { /* with load friction */
+        f[i] = f[i] + load[i]; /* with load friction */
+    } /* with load friction */
 
     robot_forward_dynamics(q, dq, torque, a);
     robot_inverse_dynamics(q, dq, a, solved);
@@ -137,6 +142,7 @@ static void at(const vector q, const vector dq, const vector ddq, const vector t
     robot_known_torque(q, dq, dq, ddq, known);
     for (i = 0; i < ROBOT_DOF; ++i) {
         double total = (double)known[i];
+        total += (double)load[i]; /* with load friction */
         for (j = 0; j < ROBOT_PARAMETERS; ++j) {
             total += (double)y[i][j] * (double)nominal[j];
         }

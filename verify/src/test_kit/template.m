@@ -112,6 +112,7 @@ function torquesAreThoseOfTheMatricesAndOfTheRegressor()
     [inertia, coriolis, gravity] = robot.equationsOfMotion(q, dq);
     agree('equationsOfMotion', [inertia(:); coriolis(:); gravity(:)], [b(:); c(:); g(:)], rounding());
     tau = robot.inverseDynamics(q, dq, ddq);
+    tau = tau - robot.loadFriction(q, dq); % with load friction
     agree('inverseDynamics', tau, times(b, ddq) + times(c, dq) + robot.friction(dq) + g, rounding());
     nominal = getfield(robot.model(), 'nominalParameters');
     y = robot.regressor(q, dq, dq, ddq);

@@ -89,6 +89,7 @@ test("torques are those of the matrices and of the regressor", () => {
         const [b, c, g] = [robot.inertiaMatrix(s.q), robot.coriolisMatrix(s.q, s.dq), robot.gravity(s.q)];
         agree("equationsOfMotion", robot.equationsOfMotion(s.q, s.dq), { b, c, g }, ROUNDING);
         const tau = robot.inverseDynamics(s.q, s.dq, s.ddq);
+        robot.loadFriction(s.q, s.dq).forEach((load, i) => { tau[i] -= load; }); // with load friction
         agree("inverseDynamics", tau, plus(times(b, s.ddq), times(c, s.dq), robot.friction(s.dq), g), ROUNDING);
         const y = robot.regressor(s.q, s.dq, s.dq, s.ddq);
         const byParameters = plus(times(y, NOMINAL_PARAMETERS), robot.knownTorque(s.q, s.dq, s.dq, s.ddq));

@@ -82,6 +82,7 @@ def test_torques_are_those_of_the_matrices_and_of_the_regressor():
     b, c, g = robot.inertia_matrix(q), robot.coriolis_matrix(q, dq), robot.gravity(q)
     agree("equations_of_motion", robot.equations_of_motion(q, dq), (b, c, g), ROUNDING)
     tau = robot.inverse_dynamics(q, dq, ddq)
+    tau = tau - robot.load_friction(q, dq) # with load friction
     agree("inverse_dynamics", tau, times(b, ddq) + times(c, dq) + robot.friction(dq) + g, ROUNDING)
     y = robot.regressor(q, dq, dq, ddq)
     by_parameters = np.sum(y * NOMINAL, axis=-1) + robot.known_torque(q, dq, dq, ddq)

@@ -166,12 +166,15 @@ fn torques_are_those_of_the_matrices_and_of_the_regressor() {
         let together = equations_of_motion(&s.q, &s.dq);
         agree("equations_of_motion", &together.flat(), &[b.flat(), c.flat(), g.flat()].concat(), ROUNDING);
         let (inertial, centrifugal, f) = (times(&b, &s.ddq), times(&c, &s.dq), friction(&s.dq));
+        let load = load_friction(&s.q, &s.dq); // with load friction
+        let f: [Real; DOF] = core::array::from_fn(|i| f[i] + load[i]); // with load friction
         let sum: [Real; DOF] = core::array::from_fn(|i| inertial[i] + centrifugal[i] + f[i] + g[i]);
         let tau = inverse_dynamics(&s.q, &s.dq, &s.ddq);
         agree("inverse_dynamics", &tau, &sum, ROUNDING);
         let y = regressor(&s.q, &s.dq, &s.dq, &s.ddq);
         let known = known_torque(&s.q, &s.dq, &s.dq, &s.ddq);
         let by_parameters: [Real; DOF] = core::array::from_fn(|i| dot(&y[i], &NOMINAL_PARAMETERS) + known[i]);
+        let by_parameters: [Real; DOF] = core::array::from_fn(|i| by_parameters[i] + load[i]); // with load friction
         agree("Y pi + tau_known", &by_parameters, &tau, ROUNDING * scale(&NOMINAL_PARAMETERS).max(scale(&y.flat())));
     }
 }

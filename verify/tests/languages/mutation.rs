@@ -29,6 +29,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
                 }
                 Step::Input(..) | Step::Sign(_) => format!("{step:?}"),
                 Step::Stribeck(joint, velocity) => format!("stribeck {joint} {}", program.literals[*velocity].text),
+                Step::SignOf(a) => format!("sign of {}", numbers[*a]),
                 Step::Negate(a) => format!("-{}", numbers[*a]),
                 Step::Add(a, b) => format!("{} + {}", numbers[*a], numbers[*b]),
                 Step::Subtract(a, b) => format!("{} - {}", numbers[*a], numbers[*b]),
@@ -61,6 +62,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
             angle.turn = angle.turn.map(|(k, minus)| (k + turns, minus));
             Step::Cosine(angle)
         }
+        Step::SignOf(a) => Step::SignOf(a + offset),
         Step::Negate(a) => Step::Negate(a + offset),
         Step::Add(a, b) => Step::Add(a + offset, b + offset),
         Step::Subtract(a, b) => Step::Subtract(a + offset, b + offset),

@@ -21,7 +21,8 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
          viscous and Coulomb friction, as far as the description gives them and they are not 0 at its values. Masses of rotors are part of the links \
          that carry them. With {NOMINAL_BASE_PARAMETERS} it is the torque of {inverse_dynamics}. For identification take {regressor} with \
          `regressor: base` in the description: it has all base parameters, zero or not.",
-    ),
+    )
+    .with_load("Friction that grows with the load is not linear in parameters: the torque of {inverse_dynamics} has {load_friction} besides."),
     recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],

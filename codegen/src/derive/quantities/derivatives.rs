@@ -34,6 +34,7 @@
 use super::coriolis::{self, VelocityMoments};
 use super::gravity::gravity;
 use super::inertia::composite_bodies;
+use super::load_friction::{add_load_friction, add_load_friction_derivatives};
 use crate::derive::arm::{symmetric, Arm, Body};
 use crate::derive::columns::origin_rate;
 use crate::derive::factors::LdlFactors;
@@ -72,7 +73,8 @@ pub static INVERSE_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "(dtau/dq, dtau/d(dq)) at (q, dq, ddq);  dtau/d(ddq) = B(q)         (Singh, Russell and Wensing 2022)",
         "two matrices `m[joint of tau][joint of q or dq]`; units of tau per rad or m, and per rad/s or m/s. Coulomb friction counts as constant: its \
          derivative is taken as 0, at rest too.",
-    ),
+    )
+    .with_load(LOAD),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let motion = Motion::plain(pool, arm);
         let (by_q, by_dq) = inverse_dynamics_derivatives(pool, arm, plan, &motion);
@@ -112,7 +114,8 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
         "(-B^-1 dtau/dq, -B^-1 dtau/d(dq), B^-1) at ddq = forward_dynamics(q, dq, tau)  (Carpentier and Mansard 2018)",
         "three matrices `m[joint of ddq][joint of q, dq or tau]`; units of ddq per rad or m, per rad/s or m/s, and per N m or N. The third is the \
          inverse of the inertia matrix. Coulomb friction counts as constant: its derivative is taken as 0, at rest too.",
-    ),
+    )
+    .with_load(LOAD),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let (by_q, by_dq, inverse) = forward_dynamics_derivatives(pool, arm, plan);
         [by_q, by_dq, inverse].concat().concat()
@@ -121,6 +124,10 @@ pub static FORWARD_DYNAMICS_DERIVATIVES: Quantity = Quantity {
     gathers: &[],
     interface: Some("ForwardDynamicsDerivatives"),
 };
+
+/// What the derivatives have of friction that grows with the load.
+const LOAD: &str =
+    "Of friction that grows with the load they have F_l sign(g_i) sign(dq_i) dg_i/dq, sign(0) = 0: that jumps where g_i changes its sign.";
 
 type Rows = Vec<Vec<ExprId>>;
 
@@ -145,6 +152,7 @@ pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan,
     for (i, joint) in arm.joints.iter().enumerate() {
         by_positions[i][i] = pool.add(by_positions[i][i], joint.stiffness);
     }
+    add_load_friction_derivatives(pool, arm, plan, &mut by_positions);
     (by_positions, by_rates)
 }
 
@@ -154,7 +162,8 @@ pub fn forward_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan)
     let (b, c) = coriolis::inertia_and_coriolis(pool, arm, plan);
     let g = gravity(pool, arm, plan);
     let rates = arm.symbols(pool, Symbol::Rate);
-    let resistance = friction(pool, arm, &rates);
+    let mut resistance = friction(pool, arm, &rates);
+    add_load_friction(pool, arm, plan, &mut resistance);
     let right: Vec<ExprId> = (0..n)
         .map(|i| {
             let centrifugal = pool.dot(&c[i], &rates);

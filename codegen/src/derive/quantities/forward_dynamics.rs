@@ -1,6 +1,7 @@
 //! Forward dynamics: ddq = B^-1 (tau - C dq - F - g), by factors of B.
 
 use super::inertia::inertia_matrix;
+use super::load_friction::add_load_friction;
 use crate::derive::arm::Arm;
 use crate::derive::factors::LdlFactors;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
@@ -29,6 +30,7 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
             "ddq = B(q)^-1 (tau - C(q, dq) dq - F(dq) - g(q))                    (Siciliano et al., Sect. 7.6)",
             "an acceleration for each joint, rad/s² (revolute) or m/s² (prismatic).",
         )
+        .with_load("F is {friction} and {load_friction} together.")
     },
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| forward_dynamics(pool, arm, plan)),
     missing: Quantity::MISSING_WITHOUT_MASS,
@@ -40,7 +42,8 @@ pub static FORWARD_DYNAMICS: Quantity = Quantity {
 pub fn forward_dynamics(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
     let b = inertia_matrix(pool, arm, plan);
     let motion = Motion::unaccelerated(pool, arm);
-    let bias = inverse_dynamics(pool, arm, &motion);
+    let mut bias = inverse_dynamics(pool, arm, &motion);
+    add_load_friction(pool, arm, plan, &mut bias);
     let tau = arm.symbols(pool, Symbol::Torque);
     let right: Vec<ExprId> = (0..arm.dof()).map(|i| pool.sub(tau[i], bias[i])).collect();
     LdlFactors::new(pool, &b).solve(pool, &right)

@@ -1,5 +1,6 @@
 //! Inverse dynamics by Newton and Euler's equations: tau = B ddq + C dq + F + g.
 
+use super::load_friction::add_load_friction;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
@@ -21,10 +22,13 @@ pub static INVERSE_DYNAMICS: Quantity = Quantity {
         "Torques that a motion needs, friction included.",
         "tau = B(q) ddq + C(q, dq) dq + F(dq) + g(q)                        (Siciliano et al., eq. 7.42)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
-    ),
-    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| {
+    )
+    .with_load("F is {friction} and {load_friction} together."),
+    recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, _| {
         let motion = Motion::plain(pool, arm);
-        inverse_dynamics(pool, arm, &motion)
+        let mut tau = inverse_dynamics(pool, arm, &motion);
+        add_load_friction(pool, arm, plan, &mut tau);
+        tau
     }),
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],

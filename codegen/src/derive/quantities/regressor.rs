@@ -26,7 +26,8 @@ pub static REGRESSOR: Quantity = Quantity {
          With dqr = dq and ddqr = ddq this is the regressor of inverse dynamics.",
     )
     .with_more_friction("In F cubic friction is F_3 dq² dqr.")
-    .with_stribeck("In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description."),
+    .with_stribeck("In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description.")
+    .with_load("Friction that grows with the load is not linear in parameters and not in F: {load_friction} is added to Y pi + tau_known."),
     recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
@@ -50,7 +51,8 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
         "The torque of what is not among the parameters: tau_known of the regressor's equation.",
         "tau_known = B(q) ddqr + C(q, dq) dqr + F + g(q) - Y pi",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint.",
-    ),
+    )
+    .with_load("Friction that grows with the load is not in it: {load_friction}."),
     recursion: Recursion {
         view: |model, _| View::VectorZero(&model.parameters),
         ..Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {

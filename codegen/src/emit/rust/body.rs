@@ -95,7 +95,12 @@ fn expression(of: &Expression, scalar: Scalar) -> TokenStream {
                 Operation::Subtract => quote!(#a - #b),
                 Operation::Multiply => quote!(#a * #b),
                 Operation::Divide => quote!(#a / #b),
+                Operation::Sign | Operation::OppositeSign => unreachable!("a listing writes the sign of one operand"),
             }
+        }
+        Expression::Sign(inner) => {
+            let inner = expression(inner, scalar);
+            quote!(sign(#inner))
         }
         Expression::Negation(inner) => {
             let inner = expression(inner, scalar);

@@ -76,7 +76,8 @@ fn has(module: &Module, quantity: &Quantity, with_parameters: bool) -> bool {
 pub(super) fn lacking(module: &Module) -> Vec<(&'static str, Vec<String>)> {
     let absent = |interface: &str| -> Vec<String> {
         let of_interface = catalogue::functions().filter(|(quantity, _)| quantity.interface == Some(interface));
-        let absent = of_interface.filter(|(quantity, with)| !has(module, quantity, *with));
+        let needed = of_interface.filter(|(quantity, _)| quantity.documentation.said_missing);
+        let absent = needed.filter(|(quantity, with)| !has(module, quantity, *with));
         absent.map(|(quantity, with)| quantity.function_name(with)).collect()
     };
     BASIC.into_iter().map(|interface| (interface, absent(interface))).filter(|(_, absent)| !absent.is_empty()).collect()
@@ -92,7 +93,9 @@ pub(super) fn is_implemented(module: &Module, interface: &str) -> bool {
 fn traits(module: &Module, robot: &TokenStream, with_parameters: bool) -> TokenStream {
     let parameters = if with_parameters { quote!(self.parameters) } else { quote!(NOMINAL_PARAMETERS) };
     let basic = BASIC.into_iter().filter(|interface| is_implemented(module, interface)).map(|interface| {
-        let methods = methods(interface).map(|quantity| method(quantity, with_parameters));
+        // The others have a default in their trait.
+        let there = |quantity: &&Quantity| quantity.documentation.said_missing || has(module, quantity, with_parameters);
+        let methods = methods(interface).filter(there).map(|quantity| method(quantity, with_parameters));
         let (lengths, first, last) = match interface {
             "Kinematics" => (
                 quote!(DOF),

@@ -68,7 +68,7 @@ pub(super) fn input(symbol: Symbol) -> TokenStream {
             let index = usize_literal(usize::from(i));
             return quote!(sign(dq[#index]));
         }
-        Symbol::Stribeck(_) => unreachable!("a listing has a line for it"),
+        Symbol::Stribeck(_) | Symbol::GravitySize(_) | Symbol::GravitySign(_) => unreachable!("a listing has a line for it"),
         Symbol::Position(i) => (Argument::Q, i),
         Symbol::Rate(i) => (Argument::Dq, i),
         Symbol::Acceleration(i) => (Argument::Ddq, i),

@@ -123,7 +123,7 @@ where
     let (q, dq, dqr, ddqr) = (&state.q, &state.dq, &joint.dq, &joint.ddq);
     keep((Kinematics::link_frames(robot, q), Kinematics::geometric_jacobian_dot(robot, q, dq)));
     keep((Dynamics::inertia_matrix(robot, q), Dynamics::coriolis_matrix(robot, q, dq), Dynamics::gravity(robot, q)));
-    keep((Dynamics::friction(robot, dq), Dynamics::equations_of_motion(robot, q, dq)));
+    keep((Dynamics::friction(robot, dq), Dynamics::load_friction(robot, q, dq), Dynamics::equations_of_motion(robot, q, dq)));
     keep((Dynamics::inverse_dynamics(robot, q, dq, ddqr), Dynamics::forward_dynamics(robot, q, dq, ddqr)));
     keep((Dynamics::kinetic_energy(robot, q, dq), Dynamics::potential_energy(robot, q)));
     keep((

@@ -283,13 +283,14 @@ impl<'a, 's> Body<'a, 's> {
             place.expect(")")?;
             inner
         } else if place.eat(&self.syntax.sign) {
-            let (argument, joint, _) = self.entry(place)?;
-            if argument != Argument::Dq {
-                return Err(start.fault("the sign is of a joint rate"));
-            }
+            let of = self.sum(place, brackets)?;
             place.expect(")")?;
             self.asks[1] = true;
-            self.push(Step::Sign(joint), place)?
+            let sign = match self.program.steps[of] {
+                Step::Input(Argument::Dq, joint) => Step::Sign(joint),
+                _ => Step::SignOf(of),
+            };
+            self.push(sign, place)?
         } else if place.eat(&self.syntax.stribeck) {
             let (argument, joint, _) = self.entry(place)?;
             if argument != Argument::Dq {

@@ -129,6 +129,7 @@ pub(super) fn drives(manipulator: &Manipulator) -> Option<String> {
         ("Coulomb", Right),
         ("offset", Right),
         ("cubic", Right),
+        ("load", Right),
         ("Stribeck", Left),
         ("spring", Left),
     ]);
@@ -138,7 +139,7 @@ pub(super) fn drives(manipulator: &Manipulator) -> Option<String> {
     table.says_more_than_names().then(|| table.text())
 }
 
-fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 11] {
+fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 12] {
     let revolute = joint.kind == JointKind::Revolute;
     let [inertia, torque, damping, cubed, rate, angle] = match revolute {
         true => ["kg m²", "N m", "N m s", "N m s³", "rad/s", "rad"],
@@ -167,6 +168,7 @@ fn drive(i: usize, joint: &Joint, manipulator: &Manipulator) -> [String; 11] {
         cell(joint.coulomb.as_ref(), torque),
         cell(joint.offset.as_ref(), torque),
         cell(joint.cubic.as_ref(), cubed),
+        joint.load.as_ref().filter(|load| !load.is_zero()).map_or(String::new(), |load| format!("{} |g|", decimal(load))),
         joint
             .stribeck
             .as_ref()
