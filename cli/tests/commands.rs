@@ -65,10 +65,12 @@ fn a_summary_shows_links_and_what_identification_would_miss() {
     assert!(text.contains("m/s²: z0 points up\n"), "{text}");
     assert!(
         text.contains(
-            "  2 j2       6.35     0.0003   0.059   0.042  0.011, 0.0304, 0.0305                      0.0693  0.22 x 0.1 x 0.1\n"
+            "  2 j2       6.35     0.0003   0.059   0.042  0.011, 0.0304, 0.0305                      0.0693  0.22 x 0.1 x 0.1                     2800\n"
         ),
         "{text}"
     );
+    assert!(text.contains("  2 j2   revolute  [0, 0, 0.2025] rpy [pi/2, 0, pi]   [0, 0, 1]\n"), "{text}");
+    assert!(text.contains("\n  tool: [0, 0, 0.045]\n") && !text.contains("q = 0 is outside"), "{text}");
     // From the sum of the lengths along the vertical arm: 0.36 + 0.42 + 0.4 + 0.126.
     assert!(text.lines().any(|line| line.starts_with("  end effector") && line.contains("(0, 0, 1.306)")), "{text}");
     assert!(text.contains("a motion can identify 50 combinations of them"), "{text}");

@@ -44,7 +44,7 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
         ]);
     }
     let ends = [("base", &description.base), ("tool", &description.tool)];
-    let ends = ends.into_iter().filter_map(|(name, end)| Some(format!("{name}: {}\n", pose(source, end.as_ref()?))));
+    let ends = ends.into_iter().filter_map(|(name, end)| Some(format!("  {name}: {}\n", pose(source, end.as_ref()?))));
     table.text() + &ends.collect::<String>()
 }
 

@@ -148,7 +148,7 @@ fn outside(manipulator: &Manipulator) -> String {
     let names: Vec<&str> = joints.map(|joint| joint.name.as_str()).collect();
     match names.is_empty() {
         true => String::new(),
-        false => format!("q = 0 is outside the limits of {}\n", names.join(", ")),
+        false => format!("  q = 0 is outside the limits of {}\n", names.join(", ")),
     }
 }
 
@@ -188,5 +188,15 @@ mod tests {
         let text = table(&manipulator);
         assert!(text.contains("2 h") && text.contains("-y0") && text.contains("10 N m"), "{text}");
         assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
+    }
+
+    #[test]
+    fn a_posture_outside_the_limits_is_said_to_be() {
+        let of = |limits: &str| {
+            let row = "type: revolute, a: 1, alpha: 0, d: 0, theta: 0, link: {mass: 1}";
+            table(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n")))
+        };
+        assert!(of("[1, 2]").ends_with("  q = 0 is outside the limits of elbow\n"));
+        assert!(!of("[0, 2]").contains("outside"));
     }
 }
