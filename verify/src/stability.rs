@@ -391,7 +391,7 @@ impl<'a> Trial<'a> {
                 *most = (larger(most.0, unit * given), larger(most.1, given));
             }
             for (most, domain) in most.boxes.iter_mut().zip(&self.boxes) {
-                let ends = domain.of(Argument::Tau).into_iter().map(|(low, high)| low.abs().max(high.abs()));
+                let ends = domain.of(Argument::Tau).iter().map(|(low, high)| low.abs().max(high.abs()));
                 *most = larger(*most, unit * worst(ends));
             }
         }

@@ -91,12 +91,17 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     /// How many steps of the integrator a sample needs: friction that grows with the rate takes a light joint's motion away at rates of up to the
     /// largest row sum of B⁻¹ ∂F/∂dq, which for wrists of data sheets can be 10⁵ per second.
     fn steps_a_sample(&self, postures: &[SVector<f64, N>]) -> u32 {
-        let at = |rate: f64| self.nominal.friction(&SVector::repeat(rate));
-        let slope = (at(2.0) - at(1.0)).abs();
+        let slope = self.friction_slope();
         let decays =
             postures.iter().filter_map(|q| self.nominal.inertia_matrix(q).cholesky()).map(|b| (b.inverse().abs() * slope).max());
         let steps = PERIOD.as_secs_f64() * decays.fold(0.0, f64::max) / DECAY_A_STEP;
         (steps.ceil() as u32).clamp(STEPS[0], STEPS[1])
+    }
+
+    /// ∂F/∂dq at rates of a motion, Coulomb friction apart: N m s/rad or N s/m.
+    fn friction_slope(&self) -> SVector<f64, N> {
+        let at = |rate: f64| self.nominal.friction(&SVector::repeat(rate));
+        (at(2.0) - at(1.0)).abs()
     }
 
     fn channels(&self) -> Vec<Channel> {
@@ -135,7 +140,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             let peak = record.log().peak(&error.name, |_| true).unwrap_or(f64::NAN);
             (peak.is_nan() || peak >= bound).then(|| {
                 let name = &joint.name;
-                format!("joint `{name}` misses by {peak:.1e} {unit}: sampling and Coulomb friction explain {bound:.1e} {unit} with a model that is right")
+                format!("joint `{name}` misses by {peak:.1e} {unit}: sampling and friction explain {bound:.1e} {unit} with a model that is right")
             })
         })
     }
@@ -143,11 +148,15 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     /// What the joints may miss by, rad or m.
     ///
     /// A held torque has the wrong sign of Coulomb friction, with what grows with the load, while a rate passes zero: a disturbance of up to 2 F_c, which
-    /// moves the error by no more than B⁻¹ 2 F_c / K_P.
+    /// moves the error by no more than B⁻¹ 2 F_c / K_P. Of friction that grows with the rate it has what that was up to a period before: less by
+    /// ∂F/∂dq · ddq T.
     fn bounds(&self, postures: &[SVector<f64, N>]) -> SVector<f64, N> {
         let creeping = SVector::repeat(f64::MIN_POSITIVE);
+        let acceleration: SVector<f64, N> =
+            SVector::from_fn(|i, _| if self.robot.joints[i].revolute { TURNING.1 } else { SLIDING.1 });
+        let late = self.friction_slope().component_mul(&acceleration) * PERIOD.as_secs_f64();
         let friction = |q: &SVector<f64, N>| {
-            (self.nominal.friction(&creeping) + self.nominal.load_friction(q, &SVector::repeat(1.0))).abs() * 2.0
+            (self.nominal.friction(&creeping) + self.nominal.load_friction(q, &SVector::repeat(1.0))).abs() * 2.0 + late
         };
         let inertia = |q: &SVector<f64, N>| Some((self.nominal.inertia_matrix(q).cholesky()?, friction(q)));
         postures.iter().filter_map(inertia).fold(SVector::repeat(EXPECTED), |bounds, (b, friction)| {
