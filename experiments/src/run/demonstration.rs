@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use armgen_runtime::control::InverseDynamics;
-use armgen_runtime::nalgebra::SVector;
+use armgen_runtime::nalgebra::{SMatrix, SVector};
 use armgen_runtime::reference::{Pose, State};
 use armgen_runtime::simulation::{run as simulate, Integrator, RunOptions};
 use armgen_runtime::stability::{analyse, Delay, Report, Settle, StablePeriod};
@@ -92,10 +92,17 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     /// largest row sum of B⁻¹ ∂F/∂dq, which for wrists of data sheets can be 10⁵ per second.
     fn steps_a_sample(&self, postures: &[SVector<f64, N>]) -> u32 {
         let slope = self.friction_slope();
-        let decays =
-            postures.iter().filter_map(|q| self.nominal.inertia_matrix(q).cholesky()).map(|b| (b.inverse().abs() * slope).max());
+        let decays = self.inverse_inertias(postures).map(|(_, inverse)| (inverse * slope).max());
         let steps = PERIOD.as_secs_f64() * decays.fold(0.0, f64::max) / DECAY_A_STEP;
         (steps.ceil() as u32).clamp(STEPS[0], STEPS[1])
+    }
+
+    /// The postures, each with the sizes of the entries of B⁻¹, where B is positive.
+    fn inverse_inertias<'a>(
+        &'a self,
+        postures: &'a [SVector<f64, N>],
+    ) -> impl Iterator<Item = (&'a SVector<f64, N>, SMatrix<f64, N, N>)> + 'a {
+        postures.iter().filter_map(|q| Some((q, self.nominal.inertia_matrix(q).cholesky()?.inverse().abs())))
     }
 
     /// ∂F/∂dq at rates of a motion, Coulomb friction apart: N m s/rad or N s/m.
@@ -158,9 +165,8 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let friction = |q: &SVector<f64, N>| {
             (self.nominal.friction(&creeping) + self.nominal.load_friction(q, &SVector::repeat(1.0))).abs() * 2.0 + late
         };
-        let inertia = |q: &SVector<f64, N>| Some((self.nominal.inertia_matrix(q).cholesky()?, friction(q)));
-        postures.iter().filter_map(inertia).fold(SVector::repeat(EXPECTED), |bounds, (b, friction)| {
-            bounds.sup(&((b.inverse().abs() * friction) / GAINS.0).add_scalar(EXPECTED))
+        self.inverse_inertias(postures).fold(SVector::repeat(EXPECTED), |bounds, (q, inverse)| {
+            bounds.sup(&((inverse * friction(q)) / GAINS.0).add_scalar(EXPECTED))
         })
     }
 
