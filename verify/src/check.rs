@@ -117,8 +117,8 @@ pub(crate) enum Check {
     ConstantsThere,
     /// Constants: their values.
     Constants,
-    /// Constants: base parameters are combinations of those of the description.
-    BaseCombinations,
+    /// Constants: standard and base parameters are what the bodies of the description give.
+    NominalParameters,
     /// Constants: names of base parameters.
     BaseNames,
     /// Constants: values of base parameters.

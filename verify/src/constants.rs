@@ -3,7 +3,6 @@
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
 
-use crate::arithmetic::plain::Plain;
 use crate::arithmetic::prime::{Prime, Residue};
 use crate::base::OwnParameters;
 use crate::check::Check;
@@ -92,13 +91,14 @@ pub fn parameter_names(module: &Module) -> Vec<String> {
     names(module, "PARAMETER_NAMES").unwrap_or_default()
 }
 
-/// The constants whose exact values are claimed: those of base parameters.
+/// The constants whose exact values are claimed: those of parameters that follow from bodies. Of several bodies lumped at general angles no
+/// formula that is written out has a bearable length; what is claimed is defined step by step.
 pub fn claimed_constants(vector: &Vector, module: &Module) -> Vec<&'static str> {
-    let run_time = matches!(vector, Vector::Base(..)).then_some("NOMINAL_PARAMETERS");
+    let run_time = (!matches!(vector, Vector::Names(_))).then_some("NOMINAL_PARAMETERS");
     run_time.into_iter().chain(base_names(module).map(|_| "NOMINAL_BASE_PARAMETERS")).collect()
 }
 
-/// The exact values of so many base parameters as claimed; the decimals that stand there where nothing is claimed.
+/// The exact values of so many parameters as claimed; the decimals that stand there where nothing is claimed.
 fn claimed(constant: &str, length: usize, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
     let claimed = claims.of(constant);
     if claimed.len() == length {
@@ -154,16 +154,12 @@ fn wrong_value(checker: &Checker, own: &OwnParameters) -> Option<(usize, String)
     })
 }
 
-/// The exact nominal parameters: from the description, or with base parameters as claimed (they are compared with the description's at the
-/// points of the checker).
+/// The exact nominal parameters: those with names from the description, others as claimed (they are compared with the description's at the points of
+/// the checker).
 pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
-    let names = Arm::nominal(&Plain, manipulator)?;
     match vector {
-        Vector::Names(ids) => Some(ids.iter().map(|&id| names[id].clone()).collect()),
-        Vector::Standard(all) => {
-            let arm = Arm::new(&Plain, manipulator, &names)?;
-            Some(all.iter().map(|parameter| parameter.value(&arm)).collect())
-        }
+        Vector::Names(ids) => Some(ids.iter().map(|&id| formula(&manipulator.parameters[id].nominal)).collect()),
+        Vector::Standard(all) => claimed("NOMINAL_PARAMETERS", all.len(), claims, module),
         Vector::Base(base, _) => claimed("NOMINAL_PARAMETERS", base.len(), claims, module),
     }
 }
@@ -234,19 +230,24 @@ pub fn check(checker: &Checker, module: &Module, nominal: &[Formula]) -> Vec<Con
             report.verdict = Verdict::Different { entry: format!("[{entry}]"), why };
         }
     };
-    differs("NOMINAL_PARAMETERS", Check::BaseCombinations, &|| {
-        let entry = wrong_base_parameter(checker, nominal)?;
-        Some((entry, format!("is not the combination of standard parameters that its name stands for: {}", nominal[entry])))
+    differs("NOMINAL_PARAMETERS", Check::NominalParameters, &|| {
+        let entry = wrong_parameter(checker, nominal)?;
+        let stands_for = match checker.vector() {
+            Vector::Base(..) => "combination of standard parameters that its name stands for",
+            _ => "value that the bodies of the description give",
+        };
+        let claimed = nominal.get(entry).map(|value| format!(": {value}")).unwrap_or_default();
+        Some((entry, format!("is not the {stands_for}{claimed}")))
     });
     differs("BASE_PARAMETER_NAMES", Check::BaseNames, &|| wrong_name(checker.manipulator(), &base_names(module)?));
     differs("NOMINAL_BASE_PARAMETERS", Check::BaseValues, &|| wrong_value(checker, checker.base()?));
     reports
 }
 
-/// With base parameters: the first whose claimed exact value is not what the standard parameters of the description add up to.
-fn wrong_base_parameter(checker: &Checker, nominal: &[Formula]) -> Option<usize> {
+/// The first standard or base parameter whose claimed exact value is not what follows from the bodies of the description.
+fn wrong_parameter(checker: &Checker, nominal: &[Formula]) -> Option<usize> {
     checker.points().iter().find_map(|point| {
-        let right = point.reference.nominal_base.as_ref()?;
+        let right = point.reference.nominal.as_ref()?;
         let Some(claimed) = point.literals(nominal) else { return Some(0) };
         claimed.iter().zip(right).position(|(a, b)| a != b)
     })

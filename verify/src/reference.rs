@@ -112,8 +112,8 @@ pub struct Reference<E> {
     pub values: Values<E>,
     /// Another configuration with the same parameters, and the potential energy there: with base parameters U is defined up to a constant.
     pub elsewhere: Option<(State<E>, E)>,
-    /// The nominal parameter vector where it follows from the standard one.
-    pub nominal_base: Option<Vec<E>>,
+    /// The nominal parameter vector where it follows from the bodies: of standard and of base parameters.
+    pub nominal: Option<Vec<E>>,
     /// Whether Lagrange's and Newton and Euler's torques agree.
     pub two_derivations_agree: bool,
     /// What may be divided by, if that is wanted: at the state, and at another one with other parameters.
@@ -359,14 +359,14 @@ impl<E: Element> Reference<E> {
             // Accelerations are not defined: no equations but those of kinematics.
             let none = || Pivots::of(Vec::new());
             let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, n), none()));
-            return Ok(Reference { state, values, elsewhere: None, nominal_base: None, two_derivations_agree: true, pivots });
+            return Ok(Reference { state, values, elsewhere: None, nominal: None, two_derivations_agree: true, pivots });
         }
         let singular = || "the inertia matrix is singular at a random state".to_string();
         let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
         let task = manipulator.task_rows();
         derivatives_and_task(&arm, &state, &task, &mut values).ok_or_else(singular)?;
 
-        let (mut elsewhere, mut nominal_base) = (None, None);
+        let (mut elsewhere, mut nominal) = (None, None);
         let mut other_parameters = None;
         let (columns, known, run_time) = match vector {
             Vector::Names(ids) => {
@@ -397,6 +397,7 @@ impl<E: Element> Reference<E> {
                 if state.pi.is_empty() {
                     state.pi = all.iter().map(|_| arithmetic.draw()).collect();
                 }
+                nominal = Some(all.iter().map(|parameter| parameter.value(&arm)).collect());
                 let columns = standard_columns(&arm, &state, all, LinkFrames::Described);
                 if wanted.pivots {
                     let pi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
@@ -424,8 +425,8 @@ impl<E: Element> Reference<E> {
                     state.pi = if wanted.base == BaseParameters::Solved {
                         let map = base_map(arithmetic, &arm, &kept, all)?;
                         check_names(&map, base, all, &arm)?;
-                        let nominal: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
-                        nominal_base = Some(times_vector(&map, &nominal));
+                        let standard: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
+                        nominal = Some(times_vector(&map, &standard));
                         if wanted.pivots {
                             let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
                             let other = with_standard(&arm, all, &phi).ok_or_else(divided)?;
@@ -460,7 +461,7 @@ impl<E: Element> Reference<E> {
             let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state, &task);
             (at(run_time.as_ref(), &state), there.clone(), at(other.as_ref(), &there))
         });
-        Ok(Reference { state, values, elsewhere, nominal_base, two_derivations_agree: agree, pivots })
+        Ok(Reference { state, values, elsewhere, nominal, two_derivations_agree: agree, pivots })
     }
 }
 

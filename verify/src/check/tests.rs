@@ -417,11 +417,19 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
     let base_set = given("base_set", &Options::default());
     let claims = off(&base_set, "NOMINAL_PARAMETERS", 0);
     let layers = [
-        (BaseCombinations, "is not the combination of standard parameters that its name stands for"),
+        (NominalParameters, "is not the combination of standard parameters that its name stands for"),
         (Identities, "Y pi + tau_known = tau does not hold"),
     ];
     let fault = || verify_with(&base_set.source, &base_set.module, claims.clone(), Effort::default()).first_fault();
     tally.peel("a parameter that is no combination", &layers, Last::Accepted, fault);
+    let scara4 = given("scara4", &Options::default());
+    let claims = off(&scara4, "NOMINAL_PARAMETERS", 0);
+    let layers = [
+        (NominalParameters, "is not the value that the bodies of the description give"),
+        (Identities, "Y pi + tau_known = tau does not hold"),
+    ];
+    let fault = || verify_with(&scara4.source, &scara4.module, claims.clone(), Effort::default()).first_fault();
+    tally.peel("a standard parameter that is not the bodies'", &layers, Last::Accepted, fault);
     // The second column twice, each with half of the value.
     let module = &scara.module;
     let at = module.find("pub fn base_regressor(").expect("the function");

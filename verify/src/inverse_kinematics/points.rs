@@ -2,7 +2,8 @@
 
 use std::cell::RefCell;
 
-use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::exact::Polynomial;
+use armgen_codegen::manipulator::{Body, Manipulator};
 
 use super::chain::Chain;
 use super::modular::{Frame, Modulus};
@@ -25,7 +26,8 @@ pub(super) struct Constants {
 impl Constants {
     /// Of the arm, and others.
     pub(super) fn of(manipulator: &Manipulator, others: &[Formula]) -> Result<Constants, String> {
-        let arm = Arm::nominal(&Plain, manipulator).and_then(|nominal| Arm::new(&Plain, manipulator, &nominal));
+        let manipulator = without_bodies(manipulator);
+        let arm = Arm::nominal(&Plain, &manipulator).and_then(|nominal| Arm::new(&Plain, &manipulator, &nominal));
         let arm = arm.ok_or("the description divides by zero")?;
         let all = RefCell::new(others.to_vec());
         arm.map(&|number| {
@@ -46,6 +48,22 @@ impl Constants {
     pub(super) fn field(&self, stream: &mut Stream) -> Result<Prime, String> {
         Prime::new(stream, &self.atoms, &self.dependent).ok_or_else(|| "there are too many independent roots".into())
     }
+}
+
+/// The arm and nothing that has mass: no solution depends on bodies, whose formulas can be long.
+fn without_bodies(manipulator: &Manipulator) -> Manipulator {
+    let mut arm = manipulator.clone();
+    arm.payload = None;
+    for joint in &mut arm.joints {
+        joint.motor = None;
+        joint.link.truncate(1);
+        for part in &mut joint.link {
+            part.given = Body { mass: Polynomial::zero(), com: Default::default(), inertia: Default::default() };
+            part.frame.elements.clear();
+            part.axes.elements.clear();
+        }
+    }
+    arm
 }
 
 /// A random posture: (c, s) or (d, 0).
