@@ -218,7 +218,7 @@ impl Number {
     }
 
     /// One over the number; `None` exactly where [`Number::sign`] finds a zero.
-    fn inverse(&self) -> Option<Number> {
+    pub(crate) fn inverse(&self) -> Option<Number> {
         (self.sign() != Ordering::Equal).then(|| self.inverse_within(RATIONALISING_STEPS))
     }
 

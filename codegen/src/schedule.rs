@@ -126,7 +126,7 @@ fn lower(manipulator: &Manipulator, quantity: &'static Quantity, with_parameters
 /// The steps that the expressions need, each after its operands, in the order in which the expressions ask for them.
 fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
     let mut steps: Vec<Step> = Vec::new();
-    let mut done: HashMap<usize, u32> = HashMap::new();
+    let mut done: HashMap<usize, Operand> = HashMap::new();
     for &expr in exprs {
         let mut stack = vec![(expr.unsigned(), false)];
         while let Some((expr, ready)) = stack.pop() {
@@ -149,7 +149,7 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
                         let sign = Operand::Step(steps.len() as u32 - 1);
                         steps.push(Step { operation: Operation::Multiply, left: sign, right: own });
                     }
-                    done.insert(expr.index(), steps.len() as u32 - 1);
+                    done.insert(expr.index(), Operand::Step(steps.len() as u32 - 1));
                     continue;
                 }
                 Node::Constant(_) | Node::Symbol(_) => continue,
@@ -159,8 +159,11 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
             };
             if ready {
                 let (left, right) = (operand(pool, &done, a), operand(pool, &done, b));
-                done.insert(expr.index(), steps.len() as u32);
-                steps.push(Step { operation, left, right });
+                let value = folded(operation, &left, &right).map(Operand::Constant);
+                done.insert(expr.index(), value.unwrap_or(Operand::Step(steps.len() as u32)));
+                if let Operand::Step(_) = done[&expr.index()] {
+                    steps.push(Step { operation, left, right });
+                }
             } else {
                 stack.extend([(expr, true), (b.unsigned(), false), (a.unsigned(), false)]);
             }
@@ -170,18 +173,34 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
         .iter()
         .map(|&expr| match pool.as_constant(expr) {
             Some(value) => Output { operand: Operand::Constant(value), negated: false },
-            None => Output { operand: operand(pool, &done, expr), negated: expr.is_negated() },
+            None => match operand(pool, &done, expr) {
+                Operand::Constant(value) if expr.is_negated() => Output { operand: Operand::Constant(-&value), negated: false },
+                operand => Output { negated: expr.is_negated() && !matches!(operand, Operand::Constant(_)), operand },
+            },
         })
         .collect();
     (steps, outputs)
 }
 
+/// The constant that an operation on constants comes to. A pool leaves such an operation where it does not know enough of a root to see that
+/// results cancel; nothing cancels any more here.
+fn folded(operation: Operation, left: &Operand, right: &Operand) -> Option<Number> {
+    let (Operand::Constant(left), Operand::Constant(right)) = (left, right) else { return None };
+    match operation {
+        Operation::Add => Some(left.plus(right)),
+        Operation::Subtract => Some(left.minus(right)),
+        Operation::Multiply => Some(left.times(right)),
+        Operation::Divide => Some(left.times(&right.inverse()?)),
+        Operation::Sign | Operation::OppositeSign => None,
+    }
+}
+
 /// An operand without its sign: signs sit in the operation or in the output.
-fn operand(pool: &Pool, done: &HashMap<usize, u32>, expr: ExprId) -> Operand {
+fn operand(pool: &Pool, done: &HashMap<usize, Operand>, expr: ExprId) -> Operand {
     match pool.node(expr) {
         Node::Constant(_) => Operand::Constant(pool.as_constant(expr.unsigned()).unwrap_or_else(Number::zero)),
-        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_)) => Operand::Step(done[&expr.index()]),
+        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_)) => done[&expr.index()].clone(),
         Node::Symbol(symbol) => Operand::Input(symbol),
-        Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => Operand::Step(done[&expr.index()]),
+        Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => done[&expr.index()].clone(),
     }
 }
