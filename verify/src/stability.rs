@@ -1,7 +1,7 @@
 //! Whether rounding leaves of a function what the equations say: a function can equal them over the real numbers and be useless in floats,
 //! as `x + 1e17 - 1e17` is.
 //!
-//! With u the unit roundoff of the scalar, n the number of joints, k that of axes neither parallel nor perpendicular to the next one beyond four, l the larger one of k and the joints beyond eight, S the largest size of an entry at some states, e the bound of the entry (over a box,
+//! With u the unit roundoff of the scalar, n the number of joints, k that of axes neither parallel nor perpendicular to the next one beyond four, l the larger one of k and the joints beyond eight, S the largest size of an entry at some states (of a regressor: of the largest one of its unit, and so E over a box), e the bound of the entry (over a box,
 //! or at a state in f64, where it is the smaller of the two of [`mod@crate::companion`]), and E the one of a plain program of the equations for that entry ([`mod@crate::yardstick`]):
 //!
 //! ```text
@@ -33,11 +33,13 @@
 //! three each, and none is a loss that a user would notice beside the equations themselves.
 //!
 //! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside the largest of the torques, the
-//! Jacobian and the inertia matrix, the whole to (e). Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has
+//! Jacobian and the inertia matrix, the whole to (e); an entry in which no quotient takes part, to as many times the same as it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has
 //! 2^(12 + 5n/2) u S instead of it, with S the largest entry of the function.
 //! Intervals say nothing behind a quotient in general; of `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
 
 use std::collections::{BTreeMap, BTreeSet};
+
+use armgen_codegen::kinds::JointKind;
 
 use crate::arithmetic::twofold::{self, pair, Circle, Pair, TwofoldArguments};
 use crate::arithmetic::wide::Wide;
@@ -47,6 +49,7 @@ use crate::checker::Checker;
 use crate::companion::{LaneArguments, LaneTable, Table};
 use crate::divisors::{needed, undivided_operands, Matrix};
 use crate::enclosure::Float;
+use crate::equations::parameters::{units, Unit};
 use crate::float::{Arguments, LANES};
 use crate::formula::Formula;
 use crate::program::{Argument, Program};
@@ -136,6 +139,10 @@ struct Plain {
     values: Vec<f64>,
     /// The error over the wide box, and over that with the parameters of the description.
     boxes: [f64; 2],
+    /// The size of what stands beside it: of an entry of a regressor the largest of the same unit, of inertias at least that of rates. Rates about the
+    /// axes of a tensor make its columns, and
+    /// all of one can be what an angle of 1e-5 between two axes leaves of them.
+    beside: f64,
 }
 
 impl Plain {
@@ -147,7 +154,7 @@ impl Plain {
     /// At random states.
     fn random(&self) -> Plain {
         let random = self.states.iter().enumerate().filter(|(state, _)| Kind::of(*state) == Kind::Random);
-        Plain { states: random.map(|(_, own)| *own).collect(), values: Vec::new(), boxes: self.boxes }
+        Plain { states: random.map(|(_, own)| *own).collect(), values: Vec::new(), ..*self }
     }
 
     /// Whether it has a value at all states.
@@ -155,13 +162,24 @@ impl Plain {
         self.states.iter().all(is_finite)
     }
 
-    /// The largest error at states, one rounding of the largest value included.
+    /// The largest error at states, one rounding included.
     fn error(&self) -> f64 {
-        worst(self.finite().map(|(error, _)| *error)) + Float::F64.unit() * self.size()
+        worst(self.finite().map(|(error, _)| *error)) + self.rounding()
+    }
+
+    /// One rounding of the largest value, in f64.
+    fn rounding(&self) -> f64 {
+        Float::F64.unit() * self.size().max(self.beside)
     }
 
     fn size(&self) -> f64 {
         worst(self.finite().map(|(_, size)| *size))
+    }
+
+    /// That of so many times the entry.
+    fn times(&self, scale: f64) -> Plain {
+        let states = self.states.iter().map(|(error, size)| (scale * error, scale * size)).collect();
+        Plain { states, values: Vec::new(), boxes: self.boxes.map(|error| scale * error), beside: 0.0 }
     }
 }
 
@@ -257,6 +275,38 @@ fn slow(mut state: Arguments<f64>, rests: bool) -> Arguments<f64> {
     state
 }
 
+/// Gives each entry of a regressor the largest size and the largest errors over boxes of its unit ([`Plain::beside`]).
+fn beside_their_units<'a>(
+    plain: &mut BTreeMap<String, Vec<Plain>>,
+    checker: &Checker,
+    states: impl Iterator<Item = &'a Arguments<f64>>,
+) {
+    // Links can turn as fast as the rates of all joints together, though of parallel axes no square of a rate may be left.
+    let joints = &checker.manipulator().joints;
+    let turns = |rates: &[f64]| -> f64 {
+        let revolute = joints.iter().zip(rates).filter(|(joint, _)| joint.kind == JointKind::Revolute);
+        revolute.map(|(_, rate)| rate.abs()).sum()
+    };
+    let of_rates = worst(states.map(|state| turns(&state.dq) * turns(&state.dqr)));
+    let base = checker.base().map(|own| units(own.named.iter().map(|(parameter, _)| *parameter)));
+    for (name, columns) in [("regressor", checker.vector().units()), ("base_regressor", base.unwrap_or_default())] {
+        let Some(entries) = plain.get_mut(name) else { continue };
+        let rows = joints.iter().map(|joint| joint.kind == JointKind::Revolute);
+        let units: Vec<(bool, Unit)> = rows.flat_map(|turns| columns.iter().map(move |unit| (turns, *unit))).collect();
+        let mut largest = BTreeMap::from([((true, Unit::Inertia), (of_rates, [0.0f64; 2]))]);
+        for (unit, entry) in units.iter().zip(entries.iter()) {
+            let (size, boxes) = largest.entry(*unit).or_default();
+            *size = worst([*size, entry.size()]);
+            *boxes = [0, 1].map(|k| if entry.boxes[k].is_finite() { boxes[k].max(entry.boxes[k]) } else { boxes[k] });
+        }
+        for (unit, entry) in units.iter().zip(entries) {
+            let (size, boxes) = largest[unit];
+            entry.beside = size;
+            entry.boxes = [0, 1].map(|k| entry.boxes[k].max(boxes[k]));
+        }
+    }
+}
+
 /// States at which functions of a module are run.
 pub struct Trial<'a> {
     module: &'a Module,
@@ -314,6 +364,8 @@ impl<'a> Trial<'a> {
                 entries.iter_mut().zip(errors).for_each(|(entry, error)| entry.boxes[k] = error);
             }
         }
+        let states = batches.iter().flat_map(|(states, _)| states);
+        beside_their_units(&mut plain, checker, states);
         let ranges = Argument::ALL.into_iter().flat_map(|argument| wide.of(argument));
         let arguments = worst(ranges.map(|(low, high)| low.abs().max(high.abs())));
         let oblique = checker.oblique().saturating_sub(4) as f64;
@@ -351,7 +403,8 @@ impl<'a> Trial<'a> {
         }
         let part = program.part(&operands);
         let mut errors = self.errors(&part, values);
-        let mut compared = self.undivided(&part, &mut errors, &vec![self.of_operands(program); operands.len()], sensitivities);
+        let yardsticks = self.of_operands(program, &operands);
+        let mut compared = self.undivided(&part, &mut errors, &yardsticks, sensitivities);
         compared.extend(self.divided(program, values, sensitivities));
         compared.extend(self.measured(program, values, self.plain.get(&program.name).map_or(&[][..], Vec::as_slice)));
         (errors, compared)
@@ -363,9 +416,22 @@ impl<'a> Trial<'a> {
         Errors { boxes: self.boxes.each_ref().map(over), runs: self.runs(program, values) }
     }
 
+    /// What operands of quotients are held to: the largest of what they can be part of. Of an entry in which no quotient takes part, as of a joint
+    /// whose inertia is constant, it is as many times that as the entry is larger: a torque by the constant one over an inertia is an acceleration.
+    fn of_operands(&self, program: &Program, operands: &[usize]) -> Vec<Plain> {
+        let most = self.most_of_operands(program);
+        let own = self.plain.get(&program.name).map_or(&[][..], Vec::as_slice);
+        let yardstick = |&operand: &usize| {
+            let entries = program.outputs.iter().zip(own).filter(|(output, _)| output.step == operand);
+            let scale = worst(entries.map(|(_, entry)| entry.size() / most.size()));
+            most.times(if scale.is_finite() { scale.max(1.0) } else { 1.0 })
+        };
+        operands.iter().map(yardstick).collect()
+    }
+
     /// The largest of what operands of quotients can be part of: torques, those that are given among them, Jacobian and inertia; of a centre of mass
     /// the moments are not among them.
-    fn of_operands(&self, program: &Program) -> Plain {
+    fn most_of_operands(&self, program: &Program) -> Plain {
         let names: &[&str] = match needed(&program.name) {
             [Matrix::Mass | Matrix::MassWith, ..] => return Plain::default(),
             [_, Matrix::Mobility, ..] => &["inertia_matrix", "geometric_jacobian"],
@@ -434,7 +500,7 @@ impl<'a> Trial<'a> {
         let (wider, wider_than_states) = ((0.75 * self.long).exp2(), (2.0 * self.oblique).exp2());
         let by_size = wider_than_states * (12.0 + 2.5 * n).exp2() * (real.unit() * size + real.smallest_normal());
         let lost = wider * (4.0 + 0.5 * n).exp2() * unit * size;
-        let sized = Plain { states: vec![(lost, size); states], values: Vec::new(), boxes: [f64::INFINITY; 2] };
+        let sized = Plain { states: vec![(lost, size); states], boxes: [f64::INFINITY; 2], ..Plain::default() };
         let plain = |k: usize| yardsticks.get(k).filter(|plain| !plain.states.is_empty()).unwrap_or(&sized);
         let place = |k: usize| program.outputs[k].place.clone();
         let mut compared = Vec::new();
@@ -452,7 +518,7 @@ impl<'a> Trial<'a> {
                 } else {
                     by_size
                 };
-                let of_intervals = wider * FACTOR * scaled(intervals + unit * plain.size());
+                let of_intervals = wider * FACTOR * scaled(intervals + plain.rounding());
                 let size = plain.size();
                 compared.push(Compared { criterion: Criterion::Box, place: place.clone(), error, allowed: of_states, size });
                 if intervals.is_finite() {

@@ -42,9 +42,32 @@ pub enum Standard {
     Payload(usize),
 }
 
+/// The unit of a parameter, or that it has one of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unit {
+    /// kg
+    Mass,
+    /// kg m
+    Moment,
+    /// kg m²
+    Inertia,
+    /// That of the parameter of this number.
+    Own(usize),
+}
+
 const TEN: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz"];
 
 impl Standard {
+    /// The unit of the parameter, the one of this number.
+    pub fn unit(self, number: usize) -> Unit {
+        match self {
+            Standard::Link(_, 0) | Standard::Payload(0) => Unit::Mass,
+            Standard::Link(_, 1..=3) | Standard::Payload(1..=3) => Unit::Moment,
+            Standard::Link(..) | Standard::Payload(_) => Unit::Inertia,
+            _ => Unit::Own(number),
+        }
+    }
+
     /// Whether its torque is one of friction.
     fn is_friction(self) -> bool {
         use Standard::*;
@@ -328,6 +351,15 @@ impl Vector {
         }
     }
 
+    /// The units of the entries.
+    pub fn units(&self) -> Vec<Unit> {
+        match self {
+            Vector::Names(ids) => (0..ids.len()).map(Unit::Own).collect(),
+            Vector::Standard(all) => units(all.iter().copied()),
+            Vector::Base(base, _) => units(base.iter().map(|(parameter, _)| *parameter)),
+        }
+    }
+
     /// The names of the entries, where they are not free.
     pub fn names(&self, manipulator: &Manipulator) -> Option<Vec<String>> {
         match self {
@@ -336,6 +368,11 @@ impl Vector {
             Vector::Base(..) => None,
         }
     }
+}
+
+/// The units of standard parameters.
+pub fn units(parameters: impl Iterator<Item = Standard>) -> Vec<Unit> {
+    parameters.enumerate().map(|(number, parameter)| parameter.unit(number)).collect()
 }
 
 /// Base parameters by their names, each with whether it carries others.
