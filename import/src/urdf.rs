@@ -266,8 +266,8 @@ impl Format for Urdf<'_, '_> {
         [Decimal::zero(), Decimal::zero(), down]
     }
 
-    /// Warns of what a simulator would take into account, and robot.yaml does not.
-    fn check(&self, _extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
+    /// Warns of what a simulator would take into account of joints and links that the arm has, and robot.yaml does not; once a kind.
+    fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
         const FELT: [&str; 6] = [
             "springStiffness",
             "springReference",
@@ -276,12 +276,28 @@ impl Format for Urdf<'_, '_> {
             "preserveFixedJoint",
             "gravity",
         ];
+        let concerns = |name: &str| {
+            let joint = extent.tree.joint(name).map(|joint| extent.moving.contains(&joint));
+            let link = extent.tree.link(name).map(|link| extent.carriers.contains_key(&link));
+            joint == Some(true) || link == Some(true)
+        };
+        let mut kinds: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for node in self.root.children().filter(|n| n.is_element() && n.tag_name().name() == "gazebo") {
-            for felt in node.descendants().filter(|n| n.is_element() && FELT.contains(&n.tag_name().name())) {
-                let message = format!("`{}` may change how a simulator moves the arm; it is left out", felt.tag_name().name());
-                let help = "springs and the like are no part of a description of a rigid arm: add their torques yourself";
-                diagnostics.push(Diagnostic::new(Code::ChangesMotion, place(felt), message, "left out", help));
+            if node.attribute("reference").is_some_and(|name| !concerns(name)) {
+                continue;
             }
+            for felt in node.descendants().filter(|n| n.is_element() && FELT.contains(&n.tag_name().name())) {
+                kinds.entry(felt.tag_name().name()).or_default().push(place(felt));
+            }
+        }
+        for (kind, places) in kinds {
+            let more = match places.len() {
+                1 => String::new(),
+                n => format!(", {n} times"),
+            };
+            let message = format!("`{kind}` may change how a simulator moves the arm; it is left out{more}");
+            let help = "springs and the like are no part of a description of a rigid arm: add their torques yourself";
+            diagnostics.push(Diagnostic::new(Code::ChangesMotion, places[0], message, "left out", help));
         }
     }
 

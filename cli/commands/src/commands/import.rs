@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use armgen_codegen::diagnostic::Severity;
+use armgen_codegen::source::Source;
 use armgen_import::Options;
 use clap::{Args, ValueHint};
 
@@ -90,6 +92,12 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     }
     for line in imported.report.lines() {
         terminal::note(line);
+    }
+    // What only the equations show, such as a last link without inertia about its axis.
+    let as_description = Source::new("robot.yaml", imported.yaml.clone());
+    let (_, of_description) = armgen_codegen::validate::read(&as_description);
+    for refused in of_description.iter().filter(|diagnostic| diagnostic.code.severity() == Severity::Error) {
+        terminal::note(&format!("robot.yaml is refused as it stands: {}; {}", refused.message, refused.help));
     }
     let json = imported.report.to_json();
     for (path, text) in [(&results.report, &json), (&results.out, &imported.yaml)] {
