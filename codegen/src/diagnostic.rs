@@ -256,6 +256,8 @@ codes! {
         ImplausibleGravity Warning "implausible-gravity",
         /// A velocity limit beyond what joints reach.
         ImplausibleVelocity Warning "implausible-velocity",
+        /// An effort limit that friction alone takes.
+        WeakEffort Warning "weak-effort",
         /// Friction that feeds energy in within the limits.
         ActiveFriction Warning "active-friction",
         /// A length or an angle that is next to nothing.

@@ -15,6 +15,7 @@
 //! | `inverted-ratio` | a ratio below 1/5 | gears of arms slow down: rotor speed over joint speed is at least 1 |
 //! | `implausible-gravity` | a size that no planet or moon of a lander has, to 2 in 100 | tables of planets |
 //! | `implausible-velocity` | a limit beyond 60 rad/s or 20 m/s | the fastest wrists of packing robots turn at 35, legs without much of a gear at 52; the slowest arms make 60 degrees per second |
+//! | `weak-effort` | an effort limit that dry friction alone takes | a joint with it does not move; motors' torques are given before the gear, friction behind it |
 //! | `active-friction` | friction that drives the joint somewhere below its velocity limit | friction takes energy; fits to noisy measurements do not know that |
 //! | `dust` | a length or an angle that is not 0 but below 1e-9 | less than the size of an atom at any reach; exact equations carry it along |
 
@@ -98,6 +99,7 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         }
         arm.check_motor(joint, &called, context);
         check_velocity(joint, &called, context);
+        check_effort(joint, &called, context);
         check_friction(joint, &called, context);
     }
 }
@@ -196,9 +198,19 @@ fn extent(link: &BodyDescription, context: &mut Context<'_>) -> f64 {
 
 /// The largest of xx, yy and zz, kg m²; 0 where there is no tensor.
 fn largest_moment(link: &BodyDescription, context: &mut Context<'_>) -> f64 {
-    let Some(inertia) = &link.inertia else { return 0.0 };
+    moments(link, context).into_iter().fold(0.0, f64::max)
+}
+
+/// xx, yy and zz of a link, kg m²; 0 where they are not given.
+fn moments(link: &BodyDescription, context: &mut Context<'_>) -> [f64; 3] {
+    let Some(inertia) = &link.inertia else { return [0.0; 3] };
     let [xx, _, yy, _, _, zz] = &inertia.elements;
-    [xx, yy, zz].into_iter().map(|value| number(value, context)).fold(0.0, f64::max)
+    [xx, yy, zz].map(|value| number(value, context))
+}
+
+fn is_power_of_ten(value: f64) -> bool {
+    let exponent = value.log10();
+    (exponent - exponent.round()).abs() < 1e-9
 }
 
 /// The density, kg/m³, of the ball with this mass and moment of inertia; infinite without one.
@@ -272,10 +284,11 @@ impl Arm<'_> {
                     short(com),
                     short(self.reach)
                 );
-                let (factor, unit) = if com > 30.0 * self.reach { (1e3, "mm") } else { (10.0, "tenths") };
+                let slips = [(1e3, "in mm"), (1e2, "in cm"), (10.0, "a decimal place off")];
+                let (factor, slip) = likeliest(&slips, |factor| com / factor, 0.2 * self.reach);
                 let help =
-                    format!("if this is in {unit}, {} m would be meant; it counts from the link's frame", short(com / factor));
-                context.report(Code::ImplausibleCom, given.span, message, format!("in {unit}?"), help);
+                    format!("if this is {slip}, {} m would be meant; it counts from the link's frame", short(com / factor));
+                context.report(Code::ImplausibleCom, given.span, message, format!("{slip}?"), help);
                 return;
             }
         }
@@ -298,20 +311,26 @@ impl Arm<'_> {
         let gyration = (largest / mass).sqrt();
         let span = self.span(i, com);
         if gyration > span {
-            let units = [(1e4, "kg cm²"), (1e6, "kg mm²"), (1e9, "g mm²"), (10.0, "tenths")];
-            // The unit in which the radius comes nearest to a fifth of what the link spans.
-            let off = |factor: f64| (gyration / factor.sqrt() / (0.2 * span)).ln().abs();
-            let (factor, unit) = units.into_iter().reduce(|a, b| if off(b.0) < off(a.0) { b } else { a }).unwrap_or(units[0]);
+            let slips = [(1e4, "in kg cm²"), (1e6, "in kg mm²"), (1e9, "in g mm²"), (10.0, "a decimal place off")];
+            let (factor, slip) = likeliest(&slips, |factor: f64| gyration / factor.sqrt(), 0.2 * span);
             let message = format!(
                 "the inertia of the link of joint {called} has a radius of gyration of {} m, more than the {} m that the link can span",
                 short(gyration),
                 short(span)
             );
-            let help = format!(
-                "inertias are in kg m², about the centre of mass; if this is in {unit}, {} would be meant",
-                short(largest / factor)
-            );
-            context.report(Code::ImplausibleInertia, inertia.key, message, format!("in {unit}?"), help);
+            // 1 1 1 of templates, and 0.001 three times.
+            let placeholder = is_power_of_ten(largest) && moments(link, context).iter().all(|moment| *moment == largest);
+            let (label, help) = if placeholder {
+                let most = short(mass * span * span / 4.0);
+                let help =
+                    format!("write what the data sheet says: no body of {} kg in that span has more than {most}", short(mass));
+                ("a placeholder?".to_owned(), help)
+            } else {
+                let meant = short(largest / factor);
+                let help = format!("inertias are in kg m², about the centre of mass; if this is {slip}, {meant} would be meant");
+                (format!("{slip}?"), help)
+            };
+            context.report(Code::ImplausibleInertia, inertia.key, message, label, help);
         }
         // 2/5 m r² of the ball, r = (3 m / (4 pi rho))^(1/3).
         let radius = (3.0 * mass / (4.0 * std::f64::consts::PI * LEAD)).cbrt();
@@ -367,6 +386,36 @@ impl Arm<'_> {
             );
             context.report(Code::ReflectedRotor, span, message, "reflected already?", help);
         }
+    }
+}
+
+/// The slip with which a value comes nearest to what would be usual.
+fn likeliest<'s>(slips: &[(f64, &'s str)], value: impl Fn(f64) -> f64, usual: f64) -> (f64, &'s str) {
+    let off = |slip: &(f64, &str)| (value(slip.0) / usual).ln().abs();
+    slips.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or((1.0, "a decimal place off"))
+}
+
+fn check_effort(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
+    let Some(expression) = &joint.limits.effort else { return };
+    let effort = number(&joint.limits.effort, context);
+    let (coulomb, offset) = (number(&joint.friction.coulomb, context), number(&joint.friction.offset, context));
+    let dry = coulomb + offset.abs();
+    if effort > 0.0 && dry >= effort {
+        let span = written(expression, context);
+        let turns = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Revolute);
+        let unit = if turns { "N m" } else { "N" };
+        let way = match coulomb - offset.abs() < effort {
+            true if offset > 0.0 => " forwards",
+            true => " backwards",
+            false => "",
+        };
+        let message = format!(
+            "joint {called} cannot move{way}: its dry friction of {} {unit} takes all of its effort limit of {} {unit}",
+            short(dry),
+            short(effort)
+        );
+        let help = "both count at the joint, behind the gear: a motor's torque is to be multiplied by `ratio`";
+        context.report(Code::WeakEffort, span, message, "no more than friction", help);
     }
 }
 
