@@ -228,6 +228,7 @@ const VERIFY: Layers = &[
             "companion",
             "divisors",
             "enclosure",
+            "equations",
             "float",
             "formula",
             "program",
