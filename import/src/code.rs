@@ -84,6 +84,8 @@ codes! {
         NoMass Warning "no-mass",
         /// A joint that is locked outside of its limits.
         LockOutside Warning "lock-outside-limits",
+        /// An element that is none of the format, and nearly one.
+        MisspeltElement Warning "misspelt-element",
         /// What would change the motion, and is left out.
         ChangesMotion Warning "changes-motion",
     }

@@ -1,9 +1,10 @@
 //! URDF, as in <https://wiki.ros.org/urdf/XML>.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::Span;
+use armgen_codegen::suggest::did_you_mean;
 use roxmltree::Node;
 
 use crate::body::Body;
@@ -268,6 +269,7 @@ impl Format for Urdf<'_, '_> {
 
     /// Warns of what a simulator would take into account of joints and links that the arm has, and robot.yaml does not; once a kind.
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
+        warn_of_misspelt(self.root, diagnostics);
         const FELT: [&str; 6] = [
             "springStiffness",
             "springReference",
@@ -319,5 +321,33 @@ impl Format for Urdf<'_, '_> {
             }
         }
         counts
+    }
+}
+
+/// What an element of each name may hold.
+const ELEMENTS_OF: [(&str, &[&str]); 4] = [
+    ("robot", &["link", "joint", "material", "transmission", "gazebo"]),
+    ("link", &["inertial", "visual", "collision"]),
+    ("joint", &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller"]),
+    ("inertial", &["origin", "mass", "inertia"]),
+];
+
+/// Warns of elements that are nearly one that is read, and are not: with `orign` a joint stands where its parent does. Once for each spelling.
+fn warn_of_misspelt(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
+    let parts = root.children().filter(|part| ["link", "joint"].contains(&part.tag_name().name()));
+    let inside = parts.clone().chain(parts.flat_map(|part| part.children()).filter(|n| n.tag_name().name() == "inertial"));
+    let mut seen = BTreeSet::new();
+    for parent in std::iter::once(root).chain(inside) {
+        let parent_name = parent.tag_name().name();
+        let Some((_, known)) = ELEMENTS_OF.iter().find(|(name, _)| *name == parent_name) else { continue };
+        for node in parent.children().filter(Node::is_element) {
+            let name = node.tag_name().name();
+            let meant = if known.contains(&name) { None } else { did_you_mean(name, known) };
+            if let Some(meant) = meant.filter(|_| seen.insert((parent_name, name))) {
+                let message = format!("nothing reads `{}` in a `{parent_name}`; it is left out", shown(name));
+                let help = format!("did you mean `{meant}`?");
+                diagnostics.push(Diagnostic::new(Code::MisspeltElement, place(node), message, "left out", help));
+            }
+        }
     }
 }
