@@ -180,6 +180,9 @@ fn the_determinant_comes_with_its_factors() {
     // Seven joints, six rows.
     let output = check(&["show", &file("robots/panda7.yaml"), "determinant", "--format", "json"], 0);
     assert!(err(&output).contains("note: determinant: the task has 6 rows and the arm 7 joints"), "{}", err(&output));
+    // Four joints, six rows.
+    let output = check(&["show", &file("robots/scara4.yaml"), "determinant", "--format", "json"], 0);
+    assert!(err(&output).contains("note: determinant: the task has 6 rows and the arm 4 joints"), "{}", err(&output));
     assert_eq!(serde_json::from_slice::<Value>(&output.stdout).expect("JSON")["quantities"], serde_json::json!([]));
 }
 

@@ -16,6 +16,7 @@
 //! show.rs        which quantities, their derivations and forms
 //! show/steps.rs  an expression as numbered steps
 //! show/lines.rs  long formulas in several lines
+//! show/minors.rs what is left of the minors of a Jacobian that is not square
 //! show/json.rs   for programs
 //! show/text.rs   for a terminal
 //! show/latex.rs  for a paper
@@ -24,6 +25,7 @@
 mod json;
 mod latex;
 mod lines;
+mod minors;
 mod steps;
 mod text;
 
@@ -39,6 +41,7 @@ use crate::derive::parameters::{ParameterKind, View};
 use crate::derive::regressor::{derivative_by_parameter, regressor};
 use crate::derive::{
     self,
+    determinant::minors::{minors, NoMinors, Product},
     determinant::{Factor, Zeros},
 };
 use crate::exact::Number;
@@ -128,7 +131,7 @@ pub struct Shown {
     pub parameters: Vec<String>,
     /// Stribeck velocities of the joints; 1 where there is no such friction.
     pub velocities: Vec<Number>,
-    /// Of the determinant: its factors, and where each is zero.
+    /// Of the determinant: its factors, and where each is zero; of minors the factors that they share.
     pub factors: Option<Vec<Factor>>,
     /// Digits of constants; none: exactly.
     pub digits: Option<u8>,
@@ -143,6 +146,8 @@ pub enum Content {
     Closed(Vec<NormalForm>),
     /// Expressions that share steps.
     Program(Box<Derivation>),
+    /// What is left of the minors of the task Jacobian once the factors that they share are taken out.
+    Minors(Vec<Product>),
 }
 
 /// The entries of a quantity in one notation.
@@ -259,7 +264,16 @@ impl Sheet {
 impl Shown {
     /// Whether the entries are closed forms.
     pub fn is_closed(&self) -> bool {
-        matches!(self.content, Content::Closed(_))
+        !matches!(self.content, Content::Program(_))
+    }
+
+    /// What is left of the minors of the task Jacobian, where these are shown.
+    fn minors(&self) -> Option<&[Product]> {
+        if let Content::Minors(left) = &self.content {
+            Some(left)
+        } else {
+            None
+        }
     }
 
     fn printer(&self, notation: Notation) -> Printer<'_> {
@@ -300,6 +314,9 @@ impl Shown {
             Content::Closed(forms) => {
                 Formulas { steps: Vec::new(), entries: forms.iter().map(|form| printer.form(form)).collect() }
             }
+            Content::Minors(left) => {
+                Formulas { steps: Vec::new(), entries: left.iter().map(|product| minors::formula(product, &printer)).collect() }
+            }
             Content::Program(derivation) => steps::formulas(derivation, &printer, &self.step_letter()),
         }
     }
@@ -316,6 +333,7 @@ impl Shown {
         let at = |i: usize, j: usize| i * self.columns + j;
         let equal = |a: usize, b: usize| match &self.content {
             Content::Closed(forms) => forms[a] == forms[b],
+            Content::Minors(left) => left[a] == left[b],
             Content::Program(derivation) => derivation.entries[a] == derivation.entries[b],
         };
         self.rows > 1 && self.rows == self.columns && (0..self.rows).all(|i| (0..i).all(|j| equal(at(i, j), at(j, i))))
@@ -368,8 +386,16 @@ impl Shown {
 /// What is shown of an item, before it has a form.
 struct Derived {
     derivation: Derivation,
-    /// Of the determinant: its closed form where it is short, and its factors.
-    determinant: Option<(Option<NormalForm>, Vec<Factor>)>,
+    /// Of the determinant.
+    factored: Option<Factored>,
+}
+
+/// The determinant of the task Jacobian, or its minors.
+enum Factored {
+    /// Its closed form where it is short, and its factors.
+    Determinant(Option<NormalForm>, Vec<Factor>),
+    /// The factors that all minors share, and what is left of each.
+    Minors(Vec<Factor>, Vec<Product>),
 }
 
 /// The entries of an item, or why there is none.
@@ -381,10 +407,19 @@ fn derived(model: &Model, item: Item, reading: Reading) -> Result<Derived, Strin
     };
     let (quantity, with) = match item {
         Item::Determinant => {
-            let found = derive::determinant::determinant(model, view)?;
-            let closed = found.form.filter(|form| form.len() <= CLOSED_FORM_TERMS);
-            let derivation = Derivation { pool: found.pool, entries: vec![found.value], method: "minors", parallel: Vec::new() };
-            return Ok(Derived { derivation, determinant: Some((closed, found.factors)) });
+            let of = |pool, entries| Derivation { pool, entries, method: "minors", parallel: Vec::new() };
+            return Ok(match derive::determinant::determinant(model, view) {
+                Some(found) => {
+                    let closed = found.form.filter(|form| form.len() <= CLOSED_FORM_TERMS);
+                    let factored = Factored::Determinant(closed, found.factors);
+                    Derived { derivation: of(found.pool, vec![found.value]), factored: Some(factored) }
+                }
+                None => {
+                    let found = minors(model, view).map_err(|why| no_minors(model, &why))?;
+                    let factored = Factored::Minors(found.common, found.left);
+                    Derived { derivation: of(found.pool, found.values), factored: Some(factored) }
+                }
+            });
         }
         Item::Plain(quantity) | Item::Element(quantity, _) => (quantity, false),
         Item::With(quantity) => (quantity, true),
@@ -393,7 +428,7 @@ fn derived(model: &Model, item: Item, reading: Reading) -> Result<Derived, Strin
     let plain = matches!(item, Item::Plain(_));
     let of_names = plain && [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
     let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
-    Ok(Derived { derivation: derivation.unwrap_or_else(|| quantity.by_recursion(model, view)), determinant: None })
+    Ok(Derived { derivation: derivation.unwrap_or_else(|| quantity.by_recursion(model, view)), factored: None })
 }
 
 impl Derived {
@@ -451,14 +486,13 @@ fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: Derivation,
     all
 }
 
-/// The determinant with its factors; its closed form if that is not too long.
+/// The determinant with its factors, its closed form if that is not too long; or the minors with those that they share.
 fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
-    let (closed, factors) = derived.determinant.unwrap_or_default();
-    let shown = Shown {
+    let shown = |symbol: [&str; 2], letter, rows, factors: Vec<Factor>| Shown {
         name: DETERMINANT.into(),
-        symbol: ["det J(q)".into(), "\\det J(q)".into()],
-        letter: ["det J", "\\det J"],
-        rows: 1,
+        symbol: symbol.map(String::from),
+        letter,
+        rows,
         columns: 1,
         column_names: None,
         factors: (!factors.is_empty()).then_some(factors),
@@ -468,7 +502,38 @@ fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
         digits: names.style.digits,
         text: OnceLock::new(),
     };
-    in_form(shown, closed.map(|form| vec![form]), derived.derivation, names.style.form)
+    let of_determinant = |factors| shown(["det J(q)", "\\det J(q)"], ["det J", "\\det J"], 1, factors);
+    match derived.factored {
+        Some(Factored::Minors(common, left)) => {
+            Shown { content: Content::Minors(left.clone()), ..shown(["d(q)"; 2], ["d"; 2], left.len(), common) }
+        }
+        Some(Factored::Determinant(closed, factors)) => {
+            in_form(of_determinant(factors), closed.map(|form| vec![form]), derived.derivation, names.style.form)
+        }
+        None => in_form(of_determinant(Vec::new()), None, derived.derivation, names.style.form),
+    }
+}
+
+/// Why there are no minors, and what to do instead.
+fn no_minors(model: &Model, why: &NoMinors) -> String {
+    let (rows, joints) = (model.manipulator.task.len(), model.manipulator.dof());
+    let number = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
+    let (rows, joints) = (number(rows, "row"), number(joints, "joint"));
+    let head = format!("the task has {rows} and the arm {joints}: ");
+    const ASK: &str = "`armgen page ROBOT.yaml --out robot.html` shows w = sqrt(det(J J')) at any posture, 0 where J loses rank";
+    const FEWER: &str = "name fewer rows under `task`";
+    match why {
+        NoMinors::NotRedundant | NoMinors::AllZero => format!("{head}its Jacobian never has as many independent rows; {FEWER}"),
+        NoMinors::TooMany => format!("{head}its Jacobian is not square; {ASK}"),
+        NoMinors::TooLong(common) if common.is_empty() => format!("{head}the minors of its Jacobian are too long; {ASK}"),
+        NoMinors::TooLong(common) => {
+            let parameters: Vec<String> = model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect();
+            let printer = Printer { notation: Notation::Text, parameters: &parameters, velocities: &[], digits: None };
+            let factor = |factor: &Factor| format!("{} is {}", printer.form(&factor.form), factor.zeros.sentence());
+            let common = common.iter().map(factor).collect::<Vec<_>>().join(", ");
+            format!("{head}its Jacobian loses rank where a factor of all its minors is 0 ({common}); what is left of these is too long; {ASK}")
+        }
+    }
 }
 
 fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], derivation: Derivation, names: &Names) -> Shown {

@@ -19,7 +19,7 @@ const CHARACTERS = 4000;
 
 /**
  * @typedef {{symbol: string, rows: number, columns: number, entries: string[][], form: string, steps?: [string, string][],
- *     factors?: string[], singular?: (string | null)[]}} Form
+ *     factors?: string[], common_factors?: string[], singular?: (string | null)[]}} Form
  * @typedef {{letter: string, columnNames: string[] | null, nominal: Form, symbolic: Form | null, latex: string[]}} Equation
  */
 
@@ -92,9 +92,11 @@ function written(equation, form, exact) {
         host.append(head, ...entryChoice(all, (chosen) => list(body, chosen, { ...options, count: 0 })), body);
         list(body, all, options);
     }
-    if (form.factors) {
-        host.append(html("p", {}, "Factors:"));
-        const items = form.factors.map((factor, k) => {
+    const factors = form.factors ?? form.common_factors;
+    if (factors) {
+        const head = form.factors ? "Factors:" : "Times the factors that all minors of J share, each of them the determinant of J without one column:";
+        host.append(html("p", {}, head));
+        const items = factors.map((factor, k) => {
             const zero = form.singular?.[k];
             const words = zero === null || zero === undefined ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : zero;
             return html("li", {}, math("math", {}, mathml(parse(factor), options)), `, ${words}`);

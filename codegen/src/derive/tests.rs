@@ -539,7 +539,7 @@ fn six_axis_arms_have_their_textbook_factors() {
     let singular: Vec<Option<&str>> = found.factors.iter().map(|f| f.zeros.words()).collect();
     assert_eq!(singular, [Some("q3 = atan(-4318/203) mod pi"), Some("q5 = 0 mod pi"), None]);
     let panda = model(include_str!("../../../robots/panda7.yaml"));
-    assert!(determinant::determinant(&panda, View::Nominal).is_err_and(|why| why.contains("not square")));
+    assert!(determinant::determinant(&panda, View::Nominal).is_none());
 }
 
 #[test]

@@ -61,7 +61,7 @@ impl NormalForm {
     }
 
     /// Number of terms with those of the coefficients multiplied out: a coefficient of several roots or general angles is a sum itself.
-    fn size(&self) -> usize {
+    pub fn size(&self) -> usize {
         self.terms.values().map(Number::terms_multiplied_out).fold(0, usize::saturating_add)
     }
 
@@ -123,8 +123,16 @@ impl NormalForm {
         self
     }
 
-    fn negated(&self) -> NormalForm {
+    /// -self.
+    pub fn negated(&self) -> NormalForm {
         NormalForm { terms: self.terms.iter().map(|(key, c)| (key.clone(), -c)).collect() }
+    }
+
+    /// c times it.
+    pub fn scaled(&self, c: &Number) -> NormalForm {
+        let mut scaled = NormalForm::default();
+        self.terms().for_each(|(harmonic, factors, own)| scaled.add_term(harmonic.clone(), factors.clone(), own.times(c)));
+        scaled
     }
 
     /// The product, or `None` beyond `limit` terms, those of the coefficients counted one by one.

@@ -3,6 +3,8 @@
 //! `entries` are plain formulas by rows; `form` is `closed`, or `program`, and then `steps` are pairs of name and formula, none where an
 //! entry alone is shorter with its factors.
 //! The determinant also has `factors`, whose product it is, and `singular`, where each is zero: null where more than one joint decides.
+//! With one joint more than rows its entries are what is left of the minors, the determinants of J without each column, once their
+//! `common_factors` are taken out; `singular` then belongs to these.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
@@ -44,7 +46,7 @@ impl Serialize for Shown {
         if let Some(factors) = self.factors(Notation::Text) {
             let (factors, singular): (Vec<_>, Vec<_>) =
                 factors.into_iter().map(|(factor, zeros)| (factor, zeros.words())).unzip();
-            shown.serialize_field("factors", &factors)?;
+            shown.serialize_field(if self.minors().is_some() { "common_factors" } else { "factors" }, &factors)?;
             shown.serialize_field("singular", &singular)?;
         }
         shown.end()

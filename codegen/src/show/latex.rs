@@ -6,7 +6,9 @@ use crate::catalogue::Absent;
 use std::fmt::Write;
 
 use super::lines::{broken, measure};
+use super::minors::Words;
 use super::{Formulas, Sheet, Shown};
+use crate::derive::determinant::minors::Product;
 use crate::derive::determinant::Zeros;
 use crate::ring::print::Notation;
 
@@ -38,11 +40,26 @@ impl Sheet {
 impl Shown {
     fn latex(&self) -> String {
         let formulas = self.formulas(Notation::Latex);
+        if let Some(left) = self.minors() {
+            return self.latex_of_minors(left, &formulas);
+        }
         let body = match self.matrix(&formulas) {
             Some(matrix) => format!("\\[\n  {} = {matrix}\n\\]\n", self.symbol[1]),
             None => self.aligned(&formulas),
         };
-        self.latex_factors() + &body
+        let factors = self.latex_factors();
+        if factors.is_empty() {
+            return body;
+        }
+        format!("\\noindent ${}$ is the product of\n{factors}multiplied out:\n{body}", self.symbol[1])
+    }
+
+    /// The minors: the factors that they share, and what is left of each.
+    fn latex_of_minors(&self, left: &[Product], formulas: &Formulas) -> String {
+        let Words { head, where_lost } = self.words(left, Notation::Latex);
+        let names = self.equal_minors(left, |k| self.latex_entry_name(k, 0));
+        let all: Vec<(String, &str)> = names.iter().map(|(names, k)| (names.clone(), formulas.entries[*k].as_str())).collect();
+        format!("\\noindent {head}\n{}{where_lost}:\n{}", self.latex_factors(), named(&all))
     }
 
     /// The factors of the determinant, and where they are zero.
@@ -58,9 +75,8 @@ impl Shown {
         if lines.is_empty() {
             return String::new();
         }
-        let symbol = &self.symbol[1];
         let lines = lines.join(" \\\\\n    ");
-        format!("\\noindent ${symbol}$ is the product of\n\\[\n  \\begin{{aligned}}\n    {lines}\n  \\end{{aligned}}\n\\]\nmultiplied out:\n")
+        format!("\\[\n  \\begin{{aligned}}\n    {lines}\n  \\end{{aligned}}\n\\]\n")
     }
 
     /// The whole matrix, if it fits.
@@ -96,17 +112,6 @@ impl Shown {
         }
         let notes: Vec<&str> =
             [(symmetric, "symmetric"), (zeros, "other entries 0")].iter().filter(|(holds, _)| *holds).map(|(_, n)| *n).collect();
-        let mut lines: Vec<String> = Vec::new();
-        // Formulas stand behind the longest of the names.
-        let names = all.iter().map(|(name, _)| measure(Notation::Latex)(name)).max().unwrap_or(0) + 14;
-        for (name, formula) in &all {
-            for (k, piece) in broken(formula, Notation::Latex, WIDTH.saturating_sub(names + INDENT)).iter().enumerate() {
-                lines.push(match k {
-                    0 => format!("{name} &= {piece}"),
-                    _ => format!("&\\quad {piece}"),
-                });
-            }
-        }
         let mut text = format!("\\noindent ${}$", self.symbol[1]);
         if all.len() == steps {
             return text + " is zero.\n";
@@ -115,11 +120,7 @@ impl Shown {
             write!(text, " ({})", notes.join(", ")).expect("writing to a string");
         }
         text.push_str(":\n");
-        for block in lines.chunks(LINES) {
-            write!(text, "\\[\n  \\begin{{aligned}}\n    {}\n  \\end{{aligned}}\n\\]\n", block.join(" \\\\\n    "))
-                .expect("writing to a string");
-        }
-        text
+        text + &named(&all)
     }
 
     pub(super) fn latex_entry_name(&self, row: usize, column: usize) -> String {
@@ -142,4 +143,22 @@ impl Shown {
             _ => indexed(format!("{},{}", row + 1, column + 1)),
         }
     }
+}
+
+/// Formulas with their names, a line each or, where they are long, several, in blocks.
+fn named(all: &[(String, &str)]) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    // Formulas stand behind the longest of the names.
+    let names = all.iter().map(|(name, _)| measure(Notation::Latex)(name)).max().unwrap_or(0) + 14;
+    for (name, formula) in all {
+        for (k, piece) in broken(formula, Notation::Latex, WIDTH.saturating_sub(names + INDENT)).iter().enumerate() {
+            lines.push(match k {
+                0 => format!("{name} &= {piece}"),
+                _ => format!("&\\quad {piece}"),
+            });
+        }
+    }
+    let block =
+        |lines: &[String]| format!("\\[\n  \\begin{{aligned}}\n    {}\n  \\end{{aligned}}\n\\]\n", lines.join(" \\\\\n    "));
+    lines.chunks(LINES).map(block).collect()
 }

@@ -68,6 +68,11 @@ pub(super) fn broken(formula: &str, notation: Notation, width: usize) -> Vec<Str
     lines
 }
 
+/// Whether a formula is a sum, or begins with a sign.
+pub(super) fn is_sum(formula: &str, notation: Notation) -> bool {
+    formula.starts_with('-') || breaks(formula, 0, notation).iter().any(|place| place.level == 0)
+}
+
 /// Where a formula may be broken: nowhere within braces, which in LaTeX are one thing.
 fn breaks(formula: &str, mut depth: usize, notation: Notation) -> Vec<Break> {
     let (mut found, mut braces) = (Vec::new(), 0usize);

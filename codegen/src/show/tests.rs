@@ -159,7 +159,8 @@ fn a_determinant_that_does_not_exist_says_why() {
         sheet.absent,
         [Absent {
             function: "determinant".into(),
-            reason: "the task has 6 rows and the arm 1 joints: its Jacobian is not square; see `manipulability`".into()
+            reason: "the task has 6 rows and the arm 1 joint: its Jacobian never has as many independent rows; name fewer rows under `task`"
+                .into()
         }]
     );
     assert!(sheet.text().starts_with("determinant: the task has 6 rows"), "{}", sheet.text());
@@ -234,4 +235,72 @@ fn a_determinant_begins_with_its_factors() {
         shown.text(),
         "determinant: det J(q), the product of\n  factor  1/6*sin(q2)\n          zero at q2 = 0 mod pi\nmultiplied out\n  det J = 1/6*sin(q2)\n"
     );
+}
+
+/// A planar arm of three links whose task is a position.
+const THREE_LINKS: &str = "
+name: three_links
+convention: standard
+gravity: [0, -9.81, 0]
+parameters: {l1: 2, l2: 3, l3: 1}
+task: [x, y]
+joints:
+  - {name: j1, type: revolute, a: l1, alpha: 0, d: 0, theta: 0, link: {mass: 1, inertia: {zz: 1}}}
+  - {name: j2, type: revolute, a: l2, alpha: 0, d: 0, theta: 0, link: {mass: 1, inertia: {zz: 1}}}
+  - {name: j3, type: revolute, a: l3, alpha: 0, d: 0, theta: 0, link: {mass: 1, inertia: {zz: 1}}}
+";
+
+#[test]
+fn minors_of_a_planar_arm_are_those_of_the_textbook() {
+    assert_eq!(
+        sheet(THREE_LINKS, &["determinant"], Reading::Symbolic).text(),
+        "determinant: det(J J') = d1^2 + ... + d3^2, dk the determinant of J without column k\n\
+         J loses rank where all of the following are zero together\n  d1 = sin(q3)*l2*l3\n  \
+         d2 = sin(q2 + q3)*l1*l3 + sin(q3)*l2*l3\n  d3 = sin(q2 + q3)*l1*l3 + sin(q2)*l1*l2\n"
+    );
+}
+
+#[test]
+fn minors_of_shoulder_elbow_and_wrist_share_the_sine_of_the_elbow() {
+    let iiwa = sheet(include_str!("../../../tests/data/iiwa14.yaml"), &["determinant"], Reading::Nominal);
+    let text = iiwa.text();
+    assert!(text.contains("dk times the product of\n  factor  21/25000*sin(q4)\n          zero at q4 = 0 mod pi\n"), "{text}");
+    // Without joint 4 the wrist stays as far from the shoulder as it is.
+    assert!(text.contains("\n  d1 = -80*cos(q3)*sin(q4)*sin(q6)\n") && text.ends_with("\n  d4 = 0\n"), "{text}");
+    let latex = iiwa.latex();
+    for part in ["$\\det(J J^T) = D_1^2 + \\dots + D_{7}^2$", "\\sin q_{4}", "d_{4} &= 0\n"] {
+        assert!(latex.contains(part), "{latex}");
+    }
+    let json = serde_json::to_value(&iiwa.quantities[0]).expect("JSON");
+    assert_eq!(json["common_factors"], serde_json::json!(["21/25000*sin(q4)"]));
+    assert_eq!(json["singular"], serde_json::json!(["q4 = 0 mod pi"]));
+    assert_eq!(json["entries"][5], serde_json::json!(["84*sin(q2)*sin(q4)*sin(q5)*sin(q6)"]));
+}
+
+#[test]
+fn equal_minors_are_shown_once_and_what_is_never_zero_is_said() {
+    // Two slides about one line, and one across: without the third nothing is left.
+    let slide = |alpha: &str| format!("type: prismatic, a: 0, alpha: {alpha}, d: 0, theta: 0, link: {{mass: 1}}}}");
+    let text = format!(
+        "name: gantry\nconvention: standard\ngravity: [0, 0, -9.81]\ntask: [y, z]\njoints:\n  - {{name: a, {}\n  - {{name: b, {}\n  - {{name: c, {}\n",
+        slide("0"),
+        slide("pi/2"),
+        slide("0")
+    );
+    let text = sheet(&text, &["determinant"], Reading::Nominal).text();
+    assert!(text.contains("J never loses rank\n  d1 = d2 = 1\n  d3      = 0\n"), "{text}");
+}
+
+#[test]
+fn minors_that_are_too_long_or_too_many_say_where_to_look() {
+    let ask = "`armgen page ROBOT.yaml --out robot.html` shows w = sqrt(det(J J')) at any posture, 0 where J loses rank";
+    for (text, reason) in [
+        (THREE_LINKS.replace("[x, y]", "[x]"), "the task has 1 row and the arm 3 joints: its Jacobian is not square"),
+        (
+            THREE_LINKS.replace("theta: 0", "theta: 0.7"),
+            "the task has 2 rows and the arm 3 joints: the minors of its Jacobian are too long",
+        ),
+    ] {
+        assert_eq!(sheet(&text, &["determinant"], Reading::Nominal).absent[0].reason, format!("{reason}; {ask}"));
+    }
 }

@@ -4,7 +4,9 @@ use crate::catalogue::Absent;
 use std::fmt::Write;
 
 use super::lines::broken;
+use super::minors::Words;
 use super::{Formulas, Sheet, Shown};
+use crate::derive::determinant::minors::Product;
 use crate::ring::print::Notation;
 
 /// Lines are at most so long where a formula can be broken.
@@ -22,6 +24,9 @@ impl Sheet {
 impl Shown {
     pub(super) fn text(&self) -> String {
         let formulas = self.plain_text();
+        if let Some(left) = self.minors() {
+            return self.text_of_minors(left, formulas);
+        }
         let mut text = format!("{}: {}", self.name, self.symbol[0]);
         match (self.rows, self.columns) {
             (1, 1) => {}
@@ -39,6 +44,14 @@ impl Shown {
             Some(table) => text + "\n" + &table,
             None => self.lines(text, formulas),
         }
+    }
+
+    /// The minors: the factors that they share, and what is left of each.
+    fn text_of_minors(&self, left: &[Product], formulas: &Formulas) -> String {
+        let Words { head, where_lost } = self.words(left, Notation::Text);
+        let title = format!("{}: {head}\n{}{where_lost}\n", self.name, self.text_factors());
+        let names = self.equal_minors(left, |k| self.entry_name(k, 0));
+        title + &named(names.iter().map(|(names, k)| (names.clone(), formulas.entries[*k].as_str())).collect())
     }
 
     /// The factors of the determinant, and where they are zero.
@@ -94,14 +107,19 @@ impl Shown {
         });
         text.push('\n');
         let steps = formulas.steps.iter().map(|(name, formula)| (name.clone(), formula.as_str()));
-        let all: Vec<(String, &str)> = steps.chain(entries).collect();
-        let width = all.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-        for (name, formula) in all {
-            let indent = width + 5;
-            let pieces = broken(formula, Notation::Text, WIDTH.saturating_sub(indent));
-            let separator = format!("\n{:indent$}", "");
-            writeln!(text, "  {name:<width$} = {}", pieces.join(&separator)).expect("writing to a string");
-        }
-        text
+        text + &named(steps.chain(entries).collect())
     }
+}
+
+/// Formulas with their names, a line each or, where they are long, several.
+fn named(all: Vec<(String, &str)>) -> String {
+    let width = all.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let indent = width + 5;
+    let mut text = String::new();
+    for (name, formula) in all {
+        let pieces = broken(formula, Notation::Text, WIDTH.saturating_sub(indent));
+        let separator = format!("\n{:indent$}", "");
+        writeln!(text, "  {name:<width$} = {}", pieces.join(&separator)).expect("writing to a string");
+    }
+    text
 }

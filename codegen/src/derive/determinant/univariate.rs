@@ -7,7 +7,7 @@
 //! A coefficient counts as zero when the prime field says so: quotients of general constants may be zero without looking it.
 
 use crate::exact::Number;
-use crate::ring::field::Field;
+use crate::ring::field::{Element, Field};
 
 /// Coefficients from the lowest power up.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -147,8 +147,58 @@ pub(super) fn divide(field: &mut Field, a: &Univariate, b: &Univariate) -> Univa
     quotient
 }
 
+/// The monic greatest common divisor of some polynomials that are not all 0.
+///
+/// Its degree in the prime field, where no leading coefficient vanishes, bounds that over the constants: most have none, which is known before any
+/// quotient of long constants is formed.
+pub(super) fn gcd_of_all(field: &mut Field, mut all: Vec<Univariate>) -> Univariate {
+    let degree = degree_of_gcd(field, &all);
+    if degree == 0 {
+        return Univariate::monomial(0, Number::one());
+    }
+    all.retain(|polynomial| !polynomial.is_zero());
+    all.sort_by_cached_key(|p| {
+        (p.proper_degree(), p.coefficients.iter().map(Number::terms_multiplied_out).fold(0, usize::saturating_add))
+    });
+    let mut divisor = Univariate::default();
+    for polynomial in &all {
+        divisor = gcd(field, polynomial, &divisor);
+        if divisor.proper_degree() == degree {
+            break;
+        }
+    }
+    divisor
+}
+
+/// The degree of the greatest common divisor in the prime field.
+fn degree_of_gcd(field: &mut Field, all: &[Univariate]) -> usize {
+    let zero = field.zero();
+    let trimmed = |mut a: Vec<Element>| {
+        a.truncate(a.iter().rposition(|c| *c != zero).map_or(0, |k| k + 1));
+        a
+    };
+    let mut divisor: Vec<Element> = Vec::new();
+    for polynomial in all {
+        let mut rest = trimmed(polynomial.coefficients.iter().map(|c| field.number(c)).collect());
+        while let Some(&leading) = rest.last() {
+            // rest and divisor change places: the remainder of the longer one.
+            std::mem::swap(&mut rest, &mut divisor);
+            let inverse = field.inverse(leading);
+            while rest.len() >= divisor.len() {
+                let shift = rest.len() - divisor.len();
+                let factor = field.mul(rest[rest.len() - 1], inverse);
+                for (k, c) in divisor.iter().enumerate() {
+                    rest[shift + k] = field.sub(rest[shift + k], field.mul(factor, *c));
+                }
+                rest = trimmed(rest);
+            }
+        }
+    }
+    divisor.len().saturating_sub(1)
+}
+
 /// The monic greatest common divisor.
-pub(super) fn gcd(field: &mut Field, a: &Univariate, b: &Univariate) -> Univariate {
+fn gcd(field: &mut Field, a: &Univariate, b: &Univariate) -> Univariate {
     let (mut a, mut b) = (a.monic(field), b.monic(field));
     while !b.is_zero() {
         let (_, rest) = divide_with_rest(field, &a, &b);

@@ -195,13 +195,6 @@ pub fn link_frames(pool: &mut Pool, arm: &Arm) -> Vec<Vec<Vec<ExprId>>> {
         .collect()
 }
 
-/// The links from the base to a link.
-fn path_to(arm: &Arm, link: usize) -> Vec<usize> {
-    let mut path: Vec<usize> = std::iter::successors(Some(link), |&i| arm.joints[i].parent).collect();
-    path.reverse();
-    path
-}
-
 fn z(frame: &(Matrix, Vector)) -> Vector {
     [0, 1, 2].map(|row| frame.0[row][2])
 }
@@ -217,7 +210,7 @@ fn jacobian_of_point(pool: &mut Pool, arm: &Arm, frames: &Frames, link: usize, p
     let shift = pool.transform(&frames.joints[link].0, point);
     let end = pool.add_vectors(&frames.joints[link].1, &shift);
     let mut jacobian = vec![vec![ExprId::ZERO; arm.dof()]; 6];
-    for i in path_to(arm, link) {
+    for i in arm.path_to(link) {
         let axis = z(&frames.joints[i]);
         if arm.joints[i].is_revolute() {
             let arm_to_end = pool.sub_vectors(&end, &frames.joints[i].1);
@@ -248,7 +241,7 @@ fn set_column(jacobian: &mut [Vec<ExprId>], column: usize, linear: &Vector, angu
 pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let frames = frames(pool, arm);
     let rates = arm.symbols(pool, Symbol::Rate);
-    let path = path_to(arm, arm.tip);
+    let path = arm.path_to(arm.tip);
     let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
     let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
     // Angular velocity of each link on the path, and linear velocity of the end effector relative to each joint's origin, from the tip down.
