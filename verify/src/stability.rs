@@ -140,8 +140,7 @@ struct Plain {
     /// The error over the wide box, and over that with the parameters of the description.
     boxes: [f64; 2],
     /// The size of what stands beside it: of an entry of a regressor the largest of the same unit, of inertias at least that of rates. Rates about the
-    /// axes of a tensor make its columns, and
-    /// all of one can be what an angle of 1e-5 between two axes leaves of them.
+    /// axes of a tensor make its columns, and all of one can be what an angle of 1e-5 between two axes leaves of them.
     beside: f64,
 }
 
