@@ -39,7 +39,7 @@ fn every_language_is_written_and_verified() {
         check(&folder, &["generate", &scara(), "--language", language, "--out", out, "--verify"], 0);
         check(&folder, &["verify", &scara(), out], 0);
         assert!(beside.iter().all(|file| folder.join(file).is_file()), "{language}");
-        let certificate = folder.join(out).with_extension("cert.json");
+        let certificate = folder.join(format!("{out}.cert.json"));
         assert!(certificate.is_file(), "{}", certificate.display());
         fs::remove_file(certificate).expect("a certificate");
     }

@@ -7,9 +7,12 @@
 //! |p - p'| ≤ Σ_j (D_j + 2 η_j) ρ_j + Σ_slides η_j Q_j + Σ dust     ρ_j: length of the rest of the chain   (m)
 //! ```
 //!
-//! where Q is the largest |q| of a slide. For the torques a Newton-Euler recursion runs over magnitudes of angular velocity, angular
-//! acceleration and acceleration and over their differences outwards, then over forces and moments inwards; products differ by
-//! |ab - a'b'| ≤ Δa |b| + |a'| Δb. What turns the whole arm about the direction of gravity changes no torque, and is left out of them.
+//! where Q is the largest |q| of a slide. For the torques the numbers are taken for something else one after another: between the arm before
+//! and the arm after, a Newton-Euler recursion runs over magnitudes of angular velocity, angular acceleration and acceleration and over their
+//! differences outwards, then over forces and moments inwards; products differ by |ab - a'b'| ≤ Δa |b| + |a'| Δb. Differences are those of
+//! vectors seen in the axes of each link, where a turn is felt once by what hangs on it, or of vectors seen in the axes of the base, where a
+//! turn of the last link moves its mass by little and no force; the smaller one counts. What turns the whole arm about the direction of gravity
+//! changes no torque, and is left out of them.
 //!
 //! The box: q within its limits (none: ±pi rad, ±1 m), |dq| up to the velocity limit (none: 4 rad/s, 1 m/s), |ddq| ≤ 10.
 //! Sums are floats, rounded up at the end.
@@ -31,6 +34,8 @@ pub(crate) struct Bound {
     pub(crate) orientation: f64,
     /// Of any joint's torque, N m or N.
     pub(crate) torque: f64,
+    /// The joint whose torque that is.
+    pub(crate) joint: usize,
 }
 
 /// Length, angle by which it was turned, and length by which it was moved, of poses.
@@ -128,7 +133,8 @@ pub(crate) fn of(arm: &Arm) -> Bound {
         orientation += turned;
         rest += ways[j].length + slide(j);
     }
-    Bound { flange: flange * UP, orientation: orientation * UP, torque: torque(arm, &ways, &boxes) * UP }
+    let (joint, torque) = torque(arm, &ways, &boxes);
+    Bound { flange: flange * UP, orientation: orientation * UP, torque: torque * UP, joint }
 }
 
 /// By how much of its angle snapping turned the whole arm about z of the base alone, along which gravity points.
@@ -148,27 +154,71 @@ fn about_gravity(arm: &Arm) -> f64 {
     yaw
 }
 
-/// Newton-Euler over magnitudes, in the axes of each link.
-fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
+/// What is taken for something else at a time.
+#[derive(Clone, Copy, PartialEq)]
+enum Step {
+    /// The origin of a joint.
+    Origin(usize),
+    /// The axis of a joint.
+    Axis(usize),
+    /// Bodies in their links, and gravity.
+    Bodies,
+}
+
+/// In whose axes the vectors of both arms are compared.
+#[derive(Clone, Copy, PartialEq)]
+enum Axes {
+    Link,
+    Base,
+}
+
+/// The joint whose torque can change most, and by how much.
+fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> (usize, f64) {
+    let rows = 0..arm.rows.len();
+    let steps = rows.clone().flat_map(|j| [Step::Origin(j), Step::Axis(j)]).chain([Step::Bodies]);
+    let mut sums = vec![0.0; arm.rows.len()];
+    for step in steps {
+        let [link, base] = [Axes::Link, Axes::Base].map(|axes| differences(arm, ways, boxes, step, axes));
+        rows.clone().for_each(|j| sums[j] += link[j].min(base[j]));
+    }
+    sums.into_iter().enumerate().fold((0, 0.0), |worst, (j, sum)| if sum > worst.1 { (j, sum) } else { worst })
+}
+
+/// Newton-Euler over magnitudes: by how much each torque changes at one step.
+fn differences(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)], step: Step, axes: Axes) -> Vec<f64> {
     const ACCELERATION: f64 = 10.0;
     let n = arm.rows.len();
+    let when = |now: bool, offset: f64| if now { offset } else { 0.0 };
+    let gravity_turned = when(step == Step::Bodies, arm.gravity_offset);
     let (mut w, mut dw, mut a) =
-        (Pair::default(), Pair::default(), Pair::new(arm.gravity_size, arm.gravity_size * arm.gravity_offset));
+        (Pair::default(), Pair::default(), Pair::new(arm.gravity_size, arm.gravity_size * gravity_turned));
     let (mut forces, mut moments) = (vec![Pair::default(); n], vec![Pair::default(); n]);
-    // By how much the step from link j - 1 to link j is turned against the other arm's, and its lever.
-    let mut steps = Vec::new();
+    // By how much the axes in which vectors are written see link j turned: those of the link itself do not.
+    let mut link = 0.0;
+    // By how much link j - 1 sees link j turned, its lever, and by how much the axis of joint j is turned.
+    let mut passed = Vec::new();
     for (j, row) in arm.rows.iter().enumerate() {
-        let ((q, dq), eta) = (boxes[j], row.motion.axis_offset);
-        let turned = ways[j].turned + if row.prismatic { 0.0 } else { 2.0 * eta };
-        let mut lever = Pair::new(ways[j].length, ways[j].moved);
+        let ((q, dq), eta) = (boxes[j], when(step == Step::Axis(j), row.motion.axis_offset));
+        let origin = step == Step::Origin(j);
+        let turned = when(origin, ways[j].turned);
+        let mut lever = Pair::new(ways[j].length, when(origin, ways[j].moved)).turned(link);
         if row.prismatic {
-            lever = lever.plus(Pair::new(q, (ways[j].turned + eta) * q));
+            lever = lever.plus(Pair::new(q, (link + turned + eta) * q));
         }
-        steps.push((turned, lever));
-        let (rate, change) = (Pair::new(dq, eta * dq), Pair::new(ACCELERATION, eta * ACCELERATION));
-        let felt = if j == 0 { turned - about_gravity(arm) } else { turned };
-        a = a.plus(dw.times(lever)).plus(w.times(w).times(lever)).turned(felt);
-        (w, dw) = (w.turned(turned), dw.turned(turned));
+        a = a.plus(dw.times(lever)).plus(w.times(w).times(lever));
+        let onwards = turned + if row.prismatic { 0.0 } else { 2.0 * eta };
+        let (seen, axis) = match axes {
+            Axes::Link => (onwards, eta),
+            Axes::Base => (0.0, link + turned + eta),
+        };
+        if axes == Axes::Base {
+            link += onwards;
+        }
+        passed.push((seen, lever, axis));
+        let felt = if j == 0 && origin { (seen - about_gravity(arm)).max(0.0) } else { seen };
+        a = a.turned(felt);
+        (w, dw) = (w.turned(seen), dw.turned(seen));
+        let (rate, change) = (Pair::new(dq, axis * dq), Pair::new(ACCELERATION, axis * ACCELERATION));
         if row.prismatic {
             a = a.plus(change).plus(Pair::new(2.0, 0.0).times(w).times(rate));
         } else {
@@ -177,22 +227,25 @@ fn torque(arm: &Arm, ways: &[Way], boxes: &[(f64, f64)]) -> f64 {
         }
         let attached = row.attached.iter().map(|other| mass(&other.body, way(&other.origin)));
         for Mass { m, com, inertia } in row.body.iter().map(|body| mass(body, Way::default())).chain(attached) {
+            let in_link = |of: Pair| Pair::new(of.size, when(step == Step::Bodies, of.apart));
+            // R I R' with R off by an angle: twice that times |I|.
+            let (com, inertia) = (in_link(com).turned(link), in_link(inertia).turned(2.0 * link));
             let at = a.plus(dw.times(com)).plus(w.times(w).times(com));
             let force = Pair::new(m, 0.0).times(at);
             forces[j] = forces[j].plus(force);
             moments[j] = moments[j].plus(inertia.times(dw)).plus(w.times(inertia).times(w)).plus(com.times(force));
         }
     }
-    let mut worst: f64 = 0.0;
+    let mut changes = vec![0.0; n];
     for j in (0..n).rev() {
+        let (seen, lever, axis) = passed[j];
         let felt = if arm.rows[j].prismatic { forces[j] } else { moments[j] };
-        worst = worst.max(felt.apart + arm.rows[j].motion.axis_offset * felt.size);
+        changes[j] = felt.apart + axis * felt.size;
         if j > 0 {
-            let (turned, lever) = steps[j];
-            let force = forces[j].turned(turned);
+            let force = forces[j].turned(seen);
             forces[j - 1] = forces[j - 1].plus(force);
-            moments[j - 1] = moments[j - 1].plus(moments[j].turned(turned)).plus(lever.times(force));
+            moments[j - 1] = moments[j - 1].plus(moments[j].turned(seen)).plus(lever.times(force));
         }
     }
-    worst
+    changes
 }

@@ -108,7 +108,10 @@ pub(crate) fn arm(
     options: &Options,
     diagnostics: &mut Diagnostics,
 ) -> Option<Arm> {
-    let locks = locks::Locks::new(tree, &options.lock, diagnostics)?;
+    let (snap, inertia_as_written) = (Snap::new(options.snap), options.inertia_as_written);
+    let mut values = Values { source, diagnostics, snap, inertia_as_written, impossible: Vec::new(), boundless: 0 };
+    let locks = locks::Locks::new(tree, format, &options.lock, &mut values)?;
+    let diagnostics = &mut *values.diagnostics;
     let base = named_link(tree, options.base.as_deref(), "--base", diagnostics)?;
     let base = match base {
         Some(base) => base,
@@ -141,8 +144,6 @@ pub(crate) fn arm(
         return None;
     }
     format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, diagnostics);
-    let (snap, inertia_as_written) = (Snap::new(options.snap), options.inertia_as_written);
-    let values = Values { source, diagnostics, snap, inertia_as_written, impossible: Vec::new(), boundless: 0 };
     let on_path = path.iter().copied().collect();
     let mut builder =
         Builder { tree, format, locks, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
@@ -326,7 +327,7 @@ impl Builder<'_> {
     /// Where a joint beside the chain stands that is not locked: at 0, or where the joint that it follows makes it.
     fn following(&mut self, index: usize) -> Option<Lock> {
         let joint = &self.tree.joints[index];
-        let zero = Lock { joint: joint.name.clone(), text: "0".into(), value: 0.0, span: joint.span };
+        let zero = Lock::at_zero(joint);
         let Some((leader, span)) = self.format.leader(index) else { return Some(zero) };
         let Some(found) = self.tree.joint(leader) else {
             let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));

@@ -73,7 +73,12 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
         "locked": locked,
         "lumped": lumped,
         "left_out": left_out,
-        "bound": {"flange": bound.flange, "orientation": bound.orientation, "torque": bound.torque},
+        "bound": {
+            "flange": bound.flange,
+            "orientation": bound.orientation,
+            "torque": bound.torque,
+            "joint": arm.rows.get(bound.joint).map(|row| row.name.as_str()),
+        },
     });
     Report { lines: words(source, arm, bound, &left_out), json }
 }
@@ -88,9 +93,12 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
         lines.push(format!("renamed: {}", renamed.join(", ")));
     }
     if !arm.snap.snapped.is_empty() {
+        let (name, unit) =
+            arm.rows.get(bound.joint).map_or(("", "N m"), |row| (&row.name, if row.prismatic { "N" } else { "N m" }));
         lines.push(format!(
-            "{} taken for what they mean: the end effector moves by at most {} m and {} rad, a torque by {} N m (or N)",
+            "{} taken for what {}: within the limits the end effector moves by at most {} m and {} rad, and a torque changes by at most {} {unit} (that of `{name}`)",
             counted(arm.snap.snapped.len(), "number"),
+            if arm.snap.snapped.len() == 1 { "it means" } else { "they mean" },
             rounded_up(bound.flange),
             rounded_up(bound.orientation),
             rounded_up(bound.torque)

@@ -116,12 +116,19 @@ impl Tree {
         self.joint_names.get(name).copied()
     }
 
-    /// What may have been meant by the name of a link that does not exist.
+    /// What may have been meant by the name of a link that does not exist: the one that hangs on a joint of that name, one of nearly that name, or
+    /// one of the last links.
     pub(crate) fn meant_link(&self, name: &str) -> String {
-        meant(
-            name,
-            &self.links.iter().filter(|link| link.role != Role::Between).map(|link| link.name.as_str()).collect::<Vec<_>>(),
-        )
+        if let Some(joint) = self.joint(name).map(|joint| &self.joints[joint]) {
+            let link = &self.links[joint.child];
+            if link.role != Role::Between {
+                return format!("`{}` is a joint; the link that it moves is `{}`", shown(name), shown(&link.name));
+            }
+        }
+        let mut named: Vec<&Link> = self.links.iter().filter(|link| link.role != Role::Between).collect();
+        // Most often the tip is asked for.
+        named.sort_by_key(|link| !link.below.is_empty());
+        meant(name, &named.iter().map(|link| link.name.as_str()).collect::<Vec<_>>())
     }
 
     /// What may have been meant by the name of a joint that does not exist.
@@ -215,7 +222,8 @@ fn meant(name: &str, known: &[&str]) -> String {
         Some(meant) => format!("did you mean `{}`?", shown(meant)),
         None => {
             let some: Vec<String> = known.iter().take(8).map(|name| format!("`{}`", shown(name))).collect();
-            format!("there are {}{}", some.join(", "), if known.len() > 8 { ", ..." } else { "" })
+            let more = known.len().saturating_sub(8);
+            format!("there are {}{}", some.join(", "), if more > 0 { format!(", and {more} more") } else { String::new() })
         }
     }
 }

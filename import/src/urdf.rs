@@ -313,7 +313,6 @@ impl Format for Urdf<'_, '_> {
                     .filter(|n| n.is_element() && n.tag_name().name() != "inertial")
                     .for_each(|n| count(n.tag_name().name())),
                 "joint" => {
-                    const TAKEN: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
                     let others = node.children().filter(|n| n.is_element() && !TAKEN.contains(&n.tag_name().name()));
                     others.for_each(|n| count(n.tag_name().name()));
                 }
@@ -324,11 +323,13 @@ impl Format for Urdf<'_, '_> {
     }
 }
 
-/// What an element of each name may hold.
+/// Elements of a joint that are read.
+const TAKEN: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
+/// What an element of each name may hold beside them.
 const ELEMENTS_OF: [(&str, &[&str]); 4] = [
     ("robot", &["link", "joint", "material", "transmission", "gazebo"]),
     ("link", &["inertial", "visual", "collision"]),
-    ("joint", &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller"]),
+    ("joint", &["calibration", "safety_controller"]),
     ("inertial", &["origin", "mass", "inertia"]),
 ];
 
@@ -340,9 +341,10 @@ fn warn_of_misspelt(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
     for parent in std::iter::once(root).chain(inside) {
         let parent_name = parent.tag_name().name();
         let Some((_, known)) = ELEMENTS_OF.iter().find(|(name, _)| *name == parent_name) else { continue };
+        let known: Vec<&str> = if parent_name == "joint" { [known, &TAKEN[..]].concat() } else { known.to_vec() };
         for node in parent.children().filter(Node::is_element) {
             let name = node.tag_name().name();
-            let meant = if known.contains(&name) { None } else { did_you_mean(name, known) };
+            let meant = if known.contains(&name) { None } else { did_you_mean(name, &known) };
             if let Some(meant) = meant.filter(|_| seen.insert((parent_name, name))) {
                 let message = format!("nothing reads `{}` in a `{parent_name}`; it is left out", shown(name));
                 let help = format!("did you mean `{meant}`?");

@@ -61,7 +61,17 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             )
         }
     };
-    Diagnostic::new(code, span, message, "here", help)
+    let fault = Diagnostic::new(code, span, message, "here", help);
+    // What is opened and not closed is told by what follows, far below it.
+    let open = match error {
+        Error::UnexpectedCloseTag(..) => still_open(source.text(), at),
+        Error::UnclosedRootNode => still_open(source.text(), source.text().len()),
+        _ => None,
+    };
+    match open {
+        Some(open) => fault.also(open, "opened here, and not closed"),
+        None => fault,
+    }
 }
 
 /// A part of xacro at a place.
@@ -84,56 +94,98 @@ pub(crate) fn shown(text: &str) -> String {
     armgen_codegen::document::excerpt(text)
 }
 
+/// A tag of a text.
+enum Tag {
+    /// `<name ...>`, or `<name .../>`, which is empty.
+    Opening { start: usize, attributes: usize, empty: bool },
+    /// `</name>`.
+    Closing { start: usize },
+}
+
+/// The tags of a text, well-formed or not, in one pass.
+struct Tags<'t> {
+    text: &'t str,
+    at: usize,
+}
+
+impl Iterator for Tags<'_> {
+    type Item = Tag;
+
+    fn next(&mut self) -> Option<Tag> {
+        let (text, bytes) = (self.text, self.text.as_bytes());
+        let after = |from: usize, end: &str| text[from..].find(end).map_or(bytes.len(), |found| from + found + end.len());
+        loop {
+            let start = self.at + text[self.at..].find('<')?;
+            let rest = &bytes[start..];
+            self.at = if rest.starts_with(b"<!--") {
+                after(start + 4, "-->")
+            } else if rest.starts_with(b"<![CDATA[") {
+                after(start + 9, "]]>")
+            } else if rest.starts_with(b"<?") {
+                after(start + 2, "?>")
+            } else if rest.starts_with(b"</") {
+                self.at = after(start + 2, ">");
+                return Some(Tag::Closing { start });
+            } else {
+                let (mut quote, mut attributes, mut end) = (None, 0, start + 1);
+                while let Some(&byte) = bytes.get(end) {
+                    match (quote, byte) {
+                        (Some(open), _) if byte == open => quote = None,
+                        (Some(_), _) => {}
+                        (None, b'"' | b'\'') => quote = Some(byte),
+                        (None, b'=') => attributes += 1,
+                        (None, b'>') => break,
+                        _ => {}
+                    }
+                    end += 1;
+                }
+                self.at = (end + 1).min(bytes.len());
+                return Some(Tag::Opening { start, attributes, empty: bytes.get(end.wrapping_sub(1)) == Some(&b'/') });
+            };
+        }
+    }
+}
+
 /// Counts; where something is too much, the place and what.
 fn scan(text: &str) -> Result<(), (usize, String)> {
     if text.len() > MAX_BYTES {
         return Err((0, format!("{} bytes, more than {MAX_BYTES}", text.len())));
     }
-    let bytes = text.as_bytes();
-    let (mut at, mut elements, mut depth) = (0, 0, 0usize);
-    let after = |from: usize, end: &str| text[from..].find(end).map_or(bytes.len(), |found| from + found + end.len());
-    while let Some(found) = text[at..].find('<') {
-        let start = at + found;
-        let rest = &bytes[start..];
-        if rest.starts_with(b"<!--") {
-            at = after(start + 4, "-->");
-        } else if rest.starts_with(b"<![CDATA[") {
-            at = after(start + 9, "]]>");
-        } else if rest.starts_with(b"<?") {
-            at = after(start + 2, "?>");
-        } else if rest.starts_with(b"</") {
+    let (mut elements, mut depth) = (0, 0usize);
+    for tag in (Tags { text, at: 0 }) {
+        let Tag::Opening { start, attributes, empty } = tag else {
             depth = depth.saturating_sub(1);
-            at = after(start + 2, ">");
-        } else {
-            let (mut quote, mut attributes, mut end) = (None, 0, start + 1);
-            while let Some(&byte) = bytes.get(end) {
-                match (quote, byte) {
-                    (Some(open), _) if byte == open => quote = None,
-                    (Some(_), _) => {}
-                    (None, b'"' | b'\'') => quote = Some(byte),
-                    (None, b'=') => attributes += 1,
-                    (None, b'>') => break,
-                    _ => {}
-                }
-                end += 1;
-            }
-            elements += 1;
-            if bytes.get(end.wrapping_sub(1)) != Some(&b'/') {
-                depth += 1;
-            }
-            if elements > MAX_ELEMENTS {
-                return Err((start, format!("more than {MAX_ELEMENTS} elements")));
-            }
-            if attributes > MAX_ATTRIBUTES {
-                return Err((start, format!("an element with more than {MAX_ATTRIBUTES} attributes")));
-            }
-            if depth > MAX_DEPTH {
-                return Err((start, format!("more than {MAX_DEPTH} elements within each other")));
-            }
-            at = (end + 1).min(bytes.len());
+            continue;
+        };
+        elements += 1;
+        depth += usize::from(!empty);
+        if elements > MAX_ELEMENTS {
+            return Err((start, format!("more than {MAX_ELEMENTS} elements")));
+        }
+        if attributes > MAX_ATTRIBUTES {
+            return Err((start, format!("an element with more than {MAX_ATTRIBUTES} attributes")));
+        }
+        if depth > MAX_DEPTH {
+            return Err((start, format!("more than {MAX_DEPTH} elements within each other")));
         }
     }
     Ok(())
+}
+
+/// The tag that is still open in front of a place, the innermost one: its name.
+fn still_open(text: &str, before: usize) -> Option<Span> {
+    let mut open = Vec::new();
+    for tag in (Tags { text, at: 0 }) {
+        match tag {
+            Tag::Opening { start, .. } | Tag::Closing { start } if start >= before => break,
+            Tag::Opening { empty: true, .. } => {}
+            Tag::Opening { start, .. } => open.push(start),
+            Tag::Closing { .. } => _ = open.pop(),
+        }
+    }
+    let start = open.pop()? + 1;
+    let name = text[start..].find(|c: char| c.is_whitespace() || matches!(c, '>' | '/')).unwrap_or(text.len() - start);
+    Some(Span::new(start, start + name))
 }
 
 /// A place that nothing in the file belongs to: its beginning.

@@ -67,7 +67,7 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
     }
     line("    link:");
     match &row.body {
-        Some(body) => mass_distribution(line, "      ", body),
+        Some(body) => mass_distribution(line, "      ", body, source, arm),
         None => line("      mass: 0"),
     }
     if !row.attached.is_empty() {
@@ -79,7 +79,7 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
         if !is_identity(&other.origin) {
             line(&format!("          origin: {}{}", poses(&other.origin), snapped(source, arm, &spans_of(&other.origin))));
         }
-        mass_distribution(line, "          ", &other.body);
+        mass_distribution(line, "          ", &other.body, source, arm);
     }
     let mut friction = Vec::new();
     friction.extend(row.motion.viscous.iter().map(|v| format!("viscous: {}", v.text)));
@@ -96,10 +96,11 @@ fn joint(line: &mut impl FnMut(&str), source: &Source, arm: &Arm, row: &Row) {
     }
 }
 
-fn mass_distribution(line: &mut impl FnMut(&str), indent: &str, body: &Body) {
+fn mass_distribution(line: &mut impl FnMut(&str), indent: &str, body: &Body, source: &Source, arm: &Arm) {
     line(&format!("{indent}mass: {}", body.mass.text));
-    if !body.mass.is_zero() && body.com.iter().any(|x| !x.is_zero()) {
-        line(&format!("{indent}com: {}", vector(&body.com)));
+    // A centre that was taken for 0 stands there, with what was written.
+    if !body.mass.is_zero() && body.com.iter().any(|x| !x.is_zero() || x.offset > 0.0) {
+        line(&format!("{indent}com: {}{}", vector(&body.com), snapped(source, arm, &body.com.each_ref().map(|x| x.span))));
     }
     let mut elements: Vec<String> = ELEMENTS
         .iter()
@@ -111,7 +112,8 @@ fn mass_distribution(line: &mut impl FnMut(&str), indent: &str, body: &Body) {
         return;
     }
     elements.extend(rotation(&body.turn));
-    line(&format!("{indent}inertia: {{{}}}", elements.join(", ")));
+    let spans: Vec<Span> = body.inertia.iter().chain(body.turn.numbers()).map(|x| x.span).collect();
+    line(&format!("{indent}inertia: {{{}}}{}", elements.join(", "), snapped(source, arm, &spans)));
 }
 
 fn vector(numbers: &[Written]) -> String {

@@ -165,6 +165,27 @@ fn a_joint_of_the_chain_can_be_locked() {
     assert!(yaml.contains("angle: pi/4"), "{yaml}");
 }
 
+/// A joint of the chain that follows a locked one stands where that one makes it stand.
+#[test]
+fn what_follows_a_locked_joint_stands_still() {
+    let text = "<robot name='a'><link name='b'/><link name='l'><inertial><origin xyz='1e-14 0 0'/><mass value='1'/>\
+                <inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='1e-17' ixz='0' iyz='0'/></inertial></link><link name='m'/><link name='n'/>\
+                <joint name='turn' type='revolute'><parent link='b'/><child link='l'/><axis xyz='0 1 0'/>\
+                <limit lower='-1' upper='1' velocity='1' effort='1'/></joint>\
+                <joint name='one' type='prismatic'><parent link='l'/><child link='m'/><axis xyz='0 1 0'/>\
+                <limit lower='-1' upper='1' velocity='1' effort='1'/></joint>\
+                <joint name='two' type='prismatic'><parent link='m'/><child link='n'/><axis xyz='0 1 0'/>\
+                <limit lower='-1' upper='1' velocity='1' effort='1'/><mimic joint='one' multiplier='-2' offset='0.01'/></joint></robot>";
+    let options = Options { lock: vec![("one".into(), "0.04".into())], ..Options::default() };
+    let imported = imported(text, &options);
+    assert_eq!(valid(&imported.yaml).dof(), 1);
+    let locked = "joints that stand still: `one` at 0.04, `two` at (-2)*0.04 + 0.01";
+    assert!(imported.report.lines().iter().any(|line| line == locked), "{:?}", imported.report.lines());
+    // What was taken for 0 in a body stands beside it.
+    assert!(imported.yaml.contains("com: [0, 0, 0]  # 1e-14 in line 1\n"), "{}", imported.yaml);
+    assert!(imported.yaml.contains("inertia: {xx: 0.1, yy: 0.1, zz: 0.1}  # 1e-17 in line 1\n"), "{}", imported.yaml);
+}
+
 #[test]
 fn an_arm_costs_the_same_whatever_frames_its_links_have() {
     // The second file draws the first link's frame elsewhere: turned by right angles, and slid along the axis. The end effector is the same.

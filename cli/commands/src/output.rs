@@ -22,8 +22,11 @@ pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Writes beside the file first and then renames: nobody ever finds half of it.
+/// Writes beside the file first and then renames: nobody ever finds half of it. A folder that is not there is made.
 pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
     // A rename would turn a device or a link into a plain file.
     if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
         return std::fs::write(path, text);

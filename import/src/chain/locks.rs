@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
+use armgen_codegen::diagnostic::Diagnostic;
 use armgen_codegen::document::parse_expression;
 use armgen_codegen::document::yaml::Scalar;
 use armgen_codegen::source::Span;
 
+use crate::format::Format;
 use crate::number::Decimal;
 use crate::pose::factor;
-use crate::tree::Tree;
+use crate::tree::{Joint, Tree};
+use crate::values::Values;
 use crate::xml::{beginning, shown};
 use crate::Code;
 
@@ -23,16 +25,24 @@ pub(crate) struct Lock {
     pub(crate) span: Span,
 }
 
+impl Lock {
+    /// Of a joint that stands at 0.
+    pub(crate) fn at_zero(joint: &Joint) -> Lock {
+        Lock { joint: joint.name.clone(), text: "0".into(), value: 0.0, span: joint.span }
+    }
+}
+
 /// What the user holds.
 pub(crate) struct Locks {
     by_joint: BTreeMap<usize, Lock>,
 }
 
 impl Locks {
-    /// The locks of the options; faults are reported.
-    pub(crate) fn new(tree: &Tree, options: &[(String, String)], diagnostics: &mut Diagnostics) -> Option<Locks> {
+    /// The locks of the options, and of the joints that follow a locked one; faults are reported.
+    pub(crate) fn new(tree: &Tree, format: &dyn Format, options: &[(String, String)], values: &mut Values<'_>) -> Option<Locks> {
         let mut by_joint = BTreeMap::new();
-        let before = diagnostics.errors();
+        let before = values.diagnostics.errors();
+        let diagnostics = &mut *values.diagnostics;
         for (name, text) in options {
             let mut fault = |code: Code, message: String, help: String| {
                 diagnostics.push(Diagnostic::new(code, beginning(), message, "", help));
@@ -60,7 +70,16 @@ impl Locks {
                 ),
             }
         }
-        (diagnostics.errors() == before).then_some(Locks { by_joint })
+        for (follower, joint) in tree.joints.iter().enumerate().filter(|(_, joint)| joint.kind.moves()) {
+            let leader = format.leader(follower).and_then(|(leader, _)| tree.joint(leader));
+            let at = leader.and_then(|leader| by_joint.get(&leader)).cloned();
+            if let (Some(at), false) = (at, by_joint.contains_key(&follower)) {
+                let (factor, offset) = format.ratio(follower, values);
+                let lock = follow(Lock::at_zero(joint), Some(&at), factor.as_ref(), &offset);
+                by_joint.insert(follower, lock);
+            }
+        }
+        (values.diagnostics.errors() == before).then_some(Locks { by_joint })
     }
 
     /// The lock of a joint.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 
 use super::locks::Locks;
-use crate::tree::{Role, Tree};
+use crate::tree::{Link, Role, Tree};
 use crate::xml::shown;
 use crate::Code;
 
@@ -54,7 +54,14 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         let more = if more > 0 { format!(", and {more} more") } else { String::new() };
         let message = format!("several links may be the tip: {}{more}", all.join(", "));
         let tips: Vec<usize> = chains.iter().map(|(leaves, _)| leaves[0]).collect();
-        let help = format!("choose one: `--tip {}`", shown(&tree.links[tips[0]].name));
+        let mut help = format!("choose one: `--tip {}`", shown(&tree.links[tips[0]].name));
+        if let Some((link, joints)) = before_branches(tree, base, tips[0], locks) {
+            let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
+            help = format!(
+                "{help}; or end the arm where it branches, say before the fingers: `--tip {}` ({joints})",
+                shown(&link.name)
+            );
+        }
         let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[tips[0]].span, message, "may be the tip", help);
         for &tip in tips.iter().skip(1).take(3) {
             fault = fault.also(tree.links[tip].span, "may be the tip, too");
@@ -82,6 +89,28 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         named(leaves)
     );
     Some((tip, vec![note]))
+}
+
+/// The last link above a tip on which more than one joint moves something, and how many joints move it, if some do.
+fn before_branches<'t>(tree: &'t Tree, base: usize, tip: usize, locks: &Locks) -> Option<(&'t Link, usize)> {
+    let moves = |joint: usize| tree.joints[joint].kind.moves() && locks.of(joint).is_none();
+    // Whether a joint, or one below it, moves.
+    let moving = |joint: usize| {
+        let mut open = vec![joint];
+        while let Some(joint) = open.pop() {
+            if moves(joint) {
+                return true;
+            }
+            open.extend(&tree.links[tree.joints[joint].child].below);
+        }
+        false
+    };
+    let path = tree.path(base, tip)?;
+    let at =
+        path.iter().rposition(|&joint| tree.links[tree.joints[joint].parent].below.iter().filter(|&&j| moving(j)).count() > 1)?;
+    let joints = path[..at].iter().filter(|&&joint| moves(joint)).count();
+    let link = &tree.links[tree.joints[path[at]].parent];
+    (joints > 0 && link.role != Role::Between).then_some((link, joints))
 }
 
 /// The links above one, as a list for a message, if there are some.

@@ -94,10 +94,11 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
         terminal::note(line);
     }
     // What only the equations show, such as a last link without inertia about its axis.
-    let as_description = Source::new("robot.yaml", imported.yaml.clone());
+    let called = results.out.as_deref().map_or_else(|| "the description".to_owned(), |out| out.display().to_string());
+    let as_description = Source::new(called.as_str(), imported.yaml.clone());
     let (_, of_description) = armgen_codegen::validate::read(&as_description);
     for refused in of_description.iter().filter(|diagnostic| diagnostic.code.severity() == Severity::Error) {
-        terminal::note(&format!("robot.yaml is refused as it stands: {}; {}", refused.message, refused.help));
+        terminal::note(&format!("{called} is refused as it stands: {}; {}", refused.message, refused.help));
     }
     let json = imported.report.to_json();
     for (path, text) in [(&results.report, &json), (&results.out, &imported.yaml)] {

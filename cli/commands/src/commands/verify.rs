@@ -1,5 +1,6 @@
 //! `armgen verify`: whether a module equals the equations of its description.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
@@ -14,9 +15,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{input, terminal, FAULTY};
 
-/// Where the certificate of a module stands.
+/// Where the certificate of a module stands: `robot.cert.json` for `robot.rs`; `robot.h.cert.json` for `robot.h`, since both may be beside each
+/// other, and so on.
 pub(crate) fn certificate_beside(module: &Path) -> PathBuf {
-    module.with_extension("cert.json")
+    match module.extension().and_then(OsStr::to_str) {
+        None | Some("rs") => module.with_extension("cert.json"),
+        Some(other) => module.with_extension(format!("{other}.cert.json")),
+    }
 }
 
 pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>) -> u8 {
