@@ -55,6 +55,9 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     text += "<nav aria-label=\"Sections\">";
     for (id, title, _) in &sections {
         let _ = write!(text, "<a href=\"#{id}\">{title}</a>");
+        if *id == "numbers" {
+            text += "<a href=\"#singular\">Singular postures</a>";
+        }
     }
     text += "</nav>\n";
     for (id, title, content) in &sections {
@@ -110,9 +113,9 @@ fn header(parts: &Parts<'_>) -> String {
 }
 
 const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
-<svg id="arm" viewBox="0 0 600 480" role="img" tabindex="0" aria-labelledby="arm-title arm-description">
+<div class="picture"><svg id="arm" viewBox="0 0 600 480" role="img" tabindex="0" aria-labelledby="arm-title arm-description">
 <title id="arm-title">The arm</title><desc id="arm-description"></desc>
-</svg>
+</svg><p id="singular-posture" role="status"></p></div>
 <p id="grid-step" class="small"></p>
 <p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted. <span class="keys">Drag turns, the wheel zooms; keys: arrows, + −, 1 2 3 0.</span></p>
 <div class="controls" role="group" aria-label="View">

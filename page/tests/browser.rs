@@ -279,10 +279,48 @@ fn equations_are_set_when_they_are_opened() {
         if name == "everything" {
             // One entry is shown before the steps that it needs, and they are fewer than all; no step that is named is missing.
             let chosen = tab.run(CHOOSE_ENTRY);
-            assert_eq!(chosen, serde_json::json!(["1,2", true, [], true]));
+            assert_eq!(chosen, serde_json::json!(["1,2", true, [], true, true]));
         }
         tab.close(&file);
     }
+}
+
+/// An entry of an open section has its number beside it, that of the table at every posture; a singular posture is told at the picture, and
+/// the buttons beside the factors lead to it.
+#[test]
+fn entries_have_numbers_and_singular_postures_a_badge() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("badge");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let file = written(&folder, &robot("scara"));
+    let mut tab = browser.open(&file, 1600, "light");
+    let seen = tab.run(
+        "(async () => { for (const name of ['inertia_matrix', 'determinant']) { const details = document.querySelector(`details[data-equation=${name}]`); \
+         details.open = true; while (!details.querySelector('.copies')) await new Promise((done) => setTimeout(done, 5)); } \
+         const b12 = () => { const beside = document.querySelector('[data-equation=inertia_matrix] [data-number=\"1,2\"]'); \
+             const shown = document.querySelector('[data-quantity=inertia_matrix][data-row=\"1\"][data-column=\"2\"]'); \
+             return [beside.textContent, beside.dataset.value === shown.dataset.value]; }; \
+         const factor = () => document.querySelector('[data-number=factor_1]').dataset.value; \
+         const badge = () => document.getElementById('singular-posture').textContent; \
+         const q2 = document.getElementById('q2-value'); \
+         const turn = (to) => { q2.value = to; q2.dispatchEvent(new Event('input', { bubbles: true })); }; \
+         const seen = [[...b12(), factor(), badge()]]; turn('1'); seen.push([...b12(), badge()]); \
+         const set = [...document.querySelectorAll('#singular button')].find((button) => button.textContent === 'set q2 = 0'); \
+         set.click(); seen.push([q2.value, badge() !== '']); turn('3'); set.click(); seen.push([q2.value, badge() !== '']); \
+         const link = document.querySelector('#singular-posture a').hash; \
+         const there = document.querySelector(`[data-equation=inertia_matrix] a[href=\"#number-inertia_matrix\"]`) !== null; \
+         seen.push([document.querySelector(link).querySelector('h3').textContent, there]); return seen; })()",
+    );
+    let told = "⚠ singular posture: factor 1 of det J near zero";
+    let expected = serde_json::json!([
+        ["= 13.766", true, "0", told],
+        ["= 11.4675", true, ""],
+        ["0", true],
+        ["3.141592653589793", true],
+        ["Singular postures", true]
+    ]);
+    assert_eq!(seen, expected);
+    tab.close(&file);
 }
 
 const OPEN: &str = r#"(async () => {
@@ -553,7 +591,9 @@ const CHOOSE_ENTRY: &str = r#"(async () => {
     select.value = "";
     select.dispatchEvent(new Event("change"));
     const missing = [...named].filter((step) => !there.has(step));
-    return [first.dataset.entry, steps.length + 1 < before, missing, (await lines()).length === before];
+    const number = document.querySelector('[data-quantity=inertia_matrix][data-row="1"][data-column="2"]').dataset.value;
+    const beside = first.querySelector("[data-number]").dataset.value === number;
+    return [first.dataset.entry, steps.length + 1 < before, missing, (await lines()).length === before, beside];
 })()"#;
 
 /// The table of docs/page.md: `cargo test -p armgen-page --test browser -- --ignored --nocapture table_of_budgets`.

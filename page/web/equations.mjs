@@ -4,6 +4,7 @@
  */
 
 import { copy, html, math } from "./dom.mjs";
+import { exact, short } from "./format.mjs";
 import { parse } from "./formula.mjs";
 import { mathml, nameElement } from "./mathml.mjs";
 import { unpack } from "./pack.mjs";
@@ -23,8 +24,30 @@ const CHARACTERS = 4000;
  * @typedef {{letter: string, columnNames: string[] | null, nominal: Form, symbolic: Form | null, latex: string[]}} Equation
  */
 
-/** @param {any} data */
-export function equations(data) {
+/**
+ * @param {any} data
+ * @param {import("./state.mjs").State} state
+ * @param {{quantity: import("./numbers.mjs").Quantity}[]} shown what has its numbers on the page
+ */
+export function equations(data, state, shown) {
+    const quantities = new Map(shown.map(({ quantity }) => [quantity.name, quantity]));
+    const quantityOf = (details) => {
+        const name = details.getAttribute("data-equation") ?? "";
+        return quantities.get(name === "determinant" ? "det" : name);
+    };
+    /** Writes the numbers at the posture beside the entries of an open section. @param {HTMLDetailsElement} details */
+    const evaluate = (details) => {
+        const own = quantityOf(details)?.of();
+        for (const element of details.querySelectorAll("[data-number]")) {
+            const place = element.getAttribute("data-number") ?? "";
+            const [i, j] = place.split(",").map((index) => Number(index) - 1);
+            const value = quantities.get(place)?.of() ?? (Array.isArray(own) ? [own[i]].flat()[j] : own);
+            const digits = exact(value);
+            if (element.getAttribute("data-value") === digits) continue;
+            element.setAttribute("data-value", digits);
+            element.textContent = `= ${short(value)}`;
+        }
+    };
     const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`)?.getAttribute("value");
     const all = /** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("details[data-equation]"));
     const sections = [...all].map((details) => ({
@@ -38,16 +61,21 @@ export function equations(data) {
         const equation = await section.equation;
         const symbolic = chosen("form") === "symbolic" && equation.symbolic !== null;
         const form = symbolic ? /** @type {Form} */ (equation.symbolic) : equation.nominal;
-        const content = written(equation, form, chosen("digits") === "exact");
+        const quantity = quantityOf(section.details);
+        const content = written(equation, form, chosen("digits") === "exact", quantity !== undefined, () => evaluate(section.details));
         if (chosen("form") === "symbolic" && !symbolic) content.prepend(html("p", { class: "small" }, "No name of a parameter stands in it."));
         const button = html("button", { type: "button", class: "copy" }, "copy as LaTeX");
         button.addEventListener("click", () => copy(equation.latex[symbolic ? 1 : 0] ?? equation.latex[0], `${name} as LaTeX`));
         const host = section.details.querySelector("div");
-        host?.replaceChildren(content, html("div", { class: "controls copies" }, button));
+        const link = quantity ? [html("a", { href: `#number-${quantity.name}` }, "its numbers")] : [];
+        host?.replaceChildren(content, html("div", { class: "controls copies" }, button, ...link));
+        evaluate(section.details);
     };
     for (const section of sections) {
         section.details.addEventListener("toggle", () => {
-            if (section.details.open && !section.details.querySelector("math")) set(section);
+            if (!section.details.open) return;
+            if (section.details.querySelector("math")) evaluate(section.details);
+            else set(section);
         });
         markUses(section.details);
     }
@@ -59,6 +87,9 @@ export function equations(data) {
             }
         });
     }
+    state.on("motion", () => {
+        for (const { details } of sections) if (details.open && quantityOf(details)) evaluate(details);
+    });
     // A link to a section opens it.
     const follow = () => {
         const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -79,10 +110,13 @@ function markUses(details) {
     });
 }
 
-/** @param {Equation} equation @param {Form} form @param {boolean} exact */
-function written(equation, form, exact) {
+/**
+ * @param {Equation} equation @param {Form} form @param {boolean} exact
+ * @param {boolean} numbered whether the page computes it @param {() => void} evaluate writes the numbers of what was set
+ */
+function written(equation, form, exact, numbered, evaluate) {
     const host = html("div", { class: "formulas" });
-    const options = { exact, count: 0, steps: form.steps?.[0]?.[0].replace(/\d+$/, "") ?? "" };
+    const options = { exact, count: 0, steps: form.steps?.[0]?.[0].replace(/\d+$/, "") ?? "", numbered, evaluate };
     if (fits(form)) {
         host.append(matrix(equation, form, options));
     } else {
@@ -99,7 +133,8 @@ function written(equation, form, exact) {
         const items = factors.map((factor, k) => {
             const zero = form.singular?.[k];
             const words = zero === null || zero === undefined ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : zero;
-            return html("li", {}, math("math", {}, mathml(parse(factor), options)), `, ${words}`);
+            const number = form.factors ? [html("span", { class: "at", "data-number": `factor_${k + 1}` })] : [];
+            return html("li", {}, math("math", {}, mathml(parse(factor), options)), " ", ...number, `, ${words}`);
         });
         host.append(html("ol", {}, ...items));
     }
@@ -149,10 +184,15 @@ function symbolElement(symbol, options) {
 
 /** @param {Equation} equation @param {Form} form @param {any} options */
 function matrix(equation, form, options) {
-    const cell = (entry, i, j) => math("mtd", { "data-entry": `${i + 1},${j + 1}` }, mathml(parse(entry), options));
+    const cell = (entry, i, j) => {
+        const [place, formula] = [`${i + 1},${j + 1}`, mathml(parse(entry), options)];
+        // A constant is its number.
+        if (!options.numbered || !/[A-Za-z]/.test(entry)) return math("mtd", { "data-entry": place }, formula);
+        return math("mtd", {}, math("munder", {}, math("mrow", { "data-entry": place }, formula), math("mtext", { class: "at", "data-number": place })));
+    };
     if (form.rows === 1 && form.columns === 1) {
         const entry = mathml(parse(form.entries[0][0]), options);
-        return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Formula" }, math("math", { display: "block" }, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "="), entry)));
+        return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Formula" }, math("math", { display: "block" }, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "="), entry, ...(options.numbered ? [math("mtext", { class: "at", "data-number": "1,1" })] : []))));
     }
     const rows = form.entries.map((row, i) => math("mtr", {}, ...row.map((entry, j) => cell(entry, i, j))));
     if (equation.columnNames) {
@@ -228,8 +268,10 @@ function list(host, all, options) {
         while (next < all.length && options.count < end) {
             const { name, text, entry } = all[next++];
             const row = math("mrow", {}, name(options), math("mo", {}, "="), mathml(parse(text), options));
-            table.append(html("div", { "data-entry": entry || undefined }, math("math", {}, row)));
+            const number = entry && options.numbered ? [html("span", { class: "at", "data-number": entry })] : [];
+            table.append(html("div", { "data-entry": entry || undefined }, math("math", {}, row), ...number));
         }
+        if (options.numbered) options.evaluate();
         // Of lines that others have taken the place of no more are set.
         const busy = host.firstChild === table && next < all.length && options.count < until;
         table.setAttribute("aria-busy", String(busy));

@@ -104,7 +104,7 @@ export function quotient(numerator, denominator) {
     return Number(`${whole}e${-shift}`);
 }
 
-const FUNCTIONS = { sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, sign: Math.sign };
+const FUNCTIONS = { sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, acos: Math.acos, sign: Math.sign };
 
 /** The value of a formula, its names looked up. @param {Node} node @param {(name: string) => number} lookup @returns {number} */
 export function evaluate(node, lookup) {
@@ -129,6 +129,23 @@ export function evaluate(node, lookup) {
         default:
             return node.text === "pi" ? Math.PI : lookup(node.text);
     }
+}
+
+/**
+ * The joint and its values in `q3 = atan(-1/2) mod pi`, `q1 = +-2 pi/3 mod 2 pi` or `q2 = 1 or 3`; null where a text is none of these.
+ *
+ * @param {string} text @returns {{joint: number, period: number, values: {value: number, text: string}[]} | null}
+ */
+export function zeros(text) {
+    const match = /^q(\d+) = (.*?)(?: mod (2 )?pi)?$/.exec(text);
+    if (!match || match[2].includes("atan2") || match[2].includes(" with ")) return null;
+    const period = !text.endsWith(" pi") ? 0 : match[3] ? 2 * Math.PI : Math.PI;
+    const both = (text) => (text.startsWith("+-") ? [text.slice(2), `-${text.slice(2)}`] : [text]);
+    const values = match[2].split(" or ").flatMap(both).map((text) => {
+        const value = evaluate(parse(text.replaceAll(" pi", "*pi")), () => NaN);
+        return { value, text: text.length < 10 ? text : String(Number(value.toPrecision(6))) };
+    });
+    return { joint: Number(match[1]), period, values };
 }
 
 /** How large a formula can become with sines and cosines of any angle: its terms' sizes added. @param {Node} node @param {(name: string) => number} lookup @returns {number} */

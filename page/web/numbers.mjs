@@ -5,8 +5,9 @@
 
 import { byId, copy, html } from "./dom.mjs";
 import { exact, short } from "./format.mjs";
-import { bound, evaluate, parse } from "./formula.mjs";
+import { bound, evaluate, parse, zeros } from "./formula.mjs";
 import { condition, determinant, manipulability } from "./linear.mjs";
+import { range } from "./state.mjs";
 
 /** A factor is near zero below this part of what it can be. */
 const NEAR = 0.02;
@@ -16,20 +17,31 @@ const SINGULAR = 1000;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     rowNames?: string[], columnNames?: string[], near?: () => string}} Quantity
+ *     rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => string, buttons?: HTMLElement[]}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
 export function numbers(data, state) {
     const host = byId("quantities");
     const shown = quantities(data, state).map((quantity) => table(quantity));
-    host.append(...shown.map((one) => one.element));
+    const title = html("h3", { id: "singular-title" }, "Singular postures");
+    const singular = html("section", { id: "singular", "aria-labelledby": "singular-title" }, title);
+    for (const { element, quantity } of shown) {
+        if (quantity.singular) singular.append(element);
+        host.append(quantity.singular ? singular : element);
+    }
     for (const [name, operations] of data.leftOut) {
         const title = name.replaceAll("_", " ");
         host.append(html("p", { class: "small" }, `The ${title} is left out: ${operations} operations. `, html("code", {}, `armgen generate ROBOT.yaml --functions ${name}`), " prints it."));
     }
+    const badge = byId("singular-posture");
     const update = () => {
         for (const one of shown) if (one.element.open || one.quantity.rows === 0) one.update();
+        const near = shown.filter((one) => one.said.textContent).map(({ quantity }) => quantity.symbol);
+        const factors = near.filter((symbol) => symbol !== "w");
+        const why = factors.length > 0 ? `: ${factors.join(", ")} of det J near zero` : ", or nearly so";
+        const text = near.length > 0 ? `⚠ singular posture${why}` : "";
+        if (badge.textContent !== text) badge.replaceChildren(...(text ? [html("a", { href: "#singular" }, text)] : []));
     };
     state.on("motion", update);
     for (const one of shown) one.element.addEventListener("toggle", () => one.element.open && one.update());
@@ -50,7 +62,7 @@ function quantities(data, state) {
     ];
     const rows = data.task.map((row) => velocity[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
-    if (data.task.length === n) list.push(scalar("det", "det J", `Determinant of the rows ${rows} of J`, "", () => determinant(task())));
+    if (data.task.length === n) list.push({ ...scalar("det", "det J", `Determinant of the rows ${rows} of J`, "", () => determinant(task())), singular: true });
     (data.determinant?.factors ?? []).forEach((text, k) => {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
@@ -59,13 +71,13 @@ function quantities(data, state) {
         const of = () => evaluate(factor, lookup);
         const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? "⚠ near zero: singular" : "");
         const shown = text.length < 60 ? text.replaceAll("*", " ") : "see the equations";
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${shown}; ${where}`, "", of), near });
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${shown}; ${where}`, "", of), singular: true, near, buttons: zeroButtons(zero, data, state) });
     });
     // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
     const singular = () => (told || condition(task()) < SINGULAR ? "" : "⚠ singular, or nearly so");
-    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), near: singular });
-    list.push(scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())));
+    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), singular: true, near: singular });
+    list.push({ ...scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())), singular: true });
     if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m²", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
         list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "kg m²/s", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
@@ -84,6 +96,30 @@ function quantities(data, state) {
 function rounded(zero) {
     const angle = /= (.*atan.*) mod/.exec(zero)?.[1];
     return angle === undefined ? "" : ` (${short(evaluate(parse(angle), () => Math.PI))})`;
+}
+
+/** Buttons that set a joint to where a factor is zero. @param {string | null} text @param {any} data @param {import("./state.mjs").State} state */
+function zeroButtons(text, data, state) {
+    const zero = zeros(text ?? "");
+    if (!zero) return [];
+    const [low, high] = range(data.rows[zero.joint - 1]);
+    return zero.values.map(({ value, text }) => {
+        const button = html("button", { type: "button" }, `set q${zero.joint} = ${text.replaceAll("pi", "π")}`);
+        button.addEventListener("click", () => {
+            const q = state.q.slice();
+            q[zero.joint - 1] = nearest(value, zero.period, q[zero.joint - 1], low, high);
+            state.move(q);
+        });
+        return button;
+    });
+}
+
+/** Of value + k period the one within limits that is nearest to q; the value itself where none is within. @param {number} value @param {number} period @param {number} q @param {number} low @param {number} high */
+function nearest(value, period, q, low, high) {
+    if (period === 0) return value;
+    const [first, last] = [Math.ceil((low - value) / period), Math.floor((high - value) / period)];
+    if (first > last) return value;
+    return value + period * Math.max(first, Math.min(last, Math.round((q - value) / period)));
 }
 
 function matrix(name, symbol, title, unit, rows, columns, of) {
@@ -138,10 +174,10 @@ function table(quantity) {
     // A lone number stands on a line of its own, which nothing folds away.
     const [whole, first] = rows === 0 ? ["div", "p"] : ["details", "summary"];
     const head = html(first, {}, html("b", {}, symbol));
-    const element = html(whole, { open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
+    const element = html(whole, { id: `number-${name}`, open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
         // The number before the words: after them its unit would look like a symbol that it is the value of.
-        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title}`));
+        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title} `), ...(quantity.buttons ?? []));
     } else {
         head.append(` ${title}${unit ? `, ${unit}` : ""}`);
         const rowName = (i) => `${i} ${quantity.rowNames?.[i - 1] ?? ""}`;
@@ -174,7 +210,7 @@ function table(quantity) {
         const near = quantity.near?.() ?? "";
         if (said.textContent !== near) said.textContent = near;
     };
-    return { element, update, quantity };
+    return { element, update, quantity, said };
 }
 
 /** An entry under the pointer lights the names of its row and its column. @param {HTMLElement} table */

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { bound, evaluate, parse, print, quotient } from "../formula.mjs";
+import { bound, evaluate, parse, print, quotient, zeros } from "../formula.mjs";
 
 test("formulas are read and printed back", () => {
     for (const text of [
@@ -41,4 +41,19 @@ test("fractions of more digits than a float holds have values", () => {
     assert.equal(quotient(`1${"0".repeat(400)}`, `2${"0".repeat(400)}`), 0.5);
     assert.equal(quotient("1", `4${"0".repeat(310)}`), 2.5e-311);
     assert.equal(quotient(`3${"0".repeat(305)}`, "2"), 1.5e305);
+});
+
+test("zeros of a factor are read from their words", () => {
+    const read = (text) => {
+        const zero = zeros(text);
+        return zero && [zero.joint, zero.period, ...zero.values.map(({ value }) => value)];
+    };
+    const [pi, turn] = [Math.PI, 2 * Math.PI];
+    assert.deepEqual(read("q2 = 0 mod pi"), [2, pi, 0]);
+    assert.deepEqual(read("q10 = pi/2 mod pi"), [10, pi, pi / 2]);
+    assert.deepEqual(read("q3 = atan(-4318/203) mod pi"), [3, pi, Math.atan(-4318 / 203)]);
+    assert.deepEqual(read("q1 = +-2 pi/3 mod 2 pi"), [1, turn, turn / 3, -turn / 3]);
+    assert.deepEqual(read("q1 = 1 or 3"), [1, 0, 1, 3]);
+    assert.deepEqual(read("q1 = -1/5"), [1, 0, -0.2]);
+    for (const text of ["never", "q1 = atan2(1, 2) +- acos(1/3) mod 2 pi", "q1 with q1^3 + 1 = 0", ""]) assert.equal(read(text), null, text);
 });
