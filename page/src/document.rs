@@ -162,7 +162,7 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 
 fn sliders(rows: &[Row]) -> String {
     let mut text = String::from(
-        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
+        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
     );
     for (i, row) in rows.iter().enumerate() {
         let k = i + 1;
@@ -172,10 +172,10 @@ fn sliders(rows: &[Row]) -> String {
             text,
             "<div class=\"joint\" data-joint=\"{k}\"><label for=\"q{k}\"><i>q</i><sub>{k}</sub> {name}</label>\
              <input type=\"range\" id=\"q{k}\" step=\"any\">\
-             <input type=\"number\" id=\"q{k}-value\" step=\"any\" aria-label=\"q{k}, exact\" aria-describedby=\"q{k}-unit\"><span class=\"unit\" id=\"q{k}-unit\" data-unit=\"{unit}\">{unit}</span>\
+             <span class=\"exact\"><input type=\"text\" id=\"q{k}-value\" autocomplete=\"off\" spellcheck=\"false\" aria-label=\"q{k}, exact\" aria-describedby=\"q{k}-unit q{k}-fault\"></span><span class=\"unit\" id=\"q{k}-unit\" data-unit=\"{unit}\">{unit}</span>\
              <label class=\"rate\"><i>q̇</i> <input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}\" aria-describedby=\"dq{k}-unit\"> <span class=\"unit\" id=\"dq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s</span></label>\
              <label class=\"rate\"><i>q̈</i> <input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}\" aria-describedby=\"ddq{k}-unit\"> <span class=\"unit\" id=\"ddq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s²</span></label>\
-             <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span></div>"
+             <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span><span class=\"outside\" id=\"q{k}-fault\" role=\"status\" hidden></span></div>"
         );
     }
     text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" title=\"one joint after the other through its range\">sweep joints</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"

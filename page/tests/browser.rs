@@ -251,6 +251,40 @@ fn rows_are_drawn_and_limits_marked() {
     tab.close(&file);
 }
 
+/// The fields of joints take expressions, show six digits of all those that they hold, and say what is no number instead of forgetting it.
+#[test]
+fn fields_take_expressions() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("fields");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let file = written(&folder, &robot("scara"));
+    let mut tab = browser.open(&file, 500, "light");
+    let seen = tab.run(
+        "(() => { const field = document.getElementById('q1-value'), fault = document.getElementById('q1-fault'), seen = []; \
+         const put = (text) => { field.value = text; for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind, { bubbles: true })); \
+             seen.push([field.value, field.parentElement.dataset.short, document.getElementById('q1').valueAsNumber.toFixed(3), \
+                        fault.hidden, field.getAttribute('aria-invalid') === 'true']); }; \
+         for (const text of ['-pi/4', '2*(pi - 1)/3', '1e-3', 'pie', '0x10', '1.25']) put(text); \
+         document.getElementById('angle-unit').click(); put('-68.754935'); put(''); \
+         field.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' })); seen.push(Number(field.value).toFixed(6)); return seen; })()",
+    );
+    let expected = serde_json::json!([
+        ["-0.7853981633974483", "−0.785398", "-0.785", true, false],
+        ["1.4277284357265287", "1.42773", "1.428", true, false],
+        ["0.001", "0.001", "0.001", true, false],
+        ["pie", "0.001", "0.001", false, true],
+        ["0x10", "0.001", "0.001", false, true],
+        ["1.25", "1.25", "1.250", true, false],
+        ["-68.754935", "−68.7549", "-1.200", true, false],
+        ["-68.754935", "−68.7549", "-1.200", true, false],
+        "-67.754935"
+    ]);
+    assert_eq!(seen, expected);
+    let shown = "[...document.querySelectorAll('#sliders .rate .unit')].every((unit) => unit.checkVisibility())";
+    assert_eq!(tab.run(shown), true, "units of rates are seen in a narrow window");
+    tab.close(&file);
+}
+
 /// Every section of equations opens, with numbers and with names, and never holds more nodes than a browser lays out at once.
 #[test]
 fn equations_are_set_when_they_are_opened() {

@@ -1,10 +1,10 @@
 /**
- * Formulas as `armgen show` prints them in plain text: read, evaluated, printed again.
+ * Formulas as `armgen show` prints them in plain text: read, evaluated, printed again. Fields take them, too, with decimals.
  *
  * sum     = ["-"] product { ("+" | "-") product }
  * product = power { ("*" | "/") power }
  * power   = atom ["^" (digits | "(" "-" digits ")")]
- * atom    = digits | "≈" decimal | name ["(" sum ")"] | "(" sum ")"
+ * atom    = decimal | "≈" decimal | name ["(" sum ")"] | "(" sum ")"
  */
 
 /**
@@ -18,7 +18,7 @@
  *     | {kind: "name", text: string}} Node
  */
 
-const TOKEN = /\s*(≈-?[\d.]+(?:e-?\d+)?|\d+|[A-Za-z_]\w*|[-+*/^()])/y;
+const TOKEN = /\s*(≈-?[\d.]+(?:e-?\d+)?|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[A-Za-z_]\w*|[-+*/^()])/y;
 
 /** @param {string} text @returns {Node} */
 export function parse(text) {
@@ -81,7 +81,7 @@ export function parse(text) {
             return inner;
         }
         if (token.startsWith("≈")) return { kind: "approximate", text: token.slice(1) };
-        if (/^\d/.test(token)) return { kind: "number", text: token };
+        if (/^[\d.]/.test(token)) return { kind: "number", text: token };
         if (!/^[A-Za-z_]/.test(token)) throw new Error(`${token} is no operand`);
         if (tokens[next] !== "(") return { kind: "name", text: token };
         next++;
@@ -104,7 +104,7 @@ export function quotient(numerator, denominator) {
     return Number(`${whole}e${-shift}`);
 }
 
-const FUNCTIONS = { sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, acos: Math.acos, sign: Math.sign };
+const FUNCTIONS = { __proto__: null, sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, acos: Math.acos, sign: Math.sign };
 
 /** The value of a formula, its names looked up. @param {Node} node @param {(name: string) => number} lookup @returns {number} */
 export function evaluate(node, lookup) {
@@ -128,6 +128,18 @@ export function evaluate(node, lookup) {
             return Number(node.text);
         default:
             return node.text === "pi" ? Math.PI : lookup(node.text);
+    }
+}
+
+/** The number that somebody typed, as 1.5, -pi/4 or 2*(pi - 1); NaN where it is none. @param {string} text */
+export function typed(text) {
+    const plain = text.trim().replaceAll("π", "pi").replaceAll("−", "-");
+    // A number alone keeps its bits.
+    if (/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(plain)) return Number(plain);
+    try {
+        return Number(evaluate(parse(plain), () => NaN));
+    } catch {
+        return NaN;
     }
 }
 

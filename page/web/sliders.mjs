@@ -1,9 +1,11 @@
 /**
- * Sliders, and fields for exact numbers. A range holds fifteen digits only, so the field beside it rules where it was typed.
+ * Sliders, and fields for exact numbers, or expressions such as -pi/4. A range holds fifteen digits only, so the field beside it rules where
+ * it was typed. A field holds all digits; the six of them that it has room for are shown while nobody types.
  */
 
 import { byId, copy } from "./dom.mjs";
-import { exact, fromUnit, inUnit, unitName } from "./format.mjs";
+import { exact, fromUnit, inUnit, short, unitName } from "./format.mjs";
+import { typed } from "./formula.mjs";
 import { range } from "./state.mjs";
 
 /** @param {any} data @param {import("./state.mjs").State} state */
@@ -16,6 +18,7 @@ export function sliders(data, state) {
             range: byId(`q${k}`),
             field: byId(`q${k}-value`),
             outside: byId(`q${k}-outside`),
+            fault: byId(`q${k}-fault`),
             rate: byId(`dq${k}`),
             acceleration: byId(`ddq${k}`),
         };
@@ -26,22 +29,46 @@ export function sliders(data, state) {
             state.q[i] = part.range.valueAsNumber;
             state.changed("motion");
         });
-        const typed = (field, values, unit) =>
+        const listen = (field, values, unit) => {
             field.addEventListener("input", () => {
-                const value = field.valueAsNumber;
-                if (!Number.isFinite(value)) return;
+                const value = typed(field.value);
+                const wrong = !Number.isFinite(value);
+                field.setAttribute("aria-invalid", String(wrong));
+                if (wrong) return;
                 values()[i] = fromUnit(value, unit);
                 state.changed("motion");
             });
-        typed(part.field, () => state.q, part.unit);
-        typed(part.rate, () => state.dq, part.unit);
-        typed(part.acceleration, () => state.ddq, part.unit);
+            // What is being typed is no number yet; what is left standing is said to be none.
+            field.addEventListener("change", () => {
+                const { badInput } = field.validity;
+                const wrong = badInput || (field.value.trim() !== "" && !Number.isFinite(typed(field.value)));
+                part.fault.hidden = !wrong;
+                part.fault.textContent = badInput ? "this field takes digits alone" : `“${field.value}” is no number: digits, pi, + − * / and parentheses are, in ${unitName(unit)}`;
+                if (wrong) return;
+                field.value = exact(inUnit(values()[i], unit));
+                field.removeAttribute("aria-invalid");
+            });
+        };
+        listen(part.field, () => state.q, part.unit);
+        listen(part.rate, () => state.dq, part.unit);
+        listen(part.acceleration, () => state.ddq, part.unit);
+        part.field.addEventListener("keydown", (event) => {
+            const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+            if (!sign || event.ctrlKey || event.metaKey || event.altKey) return;
+            event.preventDefault();
+            const step = unitName(part.unit) === part.unit ? 0.01 : 1;
+            state.q[i] = fromUnit(inUnit(state.q[i], part.unit) + sign * step, part.unit);
+            state.changed("motion");
+        });
     });
     const show = () => {
         parts.forEach((part, i) => {
             const q = state.q[i];
             if (part.range.valueAsNumber !== q) part.range.value = String(q);
-            write(part.field, q, part.unit);
+            if (write(part.field, q, part.unit)) part.fault.hidden = true;
+            const brief = short(inUnit(q, part.unit));
+            const around = part.field.parentElement;
+            if (around.getAttribute("data-short") !== brief) around.setAttribute("data-short", brief);
             write(part.rate, state.dq[i], part.unit);
             write(part.acceleration, state.ddq[i], part.unit);
             const { limits } = part;
@@ -66,8 +93,10 @@ export function sliders(data, state) {
 
 /** Leaves a field alone that holds the number already, while somebody types into it. @param {any} field @param {number} value @param {string} unit */
 function write(field, value, unit) {
-    if (fromUnit(field.valueAsNumber, unit) === value) return;
+    if (fromUnit(typed(field.value), unit) === value) return false;
     field.value = exact(inUnit(value, unit));
+    field.removeAttribute("aria-invalid");
+    return true;
 }
 
 /** Sweeps the joints one after the other, and stops at a touch; with reduced motion it steps. @param {any} data @param {import("./state.mjs").State} state */

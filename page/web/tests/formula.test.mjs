@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { bound, evaluate, parse, print, quotient, zeros } from "../formula.mjs";
+import { bound, evaluate, parse, print, quotient, typed, zeros } from "../formula.mjs";
 
 test("formulas are read and printed back", () => {
     for (const text of [
@@ -56,4 +56,15 @@ test("zeros of a factor are read from their words", () => {
     assert.deepEqual(read("q1 = 1 or 3"), [1, 0, 1, 3]);
     assert.deepEqual(read("q1 = -1/5"), [1, 0, -0.2]);
     for (const text of ["never", "q1 = atan2(1, 2) +- acos(1/3) mod 2 pi", "q1 with q1^3 + 1 = 0", ""]) assert.equal(read(text), null, text);
+});
+
+test("fields take numbers and expressions of pi", () => {
+    const same = (text, value) => assert.ok(Object.is(typed(text), value), text);
+    for (const value of [1.5, -0, 1e-7, -68.75493541569878, 1.2e21]) same(Object.is(value, -0) ? "-0" : String(value), value);
+    same(" pi ", Math.PI);
+    same("−π/4", -Math.PI / 4);
+    same("2*(pi - 1)", 2 * (Math.PI - 1));
+    same(".5 + 1.", 1.5);
+    same("1e3/4", 250);
+    for (const text of ["", "pi pi", "q1", "0x10", "1,5", "Infinity", "constructor(1)", "alert(1)", "1.2.3", "(".repeat(100000)]) assert.ok(!Number.isFinite(typed(text)), text);
 });
