@@ -399,12 +399,27 @@ fn a_planted_mistake_is_the_first_suspect() {
         "(() => {{ const field = document.getElementById('measured'); field.value = {poses}; field.dispatchEvent(new Event('input')); \
          const first = document.querySelector('#suspects li'); first.querySelector('button').click(); \
          return [first.dataset.row, first.dataset.fault, Number(first.dataset.difference) < 1e-6, \
-                 document.querySelectorAll('#arm .ghosts .solid').length > 10]; }})()"
+                 document.querySelectorAll('#arm .ghosts .solid').length > 10, first.querySelector('strong').textContent, \
+                 document.getElementById('q2-value').value === field.value.split(' ')[1], \
+                 [...document.querySelectorAll('#arm .marks text')].map((text) => text.textContent)]; }})()"
     ));
-    assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true]));
+    let words =
+        "row 5 (joint5): alpha = pi/2 instead of -pi/2 (the other sign, or 180° more, which is the same); remaining difference ";
+    assert!(first[4].as_str().is_some_and(|text| text.starts_with(words)), "{first}");
+    let marks = serde_json::json!(["measured, pose 1", "the arm with this mistake mended"]);
+    assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true, first[4], true, marks]));
+    // Of one position without orientation several mistakes come equally near, and it is said what would tell them apart.
+    let alone = tab.run(
+        "(() => { const field = document.getElementById('measured'); \
+         field.value = field.value.split('\\n')[0].split(' ').slice(0, 9).join(' '); field.dispatchEvent(new Event('input')); \
+         return [document.querySelectorAll('#suspects li strong').length > 1, \
+                 document.getElementById('measured-said').textContent.includes('Positions alone'), \
+                 document.querySelectorAll('#arm .marks text').length]; })()",
+    );
+    assert_eq!(alone, serde_json::json!([true, true, 0]));
     // With the wrist stretched the arm is singular whatever the other joints do, and the map says so instead of drawing noise.
     let drawn = tab.run(
-        "(async () => { const map = document.getElementById('w-map'), said = () => document.getElementById('w-said').textContent; \
+        "(async () => { document.getElementById('zero').click(); const map = document.getElementById('w-map'), said = () => document.getElementById('w-said').textContent; \
          map.open = true; await new Promise((done) => setTimeout(done, 100)); const stretched = said().includes('singular whatever'); map.open = false; \
          const q5 = document.getElementById('q5'); q5.value = '1'; q5.dispatchEvent(new Event('input', { bubbles: true })); \
          for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \

@@ -1,10 +1,12 @@
 /** The check against the real arm: measured postures and poses in, the row that is wrong out, drawn as a ghost when it is chosen. */
 
-import { byId, html } from "./dom.mjs";
-import { exact, fromUnit, inUnit, units, withUnit } from "./format.mjs";
+import { byId, html, svg } from "./dom.mjs";
+import { exact, fromUnit, inUnit, tidy, units, withUnit } from "./format.mjs";
 import { rollPitchYaw } from "./numbers.mjs";
 import { Arm } from "./scene.mjs";
-import { apart, asWritten, explain, frames, read } from "./suspects.mjs";
+import { apart, asWritten, differInOrientation, explain, frames, read } from "./suspects.mjs";
+import { origin } from "./vector.mjs";
+import { WIDTH } from "./view.mjs";
 
 /** Suspects that are listed. */
 const LISTED = 8;
@@ -13,26 +15,51 @@ const LISTED = 8;
 export function check(data, state, picture) {
     const [field, list, said] = [byId("measured"), byId("suspects"), byId("measured-said")];
     const kinds = data.rows.map((row) => (row.type === "revolute" ? "rad" : "m"));
-    /** @type {{arm: any, solids: Arm} | null} */
+    /** The suspect that is drawn, and the first of what was measured. @type {{arm: any, solids: Arm, measured: any} | null} */
     let ghost = null;
-    picture.ghosts.push(() => {
-        if (!ghost) return [];
-        const { arm, solids } = ghost;
+    const place = () => {
+        const { arm, solids } = /** @type {any} */ (ghost);
         const { links, end } = frames(arm, state.q);
         solids.place(state.q.map((q, i) => q * arm.signs[i]), links, end);
-        return solids.solids;
+        return origin(end);
+    };
+    picture.ghosts.push(() => {
+        if (!ghost) return [];
+        place();
+        return ghost.solids.solids;
     });
-    const choose = (suspect, button) => {
+    const layer = picture.layers.marks;
+    picture.extras.push(() => {
+        if (!ghost) {
+            if (layer.firstChild) layer.replaceChildren();
+            return;
+        }
+        const mark = (point, kind, text, below) => {
+            const [x, y] = picture.view.project(point).map((c) => Math.round(c * 10) / 10);
+            const cross = svg("path", { class: kind, d: `M${x - 8} ${y - 8}l16 16m0 -16l-16 16` });
+            const left = x > WIDTH - 240;
+            const words = svg("text", { x: x + (left ? -12 : 12), y: y + 26 + 18 * below, "text-anchor": left ? "end" : "start", class: kind }, text);
+            return below ? [words] : [cross, words];
+        };
+        // Where both are at one place the names stand one below the other.
+        layer.replaceChildren(...mark(ghost.measured.position, "measured", "measured, pose 1", 0), ...mark(place(), "suspect", "the arm with this mistake mended", picture.view.pixel));
+    });
+    const choose = (suspect, button, measured) => {
         const chosen = button && button.getAttribute("aria-pressed") !== "true";
         for (const other of list.querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
         button?.setAttribute("aria-pressed", String(chosen));
-        ghost = chosen ? { arm: suspect.arm, solids: new Arm({ ...data, ...suspect.arm }, "ghost") } : null;
-        picture.redraw();
+        ghost = chosen ? { arm: suspect.arm, solids: new Arm({ ...data, ...suspect.arm }, "ghost suspect"), measured } : null;
+        // It stands before the arm of the page.
+        picture.layers.links[ghost ? "after" : "before"](picture.layers.ghosts);
+        if (!ghost) return picture.redraw();
+        state.move(measured.q);
+        place();
+        picture.show([...ghost.solids.points, measured.position]);
     };
     const update = () => {
         list.replaceChildren();
         said.replaceChildren();
-        if (ghost) choose(null, null);
+        if (ghost) choose(null, null, null);
         const { measured, faults } = read(field.value, data.rows.length, fromUnit, kinds);
         for (const fault of faults) said.append(html("p", { class: "warning" }, fault));
         if (measured.length === 0) return;
@@ -51,13 +78,17 @@ export function check(data, state, picture) {
             said.append(html("p", { class: "warning" }, "No single mistake that is looked for explains the differences."));
             return;
         }
-        const equal = suspects.filter((suspect) => suspect.equal).length;
+        const near = suspects.filter((suspect) => suspect.equal);
+        const equal = near.length;
         const partly = suspects[0].difference > 0.05 * before ? "No single mistake explains them fully. " : "";
         said.append(html("p", {}, partly + (equal === 1 ? "This one comes nearest:" : `${equal} mistakes come equally near:`)));
+        if (equal > 1 && measured.every(({ frame }) => !frame) && differInOrientation(near, measured)) {
+            said.append(html("p", {}, "Positions alone cannot tell these apart; roll, pitch and yaw at the ends of the lines would."));
+        }
         for (const suspect of suspects.slice(0, Math.max(LISTED, equal))) {
             const button = html("button", { type: "button", "aria-pressed": "false" }, "show");
-            button.addEventListener("click", () => choose(suspect, button));
-            const text = `${suspect.words}; remaining difference ${withUnit(suspect.difference, "m")} `;
+            button.addEventListener("click", () => choose(suspect, button, measured[0]));
+            const text = `${suspect.words}; remaining difference ${withUnit(tidy(suspect.difference), "m")} `;
             const item = html("li", { "data-row": suspect.row, "data-fault": suspect.fault, "data-difference": exact(suspect.difference) });
             item.append(suspect.equal ? html("strong", {}, text) : text, button);
             list.append(item);
@@ -82,7 +113,7 @@ export function check(data, state, picture) {
             ...position.map((x) => inUnit(x, "m")),
             ...(frame ? rollPitchYaw(frame).map((x) => inUnit(x, "rad")) : []),
         ];
-        return `${numbers.map((x) => exact(Number(x.toPrecision(8)))).join(" ")}\n`;
+        return `${numbers.map((x) => exact(tidy(Number(x.toPrecision(8))))).join(" ")}\n`;
     };
     byId("measured-add").addEventListener("click", () => {
         const { end } = picture.pose();

@@ -15,6 +15,11 @@ export function short(value) {
     return text.replaceAll("-", "−");
 }
 
+/** Without what rounding left instead of 0, and without the sign of 0. @param {number} value */
+export function tidy(value) {
+    return Math.abs(value) < 1e-12 ? 0 : value;
+}
+
 /** @param {string} digits */
 function trimmed(digits) {
     return digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits;

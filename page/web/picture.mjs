@@ -9,7 +9,7 @@ import { Ball, Box, drawSolids } from "./solids.mjs";
 import { along, column, compose, identity, norm, origin, place } from "./vector.mjs";
 import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
 
-const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "dimensions", "gravity"];
+const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "dimensions", "marks", "gravity"];
 
 export class Picture {
     /** @param {any} data @param {import("./state.mjs").State} state */
@@ -65,6 +65,13 @@ export class Picture {
             const [x, y] = this.view.project(point);
             return x < 0 || x > WIDTH || y < 0 || y > HEIGHT;
         });
+    }
+
+    /** Lays points into the picture beside the arm. @param {number[][]} points */
+    show(points) {
+        this.seen = points;
+        this.fit();
+        this.redraw();
     }
 
     /** Draws everything. */

@@ -1,7 +1,7 @@
 /** Other postures at the pose that is shown, listed, and drawn as ghosts while the list is open. */
 
 import { byId, html } from "./dom.mjs";
-import { inUnit, short, unitName } from "./format.mjs";
+import { inUnit, short, tidy, unitName } from "./format.mjs";
 import { Arm } from "./scene.mjs";
 import { alike, MOST, posturesAt } from "./search.mjs";
 
@@ -67,7 +67,7 @@ export function postures(data, state, picture) {
     };
     const find = () => {
         if (!details.open) return;
-        const found = posturesAt(robot, data.rows, data.task, state.q, holding(), picture.arm.size);
+        const found = posturesAt(robot, data.rows, data.task, state.q, holding(), picture.arm.size)?.map((q) => q.map(tidy)) ?? null;
         at = found ? { pose: robot.directKinematics(state.q), found, arms: found.map(() => new Arm(data, "ghost posture")) } : null;
         lit = -1;
         const beside = spare === 1 ? ` with q${Number(held.value) + 1} held` : "";

@@ -2,7 +2,7 @@
 
 import { cuboid } from "./bodies.mjs";
 import { byId, html } from "./dom.mjs";
-import { short, units, withUnit } from "./format.mjs";
+import { short, tidy, units, withUnit } from "./format.mjs";
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
 export function sheet(data, state, picture) {
@@ -94,9 +94,9 @@ function length(x) {
     return brief(units.length === "mm" ? x * 1000 : x);
 }
 
-/** What is 0 but for rounding is 0. @param {number} x */
+/** Five digits. @param {number} x */
 function brief(x) {
-    return short(Math.abs(x) < 1e-12 ? 0 : Number(x.toPrecision(5)));
+    return short(tidy(Number(x.toPrecision(5))));
 }
 
 /** @param {any} data */

@@ -7,6 +7,7 @@
  */
 
 import { compose, identity, origin, rotation, subtract, norm } from "./vector.mjs";
+import { withUnit } from "./format.mjs";
 import { rowFrame, urdfFrame } from "./kinematics.mjs";
 
 /**
@@ -37,22 +38,42 @@ const RIGHT = Math.PI / 2;
 /** What can be mistaken in a row: the name, and the values a, alpha, d, theta instead. @param {number[]} dh @returns {[string, string, number[]][]} */
 function mistaken([a, alpha, d, theta]) {
     return [
-        ["a-sign", "a has the other sign", [-a, alpha, d, theta]],
-        ["alpha-sign", "alpha has the other sign", [a, -alpha, d, theta]],
-        ["d-sign", "d has the other sign", [a, alpha, -d, theta]],
-        ["theta-sign", "theta has the other sign", [a, alpha, d, -theta]],
-        ["alpha+90", "alpha is 90° more", [a, alpha + RIGHT, d, theta]],
-        ["alpha-90", "alpha is 90° less", [a, alpha - RIGHT, d, theta]],
-        ["alpha+180", "alpha is 180° more", [a, alpha + 2 * RIGHT, d, theta]],
-        ["theta+90", "theta is 90° more", [a, alpha, d, theta + RIGHT]],
-        ["theta-90", "theta is 90° less", [a, alpha, d, theta - RIGHT]],
-        ["theta+180", "theta is 180° more", [a, alpha, d, theta + 2 * RIGHT]],
-        ["exchanged", "a and d are exchanged", [d, alpha, a, theta]],
-        ["a*1000", "a is 1000 times as long", [a * 1000, alpha, d, theta]],
-        ["a/1000", "a is a thousandth", [a / 1000, alpha, d, theta]],
-        ["d*1000", "d is 1000 times as long", [a, alpha, d * 1000, theta]],
-        ["d/1000", "d is a thousandth", [a, alpha, d / 1000, theta]],
+        ["a-sign", "the other sign", [-a, alpha, d, theta]],
+        ["alpha-sign", "the other sign", [a, -alpha, d, theta]],
+        ["d-sign", "the other sign", [a, alpha, -d, theta]],
+        ["theta-sign", "the other sign", [a, alpha, d, -theta]],
+        ["alpha+90", "90° more", [a, alpha + RIGHT, d, theta]],
+        ["alpha-90", "90° less", [a, alpha - RIGHT, d, theta]],
+        ["alpha+180", "180° more", [a, alpha + 2 * RIGHT, d, theta]],
+        ["theta+90", "90° more", [a, alpha, d, theta + RIGHT]],
+        ["theta-90", "90° less", [a, alpha, d, theta - RIGHT]],
+        ["theta+180", "180° more", [a, alpha, d, theta + 2 * RIGHT]],
+        ["exchanged", "exchanged", [d, alpha, a, theta]],
+        ["a*1000", "1000 times as long", [a * 1000, alpha, d, theta]],
+        ["a/1000", "a thousandth of it", [a / 1000, alpha, d, theta]],
+        ["d*1000", "1000 times as long", [a, alpha, d * 1000, theta]],
+        ["d/1000", "a thousandth of it", [a, alpha, d / 1000, theta]],
     ];
+}
+
+/** An angle as a part of pi, where it is one; else in the unit of the reader. @param {number} angle */
+function angleText(angle) {
+    for (const below of [1, 2, 3, 4, 6]) {
+        const above = Math.round((angle * below) / Math.PI);
+        if (Math.abs(angle - (above * Math.PI) / below) > 1e-12) continue;
+        if (above === 0) return "0";
+        return `${above === 1 ? "" : above === -1 ? "-" : `${above} `}pi${below === 1 ? "" : `/${below}`}`;
+    }
+    return withUnit(angle, "rad");
+}
+
+/** What the row says instead: `alpha = pi/2 instead of -pi/2`; of the joint's own variable it is the offset. @param {any} row @param {number[]} dh */
+function instead(row, dh) {
+    const names = ["a", "alpha", row.type === "revolute" ? "d" : "offset of d", row.type === "revolute" ? "offset of theta" : "theta"];
+    const changed = names.flatMap((name, k) => (dh[k] === row.dh[k] ? [] : [k]));
+    const text = (values) => changed.map((k) => `${names[k]} = ${k % 2 === 1 ? angleText(values[k]) : withUnit(values[k], "m")}`).join(", ");
+    const before = text(row.dh);
+    return `${text(dh)} instead of ${changed.length === 1 ? before.replace(/.* = /, "") : before}`;
 }
 
 /** Whether two rows are the same frames. @param {number[]} one @param {number[]} other */
@@ -74,25 +95,32 @@ export function suspects(data) {
                 if (same(dh, row.dh)) continue;
                 const other = found.find((one) => same(one.dh, dh));
                 if (other) {
-                    other.suspect.words += `, or ${words}, which is the same`;
+                    other.suspect.words = other.suspect.words.replace(/\)$/, `, or ${words}, which is the same)`);
                     continue;
                 }
                 const rows = arm.rows.map((other, k) => (k === i ? { ...row, dh } : other));
-                const suspect = { row: i + 1, fault, words: `${name}: ${words}`, arm: { ...arm, rows } };
+                const suspect = { row: i + 1, fault, words: `${name}: ${instead(row, dh)} (${words})`, arm: { ...arm, rows } };
                 found.push({ dh, suspect });
                 all.push(suspect);
             }
         }
         const signs = arm.signs.map((sign, k) => (k === i ? -sign : sign));
-        all.push({ row: i + 1, fault: "reversed", words: `${name}: the joint counts the other way`, arm: { ...arm, signs } });
+        all.push({ row: i + 1, fault: "reversed", words: `${name}: the joint counts the other way, -q${i + 1} instead of q${i + 1}`, arm: { ...arm, signs } });
     });
     if (data.convention !== "urdf") {
         const convention = data.convention === "standard" ? "modified" : "standard";
-        all.push({ row: 0, fault: "convention", words: `the rows are of the ${convention} convention`, arm: { ...arm, convention } });
+        all.push({ row: 0, fault: "convention", words: `convention: the rows are ${convention} instead of ${data.convention}`, arm: { ...arm, convention } });
     }
     const moved = norm(origin(data.tool)) > 0 || data.tool.some((row, i) => row.slice(0, 3).some((x, j) => x !== (i === j ? 1 : 0)));
     if (moved) all.push({ row: 0, fault: "tool", words: "the tool was left out of what was measured", arm: { ...arm, tool: identity() } });
     return all;
+}
+
+/** Whether arms that explain the same positions differ in the orientation at one of them. @param {Suspect[]} equal @param {Measured[]} measured */
+export function differInOrientation(equal, measured) {
+    const ends = ({ arm }) => measured.map(({ q }) => frames(arm, q).end);
+    const first = ends(equal[0]);
+    return equal.some((suspect) => ends(suspect).some((end, k) => angle(end, first[k]) > 1e-6));
 }
 
 /** The angle between two frames. @param {number[][]} a @param {number[][]} b */
