@@ -17,7 +17,7 @@ const SINGULAR = 1000;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => string, buttons?: HTMLElement[]}} Quantity
+ *     unitOf?: (row: number, column: number) => string, rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => string, buttons?: HTMLElement[]}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
@@ -53,12 +53,22 @@ function quantities(data, state) {
     const n = data.rows.length;
     const has = (name) => data.functions.includes(name);
     const joints = data.rows.map((row) => row.name);
+    const slides = data.rows.map((row) => row.type === "prismatic");
+    /** What turns and what slides have units of their own: in the heading where there is one, else at the rows and entries. */
+    const mixed = slides.includes(true) && slides.includes(false);
+    const force = (i) => (slides[i] ? "N" : "N m");
+    const forces = { unit: mixed ? "N m, or N of a joint that slides" : force(0), rowNames: joints.map((name, i) => (mixed ? `${name}, ${force(i)}` : name)) };
+    const inertia = (per) => {
+        const names = ["kg m²", "kg m", "kg"].map((unit) => unit + per);
+        const unitOf = (i, j) => names[Number(slides[i]) + Number(slides[j])];
+        return { unit: mixed ? `${names[0]}; ${names[1]} between a joint that turns and one that slides, ${names[2]} of those that slide` : unitOf(0, 0), unitOf };
+    };
     const velocity = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
     /** @type {Quantity[]} */
     const list = [
         { ...matrix("direct_kinematics", "Tₑ", "Pose of the end effector in the base frame: its axes and its origin, m", "", 4, 4, () => robot.directKinematics(state.q)), rowNames: ["x", "y", "z", ""], columnNames: ["x axis", "y axis", "z axis", "origin"] },
         vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]),
-        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for each rate", "", 6, n, () => robot.geometricJacobian(state.q)), rowNames: velocity, columnNames: joints },
+        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for a rate of 1 rad/s, or of 1 m/s", "", 6, n, () => robot.geometricJacobian(state.q)), rowNames: velocity, columnNames: joints },
     ];
     const rows = data.task.map((row) => velocity[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
@@ -78,15 +88,15 @@ function quantities(data, state) {
     const singular = () => (told || condition(task()) < SINGULAR ? "" : "⚠ singular, or nearly so");
     list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), singular: true, near: singular });
     list.push({ ...scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())), singular: true });
-    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "kg m²", n, n, () => robot.inertiaMatrix(state.q)), rowNames: joints, columnNames: joints });
+    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
-        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "kg m²/s", n, n, () => robot.coriolisMatrix(state.q, state.dq)), rowNames: joints, columnNames: joints });
-        list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, 0 but for the differences that Ḃ is taken by", "", () => skewSymmetry(state)));
+        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), ...inertia("/s"), rowNames: joints, columnNames: joints });
+        list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, sym(A) = (A + Aᵀ)/2, 0 but for the differences that Ḃ is taken by", "", () => skewSymmetry(state)));
     }
-    if (has("gravity")) list.push(vector("gravity", "g", "Gravity term", "N m", n, () => robot.gravity(state.q), joints));
-    if (has("friction")) list.push(vector("friction", "F", "Friction", "N m", n, () => robot.friction(state.dq), joints));
-    if (has("load_friction")) list.push(vector("load_friction", "Fₗ", "Friction that grows with the load, Fₗ |g| sign(q̇)", "N m", n, () => robot.loadFriction(state.q, state.dq), joints));
-    if (has("inverse_dynamics")) list.push(vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "N m", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints));
+    if (has("gravity")) list.push({ ...vector("gravity", "g", "Gravity term", "", n, () => robot.gravity(state.q), joints), ...forces });
+    if (has("friction")) list.push({ ...vector("friction", "F", "Friction", "", n, () => robot.friction(state.dq), joints), ...forces });
+    if (has("load_friction")) list.push({ ...vector("load_friction", "Fₗ", "Friction that grows with the load, Fₗ |g| sign(q̇)", "", n, () => robot.loadFriction(state.q, state.dq), joints), ...forces });
+    if (has("inverse_dynamics")) list.push({ ...vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints), ...forces });
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
     if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));
     return list;
@@ -166,7 +176,7 @@ function table(quantity) {
     const cells = [];
     const said = html("strong", { class: "near" });
     const cell = (row, column) => {
-        const attributes = { "data-quantity": name, "data-row": row || undefined, "data-column": column || undefined };
+        const attributes = { "data-quantity": name, "data-row": row || undefined, "data-column": column || undefined, title: quantity.unitOf?.(row - 1, column - 1) };
         const td = html(rows === 0 ? "span" : "td", { class: "entry", ...attributes });
         cells.push({ td, value: NaN });
         return td;
