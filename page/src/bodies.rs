@@ -10,15 +10,17 @@
 //! are only gathered in numbers.
 
 use armgen_codegen::derive::parameters::nominal;
+use armgen_codegen::description::{BodyDescription, RobotDescription};
+use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::manipulator::{Manipulator, PlacedBody};
 use serde_json::{json, Value};
 
 use crate::rows::frame;
 
 /// The bodies of all links, those of the payload in the end effector's frame: name, frame that carries them (from 1, or `e`), mass, centre
-/// of mass, tensor xx xy yy xz yz zz.
-pub(crate) fn bodies(manipulator: &Manipulator) -> Value {
-    let of = |name: String, carrier: Value, part: &PlacedBody| {
+/// of mass, tensor xx xy yy xz yz zz, and what is said of the tensor.
+pub(crate) fn bodies(manipulator: &Manipulator, description: &RobotDescription, diagnostics: &Diagnostics) -> Value {
+    let of = |name: String, carrier: Value, part: &PlacedBody, written: Option<&BodyDescription>| {
         let number = |p: &_| nominal(manipulator, p).to_f64();
         json!({
             "name": name,
@@ -26,19 +28,32 @@ pub(crate) fn bodies(manipulator: &Manipulator) -> Value {
             "mass": number(&part.body.mass),
             "com": part.body.com.each_ref().map(number),
             "inertia": part.body.inertia.each_ref().map(number),
+            "said": said(written, diagnostics),
         })
     };
     let mut all = Vec::new();
-    for (i, joint) in manipulator.joints.iter().enumerate() {
+    let written = description.joints.iter().flat_map(|joints| &joints.value);
+    for (i, (joint, row)) in manipulator.joints.iter().zip(written).enumerate() {
+        let link = row.link.as_ref();
+        let mut written = link.into_iter().chain(link.into_iter().flat_map(|link| link.attached.iter().map(|other| &other.body)));
         for (k, part) in joint.link.iter().enumerate() {
             let name = if k == 0 { joint.name.clone() } else { format!("{} + {k}", joint.name) };
-            all.push(of(name, json!(i + 1), part));
+            all.push(of(name, json!(i + 1), part, written.next()));
         }
     }
     if let Some(payload) = &manipulator.payload {
-        all.push(of("payload".into(), json!("e"), payload));
+        all.push(of("payload".into(), json!("e"), payload, description.payload.as_ref()));
     }
     Value::Array(all)
+}
+
+/// The messages about the inertia tensor of a body.
+fn said<'d>(written: Option<&BodyDescription>, diagnostics: &'d Diagnostics) -> Vec<&'d str> {
+    let Some(inertia) = written.and_then(|body| body.inertia.as_ref()) else { return Vec::new() };
+    let spans: Vec<_> =
+        inertia.elements.iter().flatten().map(|element| element.span).chain(std::iter::once(inertia.key)).collect();
+    let about = diagnostics.iter().filter(|diagnostic| diagnostic.labels.iter().any(|label| spans.contains(&label.span)));
+    about.map(|diagnostic| diagnostic.message.as_str()).collect()
 }
 
 /// The frame of the end effector in that of the last link.

@@ -117,7 +117,7 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <title id="arm-title">The arm</title><desc id="arm-description"></desc>
 </svg><p id="singular-posture" role="status"></p></div>
 <p id="grid-step" class="small"></p>
-<p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted. <span class="keys">Drag turns, the wheel zooms; keys: arrows, + −, 1 2 3 0.</span></p>
+<p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted. <span class="keys">Drag turns, the wheel zooms, in a narrow window with Ctrl or after a click; keys: arrows, + −, 1 2 3 0.</span></p>
 <div class="controls" role="group" aria-label="View">
 <button type="button" data-view="front" title="x to the right, z up">front</button><button type="button" data-view="side" title="y to the right, z up">side</button><button type="button" data-view="top" title="x to the right, y up">top</button><button type="button" data-view="oblique">oblique</button>
 </div>
@@ -130,7 +130,6 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <label><input type="checkbox" id="show-velocity"> velocity ellipsoid</label>
 <label><input type="checkbox" id="show-force"> force ellipsoid</label>
 </div>
-<p id="ellipsoid-axes" class="small"></p>
 "##;
 
 const CHECK: &str = r#"<p>Does the description agree with the arm in the laboratory? Paste what its controller says, a posture and its pose a line: <code>q1 … qn x y z</code> or <code>q1 … qn x y z roll pitch yaw</code>.
@@ -146,7 +145,7 @@ The page says how far its own arm is from each pose, and which single mistake in
 <ol id="suspects"></ol>
 "#;
 
-const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above. Units are those of joints that turn; of one that slides read m for rad, N for N m, kg for kg m².</p>
+const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above.</p>
 <div id=\"quantities\"></div>
 ";
 
@@ -157,7 +156,7 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 <details id="reach"><summary>Where the end effector comes to</summary><div class="figures"></div></details>
 <details id="w-map"><summary>Manipulability over two joints</summary>
 <div class="controls"><label>across <select id="w-first"></select></label><label>up <select id="w-second"></select></label></div>
-<canvas id="w-canvas" width="384" height="384" role="img" aria-labelledby="w-said"></canvas><p id="w-said" class="small"></p></details>
+<div class="map"><p class="up" id="w-up"></p><canvas id="w-canvas" width="384" height="384" role="img" aria-labelledby="w-said"></canvas><p class="across" id="w-across"></p></div><p id="w-said" class="small"></p></details>
 "#;
 
 fn sliders(rows: &[Row]) -> String {
@@ -178,7 +177,7 @@ fn sliders(rows: &[Row]) -> String {
              <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span><span class=\"outside\" id=\"q{k}-fault\" role=\"status\" hidden></span></div>"
         );
     }
-    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" title=\"one joint after the other through its range\">sweep joints</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n"
+    text + "</div>\n<div class=\"controls\"><button type=\"button\" id=\"zero\">zero</button><button type=\"button\" id=\"play\" aria-pressed=\"false\" title=\"one joint after the other through its range\">sweep joints</button><button type=\"button\" id=\"copy-q\">copy q</button><span id=\"said\" role=\"status\"></span></div>\n<p id=\"ellipsoid-axes\" class=\"small\"></p>\n"
 }
 
 /// The source of a policy that is this very text.

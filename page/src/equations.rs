@@ -11,6 +11,7 @@ use armgen_codegen::Model;
 use serde_json::{json, Map, Value};
 
 use crate::html::{escape, pack};
+use crate::words;
 
 /// A quantity whose text is longer than this is left out, with the command that prints it.
 const LONGEST: usize = 400_000;
@@ -67,11 +68,12 @@ impl Equations {
         let mut text = String::from(CHOICES);
         for quantity in &self.quantities {
             let (name, symbol, size) = (escape(&quantity.name), typeset(&quantity.symbol), &quantity.size);
-            let words = name.replace('_', " ");
+            let words = name.replace('_', " ").replace("center", "centre");
+            let about = words::about(&quantity.name).map_or(String::new(), |text| format!(" title=\"{}\"", escape(text)));
             let _ = match &quantity.text {
                 Some(_) => writeln!(
                     text,
-                    "<details id=\"equation-{name}\" data-equation=\"{name}\"><summary><b>{symbol}</b> {words}, {size}</summary><div></div></details>"
+                    "<details id=\"equation-{name}\" data-equation=\"{name}\"><summary{about}><b>{symbol}</b> {words}, {size}</summary><div></div></details>"
                 ),
                 None => writeln!(
                     text,

@@ -20,6 +20,7 @@ mod rows;
 mod script;
 mod sheet;
 mod warnings;
+mod words;
 
 pub use logs::{Figure, Log, Run, Verdict, SAMPLES};
 
@@ -92,7 +93,8 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     let left_out = keep_what_is_used(&mut module);
     let text = javascript::print(&module, &Origin::of(source), &Notes::default());
     let rows = rows::rows(source, &description, &model.manipulator);
-    let data = data(&model.manipulator, &description, &rows, &module, &left_out, &equations, runs);
+    let bodies = bodies::bodies(&model.manipulator, &description, &diagnostics);
+    let data = data(&model.manipulator, &description, &rows, bodies, &module, &left_out, &equations, runs);
     let script = script::script(&text, !runs.is_empty());
     let page = document::document(&document::Parts {
         model: &model,
@@ -127,10 +129,12 @@ fn keep_what_is_used(module: &mut Module) -> Vec<(String, usize)> {
 }
 
 /// What the script is given.
+#[allow(clippy::too_many_arguments)]
 fn data(
     manipulator: &Manipulator,
     description: &RobotDescription,
     rows: &[rows::Row],
+    bodies: Value,
     module: &Module,
     left_out: &[(String, usize)],
     equations: &equations::Equations,
@@ -159,7 +163,7 @@ fn data(
         "base": rows::base(manipulator, description),
         "rows": rows.iter().map(row).collect::<Vec<_>>(),
         "tool": bodies::tool(manipulator),
-        "bodies": bodies::bodies(manipulator),
+        "bodies": bodies,
         "task": module.task,
         "functions": module.functions.iter().map(|function| function.name()).collect::<Vec<_>>(),
         "leftOut": left_out,

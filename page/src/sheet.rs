@@ -19,11 +19,16 @@ pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_
         Convention::Modified => "Modified Denavit-Hartenberg rows: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
         Convention::Urdf => "Rows of a URDF: origin, then the motion about or along the axis",
     };
-    text += ". A row in focus or under the pointer is drawn on the arm.</caption>\n<thead><tr><th scope=\"col\">joint</th><th scope=\"col\">type</th>";
+    let _ = writeln!(
+        text,
+        ". A row in focus or under the pointer is drawn on the arm. Lines are those of {}.</caption>",
+        escape(warnings.file())
+    );
+    text += "<thead><tr><th scope=\"col\">joint</th><th scope=\"col\">type</th>";
     for column in columns {
         let _ = write!(text, "<th scope=\"col\">{column}</th>");
     }
-    text += "<th scope=\"col\">limits</th><th scope=\"col\" title=\"of the description\">line</th></tr></thead>\n<tbody>\n";
+    text += "<th scope=\"col\">limits</th><th scope=\"col\">line</th></tr></thead>\n<tbody>\n";
     for (i, row) in rows.iter().enumerate() {
         let number = i + 1;
         let _ = write!(

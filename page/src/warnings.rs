@@ -34,6 +34,11 @@ impl<'d> Warnings<'d> {
         warnings
     }
 
+    /// The name of the description's file, without its folder: a page is the same wherever the description lies.
+    pub(crate) fn file(&self) -> &str {
+        self.source.name().rsplit(['/', '\\']).next().unwrap_or_default()
+    }
+
     /// Those of a row, as a list.
     pub(crate) fn of_row(&self, row: usize) -> String {
         self.rows.get(row).map_or_else(String::new, |all| self.list(all))
@@ -50,8 +55,9 @@ impl<'d> Warnings<'d> {
             let line = self.source.place(diagnostic.span().start).line;
             let _ = writeln!(
                 text,
-                "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line}): {}. {}.</p>",
+                "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line} of {}): {}. {}.</p>",
                 escape(diagnostic.code.name()),
+                escape(self.file()),
                 escape(&diagnostic.message),
                 escape(&sentence(&diagnostic.help)),
             );

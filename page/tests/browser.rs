@@ -285,6 +285,60 @@ fn fields_take_expressions() {
     tab.close(&file);
 }
 
+/// Entries say their units where some joints turn and some slide; bodies their tensors and what the linter says of them; a tick in the list of
+/// layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
+#[test]
+fn tables_say_units_and_doubts() {
+    let Some(program) = driver::program() else { return };
+    let folder = driver::folder("units");
+    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let file = written(&folder, &robot("scara"));
+    let mut tab = browser.open(&file, 1600, "light");
+    let seen = tab.run(
+        "(() => { const row = document.querySelector('[data-quantity=gravity][data-row=\"3\"]').parentElement.firstChild.textContent; \
+         const unit = (i, j) => document.querySelector(`[data-quantity=inertia_matrix][data-row=\"${i}\"][data-column=\"${j}\"]`).title; \
+         const top = () => document.getElementById('q4').getBoundingClientRect().top, before = top(); document.getElementById('show-velocity').click(); \
+         return [row, unit(1, 2), unit(1, 3), unit(3, 3), top() === before, document.getElementById('ellipsoid-axes').textContent !== '']; })()",
+    );
+    assert_eq!(seen, serde_json::json!(["3 quill, N", "kg m²", "kg m", "kg", true, true]));
+    tab.close(&file);
+    let file = written(&folder, &robot("everything"));
+    let mut tab = browser.open(&file, 1600, "light");
+    let wide = "[...document.querySelectorAll('#frames .scroll, #bodies .scroll')].filter((table) => table.scrollWidth > table.clientWidth).length";
+    for unit in ["m", "mm"] {
+        assert_eq!(tab.run(&format!("{MOVE}(2); {wide}")), 0, "a table is cut off, in {unit}");
+        tab.run("document.getElementById('length-unit').click()");
+    }
+    tab.close(&file);
+    let link = |name: &str, link: &str| {
+        format!("  - {{name: {name}, type: revolute, a: 0.5, alpha: 0, d: 0, theta: 0, link: {{com: [0, 0, 0], {link}}}}}\n")
+    };
+    let text = format!(
+        "name: bodies\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{}{}{}",
+        link("large", "mass: 1e-4, inertia: {xx: 1, yy: 1, zz: 1}"),
+        link("massless", "mass: 0, inertia: {zz: 2}"),
+        link("planar", "mass: 1, inertia: {zz: 0.01}")
+    );
+    let file = written(&folder, &Source::new("bodies.yaml", text));
+    let mut tab = browser.open(&file, 500, "light");
+    let bodies = tab.run("[...document.querySelectorAll('.bodies tbody tr')].map((row) => row.innerText)");
+    let bodies: Vec<&str> = bodies.as_array().expect("rows").iter().filter_map(Value::as_str).collect();
+    let [large, doubt, massless, said, planar] = bodies[..] else { panic!("{bodies:?}") };
+    assert!(large.contains("xx 1") && large.contains("6.804e−12") && large.ends_with("doubtful"), "{large}");
+    assert!(doubt.contains("radius of gyration of 100 m"), "{doubt}");
+    assert!(massless.contains("zz 2") && massless.ends_with("no mass"), "{massless}");
+    assert!(said.contains("one moment of inertia alone belongs to no solid body"), "{said}");
+    assert!(planar.ends_with("planar: one moment alone"), "{planar}");
+    let wheel = "(() => { const arm = document.getElementById('arm'); const turn = (ctrlKey) => { \
+                 const event = new WheelEvent('wheel', { deltaY: 50, ctrlKey, cancelable: true }); arm.dispatchEvent(event); return event.defaultPrevented; }; \
+                 const seen = [turn(false), turn(true)]; arm.focus(); seen.push(turn(false)); return seen; })()";
+    assert_eq!(tab.run(wheel), serde_json::json!([false, true, true]));
+    let lines = "[document.querySelector('#sheet caption').textContent.includes('Lines are those of bodies.yaml'), \
+                 document.querySelector('#sheet .warning').textContent.includes(' of bodies.yaml)')]";
+    assert_eq!(tab.run(lines), serde_json::json!([true, true]));
+    tab.close(&file);
+}
+
 /// Every section of equations opens, with numbers and with names, and never holds more nodes than a browser lays out at once.
 #[test]
 fn equations_are_set_when_they_are_opened() {
@@ -425,9 +479,10 @@ fn a_planted_mistake_is_the_first_suspect() {
          for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
          for (const id of ['reach', 'w-map']) document.getElementById(id).open = true; await new Promise((done) => setTimeout(done, 300)); \
          return [document.querySelectorAll('#arm .ellipsoids ellipse').length, document.querySelectorAll('#reach svg').length, \
-                 said().includes('det J changes its sign'), stretched]; })()",
+                 said().includes('det J changes its sign'), stretched, document.getElementById('w-across').textContent, \
+                 document.querySelector('#reach text').textContent.startsWith('distance, ')]; })()",
     );
-    assert_eq!(drawn, serde_json::json!([2, 2, true, true]));
+    assert_eq!(drawn, serde_json::json!([2, 2, true, true, "−3.14159q2 joint2, rad3.14159", true]));
     tab.close(&file);
 }
 

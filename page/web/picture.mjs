@@ -244,9 +244,12 @@ export class Picture {
         this.svg.addEventListener("pointermove", (event) => {
             if (this.svg.hasPointerCapture(event.pointerId)) this.orbit(-event.movementX * 0.01, event.movementY * 0.01);
         });
+        const narrow = matchMedia("(max-width: 800px)");
         this.svg.addEventListener(
             "wheel",
             (event) => {
+                // In a narrow window the picture stands in the way of who scrolls.
+                if (narrow.matches && !event.ctrlKey && document.activeElement !== this.svg) return;
                 event.preventDefault();
                 this.zoom(Math.exp(-event.deltaY * 0.001));
             },

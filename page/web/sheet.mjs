@@ -41,30 +41,22 @@ export function sheet(data, state, picture) {
     state.on("units", bodies);
 }
 
-/** Origins and axes of all frames at q = 0 and at the posture of the sliders. @param {any} data @param {import("./state.mjs").State} state */
+/** Origins and axes of all frames at the posture of the sliders, and at q = 0. @param {any} data @param {import("./state.mjs").State} state */
 function frameTable(data, state) {
     const names = ["0", ...data.rows.map((_, i) => String(i + 1)), "e"];
-    const columns = ["origin", "x axis", "y axis", "z axis"];
-    const cells = [];
-    const groups = html("tr", {}, html("td"), ...["at q = 0", "at the posture of the sliders"].map((when) => html("th", { scope: "colgroup", colspan: 4 }, when)));
-    const head = html("tr", {}, html("th", { scope: "col" }, "frame"));
-    const origins = [];
-    for (let k = 0; k < 2; k++) {
-        for (const column of columns) head.append(html("th", { scope: "col" }, column));
-        origins.push(head.children[1 + 4 * k]);
-    }
-    const body = html("tbody");
-    for (const name of names) {
-        const row = html("tr", {}, html("th", { scope: "row" }, name));
-        const own = Array.from({ length: 8 }, () => html("td"));
-        row.append(...own);
-        cells.push(own);
-        body.append(row);
-    }
-    const table = html("table", { class: "frames" }, html("caption", {}, "Origins and axes of the frames, in the base frame"), html("thead", {}, groups, head), body);
-    byId("frames").append(html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Frames" }, table));
+    const make = (when) => {
+        const origin = html("th", { scope: "col" });
+        const head = html("tr", {}, html("th", { scope: "col" }, "frame"), origin, ...["x axis", "y axis", "z axis"].map((axis) => html("th", { scope: "col" }, axis)));
+        const cells = names.map(() => Array.from({ length: 4 }, () => html("td")));
+        const body = html("tbody", {}, ...names.map((name, k) => html("tr", {}, html("th", { scope: "row" }, name), ...cells[k])));
+        const table = html("table", { class: "frames" }, html("caption", {}, `Origins and axes of the frames in the base frame, ${when}`), html("thead", {}, head), body);
+        byId("frames").append(html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": `Frames ${when}` }, table));
+        return { origin, cells };
+    };
+    const [here, there] = ["at the posture of the sliders", "at q = 0"].map(make);
     const zero = state.q.map(() => 0);
-    const write = (q, from) => {
+    const write = (q, { origin, cells }) => {
+        origin.textContent = `origin, ${units.length}`;
         const identity = [
             [1, 0, 0, 0],
             [0, 1, 0, 0],
@@ -72,18 +64,16 @@ function frameTable(data, state) {
         ];
         [identity, ...robot.linkFrames(q), robot.directKinematics(q)].forEach((frame, k) => {
             [3, 0, 1, 2].forEach((column, j) => {
-                const text = [0, 1, 2].map((i) => (column === 3 ? length(frame[i][3]) : brief(frame[i][column]))).join("  ");
-                const cell = cells[k][from + j];
-                if (cell.textContent !== text) cell.textContent = text;
+                const text = [0, 1, 2].map((i) => (column === 3 ? length(frame[i][3]) : short(tidy(Number(frame[i][column].toFixed(4)))))).join("  ");
+                if (cells[k][j].textContent !== text) cells[k][j].textContent = text;
             });
         });
     };
     const update = () => {
         // What is folded in is not kept.
         if (!byId("frames").closest("details").open) return;
-        for (const name of origins) name.textContent = `origin, ${units.length}`;
-        write(zero, 0);
-        write(state.q, 4);
+        write(state.q, here);
+        write(zero, there);
     };
     byId("frames").closest("details").addEventListener("toggle", update);
     return update;
@@ -101,25 +91,40 @@ function brief(x) {
 
 /** @param {any} data */
 function bodyTable(data) {
-    const columns = ["body", "frame", "mass, kg", `centre of mass in that frame, ${units.length}`, `edges of its cuboid, ${units.length}`, "density of the cuboid, kg/m³", "inertia tensor"];
+    const columns = ["body", "frame", "mass, kg", `centre of mass in that frame, ${units.length}`, "inertia tensor about it, kg m²", `edges of its cuboid, ${units.length}`, "density of the cuboid, kg/m³", "such a body"];
     const head = html("tr", {}, ...columns.map((column) => html("th", { scope: "col" }, column)));
-    const rows = data.bodies.map((body) => {
+    /** A sentence about several bodies is said once. */
+    const told = new Set();
+    const rows = data.bodies.flatMap((body) => {
         const shape = cuboid(body);
         const lengths = (values) => values.map(length).join("  ");
+        // Moments below each other, beside them the products that are not 0.
+        const element = (name, k) => `${name} ${brief(body.inertia[k])}`;
+        const product = (name, k) => (body.inertia[k] === 0 ? "" : `  ${element(name, k)}`);
+        const tensor = [element("xx", 0) + product("xy", 1), element("yy", 2) + product("xz", 3), element("zz", 5) + product("yz", 4)].join("\n");
+        // What the linter says of the tensor, in its own words.
+        const alone = body.inertia.filter((element) => element !== 0).length === 1;
+        const impossible = shape !== null && !shape.possible;
+        const said = body.said.length === 0 && impossible ? ["no solid body has these moments"] : body.said.filter((message) => !told.has(message));
+        said.forEach((message) => told.add(message));
         const cells = shape
             ? [
                   lengths(body.com),
+                  tensor,
                   shape.empty ? "no inertia" : lengths(shape.edges),
                   Number.isFinite(shape.density) ? short(Number(shape.density.toPrecision(4))) : shape.empty ? "none" : "flat: none",
-                  shape.possible ? "possible" : "⚠ impossible: no body has these moments",
+                  impossible ? (alone ? "planar: one moment alone" : "impossible") : body.said.length > 0 ? "doubtful" : "possible",
               ]
-            : ["none", "none", "none", "none: no mass"];
-        return html(
+            : ["none", tensor, "none", "none", "no mass"];
+        const row = html(
             "tr",
-            { class: shape && !shape.possible ? "doubtful" : "" },
+            { class: impossible ? "doubtful" : "" },
             html("th", { scope: "row" }, body.name),
             ...[String(body.frame), short(body.mass), ...cells].map((text) => html("td", {}, text)),
         );
+        if (said.length === 0) return [row];
+        const words = said.map((message) => html("p", { class: "warning" }, html("strong", {}, "Warning"), `: ${message}`));
+        return [row, html("tr", { class: "said" }, html("td", { colspan: columns.length }, ...words))];
     });
     const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia; tick “bodies” to see them on the arm");
     const table = html("table", { class: "bodies" }, caption, html("thead", {}, head), html("tbody", {}, ...rows));

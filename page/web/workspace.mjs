@@ -3,7 +3,7 @@
  */
 
 import { byId, html, svg } from "./dom.mjs";
-import { short, withUnit } from "./format.mjs";
+import { inUnit, short, unitName, withUnit } from "./format.mjs";
 import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
 import { sequence } from "./search.mjs";
 import { range } from "./state.mjs";
@@ -53,11 +53,15 @@ export function workspace(data, state, picture) {
 function views(points) {
     const away = points.map(([x, y]) => Math.hypot(x, y));
     const size = Math.max(...points.flat().map(Math.abs), ...away) || 1;
-    const picture = (title, all) => {
+    const picture = (title, [across, up], all) => {
         const at = (x) => ((x / size) * 110).toFixed(1);
         const d = all.map(([x, y]) => `M${at(x)} ${at(-y)}h0`).join("");
         const axes = svg("path", { class: "axes", d: "M-118 0H118M0 -118V118" });
-        return html("figure", {}, svg("svg", { viewBox: "-120 -120 240 240", class: "reach", role: "img", "aria-label": title }, axes, svg("path", { d })), html("figcaption", {}, title));
+        // Both axes end at the same length, whose tick is at 110.
+        const ticks = svg("path", { class: "axes", d: "M110 -3V3M-3 -110H3" });
+        const end = withUnit(Number(size.toPrecision(3)), "m");
+        const names = [svg("text", { x: 118, y: 12, "text-anchor": "end" }, `${across}, ${end}`), svg("text", { x: 6, y: -107 }, `${up}, ${end}`)];
+        return html("figure", {}, svg("svg", { viewBox: "-120 -120 240 240", class: "reach", role: "img", "aria-label": title }, axes, ticks, svg("path", { d }), ...names), html("figcaption", {}, title));
     };
     // Points are samples: more digits would be none of the arm's.
     const about = (x) => withUnit(Math.abs(x) < 0.005 * size ? 0 : Number(x.toPrecision(3)), "m");
@@ -65,8 +69,8 @@ function views(points) {
     const heights = points.map((point) => point[2]);
     const farthest = Math.max(...points.map((point) => Math.hypot(...point)));
     return [
-        picture(`side: distance from the z axis ${extent(away)}, z ${extent(heights)}`, points.map((point, i) => [away[i], point[2]])),
-        picture(`top: x ${extent(points.map((p) => p[0]))}, y ${extent(points.map((p) => p[1]))}`, points),
+        picture(`side: distance from the z axis ${extent(away)}, z ${extent(heights)}`, ["distance", "z"], points.map((point, i) => [away[i], point[2]])),
+        picture(`top: x ${extent(points.map((p) => p[0]))}, y ${extent(points.map((p) => p[1]))}`, ["x", "y"], points),
         html("p", {}, `Reach: about ${about(farthest)} from the origin of the base, the farthest of ${points.length} postures within the limits.`),
     ];
 }
@@ -140,6 +144,12 @@ function map(data, state, picture) {
         }
         const largest = Math.max(...values);
         const scale = picture.arm.size ** data.task.length;
+        const unit = (k) => (data.rows[k].type === "revolute" ? "rad" : "m");
+        // Names and ends of the axes, in the reader's units.
+        for (const [k, low, high, id] of [[i, a, b, "w-across"], [j, c, d, "w-up"]]) {
+            const name = `q${k + 1} ${data.rows[k].name}, ${unitName(unit(k))}`;
+            byId(id).replaceChildren(...[short(inUnit(low, unit(k))), name, short(inUnit(high, unit(k)))].map((text) => html("span", {}, text)));
+        }
         if (i === j || !(largest > 1e-12 * scale)) {
             canvas.getContext("2d")?.clearRect(0, 0, SIDE, SIDE);
             byId("w-said").textContent = i === j ? "Choose two different joints." : "w is 0 at all of these postures: the arm is singular whatever these two joints do. Move another joint.";
@@ -163,7 +173,6 @@ function map(data, state, picture) {
         context.strokeStyle = "#ff3b30";
         context.lineWidth = 2;
         context.strokeRect(((state.q[i] - a) / (b - a)) * SIDE - 5, SIDE - ((state.q[j] - c) / (d - c)) * SIDE - 5, 10, 10);
-        const unit = (k) => (data.rows[k].type === "revolute" ? "rad" : "m");
         byId("w-said").textContent =
             `Across: q${i + 1} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: q${j + 1} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
             `w from 0 (dark) to ${short(largest)} (bright)${square ? ", white lines where det J changes its sign" : ""}; the square is the posture that is shown.`;
