@@ -159,11 +159,14 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
             };
             if ready {
                 let (left, right) = (operand(pool, &done, a), operand(pool, &done, b));
-                let value = folded(operation, &left, &right).map(Operand::Constant);
-                done.insert(expr.index(), value.unwrap_or(Operand::Step(steps.len() as u32)));
-                if let Operand::Step(_) = done[&expr.index()] {
-                    steps.push(Step { operation, left, right });
-                }
+                let value = match folded(operation, &left, &right) {
+                    Some(value) => Operand::Constant(value),
+                    None => {
+                        steps.push(Step { operation, left, right });
+                        Operand::Step(steps.len() as u32 - 1)
+                    }
+                };
+                done.insert(expr.index(), value);
             } else {
                 stack.extend([(expr, true), (b.unsigned(), false), (a.unsigned(), false)]);
             }
@@ -171,12 +174,13 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
     }
     let outputs = exprs
         .iter()
-        .map(|&expr| match pool.as_constant(expr) {
-            Some(value) => Output { operand: Operand::Constant(value), negated: false },
-            None => match operand(pool, &done, expr) {
-                Operand::Constant(value) if expr.is_negated() => Output { operand: Operand::Constant(-&value), negated: false },
-                operand => Output { negated: expr.is_negated() && !matches!(operand, Operand::Constant(_)), operand },
-            },
+        .map(|&expr| match operand(pool, &done, expr) {
+            // A constant has its own sign.
+            Operand::Constant(value) => {
+                let value = if expr.is_negated() { -&value } else { value };
+                Output { operand: Operand::Constant(value), negated: false }
+            }
+            operand => Output { operand, negated: expr.is_negated() },
         })
         .collect();
     (steps, outputs)

@@ -15,7 +15,12 @@ use crate::snap::Snapped;
 pub struct Report {
     json: Value,
     lines: Vec<String>,
+    short: Vec<String>,
+    attached: usize,
 }
+
+/// So many names of a list on a terminal: a humanoid has a hundred joints beside an arm.
+const NAMED: usize = 12;
 
 impl Report {
     /// As JSON: `robot`, `format`, `base`, `tip`, `joints`, `snapped`, `rounded`, `locked`, `lumped`, `left_out`, `bound`.
@@ -28,6 +33,16 @@ impl Report {
     /// In words, a line for each kind of change.
     pub fn lines(&self) -> &[String] {
         &self.lines
+    }
+
+    /// The same with the first names of long lists and how many more there are.
+    pub fn short_lines(&self) -> &[String] {
+        &self.short
+    }
+
+    /// How many bodies are fixed to the links, which reading the description multiplies out.
+    pub fn attached(&self) -> usize {
+        self.attached
     }
 }
 
@@ -80,17 +95,23 @@ pub(crate) fn of(source: &Source, format: &dyn Format, arm: &Arm, bound: Bound) 
             "joint": arm.rows.get(bound.joint).map(|row| row.name.as_str()),
         },
     });
-    Report { lines: words(source, arm, bound, &left_out), json }
+    let words = |most| words(source, arm, bound, &left_out, most);
+    let attached = arm.rows.iter().map(|row| row.attached.len()).sum();
+    Report { lines: words(usize::MAX), short: words(NAMED), json, attached }
 }
 
-fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, usize>) -> Vec<String> {
+fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, usize>, most: usize) -> Vec<String> {
     let mut lines = arm.notes.clone();
-    let names = |list: Vec<&str>| list.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let list = |all: Vec<String>| match all.len().saturating_sub(most) {
+        0 => all.join(", "),
+        more => format!("{} and {more} more", all[..most].join(", ")),
+    };
+    let names = |names: Vec<&str>| list(names.iter().map(|name| format!("`{name}`")).collect());
     lines.push(format!("`{}` to `{}`: {}", arm.base, arm.tip, counted(arm.rows.len(), "moving joint")));
     let renamed: Vec<String> =
         arm.rows.iter().filter(|row| row.name != row.joint).map(|row| format!("`{}` is `{}`", row.joint, row.name)).collect();
     if !renamed.is_empty() {
-        lines.push(format!("renamed: {}", renamed.join(", ")));
+        lines.push(format!("renamed: {}", list(renamed)));
     }
     if !arm.snap.snapped.is_empty() {
         let (name, unit) =
@@ -118,7 +139,7 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     }
     let locked: Vec<String> = arm.locked.iter().map(|lock| format!("`{}` at {}", lock.joint, lock.text)).collect();
     if !locked.is_empty() {
-        lines.push(format!("joints that stand still: {}", locked.join(", ")));
+        lines.push(format!("joints that stand still: {}", list(locked)));
     }
     if !arm.massless.is_empty() {
         lines.push(format!("links without mass: {}", names(arm.massless.iter().map(String::as_str).collect())));

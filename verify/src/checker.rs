@@ -23,7 +23,7 @@ use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::{Atoms, Dependent, Formula};
 use crate::powers::{joints_asked, Powers};
-use crate::program::{Program, Step};
+use crate::program::{Program, Step, MOST_BITS};
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Wanted};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
@@ -101,7 +101,9 @@ impl<K: Arithmetic> Point<K> {
     fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<(usize, &'static str)> {
         let expected = self.reference.values.get(&program.name)?;
         let Some(literals) = self.literals_of(program, literals) else { return Some((0, "has a constant that divides by 0")) };
-        let values = program.run(&self.reference.state, &literals);
+        // Values on the way to an entry are some times as long as it: an acceleration under five roots can have a million bits itself.
+        let longest: usize = expected.iter().map(Element::bits).max().unwrap_or(0);
+        let values = program.run_within(MOST_BITS.max(4 * longest), &self.reference.state, &literals);
         if let Some(entry) = values.iter().position(Option::is_none) {
             let before = values[..entry].iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected));
             if before.is_none() || base && program.name == ENERGY_WITH {

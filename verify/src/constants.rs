@@ -157,10 +157,11 @@ fn wrong_value(checker: &Checker, own: &OwnParameters) -> Option<(usize, String)
 /// The exact nominal parameters: those with names from the description, others as claimed (they are compared with the description's at the points of
 /// the checker).
 pub fn nominal_parameters(manipulator: &Manipulator, vector: &Vector, claims: &Claims, module: &Module) -> Option<Vec<Formula>> {
+    let claimed = |parameters: usize| claimed("NOMINAL_PARAMETERS", parameters, claims, module);
     match vector {
         Vector::Names(ids) => Some(ids.iter().map(|&id| formula(&manipulator.parameters[id].nominal)).collect()),
-        Vector::Standard(all) => claimed("NOMINAL_PARAMETERS", all.len(), claims, module),
-        Vector::Base(base, _) => claimed("NOMINAL_PARAMETERS", base.len(), claims, module),
+        Vector::Standard(all) => claimed(all.len()),
+        Vector::Base(base, _) => claimed(base.len()),
     }
 }
 

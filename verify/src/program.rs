@@ -184,12 +184,22 @@ pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E
     (sine.times(c).plus(&cosine.times(&s)), cosine.times(c).minus(&sine.times(&s)))
 }
 
+/// Bits of one exact value at most.
+pub const MOST_BITS: usize = 1 << 20;
+/// And of all together.
+const ALL_BITS: u64 = 1 << 32;
+
 impl Program {
     /// The entries of the result; `None` for those that divide by 0.
     pub fn run<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
+        self.run_within(MOST_BITS, inputs, literals)
+    }
+
+    /// The same where one value may have more bits, since the entries themselves are known to have many.
+    pub fn run_within<E: Element>(&self, most_bits: usize, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
         // What owns memory is given back as soon as nothing needs it any more.
         let last = std::mem::needs_drop::<E>().then(|| self.last_uses());
-        let values = self.execute(inputs, literals, last.as_deref());
+        let values = self.execute(inputs, literals, last.as_deref(), most_bits);
         self.outputs.iter().map(|output| values[output.step].clone()).collect()
     }
 
@@ -248,11 +258,17 @@ impl Program {
     /// The value of every step; `None` of what divides by zero, and of all from where numbers have grown out of bounds: 2^20 bits for one,
     /// 2^32 for all.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
-        self.execute(inputs, literals, None)
+        self.execute(inputs, literals, None, MOST_BITS)
     }
 
     /// The same, without the values of steps behind their last uses.
-    fn execute<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E], last: Option<&[usize]>) -> Vec<Option<E>> {
+    fn execute<E: Element>(
+        &self,
+        inputs: &impl Inputs<E>,
+        literals: &[E],
+        last: Option<&[usize]>,
+        most_bits: usize,
+    ) -> Vec<Option<E>> {
         let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());
         let mut bits = 0;
         for (i, step) in self.steps.iter().enumerate() {
@@ -283,7 +299,7 @@ impl Program {
             };
             let own = value.as_ref().map_or(0, Element::bits);
             bits += own as u64;
-            if own > 1 << 20 || bits > 1 << 32 {
+            if own > most_bits || bits > ALL_BITS {
                 values.resize(self.steps.len(), None);
                 break;
             }
