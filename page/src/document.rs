@@ -54,7 +54,9 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
     let sections = sections(parts);
     text += "<nav aria-label=\"Sections\">";
     for (id, title, _) in &sections {
-        let _ = write!(text, "<a href=\"#{id}\">{title}</a>");
+        // The contents stand on one line.
+        let brief = title.split(" against").next().unwrap_or(title);
+        let _ = write!(text, "<a href=\"#{id}\">{brief}</a>");
         if *id == "numbers" {
             text += "<a href=\"#singular\">Singular postures</a>";
         }

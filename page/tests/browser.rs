@@ -133,7 +133,7 @@ fn pages_fit_windows_themes_and_paper() {
     let mut browser = Browser::start(&program, &folder.join("browser"));
     for source in [robot("scara"), robot("panda7"), robot("everything")] {
         let file = written(&folder, &source);
-        for (width, theme) in [(360, "dark"), (1600, "light"), (810, "dark"), (800, "light")] {
+        for (width, theme) in [(360, "dark"), (1600, "light"), (1360, "dark"), (810, "dark"), (800, "light")] {
             let mut tab = browser.open(&file, width, theme);
             let overflow = tab.run("document.documentElement.scrollWidth - innerWidth");
             assert!(overflow.as_f64().is_some_and(|by| by <= 0.0), "{}: {width} px: {overflow} px too wide", source.name());
