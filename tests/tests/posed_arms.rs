@@ -13,17 +13,21 @@ use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
 use armgen_verify::verify_with;
 
-/// How many arms, from seed 0 on; another number with `ARMGEN_RANDOM_ARMS`.
+/// How many arms, from seed 0 on; another number, or seeds such as 200..500, with `ARMGEN_RANDOM_ARMS`.
 const ARMS: u64 = 24;
 
 /// In 96 the acceleration of the slide cancels in the torque of the first joint; in 116 accelerations at a rational point have very many bits;
-/// in 360 an offset of friction, an armature and the weight on a slide are constant torques, which the base parameters of gravity and friction
-/// share out.
-const SINGULAR: [u64; 3] = [96, 116, 360];
+/// in 187 a rate cancels in a column of a base parameter; in 360 an offset of friction, an armature and the weight on a slide are constant
+/// torques, which the base parameters of gravity and friction share out.
+const SINGULAR: [u64; 4] = [96, 116, 187, 360];
 
 fn arms() -> impl Iterator<Item = u64> {
-    let arms = std::env::var("ARMGEN_RANDOM_ARMS").map_or(ARMS, |text| text.parse().expect("ARMGEN_RANDOM_ARMS is a number"));
-    (0..arms).chain(SINGULAR.into_iter().filter(move |&seed| seed >= arms))
+    let seeds = std::env::var("ARMGEN_RANDOM_ARMS").map_or(0..ARMS, |text| {
+        let (from, to) = text.split_once("..").unwrap_or(("0", &text));
+        let number = |text: &str| text.parse().expect("ARMGEN_RANDOM_ARMS is a number, or two with `..` between them");
+        number(from)..number(to)
+    });
+    seeds.clone().chain(SINGULAR.into_iter().filter(move |seed| !seeds.contains(seed)))
 }
 
 #[test]

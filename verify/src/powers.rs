@@ -7,6 +7,7 @@
 //! degree of f in q[k], tau[k]                                         at most that of f*
 //! degree of f in dq[k], dqr[k], ddq[k], ddqr[k]                       at most that of any entry, and where the function does not take q that of f*
 //! degree of f in all entries of an argument, and in all arguments     at most that of f*
+//! the same in a column of a base parameter                            at most that of any entry, and of any torque
 //! degree of f in pi[k]                                                at most that of any entry of the function, and 1
 //! degree of f in sin q[k], cos q[k]                                   at most twice that of f*, and a square
 //! an angle is q_i ± ... ± q_j of revolute joints with parallel axes, none between them left out, as the axes point
@@ -96,10 +97,15 @@ impl Powers {
         let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
         let reference = Reference::at(&mut growths, manipulator, vector, state.clone(), wanted)?;
         let mut own = reference.values;
+        // Which of a kind a column of base parameters is made of is the generator's choice, and may be a pair that cancels.
+        if let Vector::Base(..) = vector {
+            let parts = ["regressor", "inverse_dynamics"].map(|name| own.get(name).map_or(&[][..], Vec::as_slice)).concat();
+            let most = parts.iter().fold(growths.integer(0), Growth::most);
+            own.entry("regressor".into()).and_modify(|entries| entries.fill(most));
+        }
         if let Some(base) = base {
             let names = Arm::nominal(&growths, manipulator).ok_or_else(divided)?;
             let arm = Arm::new(&growths, manipulator, &names).ok_or_else(divided)?;
-            // Which of a kind a column is made of is the generator's choice, and may be a pair that cancels.
             let columns = sums_of_kinds(&arm, &state, &base.named);
             let most =
                 columns.iter().chain(own.get("inverse_dynamics").into_iter().flatten()).fold(growths.integer(0), Growth::most);
