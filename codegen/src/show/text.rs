@@ -16,9 +16,24 @@ impl Sheet {
     /// The sheet as plain text.
     pub fn text(&self) -> String {
         let mut parts: Vec<String> = self.quantities.iter().map(Shown::text).collect();
-        parts.extend(self.absent.iter().map(|Absent { function, reason }| format!("{function}: {reason}\n")));
+        parts.extend(self.absent.iter().map(|Absent { function, reason }| prose(&format!("{function}: {reason}"))));
         parts.join("\n")
     }
+}
+
+/// A sentence in lines of at most [`WIDTH`], those after the first one indented.
+fn prose(sentence: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in sentence.split(' ') {
+        let line = lines.last_mut().expect("there is one");
+        if line.len() + 1 + word.len() > WIDTH {
+            lines.push(format!("    {word}"));
+        } else {
+            let blank = if line.is_empty() { "" } else { " " };
+            line.push_str(&format!("{blank}{word}"));
+        }
+    }
+    lines.join("\n") + "\n"
 }
 
 impl Shown {

@@ -65,7 +65,7 @@ pub(crate) struct Results {
 }
 
 /// Of so many bodies beside the links import says what the equations refuse.
-const MOST_BODIES: usize = 60;
+const MOST_BODIES: usize = 30;
 
 pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     let source = match input::source(file) {
