@@ -30,7 +30,7 @@ use crate::source::Span;
 pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnostics) {
     let Some(field) = find_field(manipulator) else {
         let message = "the numbers of this arm hold too many different square roots to work with them exactly";
-        let help = "use fewer different roots, fifteen at most; write a length that is measured as the decimal that it is";
+        let help = "use fewer different roots, a dozen at most; write a length that is measured as the decimal that it is";
         diagnostics.push(Diagnostic::new(Code::TooComplex, places.name, message, "the equations of this arm", help));
         return;
     };
