@@ -41,13 +41,12 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         let mut chains: Vec<(&[usize], usize)> = groups.iter().map(|(last, leaves)| (leaves.as_slice(), count[last])).collect();
         chains.sort_by_key(|&(_, joints)| std::cmp::Reverse(joints));
         let chain = |&(leaves, joints): &(&[usize], usize)| {
-            let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
             let others = match leaves.len() - 1 {
                 0 => String::new(),
                 1 => ", and 1 leaf fixed to its last link".to_owned(),
                 n => format!(", and {n} leaves fixed to its last link"),
             };
-            format!("`{}` ({joints}{others})", shown(&tree.links[leaves[0]].name))
+            format!("`{}` ({}{others})", shown(&tree.links[leaves[0]].name), number(joints))
         };
         let all: Vec<String> = chains.iter().take(NAMED).map(chain).collect();
         let more = chains.len().saturating_sub(NAMED);
@@ -56,11 +55,8 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         let tips: Vec<usize> = chains.iter().map(|(leaves, _)| leaves[0]).collect();
         let mut help = format!("choose one: `--tip {}`", shown(&tree.links[tips[0]].name));
         if let Some((link, joints)) = before_branches(tree, base, tips[0], locks) {
-            let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
-            help = format!(
-                "{help}; or end the arm where it branches, say before the fingers: `--tip {}` ({joints})",
-                shown(&link.name)
-            );
+            let (tip, joints) = (shown(&link.name), number(joints));
+            help = format!("{help}; or end the arm where it branches, say before the fingers: `--tip {tip}` ({joints})");
         }
         let mut fault = Diagnostic::new(Code::SeveralTips, tree.links[tips[0]].span, message, "may be the tip", help);
         for &tip in tips.iter().skip(1).take(3) {
@@ -89,6 +85,11 @@ pub(super) fn only(tree: &Tree, base: usize, locks: &Locks, diagnostics: &mut Di
         named(leaves)
     );
     Some((tip, vec![note]))
+}
+
+/// `1 joint`, `2 joints`.
+fn number(joints: usize) -> String {
+    format!("{joints} joint{}", if joints == 1 { "" } else { "s" })
 }
 
 /// The last link above a tip on which more than one joint moves something, and how many joints move it, if some do.
