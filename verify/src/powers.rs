@@ -98,18 +98,17 @@ impl Powers {
         let reference = Reference::at(&mut growths, manipulator, vector, state.clone(), wanted)?;
         let mut own = reference.values;
         // Which of a kind a column of base parameters is made of is the generator's choice, and may be a pair that cancels.
-        if let Vector::Base(..) = vector {
-            let parts = ["regressor", "inverse_dynamics"].map(|name| own.get(name).map_or(&[][..], Vec::as_slice)).concat();
-            let most = parts.iter().fold(growths.integer(0), Growth::most);
-            own.entry("regressor".into()).and_modify(|entries| entries.fill(most));
+        let torques = own.get("inverse_dynamics").cloned().unwrap_or_default();
+        let with_torques = |columns: &[Growth]| columns.iter().chain(&torques).fold(growths.integer(0), Growth::most);
+        if let (Vector::Base(..), Some(columns)) = (vector, own.get_mut("regressor")) {
+            let most = with_torques(columns);
+            columns.fill(most);
         }
         if let Some(base) = base {
             let names = Arm::nominal(&growths, manipulator).ok_or_else(divided)?;
             let arm = Arm::new(&growths, manipulator, &names).ok_or_else(divided)?;
             let columns = sums_of_kinds(&arm, &state, &base.named);
-            let most =
-                columns.iter().chain(own.get("inverse_dynamics").into_iter().flatten()).fold(growths.integer(0), Growth::most);
-            own.insert(BASE_REGRESSOR.into(), vec![most; columns.len()]);
+            own.insert(BASE_REGRESSOR.into(), vec![with_torques(&columns); columns.len()]);
         }
         let largest = |names: &[&str]| {
             let entries = names.iter().filter_map(|name| own.get(*name)).flatten();
