@@ -7,7 +7,7 @@
 //! |fl(x + y) - (x* + y*)| ≤ e_x + e_y + u (|x + y|max + e_x + e_y)          and so on
 //! ```
 //!
-//! Divisors are pivots of B, positive for every arm; how small they can become intervals do not show. A bound for a function that divides is
+//! Divisors are pivots of B, positive for every arm, or their negatives; how small they can become intervals do not show. A bound for a function that divides is
 //! therefore one for states where every divisor is at least half of the smallest among some thousand states of the box, and says so.
 //!
 //! A value that can leave the scalar has no bound. One that can come below the normal numbers may be off by what they are spaced there, after an exact product
@@ -272,7 +272,7 @@ fn sentence(bound: &Bound) -> String {
     let of_torques = bound.residual.map(|r| {
         let (constant, factor) = (two_digits(r.constant), two_digits(r.factor));
         format!(
-            "ddq is that of torques off by at most {constant} + {factor} max|ddq| N m (N), over the box in the head of this file, where all divisors \
+            "ddq is that of torques off by at most {constant} + {factor} max|ddq| N m (N), over the box in the head of this file, where all pivots \
              come out positive; sqrt(DOF) times that over the smallest eigenvalue of B bounds the error of ddq"
         )
     });

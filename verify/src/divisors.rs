@@ -11,8 +11,8 @@
 //! that no motion leaves at rest all minors are positive, for every q. Those of J B^-1 J' are, but at singular configurations, where the function has no value. So
 //! every other divisor is one that the equations do not ask for, and that may be 0 where they have a value.
 //!
-//! A divisor is a pivot, without a factor or a sign of its own: then it is positive, and no smaller than what is to be inverted. Tested at two states in each
-//! prime field, with two vectors of parameters.
+//! A divisor is a pivot or its negative, without a factor of its own: then it keeps its sign, and is no smaller than what is to be inverted. Tested at two
+//! states in each prime field, with two vectors of parameters.
 
 use std::collections::BTreeSet;
 
@@ -97,10 +97,11 @@ pub fn divisors(program: &Program) -> Vec<usize> {
     divisors
 }
 
-/// Whether a divisor with these values at two states is a pivot there.
+/// Whether a divisor with these values at two states is a pivot there, or the negative of one at both.
 pub fn is_needed<E: Element>(function: &str, values: [&E; 2], pivots: [&Pivots<E>; 2]) -> bool {
     let [here, there] = pivots.map(|pivots| pivots.of_function(function));
-    here.zip(there).any(|(p, q)| values[0] == p && values[1] == q)
+    let negatives = values.map(E::negated);
+    here.zip(there).any(|(p, q)| values == [p, q] || negatives.each_ref() == [p, q])
 }
 
 /// Of a function that divides: the steps that no quotient takes part in and that are divisors, or operands of those that a quotient takes part in, or entries.

@@ -52,7 +52,7 @@ pub struct Seen {
     pub singular: u64,
 }
 
-/// How far accelerations were from solving the equations of motion, where all divisors were positive.
+/// How far accelerations were from solving the equations of motion, where all pivots were positive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Torques {
     /// The bound.
@@ -165,10 +165,12 @@ impl Subject {
         self.table.run(&side.own);
         twofold::values(&self.program, &self.pairs, &side.fine, scratch)?;
         let digits = real.unit().sqrt();
-        let (mut singular, mut outside) = ([false; LANES], [false; LANES]);
+        let (mut singular, mut outside, mut lost_sign) = ([false; LANES], [false; LANES], [false; LANES]);
         for &divisor in &self.divisors {
             let (value, error) = self.table.step(divisor);
             for lane in 0..LANES {
+                // A divisor is a pivot, which is positive, or the negative of one.
+                lost_sign[lane] |= exceeds(0.0, value[lane] * scratch[divisor].high[lane].signum());
                 singular[lane] |= exceeds(error[lane], digits * value[lane].abs());
                 outside[lane] |= self.bound.smallest_divisor.is_some_and(|least| exceeds(least, value[lane].abs() - error[lane]));
             }
@@ -193,7 +195,7 @@ impl Subject {
                 }
             }
         }
-        self.look_at_residuals(side, scratch, seen)?;
+        self.look_at_residuals(side, &lost_sign, scratch, seen)?;
         for lane in 0..LANES {
             seen.outside += u64::from(outside[lane]);
             seen.singular += u64::from(singular[lane]);
@@ -205,15 +207,18 @@ impl Subject {
     }
 
     /// How far the accelerations are from solving the equations.
-    fn look_at_residuals(&self, side: &Batch, scratch: &mut Vec<Twofold>, seen: &mut Seen) -> Option<()> {
+    fn look_at_residuals(
+        &self,
+        side: &Batch,
+        lost_sign: &[bool; LANES],
+        scratch: &mut Vec<Twofold>,
+        seen: &mut Seen,
+    ) -> Option<()> {
         let (Some(torques), Some(equations)) = (&mut seen.residual, &self.equations) else { return Some(()) };
         let x: Vec<[f64; LANES]> = self.program.outputs.iter().map(|output| self.table.step(output.step).0).collect();
         let wide: Vec<Twofold> = x.iter().map(|x| Twofold::exact(*x)).collect();
         let residuals = equations.residuals(&side.fine, &wide, scratch)?;
-        for lane in 0..LANES {
-            if self.divisors.iter().any(|&divisor| exceeds(0.0, self.table.step(divisor).0[lane])) {
-                continue;
-            }
+        for lane in (0..LANES).filter(|&lane| !lost_sign[lane]) {
             let most = x.iter().fold(0.0f64, |a, x| a.max(x[lane].abs()));
             let bound = torques.bound.constant + torques.bound.factor * most;
             let size =

@@ -29,7 +29,7 @@ use crate::program::{Argument, Program, Step};
 use crate::ranges::Range;
 use crate::reader::Module;
 
-/// The accelerations x returned are those at torques off by at most `constant + factor max|x|`, where all divisors are positive.
+/// The accelerations x returned are those at torques off by at most `constant + factor max|x|`, where all pivots are positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// Part that does not depend on the accelerations.

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use dashu_base::{Gcd, Signed, UnsignedAbs};
 use dashu_int::UBig;
+use num_modular::ModularSymbols;
 
 use super::turn::Turn;
 use super::AngleSum;
@@ -19,8 +20,13 @@ use crate::scramble::scramble;
 /// 2^64 - 2^32 + 1.
 const FIRST_PRIME: u64 = 0xffff_ffff_0000_0001;
 
-/// How many primes are tried before an arm is called too complex.
-const PRIMES_TRIED: usize = 4096;
+/// Most different square roots besides those of 2 and 3, with nested ones. Half of all fields lack a root: the field of an arm is one in 2^16 then,
+/// for the generator, which looks for one, and for the checker, which looks for many.
+pub const MOST_ROOTS: usize = 16;
+
+/// How many numbers = 1 mod 24 are looked at for a prime. One in 14 of them is a prime: the odds that none of
+/// them has 16 roots are e^-18.
+const CANDIDATES: usize = 1 << 24;
 
 /// An element of the field, in Montgomery form: equal elements have equal representations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,15 +55,17 @@ pub struct Field {
 }
 
 impl Field {
-    /// A field in which the roots of `numbers`, fewer than a dozen different ones, exist.
+    /// A field in which the roots of `numbers`, few different ones, exist.
     pub fn for_constants<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Field {
         Field::with_roots_of(numbers).expect("few roots have a field")
     }
 
-    /// A field in which the roots of `numbers` exist; `None` if there is none among the primes that are tried. Each root is missing
-    /// from every other field, so that happens from some twelve different roots on.
+    /// A field in which the roots of `numbers` exist; `None` if they are more than [`MOST_ROOTS`].
     pub fn with_roots_of<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> Option<Field> {
         let mut roots = collect_roots(numbers);
+        if roots.iter().filter(|root| !in_every_field(root)).count() > MOST_ROOTS {
+            return None;
+        }
         roots.retain(is_of_prime);
         Field::with_roots(&roots, None)
     }
@@ -66,7 +74,7 @@ impl Field {
     /// may be tied to others.
     pub fn with_turn<'a>(numbers: impl IntoIterator<Item = &'a Number>, turn: Turn) -> Option<Field> {
         let (mut roots, of_turn) = (collect_roots(numbers), collect_roots([&turn.cosine, &turn.sine]));
-        let mut rest = of_turn.iter().filter(|root| !is_of_prime(root));
+        let mut rest = of_turn.iter().filter(|root| matches!(root, Atom::Root(_)) && !is_of_prime(root));
         let coprime_radicand = rest.next().cloned();
         let tied = |root: &Atom| match (&coprime_radicand, root) {
             (Some(Atom::Root(n)), Atom::Root(m)) => !n.gcd(m).is_one(),
@@ -76,18 +84,21 @@ impl Field {
             return None;
         }
         roots.retain(is_of_prime);
-        roots.extend(of_turn);
+        roots.extend(of_turn.into_iter().filter(|root| matches!(root, Atom::Root(_))));
         let mut field = Field::with_roots(&roots, coprime_radicand)?;
         let circle = (field.number(&turn.sine), field.number(&turn.cosine));
         field.turn = Some((Arc::new(turn), circle));
         Some(field)
     }
 
-    /// A field that has roots.
+    /// A field that has the roots of integers. What is no square modulo p is told by Jacobi's symbol, for less than whether p is a prime costs.
     fn with_roots(roots: &BTreeSet<Atom>, coprime_radicand: Option<Atom>) -> Option<Field> {
-        let mut candidates = std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24)).filter(|&p| is_prime(p));
-        (0..PRIMES_TRIED)
-            .filter_map(|_| candidates.next().map(|p| Field { coprime_radicand: coprime_radicand.clone(), ..Field::modulo(p) }))
+        let radicands: Vec<&UBig> =
+            roots.iter().filter_map(|root| if let Atom::Root(n) = root { Some(n) } else { None }).collect();
+        std::iter::successors(Some(FIRST_PRIME), |p| Some(p - 24))
+            .take(CANDIDATES)
+            .filter(|&p| radicands.iter().all(|n| remainder(n, p).jacobi(&p) == 1) && is_prime(p))
+            .map(|p| Field { coprime_radicand: coprime_radicand.clone(), ..Field::modulo(p) })
             .find(|field| roots.iter().all(|root| field.root_atom(root).is_some()))
     }
 
@@ -222,7 +233,7 @@ impl Field {
     }
 
     fn rational(&self, value: &Rational) -> Element {
-        let modulo = |n: &UBig| self.from_u64(u64::try_from(n % UBig::from(self.p)).expect("a remainder of p"));
+        let modulo = |n: &UBig| self.from_u64(remainder(n, self.p));
         let size = self.mul(modulo(&value.numerator().unsigned_abs()), self.inverse(modulo(value.denominator())));
         if value.is_negative() {
             self.neg(size)
@@ -285,12 +296,21 @@ impl Field {
     }
 }
 
+fn remainder(n: &UBig, p: u64) -> u64 {
+    u64::try_from(n % UBig::from(p)).expect("a remainder of p")
+}
+
+/// Whether an atom is the root of 2 or 3, which exist modulo every p = 1 mod 24.
+fn in_every_field(atom: &Atom) -> bool {
+    matches!(atom, Atom::Root(n) if *n == UBig::from(2u8) || *n == UBig::from(3u8))
+}
+
 /// Whether an atom is the root of a prime that fits 64 bits.
 fn is_of_prime(atom: &Atom) -> bool {
     matches!(atom, Atom::Root(n) if u64::try_from(n).is_ok_and(is_prime))
 }
 
-/// The roots of integers in a number.
+/// The roots in numbers, with those under roots.
 fn collect_roots<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> BTreeSet<Atom> {
     let (mut roots, mut open) = (BTreeSet::new(), numbers.into_iter().collect::<Vec<_>>());
     // Sums that are not multiplied out hold each other, one in many: each is looked at once.
@@ -304,7 +324,11 @@ fn collect_roots<'a>(numbers: impl IntoIterator<Item = &'a Number>) -> BTreeSet<
                     }
                     continue;
                 }
-                Atom::Inverse(inner) | Atom::RootOf(inner) => inner,
+                Atom::RootOf(inner) => {
+                    roots.insert(atom.clone());
+                    inner
+                }
+                Atom::Inverse(inner) => inner,
                 Atom::Sum(sum) => sum.terms(),
                 _ => continue,
             };
@@ -365,14 +389,20 @@ mod tests {
     #[test]
     fn a_field_has_every_root_or_there_is_none() {
         let root = |n: i64| Number::from(n).sqrt().unwrap();
-        let nine = [5, 7, 11, 13, 17, 19, 23, 29, 31].map(root);
-        let mut field = Field::for_constants(&nine);
-        for number in &nine {
+        let primes = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67];
+        let mut all = primes[..MOST_ROOTS + 2].iter().map(|&n| root(n)).collect::<Vec<_>>();
+        let mut field = Field::for_constants(&all);
+        for number in &all {
             let value = field.number(number);
             assert_eq!(field.mul(value, value), field.number(&(number * number)));
         }
-        let many = [5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89, 97].map(root);
-        assert!(Field::with_roots_of(&many).is_none());
+        // One more, also where it is a nested one.
+        let nested = (&Number::from(4) + &root(5)).sqrt().unwrap();
+        for more in [root(67), nested] {
+            all.push(more);
+            assert!(Field::with_roots_of(&all).is_none());
+            all.pop();
+        }
     }
 
     #[test]

@@ -22,7 +22,7 @@ use crate::exact::Number;
 use crate::kinds::ParameterId;
 use crate::kinds::Scalar;
 use crate::manipulator::{Limits, Manipulator, RegressorChoice};
-use crate::ring::field::{Element, Field};
+use crate::ring::field::{Element, Field, MOST_ROOTS};
 use crate::ring::{ExprId, Pool, Symbol};
 use crate::source::Span;
 
@@ -30,7 +30,9 @@ use crate::source::Span;
 pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnostics) {
     let Some(field) = find_field(manipulator) else {
         let message = "the numbers of this arm hold too many different square roots to work with them exactly";
-        let help = "use fewer different roots, a dozen at most; write a length that is measured as the decimal that it is";
+        let help = format!(
+            "use at most {MOST_ROOTS} different roots besides those of 2 and 3; write a length that is measured as the decimal that it is"
+        );
         diagnostics.push(Diagnostic::new(Code::TooComplex, places.name, message, "the equations of this arm", help));
         return;
     };

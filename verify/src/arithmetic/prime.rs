@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use dashu_base::{Signed, UnsignedAbs};
 use dashu_int::UBig;
+use num_modular::ModularSymbols;
 
 use super::Arithmetic;
 use crate::element::{scrambled, Element};
@@ -129,8 +130,9 @@ pub struct Prime {
     defined: Defined<Residue>,
 }
 
-/// How many primes are tried before a robot's roots are given up: each further independent root halves the chance of a prime.
-const PRIMES_TRIED: usize = 1 << 16;
+/// How many numbers are looked at for a prime before the roots of a robot are given up: one in 14 is a prime, and each further independent root halves
+/// the chance of one.
+const CANDIDATES: usize = 1 << 24;
 
 impl Prime {
     /// The field of the next random prime in which all roots of `atoms` exist, any of two for those that are independent; `None` if there
@@ -145,8 +147,11 @@ impl Prime {
     }
 
     fn next(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent, modulus: u64) -> Option<Prime> {
-        for _ in 0..PRIMES_TRIED {
-            let prime = random_prime(stream, modulus);
+        // What is no square is told by Jacobi's symbol, for less than whether a number is a prime costs.
+        let radicands: Vec<&UBig> = atoms.roots.iter().filter_map(Root::integer).collect();
+        let squares = |p: u64| radicands.iter().all(|n| remainder(n, p).jacobi(&p) == 1);
+        for _ in 0..CANDIDATES {
+            let Some(prime) = candidate(stream, modulus).filter(|&p| squares(p) && is_prime(p)) else { continue };
             let mut field = Prime {
                 prime,
                 stream: stream.branch(),
@@ -185,8 +190,7 @@ impl Prime {
     }
 
     fn unsigned(&self, n: &UBig) -> Residue {
-        let remainder = n % UBig::from(self.prime);
-        Residue { value: u64::try_from(remainder).expect("a remainder is below the prime"), prime: self.prime }
+        Residue { value: remainder(n, self.prime), prime: self.prime }
     }
 
     fn rational(&self, value: &Rational) -> Option<Residue> {
@@ -222,15 +226,14 @@ impl Arithmetic for Prime {
     }
 }
 
-/// A prime between 2^62 and 2^63 that is 1 modulo `modulus`.
-fn random_prime(stream: &mut Stream, modulus: u64) -> u64 {
-    loop {
-        let candidate = (1 << 62) + stream.below(1 << 62);
-        let candidate = candidate - candidate % modulus + 1;
-        if candidate >= 1 << 62 && is_prime(candidate) {
-            return candidate;
-        }
-    }
+fn remainder(n: &UBig, p: u64) -> u64 {
+    u64::try_from(n % UBig::from(p)).expect("a remainder of p")
+}
+
+/// A random number between 2^62 and 2^63 that is 1 modulo `modulus`.
+fn candidate(stream: &mut Stream, modulus: u64) -> Option<u64> {
+    let any = (1 << 62) + stream.below(1 << 62);
+    Some(any - any % modulus + 1).filter(|&candidate| candidate >= 1 << 62)
 }
 
 /// Whether an odd n above 40 is prime: Miller and Rabin with the first twelve primes as bases decides below 3.3e24 (Sorenson, Webster 2015).

@@ -373,7 +373,6 @@ fn floats(tally: &mut Tally, scara: &Given) {
         tally.module(scara, "pub fn forward_dynamics(", "(1.0 / t25)", text, layers);
     };
     let foreign = [(Divisors, "forward_dynamics: it divides by what is no pivot")];
-    reciprocal(tally, "(-(1.0 / (-t25)))", &foreign);
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
     reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
