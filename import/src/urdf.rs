@@ -316,10 +316,20 @@ impl Format for Urdf<'_, '_> {
                     let others = node.children().filter(|n| n.is_element() && !TAKEN.contains(&n.tag_name().name()));
                     others.for_each(|n| count(n.tag_name().name()));
                 }
+                "transmission" => count(&transmission(node)),
                 other => count(other),
             }
         }
         counts
+    }
+}
+
+/// A transmission with the reduction that it names: the rotor behind it, which a URDF does not have, weighs by the square of that.
+fn transmission(node: Node<'_, '_>) -> String {
+    let reduction = node.descendants().find(|n| n.has_tag_name("mechanicalReduction")).and_then(|n| n.text());
+    match reduction.map(str::trim).filter(|text| text.parse() != Ok(1.0)) {
+        Some(text) => format!("transmission (mechanicalReduction {})", shown(text)),
+        None => "transmission".into(),
     }
 }
 

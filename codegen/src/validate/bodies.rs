@@ -138,21 +138,19 @@ fn judge(description: &InertiaDescription, tensor: &[Number; 6], called: &str, c
     }
     let diagonal = [xy, xz, yz].iter().all(|e| e.is_zero());
     let large = moments.iter().find(|(large, a, b)| (&(&tensor[*a] + &tensor[*b]) - &tensor[*large]).sign() == Ordering::Less);
-    let (reason, span) = match large.filter(|_| diagonal) {
+    let (reason, label, span) = match large.filter(|_| diagonal) {
         Some(&(large, a, b)) => {
+            let excess = &tensor[large] - &(&tensor[a] + &tensor[b]);
             let [l, a, b] = [large, a, b].map(|e| INERTIA_ELEMENTS[e]);
-            (format!("I{a} + I{b} < I{l}"), span_of(large))
+            (format!("I{a} + I{b} < I{l}"), format!("too large, by {} kg m² or more", text_of(&excess)), span_of(large))
         }
-        None => ("its largest principal moment exceeds the sum of the other two".to_owned(), description.key),
+        None => {
+            let reason = "its largest principal moment exceeds the sum of the other two";
+            (reason.to_owned(), "too large".to_owned(), description.key)
+        }
     };
     let help = "each moment of inertia of a solid body is at most the sum of the other two; check units, signs and axes (centre of mass, link frame)";
-    context.report(
-        Code::TriangleInequality,
-        span,
-        format!("no solid body has the inertia of {called}: {reason}"),
-        "too large",
-        help,
-    );
+    context.report(Code::TriangleInequality, span, format!("no solid body has the inertia of {called}: {reason}"), label, help);
 }
 
 /// Why no distribution of mass has this inertia tensor about its centre of mass, xx xy yy xz yz zz: a negative principal minor; `None` if one has.

@@ -136,7 +136,9 @@ pub(super) fn table(manipulator: &Manipulator) -> String {
         none(),
         none(),
     ]);
-    table.text() + &outside(manipulator)
+    let held =
+        "  held against gravity: along the joint's axis, as the joint gives it to stand still, without what springs hold\n";
+    table.text() + if manipulator.is_massless() { "" } else { held } + &outside(manipulator)
 }
 
 /// A line where the posture is outside the limits of joints.
