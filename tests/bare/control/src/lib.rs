@@ -16,12 +16,15 @@ pub mod robot {
     include!(concat!(env!("OUT_DIR"), "/scara_runtime.rs"));
 }
 
-pub use armgen_runtime::{nalgebra::SVector, reference::JointReference};
+pub use armgen_runtime::{
+    nalgebra::SVector,
+    reference::{JointReference, State},
+};
 
 use armgen_runtime::{
     clik::{ClikError, Integration, JointLimits, SecondOrder},
     control::{Adaptive, ControlError},
-    reference::{OperationalReference, State},
+    reference::OperationalReference,
     settings::SettingError,
     task::{Row, Task, TaskError},
     trajectory::PlanError,
@@ -122,6 +125,11 @@ impl Cell {
     /// The arm moves for one period under held torques.
     pub fn advance(&mut self, tau: &SVector<f32, 4>) {
         self.actual = plant::advance(&self.actual, tau, PERIOD_S);
+    }
+
+    /// The arm is where it was measured to be.
+    pub fn measured(&mut self, actual: State<f32, 4>) {
+        self.actual = actual;
     }
 
     /// The state of the arm.

@@ -35,6 +35,16 @@ pub(crate) struct Program {
     pub(crate) error: u64,
 }
 
+/// The control step by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Size {
+    /// Bytes of code.
+    pub(crate) text: u64,
+    /// Bytes in flash.
+    pub(crate) flash: u64,
+}
+
 /// Functions by name, by module.
 pub(crate) type Modules = BTreeMap<String, BTreeMap<String, Cost>>;
 
@@ -48,6 +58,8 @@ const LIBM: &str = "_libm";
 #[serde(deny_unknown_fields)]
 pub(crate) struct Budgets {
     pub(crate) program: Program,
+    /// The program that holds a control step and nothing else.
+    pub(crate) control_program: Size,
     /// A control step: trajectory, inverse kinematics, controller.
     pub(crate) control_step: Cost,
     /// Each function of each emitted module with sines in f32.
@@ -90,8 +102,8 @@ pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, Str
 }
 
 impl Measured {
-    /// Of the program that controls an arm, and of the functions measured alone.
-    pub(crate) fn of(image: &Image, printed: &Printed, functions: Modules) -> Result<Measured, String> {
+    /// Of the program that controls an arm and nothing else, of the one that measures that, and of the functions measured alone.
+    pub(crate) fn of(control: &Image, image: &Image, printed: &Printed, functions: Modules) -> Result<Measured, String> {
         let [_, stack] =
             printed.functions.get("control::control_step").copied().ok_or("the firmware did not measure a control step")?;
         let most = |of: &dyn Fn(&[u64; 4]) -> u64| printed.ticks.iter().map(of).max().map_or(0, instructions);
@@ -103,6 +115,7 @@ impl Measured {
         Ok(Measured {
             costs: Budgets {
                 program: Program { text: image.text, flash: image.flash, error: printed.error },
+                control_program: Size { text: control.text, flash: control.flash },
                 control_step: Cost { instructions: dearest, text: 0, stack },
                 functions,
             },
@@ -125,6 +138,8 @@ impl Budgets {
         let (program, costs) = (&self.program, &measured.costs);
         check("code".into(), "bytes", costs.program.text, program.text);
         check("flash".into(), "bytes", costs.program.flash, program.flash);
+        check("code of the control program".into(), "bytes", costs.control_program.text, self.control_program.text);
+        check("flash of the control program".into(), "bytes", costs.control_program.flash, self.control_program.flash);
         check("joint error".into(), "1e-9 rad or m", costs.program.error, program.error);
         let step = [("control_step".into(), costs.control_step, Some(self.control_step))].into_iter();
         let budget = |module: &str, name: &str| self.functions.get(module).and_then(|functions| functions.get(name)).copied();
@@ -176,11 +191,13 @@ mod tests {
             [("(nothing)", [16, 8]), ("gravity", [48, 40])].map(|(name, cost)| (format!("{module}::{name}"), cost))
         });
         let calls = Printed { functions: calls.into_iter().flatten().collect(), ..Printed::default() };
-        Measured::of(&image, &printed, functions(&modules, &calls).unwrap()).unwrap()
+        let control = Image { text: 80, flash: 90, ..Image::default() };
+        Measured::of(&control, &image, &printed, functions(&modules, &calls).unwrap()).unwrap()
     }
 
     const EXACT: &str = "
         program = { text = 100, flash = 120, error = 7 }
+        control_program = { text = 80, flash = 90 }
         control_step = { instructions = 60, stack = 500 }
         functions.a_fast.gravity = { instructions = 20, text = 30, stack = 40 }";
 
@@ -199,6 +216,8 @@ mod tests {
     fn one_unit_too_much_is_a_fault() {
         check(&EXACT.replace("text = 100", "text = 99"), &["code: 100 bytes, the budget is 99"]);
         check(&EXACT.replace("= 120", "= 119"), &["flash: 120 bytes, the budget is 119"]);
+        check(&EXACT.replace("= 80", "= 79"), &["code of the control program: 80 bytes, the budget is 79"]);
+        check(&EXACT.replace("= 90", "= 89"), &["flash of the control program: 90 bytes, the budget is 89"]);
         check(&EXACT.replace("= 7", "= 6"), &["joint error: 7 1e-9 rad or m, the budget is 6"]);
         check(&EXACT.replace("= 60", "= 59"), &["`control_step`: 60 instructions, the budget is 59"]);
         check(&EXACT.replace("= 500", "= 499"), &["stack of `control_step`: 500 bytes, the budget is 499"]);

@@ -1,6 +1,6 @@
 //! A program as linked: its sections, and the code size of each emitted function.
 
-use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
+use object::{elf, Object, ObjectSection, ObjectSymbol, SectionFlags, SectionKind, SymbolKind};
 use std::collections::BTreeMap;
 
 /// Sizes in bytes.
@@ -26,7 +26,9 @@ impl Image {
                 SectionKind::Data | SectionKind::UninitializedData => image.data += section.size(),
                 _ => {}
             }
-            if matches!(section.kind(), SectionKind::Text | SectionKind::ReadOnlyData | SectionKind::Data) {
+            // All that is loaded: tables for unwinding and vectors too.
+            let loaded = matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & u64::from(elf::SHF_ALLOC) != 0);
+            if loaded && section.kind() != SectionKind::UninitializedData {
                 image.flash += section.size();
             }
         }

@@ -1,10 +1,10 @@
 //! Holds what the firmware printed against this machine's bits and against the budgets, and writes the page about it.
 //!
 //! ```text
-//! armgen-bare-report BUDGETS.toml FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]
+//! armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]
 //! ```
 //!
-//! The firmware is the program that controls an arm; the other two measure the functions of emitted modules, compiled for each processor.
+//! The first program controls an arm and nothing else, the firmware simulates the arm and measures as well; the other two measure the functions of emitted modules, compiled for each processor.
 //!
 //! Exit code 0 if every bit agrees and every budget holds, 1 if not, 2 if a file cannot be read.
 
@@ -41,16 +41,17 @@ fn run() -> Result<Vec<String>, String> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let (files, page) =
         match arguments.as_slice() {
-            [files @ .., "--write", page] if files.len() == 7 => (files, Some(page)),
-            files if files.len() == 7 => (files, None),
+            [files @ .., "--write", page] if files.len() == 8 => (files, Some(page)),
+            files if files.len() == 8 => (files, None),
             _ => return Err(
-                "usage: armgen-bare-report BUDGETS.toml FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]"
+                "usage: armgen-bare-report BUDGETS.toml CONTROL.elf FIRMWARE.elf PRINTED.txt M4F.elf M4F.txt M7.elf M7.txt [--write PAGE.md]"
                     .into(),
             ),
         };
     let read = |path: &str| fs::read(path).map_err(|e| format!("cannot read {path}: {e}"));
     let text = |path: &str| String::from_utf8(read(path)?).map_err(|e| format!("{path}: {e}"));
     let budgets: Budgets = toml::from_str(&text(files[0])?).map_err(|e| format!("{}: {e}", files[0]))?;
+    let control = Image::read(&read(files[1])?).map_err(|e| format!("{}: {e}", files[1]))?;
     let mut faults = Vec::new();
     let mut program = |elf: &str, lines: &str| {
         let image = Image::read(&read(elf)?).map_err(|e| format!("{elf}: {e}"))?;
@@ -58,9 +59,9 @@ fn run() -> Result<Vec<String>, String> {
         faults.extend(printed.calibration_faults());
         Ok::<_, String>((image, printed))
     };
-    let (image, printed) = program(files[1], files[2])?;
-    let ((m4f_image, m4f), (m7_image, m7)) = (program(files[3], files[4])?, program(files[5], files[6])?);
-    let measured = Measured::of(&image, &printed, budgets::functions(&m4f_image, &m4f)?)?;
+    let (image, printed) = program(files[2], files[3])?;
+    let ((m4f_image, m4f), (m7_image, m7)) = (program(files[4], files[5])?, program(files[6], files[7])?);
+    let measured = Measured::of(&control, &image, &printed, budgets::functions(&m4f_image, &m4f)?)?;
     let on_m7 = budgets::functions(&m7_image, &m7)?;
     let host = host().map_err(|fault| format!("the run ended early on this machine: {fault:?}"))?;
     faults.extend(printed::differences(&host, &printed.torques));

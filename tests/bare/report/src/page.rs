@@ -18,12 +18,14 @@ pub(crate) fn summary(measured: &Measured, printed: &Printed) -> String {
     let (costs, steps) = (&measured.costs, printed.torques.len());
     format!(
         "bare metal: torques of {steps} steps printed, largest joint error {:.1e} rad or m\n\
-         bare metal: control step {} instructions, {} bytes of stack; code {} bytes, flash {} bytes\n",
+         bare metal: control step {} instructions, {} bytes of stack; code {} bytes, flash {} bytes, of which the \
+         control step by itself {}\n",
         costs.program.error as f64 * 1e-9,
         costs.control_step.instructions,
         costs.control_step.stack,
         costs.program.text,
         costs.program.flash,
+        costs.control_program.flash,
     )
 }
 
@@ -56,12 +58,19 @@ pub(crate) fn page(measured: &Measured, m7: &Modules, budgets: &Budgets, printed
     let _ = write!(
         page,
         "\nAt 1 kHz the control step takes {per_mille:.1} million instructions per second.\n\
-         \n## Memory\n\n| | bytes | budget |\n|---|---:|---:|\n| `.text` | {} | {} |\n| flash in all | {} | {} |\n\
+         \n## Memory\n\n| | bytes | budget |\n|---|---:|---:|\n\
+         | **flash of the control step**: trajectory, inverse kinematics, controller, start of the program | **{}** | {} |\n\
+         | of that `.text` | {} | {} |\n\
+         | flash of the program that simulates the arm, measures and prints as well | {} | {} |\n| of that `.text` | {} | {} |\n\
          | stack of a control step, at the deepest | {} | {} |\n| static memory | {} | |\n",
-        costs.program.text,
-        budgets.program.text,
+        costs.control_program.flash,
+        budgets.control_program.flash,
+        costs.control_program.text,
+        budgets.control_program.text,
         costs.program.flash,
         budgets.program.flash,
+        costs.program.text,
+        budgets.program.text,
         costs.control_step.stack,
         budgets.control_step.stack,
         measured.data,
