@@ -244,10 +244,13 @@ pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
     let path = arm.path_to(arm.tip);
     let shift = pool.transform(&frames.joints[arm.tip].0, &arm.tool_origin);
     let end = pool.add_vectors(&frames.joints[arm.tip].1, &shift);
-    // Angular velocity of each link on the path, and linear velocity of the end effector relative to each joint's origin, from the tip down.
-    let mut omega = vec![ZERO; arm.dof()];
+    // Angular velocity of each link on the path and rate of each axis, from the base; linear velocity of the end effector relative to each joint's
+    // origin, from the tip down.
+    let (mut omega, mut axis_rates) = (vec![ZERO; arm.dof()], vec![ZERO; arm.dof()]);
     let mut before = ZERO;
     for &i in &path {
+        // The axis stands still on the link before it, too, of which the joint's own rate is no part.
+        axis_rates[i] = pool.cross(&before, &z(&frames.joints[i]));
         let spin = if arm.joints[i].is_revolute() { pool.scale(rates[i], &z(&frames.joints[i])) } else { ZERO };
         omega[i] = pool.add_vectors(&before, &spin);
         before = omega[i];
@@ -266,7 +269,7 @@ pub fn geometric_jacobian_dot(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
             velocity = pool.add_vectors(&velocity, &slide);
         }
         let axis = z(&frames.joints[i]);
-        let axis_rate = pool.cross(&omega[i], &axis);
+        let axis_rate = axis_rates[i];
         if arm.joints[i].is_revolute() {
             let to_end = pool.sub_vectors(&end, &frames.joints[i].1);
             let (turning, moving) = (pool.cross(&axis_rate, &to_end), pool.cross(&axis, &velocity));
