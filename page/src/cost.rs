@@ -8,7 +8,7 @@ use crate::html::escape;
 
 /// The table, of all functions of a module.
 pub(crate) fn table(module: &Module) -> String {
-    let mut text = String::from("<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\"><caption>Operations of the emitted functions; a column is sorted by a click. Functions that end in <code>_with</code> take the parameters as an argument.</caption>\n<thead><tr>");
+    let mut text = String::from("<p class=\"small\">Operations of the functions that <code>armgen generate</code> writes; a column is sorted by a click. Functions that end in <code>_with</code> take the parameters as an argument.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\">\n<thead><tr>");
     for column in ["function", "mul", "add", "div", "neg", "sincos", "exp", "derived by"] {
         let _ = write!(text, "<th scope=\"col\"><button type=\"button\">{column}</button></th>");
     }

@@ -163,7 +163,7 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 
 fn sliders(rows: &[Row]) -> String {
     let mut text = String::from(
-        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
+        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
     );
     for (i, row) in rows.iter().enumerate() {
         let k = i + 1;

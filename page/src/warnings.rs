@@ -58,12 +58,18 @@ impl<'d> Warnings<'d> {
                 "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line} of {}): {}. {}.</p>",
                 escape(diagnostic.code.name()),
                 escape(self.file()),
-                escape(&diagnostic.message),
-                escape(&sentence(&diagnostic.help)),
+                with_code(&diagnostic.message),
+                with_code(&sentence(&diagnostic.help)),
             );
         }
         text
     }
+}
+
+/// What stands between backticks is code.
+fn with_code(text: &str) -> String {
+    let parts = text.split('`').map(escape).enumerate();
+    parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
 }
 
 /// With a capital letter.

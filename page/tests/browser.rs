@@ -265,7 +265,7 @@ fn fields_take_expressions() {
              seen.push([field.value, field.parentElement.dataset.short, document.getElementById('q1').valueAsNumber.toFixed(3), \
                         fault.hidden, field.getAttribute('aria-invalid') === 'true']); }; \
          for (const text of ['-pi/4', '2*(pi - 1)/3', '1e-3', 'pie', '0x10', '1.25']) put(text); \
-         document.getElementById('angle-unit').click(); put('-68.754935'); put(''); \
+         document.getElementById('angle-unit').click(); put('-pi/4'); put('-68.754935'); put(''); \
          field.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' })); seen.push(Number(field.value).toFixed(6)); return seen; })()",
     );
     let expected = serde_json::json!([
@@ -275,6 +275,7 @@ fn fields_take_expressions() {
         ["pie", "0.001", "0.001", false, true],
         ["0x10", "0.001", "0.001", false, true],
         ["1.25", "1.25", "1.250", true, false],
+        ["-45", "−45", "-0.785", true, false],
         ["-68.754935", "−68.7549", "-1.200", true, false],
         ["-68.754935", "−68.7549", "-1.200", true, false],
         "-67.754935"
@@ -399,7 +400,7 @@ fn entries_have_numbers_and_singular_postures_a_badge() {
          const there = document.querySelector(`[data-equation=inertia_matrix] a[href=\"#number-inertia_matrix\"]`) !== null; \
          seen.push([document.querySelector(link).querySelector('h3').textContent, there]); return seen; })()",
     );
-    let told = "⚠ singular posture: factor 1 of det J near zero";
+    let told = "⚠ singular posture: factor 1, 1/4 sin(q2), of det J is near zero";
     let expected = serde_json::json!([
         ["= 13.766", true, "0", told],
         ["= 11.4675", true, ""],
@@ -458,7 +459,7 @@ fn a_planted_mistake_is_the_first_suspect() {
                  [...document.querySelectorAll('#arm .marks text')].map((text) => text.textContent)]; }})()"
     ));
     let words =
-        "row 5 (joint5): alpha = pi/2 instead of -pi/2 (the other sign, or 180° more, which is the same); remaining difference ";
+        "row 5 (joint5): alpha is -pi/2, should be pi/2 (the other sign, or 180° more, which is the same); remaining difference ";
     assert!(first[4].as_str().is_some_and(|text| text.starts_with(words)), "{first}");
     let marks = serde_json::json!(["measured, pose 1", "the arm with this mistake mended"]);
     assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true, first[4], true, marks]));

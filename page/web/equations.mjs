@@ -6,7 +6,7 @@
 import { copy, html, math } from "./dom.mjs";
 import { exact, short } from "./format.mjs";
 import { parse } from "./formula.mjs";
-import { mathml, nameElement } from "./mathml.mjs";
+import { mathml, nameElement, termsOf } from "./mathml.mjs";
 import { unpack } from "./pack.mjs";
 
 /** Nodes that are set until somebody asks for more, and those of them that are set before the browser lays out what there is. */
@@ -257,6 +257,16 @@ function lines(equation, form) {
     return all;
 }
 
+/**
+ * A line `name = formula`. The terms of a sum stand each by itself, so that a long one wraps as text does.
+ *
+ * @param {any} name @param {import("./formula.mjs").Node} node @param {any} options
+ */
+function line(name, node, options) {
+    const terms = node.kind === "sum" ? termsOf(node, options) : [[mathml(node, options)]];
+    return terms.flatMap((term, i) => [math("math", {}, math("mrow", {}, ...(i === 0 ? [name, math("mo", {}, "=")] : []), ...term)), " "]);
+}
+
 /** Sets lines up to so many nodes, a slice a frame, and the others when they are asked for. @param {HTMLElement} host @param {any[]} all @param {any} options */
 function list(host, all, options) {
     let next = 0;
@@ -267,9 +277,8 @@ function list(host, all, options) {
         const end = Math.min(until, options.count + SLICE);
         while (next < all.length && options.count < end) {
             const { name, text, entry } = all[next++];
-            const row = math("mrow", {}, name(options), math("mo", {}, "="), mathml(parse(text), options));
             const number = entry && options.numbered ? [html("span", { class: "at", "data-number": entry })] : [];
-            table.append(html("div", { "data-entry": entry || undefined }, math("math", {}, row), ...number));
+            table.append(html("div", { "data-entry": entry || undefined }, ...line(name(options), parse(text), options), ...number));
         }
         if (options.numbered) options.evaluate();
         // Of lines that others have taken the place of no more are set.

@@ -52,26 +52,38 @@ function constant(exact, value, options, whole) {
     return make(options, "mn", approximate ? { title: `${exact} = ${value}` } : {}, decimal);
 }
 
+/** @param {any} inner @param {Options} options */
+function inParentheses(inner, options) {
+    return make(options, "mrow", {}, make(options, "mo", { stretchy: "false" }, "("), inner, make(options, "mo", { stretchy: "false" }, ")"));
+}
+
+/** A sum as a factor has parentheses. @param {import("./formula.mjs").Node} node @param {Options} options */
+function factorOf(node, options) {
+    return node.kind === "sum" ? inParentheses(mathml(node, options), options) : mathml(node, options);
+}
+
+/** The terms of a sum, each with its sign. @param {any} node @param {Options} options @returns {any[][]} */
+export function termsOf(node, options) {
+    return node.terms.map((term, i) => {
+        const sign = () => make(options, "mo", { form: i === 0 ? "prefix" : "infix" }, term.negative ? "−" : "+");
+        return [...(i > 0 || term.negative ? [sign()] : []), factorOf(term.node, options)];
+    });
+}
+
 /** @param {import("./formula.mjs").Node} node @param {Options} options @returns {any} */
 export function mathml(node, options) {
     const mo = (content, attributes = {}) => make(options, "mo", attributes, content);
     const mrow = (...children) => make(options, "mrow", {}, ...children);
-    const parentheses = (inner) => mrow(mo("(", { stretchy: "false" }), inner, mo(")", { stretchy: "false" }));
-    const factor = (inner) => (inner.kind === "sum" ? parentheses(mathml(inner, options)) : mathml(inner, options));
+    const parentheses = (inner) => inParentheses(inner, options);
+    const factor = (inner) => factorOf(inner, options);
     // What a power is taken of: cos q² would be the cosine of a square.
     const base = (inner) => {
         const alone = ["name", "number"].includes(inner.kind) || (inner.kind === "call" && inner.name === "sqrt");
         return alone ? mathml(inner, options) : parentheses(mathml(inner, options));
     };
     switch (node.kind) {
-        case "sum": {
-            const parts = [];
-            node.terms.forEach((term, i) => {
-                if (i > 0 || term.negative) parts.push(mo(term.negative ? "−" : "+", i === 0 ? { form: "prefix" } : {}));
-                parts.push(factor(term.node));
-            });
-            return mrow(...parts);
-        }
+        case "sum":
+            return mrow(...termsOf(node, options).flat());
         case "product": {
             const line = (factors) => {
                 const parts = [];

@@ -17,7 +17,8 @@ const SINGULAR = 1000;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     unitOf?: (row: number, column: number) => string, rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => string, buttons?: HTMLElement[]}} Quantity
+ *     unitOf?: (row: number, column: number) => string, rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => string, formula?: string,
+ *     buttons?: HTMLElement[]}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
@@ -37,9 +38,9 @@ export function numbers(data, state) {
     const badge = byId("singular-posture");
     const update = () => {
         for (const one of shown) if (one.element.open || one.quantity.rows === 0) one.update();
-        const near = shown.filter((one) => one.said.textContent).map(({ quantity }) => quantity.symbol);
-        const factors = near.filter((symbol) => symbol !== "w");
-        const why = factors.length > 0 ? `: ${factors.join(", ")} of det J near zero` : ", or nearly so";
+        const near = shown.filter((one) => one.said.textContent).map(({ quantity }) => quantity);
+        const factors = near.filter(({ symbol }) => symbol !== "w").map(({ symbol, formula }) => (formula ? `${symbol}, ${formula},` : symbol));
+        const why = factors.length > 0 ? `: ${factors.join(" and ")} of det J is near zero` : ", or nearly so";
         const text = near.length > 0 ? `⚠ singular posture${why}` : "";
         if (badge.textContent !== text) badge.replaceChildren(...(text ? [html("a", { href: "#singular" }, text)] : []));
     };
@@ -80,8 +81,8 @@ function quantities(data, state) {
         const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}${rounded(zero)}` : (zero ?? "zero where several joints together make it so");
         const of = () => evaluate(factor, lookup);
         const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? "⚠ near zero: singular" : "");
-        const shown = text.length < 60 ? text.replaceAll("*", " ") : "see the equations";
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${shown}; ${where}`, "", of), singular: true, near, buttons: zeroButtons(zero, data, state) });
+        const formula = text.length < 60 ? text.replaceAll("*", " ").replaceAll("-", "−") : "";
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${formula || "see the equations"}; ${where}`, "", of), formula, singular: true, near, buttons: zeroButtons(zero, data, state) });
     });
     // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
@@ -91,7 +92,7 @@ function quantities(data, state) {
     if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
         list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), ...inertia("/s"), rowNames: joints, columnNames: joints });
-        list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, sym(A) = (A + Aᵀ)/2, 0 but for the differences that Ḃ is taken by", "", () => skewSymmetry(state)));
+        list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, sym(A) = (A + Aᵀ)/2, which is 0: what is left comes of Ḃ as a quotient of differences", "", () => skewSymmetry(state)));
     }
     if (has("gravity")) list.push({ ...vector("gravity", "g", "Gravity term", "", n, () => robot.gravity(state.q), joints), ...forces });
     if (has("friction")) list.push({ ...vector("friction", "F", "Friction", "", n, () => robot.friction(state.dq), joints), ...forces });

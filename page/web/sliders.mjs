@@ -31,11 +31,11 @@ export function sliders(data, state) {
         });
         const listen = (field, values, unit) => {
             field.addEventListener("input", () => {
-                const value = typed(field.value);
+                const value = meant(field.value, unit);
                 const wrong = !Number.isFinite(value);
                 field.setAttribute("aria-invalid", String(wrong));
                 if (wrong) return;
-                values()[i] = fromUnit(value, unit);
+                values()[i] = value;
                 state.changed("motion");
             });
             // What is being typed is no number yet; what is left standing is said to be none.
@@ -43,7 +43,8 @@ export function sliders(data, state) {
                 const { badInput } = field.validity;
                 const wrong = badInput || (field.value.trim() !== "" && !Number.isFinite(typed(field.value)));
                 part.fault.hidden = !wrong;
-                part.fault.textContent = badInput ? "this field takes digits alone" : `“${field.value}” is no number: digits, pi, + − * / and parentheses are, in ${unitName(unit)}`;
+                const expected = field.value.includes(",") ? "a decimal point is a point" : `digits in ${unitName(unit)}, pi in ${unit}, + − * / and parentheses are`;
+                part.fault.textContent = badInput ? "this field takes digits alone" : `“${field.value}” is no number: ${expected}`;
                 if (wrong) return;
                 field.value = exact(inUnit(values()[i], unit));
                 field.removeAttribute("aria-invalid");
@@ -91,9 +92,14 @@ export function sliders(data, state) {
     byId("copy-q").addEventListener("click", () => copy(`[${state.q.map(exact).join(", ")}]`, "q"));
 }
 
+/** What was typed, in rad or m: an expression with pi is in rad whatever the fields are in. @param {string} text @param {string} unit */
+function meant(text, unit) {
+    return text.includes("pi") ? typed(text) : fromUnit(typed(text), unit);
+}
+
 /** Leaves a field alone that holds the number already, while somebody types into it. @param {any} field @param {number} value @param {string} unit */
 function write(field, value, unit) {
-    if (fromUnit(typed(field.value), unit) === value) return false;
+    if (meant(field.value, unit) === value) return false;
     field.value = exact(inUnit(value, unit));
     field.removeAttribute("aria-invalid");
     return true;

@@ -67,13 +67,12 @@ function angleText(angle) {
     return withUnit(angle, "rad");
 }
 
-/** What the row says instead: `alpha = pi/2 instead of -pi/2`; of the joint's own variable it is the offset. @param {any} row @param {number[]} dh */
+/** What the row is and should be: `alpha is pi/2, should be -pi/2`; of the joint's own variable it is the offset. @param {any} row @param {number[]} dh */
 function instead(row, dh) {
     const names = ["a", "alpha", row.type === "revolute" ? "d" : "offset of d", row.type === "revolute" ? "offset of theta" : "theta"];
     const changed = names.flatMap((name, k) => (dh[k] === row.dh[k] ? [] : [k]));
-    const text = (values) => changed.map((k) => `${names[k]} = ${k % 2 === 1 ? angleText(values[k]) : withUnit(values[k], "m")}`).join(", ");
-    const before = text(row.dh);
-    return `${text(dh)} instead of ${changed.length === 1 ? before.replace(/.* = /, "") : before}`;
+    const text = (value, k) => (k % 2 === 1 ? angleText(value) : withUnit(value, "m"));
+    return changed.map((k) => `${names[k]} is ${text(row.dh[k], k)}, should be ${text(dh[k], k)}`).join("; ");
 }
 
 /** Whether two rows are the same frames. @param {number[]} one @param {number[]} other */
@@ -105,11 +104,11 @@ export function suspects(data) {
             }
         }
         const signs = arm.signs.map((sign, k) => (k === i ? -sign : sign));
-        all.push({ row: i + 1, fault: "reversed", words: `${name}: the joint counts the other way, -q${i + 1} instead of q${i + 1}`, arm: { ...arm, signs } });
+        all.push({ row: i + 1, fault: "reversed", words: `${name}: the joint counts the other way, q${i + 1} should be -q${i + 1}`, arm: { ...arm, signs } });
     });
     if (data.convention !== "urdf") {
         const convention = data.convention === "standard" ? "modified" : "standard";
-        all.push({ row: 0, fault: "convention", words: `convention: the rows are ${convention} instead of ${data.convention}`, arm: { ...arm, convention } });
+        all.push({ row: 0, fault: "convention", words: `convention: the rows are taken as ${data.convention}, should be ${convention}`, arm: { ...arm, convention } });
     }
     const moved = norm(origin(data.tool)) > 0 || data.tool.some((row, i) => row.slice(0, 3).some((x, j) => x !== (i === j ? 1 : 0)));
     if (moved) all.push({ row: 0, fault: "tool", words: "the tool was left out of what was measured", arm: { ...arm, tool: identity() } });
