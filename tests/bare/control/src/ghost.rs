@@ -22,6 +22,7 @@ fn line(to: [f32; 3], milliseconds: u64) -> Segment<f32> {
 }
 
 /// Through a via point: it starts while the segment before it slows down.
+#[inline(never)]
 fn via(to: [f32; 3], milliseconds: u64) -> Segment<f32> {
     line(to, milliseconds).anticipating(Duration::from_millis(200))
 }

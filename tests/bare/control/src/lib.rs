@@ -89,9 +89,9 @@ impl Cell {
         })
     }
 
-    /// Where the end effector should be at step `k`.
-    pub fn sample(&self, k: u32) -> OperationalReference<f32> {
-        self.trajectory.sample(PERIOD * k)
+    /// Where the end effector should be at time `t`.
+    pub fn sample(&self, t: Duration) -> OperationalReference<f32> {
+        self.trajectory.sample(t)
     }
 
     /// The joint motion that leads there.
@@ -112,12 +112,12 @@ impl Cell {
         self.controller.torque(&robot::Nominal, reference, &self.actual).map(|torque| torque.tau).map_err(Fault::Control)
     }
 
-    /// One control step: the three above.
+    /// One control step, at time `t`: the three above.
     ///
     /// # Errors
     /// Those of its parts.
-    pub fn control(&mut self, k: u32) -> Result<(JointReference<f32, 4>, SVector<f32, 4>), Fault> {
-        let sample = self.sample(k);
+    pub fn control(&mut self, t: Duration) -> Result<(JointReference<f32, 4>, SVector<f32, 4>), Fault> {
+        let sample = self.sample(t);
         let reference = self.reference(&sample)?;
         Ok((reference, self.torque(&reference)?))
     }

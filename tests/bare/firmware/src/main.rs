@@ -8,7 +8,7 @@
 #![no_std]
 #![no_main]
 
-use armgen_bare_control::{Cell, Line, STEPS};
+use armgen_bare_control::{Cell, Line, PERIOD, STEPS};
 use armgen_bare_firmware::{timed, Costs, Output, Stopped};
 use core::fmt::Write;
 use core::hint::black_box;
@@ -27,7 +27,7 @@ fn motion(out: &mut Output) -> Result<(), Stopped> {
     let mut costs = Costs::new();
     let mut error: f32 = 0.0;
     for step in 0..=STEPS {
-        let (sample, trajectory) = timed(|| cell.sample(step));
+        let (sample, trajectory) = timed(|| cell.sample(PERIOD * step));
         let (reference, clik) = timed(|| cell.reference(&sample));
         let reference = reference.map_err(|_| Stopped)?;
         let (tau, controller) = timed(|| cell.torque(&reference));
@@ -37,7 +37,7 @@ fn motion(out: &mut Output) -> Result<(), Stopped> {
         if step % BETWEEN_MEASUREMENTS == 0 {
             let mut copy = cell;
             let fits = costs.call("control_step", &mut || {
-                let _ = black_box(copy.control(black_box(step)));
+                let _ = black_box(copy.control(black_box(PERIOD * step)));
             });
             if !fits {
                 return Err(Stopped);

@@ -13,7 +13,7 @@ mod image;
 mod page;
 mod printed;
 
-use armgen_bare_control::{Cell, Fault, Line, STEPS};
+use armgen_bare_control::{Cell, Fault, Line, PERIOD, STEPS};
 use armgen_bare_functions::postures;
 use budgets::{Budgets, Measured};
 use image::Image;
@@ -96,7 +96,7 @@ fn host() -> Result<Vec<String>, Fault> {
     let mut cell = Cell::new()?;
     (0..=STEPS)
         .map(|step| {
-            let (_, tau) = cell.control(step)?;
+            let (_, tau) = cell.control(PERIOD * step)?;
             let line = Line { step, tau: &tau, mass: cell.estimated_mass() }.to_string();
             cell.advance(&tau);
             Ok(line)
