@@ -11,8 +11,8 @@
 //! include!(concat!(env!("OUT_DIR"), "/robot.rs"));
 //! ```
 //!
-//! The script reruns when the description changes (or the script itself) and only then. A wrong description fails the build with every fault and its place;
-//! warnings of the description become warnings of the build.
+//! The script reruns when the description changes (or the script itself) and only then. A wrong description fails the build with every
+//! fault and its place; warnings of the description become warnings of the build.
 
 use std::fmt;
 use std::io;

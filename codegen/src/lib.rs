@@ -144,7 +144,8 @@ impl Generated {
     }
 
     /// `robot_runtime.rs` where inverse kinematics stands in a module beside the robot's that is called `ik`: with the trait
-    /// `InverseKinematics`, or `RedundantInverseKinematics` for an arm with a joint too many. Without it where the arm has no construction, or the module not all functions that the other traits need.
+    /// `InverseKinematics`, or `RedundantInverseKinematics` for a redundant arm. Without it where the arm has no construction, or the
+    /// module not all functions that the other traits need.
     pub fn runtime_with_inverse_kinematics(&self, ik: &str) -> String {
         self.runtime.clone() + &emit::rust::print_inverse_kinematics_trait(&self.program, self.construction(), ik)
     }

@@ -10,10 +10,10 @@
 //! link frame i  = joint frame i * link_frame_i                               (the frame that the user sees)
 //! ```
 //!
-//! A file gives rows A_i, the link frame in the previous one: `A_i = before_i * motion(axis_i, q_i) * after_i` ([`Row`]); `axis` is the z axis
-//! in Denavit-Hartenberg rows. A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's link_frame) Rz(theta) Tz(d)`
-//! and `link_frame = Tx(a) Rx(alpha)`; a modified one gives `placement = Rx(alpha) Tx(a) Rz(theta) Tz(d)` and `link_frame = 1`.
-//! In rows of the convention urdf joint frames are laid where Denavit and Hartenberg lay theirs (`validate/frames.rs`).
+//! A file gives rows A_i, the link frame in the previous one: `A_i = before_i * motion(axis_i, q_i) * after_i` ([`Row`]); `axis` is the z
+//! axis in Denavit-Hartenberg rows. A standard Denavit-Hartenberg row Rz(theta + q) Tz(d) Tx(a) Rx(alpha) gives `placement = (parent's
+//! link_frame) Rz(theta) Tz(d)` and `link_frame = Tx(a) Rx(alpha)`; a modified one gives `placement = Rx(alpha) Tx(a) Rz(theta) Tz(d)` and
+//! `link_frame = 1`. In rows of the convention urdf joint frames are laid where Denavit and Hartenberg lay theirs (`validate/frames.rs`).
 
 use crate::exact::{Number, Polynomial};
 use crate::kinds::{JointKind, ParameterId, TaskRow};
@@ -22,16 +22,16 @@ use crate::kinds::{JointKind, ParameterId, TaskRow};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LinkId(pub u32);
 
-/// What inverse kinematics is asked for.
+/// What `inverse_kinematics` of the description asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Postures {
     /// The target; without it, what `task` says.
     pub target: Option<crate::kinds::Target>,
-    /// What is given besides where there is one joint too many.
+    /// What is given besides for a redundant arm, of one degree of redundancy.
     pub given: Option<GivenBeside>,
 }
 
-/// What is given beside the pose of an arm with one joint too many.
+/// What is given beside the pose of a redundant arm, of one degree of redundancy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GivenBeside {
     /// The value of a joint.
@@ -61,7 +61,7 @@ pub struct Manipulator {
     pub task: Vec<TaskRow>,
     /// What the regressor's columns are.
     pub regressor: RegressorChoice,
-    /// What inverse kinematics is asked for.
+    /// What `inverse_kinematics` of the description asks for.
     pub inverse_kinematics: Postures,
 }
 

@@ -1,4 +1,5 @@
-//! Many experiments at once: all sampled loops are analysed first, each linearised and followed once along its motion without noise, then everything moves, on all processors.
+//! Many experiments at once: all sampled loops are analysed first, each linearised and followed once along its motion without noise, then
+//! everything moves, on all processors.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
@@ -44,8 +45,8 @@ impl<'a> Job<'a> {
         self.prepared = Some(self.arm.prepare(self.experiment));
     }
 
-    /// What can be seen of it before anything moves, and hardly is meant.
-    pub fn doubts(&self) -> Vec<String> {
+    /// Warnings of settings that are possible and probably mistakes, before anything moves.
+    pub fn implausible_settings(&self) -> Vec<String> {
         self.arm.look(self.experiment)
     }
 

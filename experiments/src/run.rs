@@ -9,8 +9,8 @@
 //! demonstration.rs for a robot without experiments: from posture to posture within its limits
 //! ```
 //!
-//! [`Arm`] separates generic code from the rest: the runs behind it are generic over the robot and its numbers of joints, rows and parameters, and are compiled
-//! where an [`Instance`] is made; whoever holds an `Arm` is compiled without the robot.
+//! [`Arm`] separates generic code from the rest: the runs behind it are generic over the robot and its numbers of joints, rows and
+//! parameters, and are compiled where an [`Instance`] is made; whoever holds an `Arm` is compiled without the robot.
 
 mod branch;
 mod clik;

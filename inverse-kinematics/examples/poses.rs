@@ -1,10 +1,11 @@
 //! What is found at random poses of the arms of `tests/data`: `cargo run --release --example poses -p armgen-inverse-kinematics`.
 //!
 //! The first argument is how many poses (1 000 000), the second an arm's name. Each arm: originals that are lost, odd counts and spurious
-//! postures (residual above 1e-9) among the complete, poses said to be near a double solution, poses at which the general arm takes its second
-//! arrangement (of every tenth), the largest residual of a posture (entries of T, lengths over that of the longest link), median and
-//! 99th percentile of the time of a call (the smaller of two). Then postures at which the Jacobian is singular, found by bisection: how many of their poses are said
-//! to be near or a continuum; and how many are complete where the posture is 1e-4 away along the gradient of the Jacobian's determinant.
+//! postures (residual above 1e-9) among the complete, poses said to be near a double solution, poses at which the general arm takes its
+//! second arrangement (of every tenth), the largest residual of a posture (entries of T, lengths over that of the longest link), median and
+//! 99th percentile of the time of a call (the smaller of two). Then postures at which the Jacobian is singular, found by bisection: how
+//! many of their poses are said to be near or a continuum; and how many are complete where the posture is 1e-4 away along the gradient of
+//! the Jacobian's determinant.
 
 #[path = "../tests/common/mod.rs"]
 #[macro_use]

@@ -1,9 +1,9 @@
 //! Building blocks that give **all** real solutions of a serial arm's inverse kinematics.
 //!
 //! `no_std`, no allocation, no panic, no `unsafe`; the scalar functions are those of `libm`, and nothing is fused, so a call gives the same
-//! bits on every machine.
-//! Each block is one file of plain Rust over an alias `Real`. This crate compiles every block for both scalars ([`f64`](mod@f64) and [`f32`](mod@f32)) and
-//! tests it there; a generator takes the same files as text ([`texts`]) into a module of its own.
+//! bits on every machine. Each block is one file of plain Rust over an alias `Real`. This crate compiles every block for both scalars
+//! ([`f64`](mod@f64) and [`f32`](mod@f32)) and tests it there; a generator takes the same files as text ([`texts`]) into a module of its
+//! own.
 //!
 //! # The loop
 //!
@@ -26,7 +26,8 @@
 //! | general, at most one prismatic joint | joints 3 and 6 revolute; two arrangements in which the determinant neither vanishes nor has double roots at all poses | `general_arm(arrangements, t, length)` | 16 |
 //! | position of three joints alone | - | the case of block 6 | 4 |
 //!
-//! Cases of block 6, with A = L1, B = L2, and w, p the point in the last and in the first frame; those of a loop read backwards are the mirrored ones:
+//! Cases of block 6, with A = L1, B = L2, and w, p the point in the last and in the first frame; those of a loop read backwards are the
+//! mirrored ones:
 //!
 //! | joints | test | case | at most |
 //! |---|---|---|---|
@@ -43,9 +44,9 @@
 //! | P R P | directions not always parallel | `regional_slide_turn_slide` | 2 |
 //! | P P P | directions span space | `regional_slides` | 1 |
 //!
-//! Seven joints and a pose: [`Given`](f64::Given) takes the first or the last joint, whose value is given, off the pose, and puts it back into solutions.
-//! Where the first three and the last three turn about axes through one point each, [`shoulder_elbow_wrist`](f64::shoulder_elbow_wrist) takes the swivel angle of
-//! the elbow instead: at most 8.
+//! Seven joints and a pose: [`Given`](f64::Given) takes the first or the last joint, whose value is given, off the pose, and puts it back
+//! into solutions. Where the first three and the last three turn about axes through one point each,
+//! [`shoulder_elbow_wrist`](f64::shoulder_elbow_wrist) takes the swivel angle of the elbow instead: at most 8.
 //!
 //! If the pose is in L1 or L2, only `regional_general`, `regional_slide` and `regional_mid_slide` hold for all poses.
 //! [`polish`](f64::polish) takes the digits back that block R with D = 2 loses; `three_parallel` wants it where neither axes b and c nor a and c

@@ -487,7 +487,7 @@ fn a_planted_mistake_is_the_first_suspect() {
     tab.close(&file);
 }
 
-/// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; one joint too many is held.
+/// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; the joint of a redundant arm is held.
 #[test]
 fn other_postures_at_a_pose_are_ghosts() {
     let Some(program) = driver::program() else { return };

@@ -1,11 +1,11 @@
 //! Along a path with one posture: [`follow`] keeps to a branch of the inverse kinematics and says, before anything moves, where it ends.
 //!
-//! A pose has several postures; each is continued along a path until it meets another one (the Jacobian is singular there and, in general, both
-//! end), the path leaves the reach of the arm, or a joint comes to a limit. All postures at a pose are known ([`InverseKinematics`]), so
-//! the posture that continues one is told from the others by distances: a step of the path's parameter is accepted if the nearest of the postures behind
-//! it is within 0.5 rad or m, every other at least four times as far from that one, and the signs that tell branches apart are the same
-//! ([`InverseKinematics::branch_signs`]). Otherwise the step is halved. Where a step of 1e-9 of the
-//! path is refused the branch ends.
+//! A pose has several postures; each is continued along a path until it meets another one (the Jacobian is singular there and, in general,
+//! both end), the path leaves the reach of the arm, or a joint comes to a limit. All postures at a pose are known ([`InverseKinematics`]),
+//! so the posture that continues one is told from the others by distances: a step of the path's parameter is accepted if the nearest of the
+//! postures behind it is within 0.5 rad or m, every other at least four times as far from that one, and the signs that tell branches apart
+//! are the same ([`InverseKinematics::branch_signs`]). Otherwise the step is halved. Where a step of 1e-9 of the path is refused the branch
+//! ends.
 //!
 //! ```
 //! use armgen_runtime::inverse_kinematics::{follow, BranchEnd};

@@ -1,5 +1,5 @@
 //! The traits of a robot: `Kinematics`, `Dynamics` and `Regressor`, each extending the one before it, `InverseKinematics`, and one for each
-//! function that not every robot has.
+//! function that not every robot has or not every controller needs.
 //!
 //! The emitted module of a robot comes with implementations of these traits (feature `runtime` of the crate that holds it):
 //! a unit struct for the nominal robot, and `WithParameters` for the same robot with parameters chosen at run time.

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! The loop is stable where all eigenvalues of the whole matrix lie within the unit circle; the largest modulus is its spectral radius.
-//! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only those combinations are
-//! states that are excited at rest: the others are constants, and would add eigenvalues at 1.
+//! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only
+//! those combinations are states that are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
 //! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model, and a law with neither
 //! rests off its reference, as far as its error makes up for the model ([`Settle`], [`Rest`]). A start from another estimate is a

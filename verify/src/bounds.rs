@@ -7,11 +7,12 @@
 //! |fl(x + y) - (x* + y*)| ≤ e_x + e_y + u (|x + y|max + e_x + e_y)          and so on
 //! ```
 //!
-//! Divisors are pivots of B, positive for every arm, or their negatives; how small they can become intervals do not show. A bound for a function that divides is
-//! therefore one for states where every divisor is at least half of the smallest among some thousand states of the box, and says so.
+//! Divisors are pivots of B, positive for every arm, or their negatives; how small they can become intervals do not show. A bound for a
+//! function that divides is therefore one for states where every divisor is at least half of the smallest among some thousand states of the
+//! box, and says so.
 //!
-//! A value that can leave the scalar has no bound. One that can come below the normal numbers may be off by what they are spaced there, after an exact product
-//! with ½ too. Sines and cosines of angles beyond 10⁶ rad take any value.
+//! A value that can leave the scalar has no bound. One that can come below the normal numbers may be off by what they are spaced there,
+//! after an exact product with ½ too. Sines and cosines of angles beyond 10⁶ rad take any value.
 
 use std::collections::BTreeMap;
 
@@ -42,8 +43,8 @@ pub struct Bound {
     pub smallest_divisor: Option<f64>,
     /// For accelerations: how far they are from solving the equations of motion.
     pub residual: Option<Residual>,
-    /// Of a function that divides: the largest error of what no reciprocal takes part in, where it meets one. Infinite where such a value can leave the
-    /// scalar.
+    /// Of a function that divides: the largest error of what no reciprocal takes part in, where it meets one. Infinite where such a value
+    /// can leave the scalar.
     pub undivided: f64,
 }
 
@@ -66,7 +67,8 @@ impl Bound {
 }
 
 /// The box for an arm: position and velocity limits and efforts where the description gives them; else a full turn or a metre to either
-/// side, 4 rad/s or 1 m/s, 200 N m or N. Accelerations up to 10, references like what they are references of, parameters within a fifth of the nominal.
+/// side, 4 rad/s or 1 m/s, 200 N m or N. Accelerations up to 10, references like what they are references of, parameters within a fifth of
+/// the nominal.
 pub fn domain(manipulator: &Manipulator, nominal: &[f64]) -> Domain {
     let float = |n: &armgen_codegen::exact::Number| Float::F64.nearest(&formula(n));
     let mut domain = Domain::default();

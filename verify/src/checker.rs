@@ -25,13 +25,10 @@ use crate::formula::{Atoms, Dependent, Formula};
 use crate::powers::{joints_asked, Powers};
 use crate::program::{Program, Step, MOST_BITS};
 use crate::reader::{Function, Module};
-use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::reference::{BaseParameters, Reference, Wanted, BASE_REGRESSOR};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
 use crate::seed;
 use crate::stream::Stream;
-
-/// The function that is not compared entry by entry.
-const BASE_REGRESSOR: &str = "base_regressor";
 
 /// The function that has a meaning up to a constant where parameters are base parameters.
 const ENERGY_WITH: &str = "potential_energy_with";

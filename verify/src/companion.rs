@@ -13,9 +13,9 @@
 //! literal           e = u |c|, 0 where the float is the exact value
 //! ```
 //!
-//! Functions that divide, and long ones of few entries, are bounded by sensitivities, as the text says that is taken in: `companion/template.rs`. The companion holds the
-//! steps of each function as a table and runs through it. The checker runs the same text on the same tables: what is measured is what is
-//! emitted.
+//! Functions that divide, and long ones of few entries, are bounded by sensitivities, as the text says that is taken in:
+//! `companion/template.rs`. The companion holds the steps of each function as a table and runs through it. The checker runs the same text
+//! on the same tables: what is measured is what is emitted.
 
 use std::fmt::Write;
 

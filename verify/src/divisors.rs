@@ -7,12 +7,13 @@
 //! all others                             nothing
 //! ```
 //!
-//! A pivot is the quotient of two leading minors, joints or rows in their order or from the last to the first. B is the matrix of a quadratic form, the kinetic energy: of an arm
-//! that no motion leaves at rest all minors are positive, for every q. Those of J B^-1 J' are, but at singular configurations, where the function has no value. So
-//! every other divisor is one that the equations do not ask for, and that may be 0 where they have a value.
+//! A pivot is the quotient of two leading minors, joints or rows in their order or from the last to the first. B is the matrix of a
+//! quadratic form, the kinetic energy: of an arm that no motion leaves at rest all minors are positive, for every q. Those of J B^-1 J'
+//! are, but at singular configurations, where the function has no value. So every other divisor is one that the equations do not ask for,
+//! and that may be 0 where they have a value.
 //!
-//! A divisor is a pivot or its negative, without a factor of its own: then it keeps its sign, and is no smaller than what is to be inverted. Tested at two
-//! states in each prime field, with two vectors of parameters.
+//! A divisor is a pivot or its negative, without a factor of its own: then it keeps its sign, and is no smaller than what is to be
+//! inverted. Tested at two states in each prime field, with two vectors of parameters.
 
 use std::collections::BTreeSet;
 
@@ -104,7 +105,8 @@ pub fn is_needed<E: Element>(function: &str, values: [&E; 2], pivots: [&Pivots<E
     here.zip(there).any(|(p, q)| values == [p, q] || negatives.each_ref() == [p, q])
 }
 
-/// Of a function that divides: the steps that no quotient takes part in and that are divisors, or operands of those that a quotient takes part in, or entries.
+/// Of a function that divides: the steps that no quotient takes part in and that are divisors, or operands of those that a quotient takes
+/// part in, or entries.
 pub fn undivided_operands(program: &Program) -> Vec<usize> {
     let mut divided: Vec<bool> = Vec::with_capacity(program.steps.len());
     let mut operands = BTreeSet::new();

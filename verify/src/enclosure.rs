@@ -272,8 +272,8 @@ impl Float {
         }
     }
 
-    /// The outermost numbers of this format between two others; where there is none, those next to both, so that the interval is never empty. What lies
-    /// beyond the largest number is taken to be that.
+    /// The outermost numbers of this format between two others; where there is none, those next to both, so that the interval is never
+    /// empty. What lies beyond the largest number is taken to be that.
     pub fn between(self, low: f64, high: f64) -> (f64, f64) {
         let most = self.largest();
         let (low, high) = (low.clamp(-most, most), high.clamp(-most, most));

@@ -91,8 +91,8 @@ macro_rules! stribeck {
 stribeck!(stribeck_f64, f64);
 stribeck!(stribeck_f32, f32);
 
-/// How far what is left of Stribeck friction can be from the exact value, at x = |dq| / v with a rounded v: two units of roundoff of the function, and two
-/// of x, which weigh x times; what is below 1e-17 is 0.
+/// How far what is left of Stribeck friction can be from the exact value, at x = |dq| / v with a rounded v: two units of roundoff of the
+/// function, and two of x, which weigh x times; what is below 1e-17 is 0.
 pub(crate) fn stribeck_error(x: f64, value: f64, real: Float) -> f64 {
     (2.1 + 2.1 * x.min(64.0)) * real.unit() * value + if value == 0.0 { 1e-17 } else { 0.0 }
 }

@@ -10,7 +10,7 @@ use crate::equations::state::State;
 use crate::formula::Formula;
 use crate::program::Program;
 use crate::reader::Module;
-use crate::reference::PROMISES;
+use crate::reference::{BASE_REGRESSOR, PROMISES};
 use crate::report::{FunctionReport, IdentityReport};
 
 /// The functions of a module with the exact values of their literals, at one point.
@@ -118,7 +118,7 @@ const IDENTITIES: [Identity; 10] = [
     }),
     ("Y_b pi_b = tau", |run| {
         let state = run.state();
-        let y = run.run("base_regressor", state)?;
+        let y = run.run(BASE_REGRESSOR, state)?;
         let nominal = run.point.literals(run.nominal_base).ok_or("the nominal base parameters are not known")?;
         let tau = run.without_load_friction(run.run("inverse_dynamics", state)?, state)?;
         let n = tau.len();

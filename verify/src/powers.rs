@@ -1,4 +1,5 @@
-//! Whether a function takes its arguments to the powers that its equations take them to, entry by entry, so that what is found in a box holds outside.
+//! Whether a function takes its arguments to the powers that its equations take them to, entry by entry, so that what is found in a box
+//! holds outside.
 //!
 //! A polynomial that is added and taken away again is nothing over the reals, and loses all digits where it is large. With f an entry of a function
 //! as it is written and f* the same of the equations, as a plain program computes them ([`growth`](mod@crate::arithmetic::growth)):
@@ -14,12 +15,12 @@
 //! a function has an angle with q_k and others, or q_k as a length, only if an entry of it depends on q_k
 //! ```
 //!
-//! A sine of one joint variable has its digits however large that is; a sum of two has lost those of the smaller one. So sums are those of frames,
-//! and in a function that does not depend on a variable there is no sum with it. Emitted functions have parameters, rates, accelerations and angles in common that cancel
-//! in single entries, and sines that a plain program multiplies out: those limits are wider.
+//! A sine of one joint variable has its digits however large that is; a sum of two has lost those of the smaller one. So sums are those of
+//! frames, and in a function that does not depend on a variable there is no sum with it. Emitted functions have parameters, rates,
+//! accelerations and angles in common that cancel in single entries, and sines that a plain program multiplies out: those limits are wider.
 //!
-//! Where a function divides, what no quotient takes part in is held to the largest degrees of torques, Jacobian and mass, and the whole to those in all
-//! entries of each argument but the joint variables.
+//! Where a function divides, what no quotient takes part in is held to the largest degrees of torques, Jacobian and mass, and the whole to
+//! those in all entries of each argument but the joint variables.
 
 use std::collections::BTreeMap;
 
@@ -38,9 +39,7 @@ use crate::equations::state::State;
 use crate::float::Arguments;
 use crate::formula::Formula;
 use crate::program::{Angle, Argument, Program, Step};
-use crate::reference::{BaseParameters, Reference, Wanted};
-
-const BASE_REGRESSOR: &str = "base_regressor";
+use crate::reference::{BaseParameters, Reference, Wanted, BASE_REGRESSOR};
 
 /// Joints, one a bit.
 type Joints = u64;
@@ -81,7 +80,8 @@ fn letters(growths: &Growths, joints: usize, vector: &Vector) -> State<Growth> {
 }
 
 impl Powers {
-    /// Those of an arm, for functions with such joint variables in sums and lengths ([`joints_asked`]); what they depend on is found in a field, if there is one.
+    /// Those of an arm, for functions with such joint variables in sums and lengths ([`joints_asked`]); what they depend on is found in a
+    /// field, if there is one.
     pub fn new<K: Arithmetic + Clone>(
         manipulator: &Manipulator,
         vector: &Vector,

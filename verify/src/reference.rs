@@ -22,6 +22,9 @@ use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::equations::vector::{solve, Vector as Vector3};
 
+/// The function that is not compared entry by entry: its columns are those of the parameters that the module itself names.
+pub const BASE_REGRESSOR: &str = "base_regressor";
+
 const N: Length = Length::Dof;
 const SQUARE: Array = &[N, N];
 const VECTOR: Array = &[N];
@@ -70,7 +73,7 @@ pub const PROMISES: [Promise; 24] = [
     promise("center_of_mass", &["q"], Returned::One(&[Length::Of(3)])).with_parameters().not_of_every_arm(),
     promise("momentum", &["q", "dq"], Returned::One(VECTOR)),
     promise("coriolis_transpose_times", &["q", "dq"], Returned::One(VECTOR)),
-    promise("base_regressor", &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])),
+    promise(BASE_REGRESSOR, &["q", "dq", "ddq"], Returned::One(&[N, Length::BaseParameters])),
     promise("operational_inertia", &["q"], Returned::One(&[Length::Task, Length::Task])).not_of_every_arm(),
     promise("inverse_dynamics_derivatives", &["q", "dq", "ddq"], Returned::List(&[SQUARE, SQUARE])),
     promise("forward_dynamics_derivatives", &["q", "dq", "tau"], Returned::List(&[SQUARE, SQUARE, SQUARE])),
@@ -321,7 +324,7 @@ pub enum BaseParameters {
     Solved,
     /// Taken to be independent of the standard ones: right for bounds on degrees.
     Free,
-    /// Those of an arm that has no others.
+    /// The standard parameters of an arm whose others are 0.
     Kept,
     /// Left out.
     LeftOut,

@@ -48,7 +48,8 @@ impl Parts {
     }
 }
 
-/// The stream of random bits for a module: from the description, the module and the claims that its literals use; `run` for another run with points of its own.
+/// The stream of random bits for a module: from the description, the module and the claims that its literals use; `run` for another run
+/// with points of its own.
 pub fn stream(manipulator: &Manipulator, module: &Module, claims: &Claims, run: u64) -> Stream {
     let mut parts = Parts::of("module");
     parts.integer(run);

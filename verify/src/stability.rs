@@ -1,8 +1,10 @@
 //! Whether rounding leaves of a function what the equations say: a function can equal them over the real numbers and be useless in floats,
 //! as `x + 1e17 - 1e17` is.
 //!
-//! With u the unit roundoff of the scalar, n the number of joints, k that of axes neither parallel nor perpendicular to the next one beyond four, l the larger one of k and the joints beyond eight, S the largest size of an entry at some states (of a regressor: of the largest one of its unit, and so E over a box), e the bound of the entry (over a box,
-//! or at a state in f64, where it is the smaller of the two of [`mod@crate::companion`]), and E the one of a plain program of the equations for that entry ([`mod@crate::yardstick`]):
+//! With u the unit roundoff of the scalar, n the number of joints, k that of axes neither parallel nor perpendicular to the next one beyond
+//! four, l the larger one of k and the joints beyond eight, S the largest size of an entry at some states (of a regressor: of the largest
+//! one of its unit, and so E over a box), e the bound of the entry (over a box, or at a state in f64, where it is the smaller of the two of
+//! [`mod@crate::companion`]), and E the one of a plain program of the equations for that entry ([`mod@crate::yardstick`]):
 //!
 //! ```text
 //! (a)  no value leaves the scalar anywhere in the wide box, or is above 2^64 max(1, S, |x|)³ there, x the arguments
@@ -17,25 +19,28 @@
 //! (f)  powers and angles are those of the equations ([`mod@crate::powers`])
 //! ```
 //!
-//! There are two boxes, with all angles and prismatic joints as far to one side as to the other: one has all parameters up to the largest of the
-//! description, one those of the description. By (f) what is found in them holds outside, multiplied by at most the powers of the equations. (a) to (c) are
-//! of a whole box, since they follow from intervals; these widen with each joint, those of the plain program as those of the text, so that (b) is sharp
-//! where n is small and (c) where it is large. (d) and (e) are sharp, and of states alone, drawn from the hash of the module. Emitted functions of the project's robots take at most 0.20 of what (b) allows, 0.04 of (c), 0.35 of (d)
+//! There are two boxes, with all angles and prismatic joints as far to one side as to the other: one has all parameters up to the largest
+//! of the description, one those of the description. By (f) what is found in them holds outside, multiplied by at most the powers of the
+//! equations. (a) to (c) are of a whole box, since they follow from intervals; these widen with each joint, those of the plain program as
+//! those of the text, so that (b) is sharp where n is small and (c) where it is large. (d) and (e) are sharp, and of states alone, drawn
+//! from the hash of the module. Emitted functions of the project's robots take at most 0.20 of what (b) allows, 0.04 of (c), 0.35 of (d)
 //! and 0.15 of (e), in f32 and in f64; `examples/margins.rs` measures it.
 //!
-//! Bounds know no correlation: a turn of a vector by a matrix without zeros makes them up to sqrt(3) times as large though its length stays, a turn of
-//! a tensor 3 times. The plain program turns vectors along the arm, emitted text tensors, so that its bounds grow faster with the number of such turns:
-//! by 0.6 to 0.9 bits an oblique axis at states and over a box ((d), (b)), by 1.1 to 1.5 against states (c), as measured on arms of 4 to 20 revolute joints with
-//! random decimals. Where axes are parallel or perpendicular, rows of the matrix have two entries and k is 0; inertia tensors turned along more than
-//! eight such joints lose up to 0.8 bits a joint at states all the same, as measured on arms of 8 to 32 revolute joints.
+//! Bounds know no correlation: a turn of a vector by a matrix without zeros makes them up to sqrt(3) times as large though its length
+//! stays, a turn of a tensor 3 times. The plain program turns vectors along the arm, emitted text tensors, so that its bounds grow faster
+//! with the number of such turns: by 0.6 to 0.9 bits an oblique axis at states and over a box ((d), (b)), by 1.1 to 1.5 against states (c),
+//! as measured on arms of 4 to 20 revolute joints with random decimals. Where axes are parallel or perpendicular, rows of the matrix have
+//! two entries and k is 0; inertia tensors turned along more than eight such joints lose up to 0.8 bits a joint at states all the same, as
+//! measured on arms of 8 to 32 revolute joints.
 //!
 //! The factor 2^4 is a digit and a fifth: a sum in another order, a product multiplied out and a constant that is not folded cost a factor of two or
 //! three each, and none is a loss that a user would notice beside the equations themselves.
 //!
-//! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside the largest of the torques, the
-//! Jacobian and the inertia matrix, the whole to (e); an entry in which no quotient takes part, to as many times the same as it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has
-//! 2^(12 + 5n/2) u S instead of it, with S the largest entry of the function.
-//! Intervals say nothing behind a quotient in general; of `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
+//! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside the largest of the
+//! torques, the Jacobian and the inertia matrix, the whole to (e); an entry in which no quotient takes part, to as many times the same as
+//! it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has 2^(12 + 5n/2) u S instead of
+//! it, with S the largest entry of the function. Intervals say nothing behind a quotient in general; of `forward_dynamics` the bound of
+//! torques ([`mod@crate::residual`]) does.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -55,6 +60,7 @@ use crate::formula::Formula;
 use crate::program::{Argument, Program};
 use crate::ranges::{literal_errors, worst, Domain};
 use crate::reader::Module;
+use crate::reference::BASE_REGRESSOR;
 use crate::report::Unfit;
 use crate::yardstick::Subject;
 
@@ -139,8 +145,8 @@ struct Plain {
     values: Vec<f64>,
     /// The error over the wide box, and over that with the parameters of the description.
     boxes: [f64; 2],
-    /// The size of what stands beside it: of an entry of a regressor the largest of the same unit, of inertias at least that of rates. Rates about the
-    /// axes of a tensor make its columns, and all of one can be what an angle of 1e-5 between two axes leaves of them.
+    /// The size of what stands beside it: of an entry of a regressor the largest of the same unit, of inertias at least that of rates.
+    /// Rates about the axes of a tensor make its columns, and all of one can be what an angle of 1e-5 between two axes leaves of them.
     beside: f64,
 }
 
@@ -288,7 +294,7 @@ fn beside_their_units<'a>(
     };
     let of_rates = worst(states.map(|state| turns(&state.dq) * turns(&state.dqr)));
     let base = checker.base().map(|own| units(own.named.iter().map(|(parameter, _)| *parameter)));
-    for (name, columns) in [("regressor", checker.vector().units()), ("base_regressor", base.unwrap_or_default())] {
+    for (name, columns) in [("regressor", checker.vector().units()), (BASE_REGRESSOR, base.unwrap_or_default())] {
         let Some(entries) = plain.get_mut(name) else { continue };
         let rows = joints.iter().map(|joint| joint.kind == JointKind::Revolute);
         let units: Vec<(bool, Unit)> = rows.flat_map(|turns| columns.iter().map(move |unit| (turns, *unit))).collect();
@@ -624,7 +630,8 @@ impl<'a> Trial<'a> {
         compared
     }
 
-    /// The random states of what divides. Not those at the ends of the box: where the arm is exactly singular, errors are as large as what they are errors of.
+    /// The random states of what divides. Not those at the ends of the box: where the arm is exactly singular, errors are as large as what
+    /// they are errors of.
     fn judged(&self) -> impl Iterator<Item = usize> {
         (0..self.batches.len() * LANES).filter(|state| Kind::of(*state) == Kind::Random)
     }

@@ -19,9 +19,7 @@ use crate::equations::state::State;
 use crate::float::{stribeck, stribeck_error, Arguments, LANES};
 use crate::formula::Formula;
 use crate::ranges::{Domain, Range};
-use crate::reference::{BaseParameters, Reference, Values, Wanted};
-
-const BASE_REGRESSOR: &str = "base_regressor";
+use crate::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
 
 /// An arm whose equations are measured.
 #[derive(Clone, Copy)]

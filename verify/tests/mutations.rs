@@ -1,8 +1,9 @@
 //! Changes of an emitted module are found, each with the function and the entry that it spoils.
 //!
 //! A change that alters no bit of any entry at many states is none, and neither is one where all that it touches cancels on the way to the
-//! result: the two functions then agree to 40 digits everywhere and the changed one is as right as the other. The short test runs a few dozen changes on small robots; all of them,
-//! 200 on every robot in both scalars, by `cargo test --release -p armgen-verify --test mutations -- --ignored --nocapture`.
+//! result: the two functions then agree to 40 digits everywhere and the changed one is as right as the other. The short test runs a few
+//! dozen changes on small robots; all of them, 200 on every robot in both scalars, by `cargo test --release -p armgen-verify --test
+//! mutations -- --ignored --nocapture`.
 
 mod common;
 #[path = "common/mutation.rs"]

@@ -37,8 +37,8 @@ fn all_robots_are_verified_in_f32() {
     check(Scalar::F32);
 }
 
-/// In `light` torques that may be given are a thousand times those that the arm asks for; in `lift` the rate of the shoulder, as the links beyond pass
-/// it on, cancels in the momentum of the slide along its axis.
+/// In `light` torques that may be given are a thousand times those that the arm asks for; in `lift` the rate of the shoulder, as the links
+/// beyond pass it on, cancels in the momentum of the slide along its axis.
 #[test]
 fn small_torques_beside_large_limits_and_rates_that_cancel_are_no_faults() {
     for (name, text) in [("light", include_str!("arms/light.yaml")), ("lift", include_str!("arms/lift.yaml"))] {

@@ -55,7 +55,8 @@ pub struct Joint {
     pub cosine: ExprId,
     /// Rate at which the joint frame turns about its z axis, seen from the parent's: dq, and 0 for a prismatic joint.
     pub spin: ExprId,
-    /// Rate at which the link turns about the z axis of the frame that it is described in, seen from that frame: 0 unless parallel axes share one orientation.
+    /// Rate at which the link turns about the z axis of the frame that it is described in, seen from that frame: 0 unless parallel axes
+    /// share one orientation.
     pub drift: ExprId,
     /// The joint frame in the axes that the link is described in: turned only where parallel axes share one orientation.
     pub own_axes: Matrix,

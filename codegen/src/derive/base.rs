@@ -349,8 +349,9 @@ pub fn base_parameters(manipulator: &Manipulator, field: &Field) -> ParameterVec
     grouped(manipulator, field, GroupingConvention::NoInertiaAboutY, false)
 }
 
-/// The base parameters of `base_regressor`: those that are not zero, with the masses of its rotors among the values, so that
-/// Y pi is the whole torque. Links keep no second moment along their axes, because the moment of a point mass on the x or y axis has two components only.
+/// The base parameters of `base_regressor`: those that are not zero, with the masses of its rotors among the values, so that Y pi is the
+/// whole torque. Links keep no second moment along their axes, because the moment of a point mass on the x or y axis has two components
+/// only.
 pub fn base_parameters_with_rotors(manipulator: &Manipulator, field: &Field) -> ParameterVector {
     let ParameterVector { entries, kind } = grouped(manipulator, field, GroupingConvention::NoSecondMomentAlongAxis, true);
     let ParameterKind::Base(columns) = kind else { unreachable!("base parameters are grouped") };
@@ -401,9 +402,9 @@ fn grouped(manipulator: &Manipulator, field: &Field, convention: GroupingConvent
     ParameterVector { entries, kind: ParameterKind::Base(kept) }
 }
 
-/// The rows of friction below those of all other torques. On a slide that gravity acts along, the torque of a mass less that of an armature is constant,
-/// and so is the torque of an offset of friction: a motion cannot tell the three apart, but a friction that holds part of the weight is none, and
-/// `gravity_with` and `friction_with` take them one by one.
+/// The rows of friction below those of all other torques. On a slide that gravity acts along, the torque of a mass less that of an armature
+/// is constant, and so is the torque of an offset of friction: a motion cannot tell the three apart, but a friction that holds part of the
+/// weight is none, and `gravity_with` and `friction_with` take them one by one.
 fn with_friction_apart(y: &[Vec<ExprId>], columns: &[StandardParameter]) -> Vec<Vec<ExprId>> {
     let rows = |friction: bool| {
         y.iter().map(move |row| {

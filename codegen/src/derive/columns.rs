@@ -254,7 +254,8 @@ impl PropagatedColumn {
         }
     }
 
-    /// Moves the reference point of the moments: `offset` leads from the new point to the old one, `outer` is the Ω of the link that E is relative to.
+    /// Moves the reference point of the moments: `offset` leads from the new point to the old one, `outer` is the Ω of the link that E is
+    /// relative to.
     fn shift(&mut self, pool: &mut Pool, offset: &Offset, outer: &Vector) {
         let mut moved = |at: &Vector, force: &Vector, moment: &Vector| {
             let lever = pool.cross(at, force);

@@ -1,6 +1,7 @@
 //! Inverse dynamics by Newton and Euler's equations in joint frames, and friction.
 //!
-//! The acceleration field of link i is a + U r, with U = S(domega) + S(omega)² (S of a vector: the matrix of its cross product); force and moment follow from m, h and S alone:
+//! The acceleration field of link i is a + U r, with U = S(domega) + S(omega)² (S of a vector: the matrix of its cross product); force and
+//! moment follow from m, h and S alone:
 //!
 //! ```text
 //! f = m a + U h,   n = h × a + vee(U S - (U S)')                                     (the book, Sect. 7.5, in second-moment form)

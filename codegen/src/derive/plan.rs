@@ -1,8 +1,8 @@
 //! Which way a derivation goes where several are exact, and the search for the cheapest.
 //!
 //! A derivation asks its [`Plan`] at each fork, by the pass that the fork belongs to and a place (a joint, say); way 0 is the plain one.
-//! The search tries the other ways fork by fork, counts the operations of each in a copy of the pool that holds fingerprints only, and keeps what is cheaper, until
-//! no single change helps. It is bounded by counts, never by time, and takes the forks in a fixed order.
+//! The search tries the other ways fork by fork, counts the operations of each in a copy of the pool that holds fingerprints only, and
+//! keeps what is cheaper, until no single change helps. It is bounded by counts, never by time, and takes the forks in a fixed order.
 
 use std::collections::BTreeMap;
 

@@ -166,7 +166,8 @@ pub struct Documentation {
     pub stribeck: Option<&'static str>,
     /// What friction that grows with the load adds, said of arms that have it.
     pub load: Option<&'static str>,
-    /// Whether a module that lacks the function says so; one of which it does not is not asked for by most arms, and its trait knows what it is there.
+    /// Whether a module that lacks the function says so; one of which it does not is not asked for by most arms, and its trait knows what
+    /// it is there.
     pub said_missing: bool,
 }
 
@@ -186,7 +187,7 @@ pub struct Recursion {
     pub starts: &'static [Start],
 }
 
-/// What a derivation is for.
+/// The arm that a derivation is for, and how its parameters enter.
 #[derive(Clone, Copy)]
 pub struct Setting<'a> {
     /// The arm and its parameters.

@@ -22,8 +22,8 @@ use crate::pass::Pass;
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
-/// Where searches for the plan of a regressor start: plainly, where wrenches stay at their link and are felt by twists; with 5 = 2·2 + 1, where they go
-/// two links towards the base and are felt by moments.
+/// Where searches for the plan of a regressor start: plainly, where wrenches stay at their link and are felt by twists; with 5 = 2·2 + 1,
+/// where they go two links towards the base and are felt by moments.
 pub(crate) static STARTS: [Start; 2] = [Start::PLAIN, Start { wrench_frame: 5, ..Start::PLAIN }];
 
 /// Y, for an arm whose parameters are symbols (named parameters) or for the standard parameters of any arm.

@@ -1,5 +1,5 @@
-//! The arrangements of the determinant for an arm of no class: of those in which it does not vanish the two with the fewest doubtful of some fixed poses, then
-//! with the least noise, as the block itself finds them. Its bits are the same on every machine.
+//! The arrangements of the determinant for an arm of no class: of those in which it does not vanish the two with the fewest doubtful of
+//! some fixed poses, then with the least noise, as the block itself finds them. Its bits are the same on every machine.
 
 use armgen_inverse_kinematics::f64::{self as block, determinant_on_circle};
 

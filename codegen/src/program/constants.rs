@@ -7,8 +7,8 @@ use super::Module;
 use crate::exact::Number;
 
 impl Module {
-    /// The constants of each function by its name, one for each literal in the order of the text and without its sign, so that it is known which of two
-    /// that round to one float a literal stands for; and the nominal parameters as `NOMINAL_PARAMETERS`.
+    /// The constants of each function by its name, one for each literal in the order of the text and without its sign, so that it is known
+    /// which of two that round to one float a literal stands for; and the nominal parameters as `NOMINAL_PARAMETERS`.
     pub fn constants(&self) -> BTreeMap<String, Vec<Number>> {
         let mut constants: BTreeMap<String, Vec<Number>> = BTreeMap::new();
         let mut sizes: BTreeMap<Number, Number> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! Expressions as formulas: plain text and LaTeX.
 //!
-//! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1) abs(g1) sign(g1)` and parameter names, with
-//! numbers as exact fractions: a formula that a computer-algebra system reads.
+//! Plain text is `+ - * / ^`, `sin`, `cos`, `sqrt`, `pi`, the names `q1 dq1 ddq1 dqr1 ddqr1 tau1 sign(dq1) abs(g1) sign(g1)` and parameter
+//! names, with numbers as exact fractions: a formula that a computer-algebra system reads.
 
 use std::rc::Rc;
 

@@ -1,7 +1,8 @@
 //! A constant angle that adds to a joint variable.
 //!
-//! The axes of a link may be turned by any constant angle about its joint axis; the joint angle is then q + phi. Its sine and cosine are inputs as
-//! those of q are ([`super::AngleSum`]), with sin(q + phi) = sin q cos phi + cos q sin phi. Here phi is the angle of a point with rational coordinates,
+//! The axes of a link may be turned by any constant angle about its joint axis; the joint angle is then q + phi. Its sine and cosine are
+//! inputs as those of q are ([`super::AngleSum`]), with sin(q + phi) = sin q cos phi + cos q sin phi. Here phi is the angle of a point with
+//! rational coordinates,
 //!
 //! ```text
 //! phi = angle of (x, y),   cos phi = x / sqrt(x² + y²),   sin phi = y / sqrt(x² + y²)

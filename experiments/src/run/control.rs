@@ -30,9 +30,9 @@ const POSTURE_STEP: Duration = Duration::from_millis(250);
 const SHORTER: [u32; 6] = [2, 5, 10, 20, 50, 100];
 /// Samples of the longest rehearsal at a shorter period.
 const MAX_REHEARSED: u128 = 400_000;
-/// Joint error, rad or m, above which `lost_at` is recorded ([`LOST`]), and above which the run is aborted ([`GIVEN_UP`]).
-const LOST: f64 = 0.1;
-const GIVEN_UP: f64 = 1.0;
+/// Joint error, rad or m, above which `lost_at` is recorded ([`LARGE_ERROR`]), and above which the run is aborted ([`ABORT_ERROR`]).
+const LARGE_ERROR: f64 = 0.1;
+const ABORT_ERROR: f64 = 1.0;
 
 /// A sampled controller behind a pointer, so that linearisation and simulation are compiled once for all of them.
 trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P: usize>: Send {
@@ -342,7 +342,7 @@ fn adaptive<const N: usize, const P: usize>(law: &Law, period: f64) -> Result<Ad
 #[derive(Debug)]
 enum Stop {
     Control(ControlError),
-    /// This joint is off by more than [`GIVEN_UP`].
+    /// This joint is off by more than [`ABORT_ERROR`].
     GivenUp(usize),
 }
 
@@ -351,7 +351,7 @@ fn off<const N: usize>(desired: &SVector<f64, N>, found: &SVector<f64, N>) -> Re
     let error = (desired - found).abs();
     let joint = error.imax();
     // What is not finite is the affair of the run.
-    if error[joint] > GIVEN_UP && error[joint].is_finite() {
+    if error[joint] > ABORT_ERROR && error[joint].is_finite() {
         return Err(Stop::GivenUp(joint));
     }
     Ok(())
@@ -364,7 +364,7 @@ fn explain(error: RunError<Stop>, robot: &Robot) -> String {
     match error {
         RunError::Controller { time, error: Stop::GivenUp(i) } => {
             let (name, joint) = joint(i);
-            format!("given up at {}: {name} is off by more than {GIVEN_UP} {}", s(time), joint.unit())
+            format!("given up at {}: {name} is off by more than {ABORT_ERROR} {}", s(time), joint.unit())
         }
         RunError::Controller { time, error: Stop::Control(error) } => format!("no torque at {}: {error}", s(time)),
         RunError::Diverged { time, divergence } => {
@@ -502,7 +502,7 @@ where
             *peak = Peak { rate: peak.rate.max(state.dq[i].abs()), effort: peak.effort.max(tau[i].abs()) };
         }
         let e = joints[index].q - state.q;
-        if lost_at.is_infinite() && e.amax() > LOST {
+        if lost_at.is_infinite() && e.amax() > LARGE_ERROR {
             *lost_at = t.as_secs_f64();
         }
         let pose = Pose::of(&arm.nominal, &state.q);

@@ -154,9 +154,9 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
 
     /// What the joints may miss by, rad or m.
     ///
-    /// A held torque has the wrong sign of Coulomb friction, with what grows with the load, while a rate passes zero: a disturbance of up to 2 F_c, which
-    /// moves the error by no more than B⁻¹ 2 F_c / K_P. Of friction that grows with the rate it has what that was up to a period before: less by
-    /// ∂F/∂dq · ddq T.
+    /// A held torque has the wrong sign of Coulomb friction, with what grows with the load, while a rate passes zero: a disturbance of up
+    /// to 2 F_c, which moves the error by no more than B⁻¹ 2 F_c / K_P. Of friction that grows with the rate it has what that was up to a
+    /// period before: less by ∂F/∂dq · ddq T.
     fn bounds(&self, postures: &[SVector<f64, N>]) -> SVector<f64, N> {
         let creeping = SVector::repeat(f64::MIN_POSITIVE);
         let acceleration: SVector<f64, N> =

@@ -1,8 +1,8 @@
 //! What can be seen of an experiment before anything moves: a start outside the limits, a path beyond reach, a start off the path.
 //!
-//! Reach is bounded by the chain of frame origins stretched out: |p_e - p_1| <= sum |p_{i+1} - p_i|, the lengths of which do not change where
-//! joints turn, and change by the stroke where they slide. A path farther from the first joint is out of reach for certain; one that is nearer
-//! may be so still.
+//! Reach is bounded by the chain of frame origins stretched out, from the origin of the base on: |p_e| <= |p_1| + sum |p_{i+1} - p_i|.
+//! These lengths do not change where joints turn, and change by the stroke where they slide. A path farther from the origin of the base is
+//! out of reach for certain; one that is nearer may be so still.
 
 use std::time::Duration;
 

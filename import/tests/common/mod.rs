@@ -78,7 +78,8 @@ fn matrix(arm: &Manipulator, frame: &Placement) -> Matrix {
     })
 }
 
-/// The end effector's frame, of each rotor its first moment and axis, of each joint its friction, armature and spring, and of each link mass, first and second moments in the base frame, where q is 0.3, -0.7, 1.1, ...
+/// The end effector's frame, of each rotor its first moment and axis, of each joint its friction, armature and spring, and of each link
+/// mass, first and second moments in the base frame, where q is 0.3, -0.7, 1.1, ...
 pub(crate) fn state(arm: &Manipulator) -> [Vec<f64>; 2] {
     let mut frame: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     let (mut values, mut rotors) = (Vec::new(), Vec::new());

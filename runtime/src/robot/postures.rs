@@ -91,7 +91,8 @@ pub trait InverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
 /// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist, rad; the emitted
 /// module says which. Emitted as [`InverseKinematics`] is.
 pub trait RedundantInverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
-    /// All q with T_e(q) = `pose` and [`redundancy`](RedundantInverseKinematics::redundancy)(q) = `redundancy`; lengths in m. Limits are not looked at.
+    /// All q with T_e(q) = `pose` and [`redundancy`](RedundantInverseKinematics::redundancy)(q) = `redundancy`; lengths in m. Limits are
+    /// not looked at.
     fn inverse_kinematics(&self, pose: &Matrix4<Self::Real>, redundancy: Self::Real) -> Postures<Self::Real, N, K>;
 
     /// The redundancy of a posture, with which `inverse_kinematics` finds it again.

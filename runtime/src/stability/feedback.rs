@@ -77,9 +77,9 @@ fn offset<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
 /// A rate, rad/s or m/s, beyond the Stribeck velocity of any joint: measured ones are below 1.
 const FADED: f64 = 16.0;
 
-/// Viscous friction F_v, column by column: F(2 x e_i) - F(x e_i), in which Coulomb friction cancels, less 7/12 of the second difference
-/// F(3 x e_i) - 2 F(2 x e_i) + F(x e_i) = 12 F_3 x³ e_i, which takes cubic friction out; over x, a rate, rad/s or m/s, at which nothing is left of Stribeck
-/// friction.
+/// Viscous friction F_v, column by column: F(2 x e_i) - F(x e_i), in which Coulomb friction cancels, less 7/12 of the second difference F(3
+/// x e_i) - 2 F(2 x e_i) + F(x e_i) = 12 F_3 x³ e_i, which takes cubic friction out; over x, a rate, rad/s or m/s, at which nothing is left
+/// of Stribeck friction.
 pub(crate) fn viscous<R: Dynamics<N>, const N: usize>(robot: &R) -> SMatrix<R::Real, N, N> {
     let mut f = SMatrix::<R::Real, N, N>::zeros();
     for i in 0..N {

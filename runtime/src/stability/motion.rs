@@ -230,7 +230,7 @@ where
     /// How the motion goes under `controller`, which knows the arm as `model`; `references` are those of its kind, one a sample.
     ///
     /// # Errors
-    /// [`StabilityError::NoPosture`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,
+    /// [`StabilityError::NoSample`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,
     /// [`StabilityError::Singular`] with the number of the sample at which the law is singular on the reference.
     pub fn of<R, C>(&self, model: &R, controller: &C, references: &[C::Reference]) -> Result<Motion<T>, StabilityError>
     where

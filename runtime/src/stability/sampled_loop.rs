@@ -23,7 +23,7 @@ pub enum StablePeriod<T> {
     NotEvenAt(T),
 }
 
-/// What a run says before anything moves.
+/// Stability of the sampled loop: at rest over all postures, and in motion where that was analysed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report<T> {
     /// The largest spectral radius of all postures; stable below 1.
@@ -56,9 +56,9 @@ impl<T: RealField + Copy> Report<T> {
 #[derive(Clone, Debug)]
 pub struct SampledLoop<T, const N: usize> {
     /// -B^-1 dg/dq and -B^-1 F_v of the plant, and B^-1.
-    stiffness: SMatrix<T, N, N>,
-    friction: SMatrix<T, N, N>,
-    mobility: SMatrix<T, N, N>,
+    acceleration_by_position: SMatrix<T, N, N>,
+    acceleration_by_rate: SMatrix<T, N, N>,
+    inverse_inertia: SMatrix<T, N, N>,
     feedback: Feedback<T, N>,
     /// How far from its reference the arm rests; `None` where it cannot rest.
     offset: Option<T>,
@@ -104,12 +104,12 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         q: &SVector<T, N>,
     ) -> Result<Self, StabilityError> {
         let inertia = plant.inertia_matrix(q).cholesky().ok_or(StabilityError::Inertia { posture: 0 })?;
-        let mobility = inertia.inverse();
+        let inverse_inertia = inertia.inverse();
         let dg = derivative(q, |q| plant.gravity(q));
         Ok(Self {
-            stiffness: -(mobility * dg),
-            friction: -(mobility * viscous(plant)),
-            mobility,
+            acceleration_by_position: -(inverse_inertia * dg),
+            acceleration_by_rate: -(inverse_inertia * viscous(plant)),
+            inverse_inertia,
             feedback,
             offset: Some(T::zero()),
         })
@@ -125,9 +125,9 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         for i in 0..N {
             generator[(i, N + i)] = T::one();
             for k in 0..N {
-                generator[(N + i, k)] = self.stiffness[(i, k)] * h * h;
-                generator[(N + i, N + k)] = self.friction[(i, k)] * h;
-                generator[(N + i, 2 * N + k)] = self.mobility[(i, k)] * h * h;
+                generator[(N + i, k)] = self.acceleration_by_position[(i, k)] * h * h;
+                generator[(N + i, N + k)] = self.acceleration_by_rate[(i, k)] * h;
+                generator[(N + i, 2 * N + k)] = self.inverse_inertia[(i, k)] * h * h;
             }
         }
         let held = exponential(&generator);

@@ -1,4 +1,4 @@
-//! The clock of a chain of segments: when each starts, and which are at work.
+//! When each segment of a trajectory starts and ends, and which are at work.
 
 use super::PlanFault;
 use core::time::Duration;

@@ -1,4 +1,5 @@
-//! Generates every robot in both scalars and with each trigonometry that needs no `std`, with a call of each function, and links the C library, which starts the program.
+//! Generates every robot in both scalars and with each trigonometry that needs no `std`, with a call of each function, and links the C
+//! library, which starts the program.
 
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
 use std::{env, fs, path::PathBuf};

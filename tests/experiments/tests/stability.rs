@@ -100,7 +100,7 @@ fn a_start_in_degrees_and_a_path_beyond_reach_are_seen() {
             Parsed::Experiment(experiment) => experiment,
             other => panic!("{}", said(&other)),
         };
-        let doubts = Job::new(&experiment, &*arm).doubts();
+        let doubts = Job::new(&experiment, &*arm).implausible_settings();
         doubts
     };
     let start = "[0, -pi/2, pi/2, -pi/2, -pi/2, 0]";

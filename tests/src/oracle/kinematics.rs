@@ -1,7 +1,8 @@
 //! Frames and Jacobians.
 //!
-//! The axis of joint i is z of frame i-1 in standard rows, z of frame i in modified ones, and what the row says in others. Column i of the geometric Jacobian of a
-//! point p is (z x (p - o); z) for a revolute joint with a point o of its axis, (z; 0) for a prismatic one (the book, Sect. 3.1.3).
+//! The axis of joint i is z of frame i-1 in standard rows, z of frame i in modified ones, and what the row says in others. Column i of the
+//! geometric Jacobian of a point p is (z x (p - o); z) for a revolute joint with a point o of its axis, (z; 0) for a prismatic one (the
+//! book, Sect. 3.1.3).
 
 use super::vector::{add, constant, cross, scale, sub, Frame, Vector};
 use super::{Dual, Matrix, Model, Placed, Scalar};

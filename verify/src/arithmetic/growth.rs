@@ -85,9 +85,9 @@ impl Growth {
         (found > own).then(|| Beyond { of: "all arguments together".into(), found, own })
     }
 
-    /// The first entry of an argument, or circle, in which this is of a higher degree than an entry of the equations allows, `all` being the largest of
-    /// all entries: of a parameter the degree of any entry and 1, of a rate or an acceleration that of `of_motion`, of sines and cosines twice the
-    /// entry's own and a square.
+    /// The first entry of an argument, or circle, in which this is of a higher degree than an entry of the equations allows, `all` being
+    /// the largest of all entries: of a parameter the degree of any entry and 1, of a rate or an acceleration that of `of_motion`, of sines
+    /// and cosines twice the entry's own and a square.
     pub fn entry_beyond(&self, own: &Growth, of_motion: &Growth, all: &Growth, growths: &Growths) -> Option<Beyond> {
         let found = self.0.as_ref()?;
         let degree = |growth: &Growth, k: usize| growth.0.as_ref().map_or(0, |powers| powers.each[k]);

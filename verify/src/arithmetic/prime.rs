@@ -130,8 +130,8 @@ pub struct Prime {
     defined: Defined<Residue>,
 }
 
-/// How many numbers are looked at for a prime before the roots of a robot are given up: one in 14 is a prime, and each further independent root halves
-/// the chance of one.
+/// How many numbers are looked at for a prime before the roots of a robot are given up: one in 14 is a prime, and each further independent
+/// root halves the chance of one.
 const CANDIDATES: usize = 1 << 24;
 
 impl Prime {

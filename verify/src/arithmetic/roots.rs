@@ -6,16 +6,16 @@
 //! for half of all choices. Here such roots are found, and written in terms of the others.
 //!
 //! The roots of integers without common factors, none of them a square, are independent. Let L be the field of those that occur under
-//! nested roots sqrt(x_1), sqrt(x_2), ..., x_i in L, and d_1, d_2, ... the other integers. By Kummer's theory sqrt(x_i) lies in the field of L, the sqrt(d_j) and
-//! the sqrt(x_k) before it if and only if
+//! nested roots sqrt(x_1), sqrt(x_2), ..., x_i in L, and d_1, d_2, ... the other integers. By Kummer's theory sqrt(x_i) lies in the field
+//! of L, the sqrt(d_j) and the sqrt(x_k) before it if and only if
 //!
 //! ```text
 //! x_i Π_(j in D) d_j Π_(k in E) x_k = y²,   y in L,   for some D and E;   then   sqrt(x_i) = |y| / (Π sqrt(d_j) Π sqrt(x_k))
 //! ```
 //!
-//! D and E are found by linear algebra over the field of two elements: under random homomorphisms from L to prime fields a square stays a square, and
-//! what is none becomes one with odds of ½. So what is called independent *is* independent; what seems to depend is proved by finding y, whose sign is that of
-//! an enclosure.
+//! D and E are found by linear algebra over the field of two elements: under random homomorphisms from L to prime fields a square stays a
+//! square, and what is none becomes one with odds of ½. So what is called independent *is* independent; what seems to depend is proved by
+//! finding y, whose sign is that of an enclosure.
 
 use dashu_base::{Signed, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};

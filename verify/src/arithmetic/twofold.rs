@@ -1,10 +1,10 @@
 //! Numbers of two floats in lanes: 106 bits, for values to measure rounding errors by that are cheap enough for millions of states.
 //!
 //! A number is the sum of `high` and `low`, `low` at most half a unit in the last place of `high`. Sums are right to 3 · 2^-106 of the
-//! result, products to 7, quotients to 15 (Joldes, Muller, Popescu: Tight and rigorous error bounds for basic building blocks of double-word arithmetic, 2017,
-//! algorithms 6, 10 and 17), literals to 1, sines and cosines to 2^-92 by the tests below. So a program runs here as it does in f64, with a unit
-//! roundoff of 2^-92 in place of 2^-53 at the worst: **its error is below 2^-38 of the running bound**, and 256 bits ([`super::wide`]) are
-//! needed only to show the worst cases.
+//! result, products to 7, quotients to 15 (Joldes, Muller, Popescu: Tight and rigorous error bounds for basic building blocks of
+//! double-word arithmetic, 2017, algorithms 6, 10 and 17), literals to 1, sines and cosines to 2^-92 by the tests below. So a program runs
+//! here as it does in f64, with a unit roundoff of 2^-92 in place of 2^-53 at the worst: **its error is below 2^-38 of the running bound**,
+//! and 256 bits ([`super::wide`]) are needed only to show the worst cases.
 
 use super::wide::{stribeck, Wide, WideArguments};
 use crate::element::Element;

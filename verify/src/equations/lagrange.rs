@@ -158,7 +158,8 @@ pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
         .collect()
 }
 
-/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with what is drawn for signs and exponentials: the cube of dq_i is taken once by `rates`.
+/// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with what is drawn for signs and exponentials:
+/// the cube of dq_i is taken once by `rates`.
 pub fn friction<E: Element>(arm: &Arm<E>, state: &State<E>, rates: &[E]) -> Vec<E> {
     let State { dq, signs, stribeck, .. } = state;
     arm.joints

@@ -1,9 +1,9 @@
 //! The algebra of polynomials modulo the equations of a pose: its dimension is the number of solutions, complex ones and multiplicities counted.
 //!
-//! Isotropic points, 1 + tan² = 0, are at infinity in c and s and do not count. All products of the equations within a bound on the degree in each joint
-//! are eliminated, highest degrees first; monomials that are no pivot are a basis of the algebra, and every other monomial has a normal form in
-//! it. That the bound was high enough is seen by Mourrain's criterion (1999): the matrices that multiply by c, s or d exist, commute, and give
-//! every monomial its normal form. The dimension is then exact.
+//! Isotropic points, 1 + tan² = 0, are at infinity in c and s and do not count. All products of the equations within a bound on the degree
+//! in each joint are eliminated, highest degrees first; monomials that are no pivot are a basis of the algebra, and every other monomial
+//! has a normal form in it. That the bound was high enough is seen by Mourrain's criterion (1999): the matrices that multiply by c, s or d
+//! exist, commute, and give every monomial its normal form. The dimension is then exact.
 
 use super::forms::System;
 use super::modular::Modulus;

@@ -1,10 +1,10 @@
 //! Soundness of every branch: the building blocks themselves, as texts, run in prime fields.
 //!
 //! The blocks of closed forms are arithmetic and square roots over a scalar, and comparisons with roundings. In a prime field nothing is
-//! rounded: tolerances are 0, what differs from 0 is positive, and a square root exists for half of all elements; what is computed from one that does not
-//! is no number. At random poses, which a posture reaches, whatever the construction returns for a branch has to close the loop exactly, with
-//! c² + s² = 1 in every joint; poses are drawn until each branch has done so. A branch that is wrong passes at a random pose with
-//! odds of about its degree over the prime: less than 1e-15.
+//! rounded: tolerances are 0, what differs from 0 is positive, and a square root exists for half of all elements; what is computed from one
+//! that does not is no number. At random poses, which a posture reaches, whatever the construction returns for a branch has to close the
+//! loop exactly, with c² + s² = 1 in every joint; poses are drawn until each branch has done so. A branch that is wrong passes at a random
+//! pose with odds of about its degree over the prime: less than 1e-15.
 //!
 //! Signs of square roots mean nothing in a field, so that this says nothing of which branch is called what.
 

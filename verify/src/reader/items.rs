@@ -11,6 +11,7 @@ use crate::check::Check;
 use crate::contract::Promise;
 use crate::enclosure::Float;
 use crate::program::Argument;
+use crate::reference::BASE_REGRESSOR;
 
 const LINTS: &str = "#[allow(dead_code)]";
 /// On what holds numbers of a robot: clippy finds pi and e among them.
@@ -175,7 +176,7 @@ impl<'a> Items<'a> {
             });
         }
         let of_base = |name: &&&str| name.contains("BASE_");
-        match (has("base_regressor"), self.constants.keys().find(of_base)) {
+        match (has(BASE_REGRESSOR), self.constants.keys().find(of_base)) {
             (false, Some(name)) => {
                 let line = self.constants[name].1.peek().line;
                 Err(Fault { line, reason: format!("`{name}` without the function `base_regressor`") })

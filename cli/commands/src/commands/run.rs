@@ -99,8 +99,8 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
     all
 }
 
-/// The text of a file that an experiment names. At most one byte more than the reader accepts: the reader then reports the excess, and a file without an end
-/// is not waited for.
+/// The text of a file that an experiment names. At most one byte more than the reader accepts: the reader then reports the excess, and a
+/// file without an end is not waited for.
 fn text_of(path: &Path) -> std::io::Result<String> {
     let mut text = String::new();
     std::fs::File::open(path)?.take(read::MAX_TEXT as u64 + 1).read_to_string(&mut text)?;
@@ -120,7 +120,7 @@ fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path, description: &
         bar.inc(1);
     });
     for job in &jobs {
-        for warning in job.doubts().into_iter().chain(job.warning()) {
+        for warning in job.implausible_settings().into_iter().chain(job.warning()) {
             bar.suspend(|| terminal::warning(&format!("{}: {warning}", job.experiment().name)));
         }
     }

@@ -72,7 +72,7 @@ const LEFT_TERMS: usize = 150;
 pub enum NoMinors {
     /// The task has as many rows as the arm has joints, or more.
     NotRedundant,
-    /// The arm has more than one joint too many.
+    /// The arm has more than one degree of redundancy.
     TooMany,
     /// They are too long to be read, or have coefficients that are no fractions and roots; the factors that they share, if known.
     TooLong(Vec<Factor>),

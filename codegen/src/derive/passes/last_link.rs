@@ -1,7 +1,8 @@
 //! The last link in axes that point to its centre of mass.
 //!
-//! The axes of a link may be turned about its joint axis by any constant angle, which adds to the joint angle. For a link that carries no other
-//! one nothing else changes: its body and the end effector are described in other axes. Turned by the angle phi of its first moment (hx, hy), the body has
+//! The axes of a link may be turned about its joint axis by any constant angle, which adds to the joint angle. For a link that carries no
+//! other one nothing else changes: its body and the end effector are described in other axes. Turned by the angle phi of its first moment
+//! (hx, hy), the body has
 //!
 //! ```text
 //! hx' = sqrt(hx² + hy²),   hy' = 0

@@ -1,9 +1,9 @@
 //! Parallel axes in one orientation.
 //!
 //! Joints with parallel axes turn what they carry by the sum of their angles. Instead of turning everything joint by joint, the links
-//! between them are described in axes that all share: those of the link before the first of them (angle 0), or those of one of their links. Then only the bodies of
-//! these links and the offsets between the axes turn, which are constants, and what comes from beyond turns once, by the sum,
-//! whose sine and cosine are asked for as such, or formed by the addition theorem.
+//! between them are described in axes that all share: those of the link before the first of them (angle 0), or those of one of their links.
+//! Then only the bodies of these links and the offsets between the axes turn, which are constants, and what comes from beyond turns once,
+//! by the sum, whose sine and cosine are asked for as such, or formed by the addition theorem.
 
 use super::super::arm::{Arm, Joint};
 use super::super::plan::{Place, Plan};

@@ -192,7 +192,8 @@ fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &VelocityMoments) -> 
 
 /// A composite body in the axes of its parent turned by `fixed`, and its motion relative to that parent.
 pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &VelocityMoments) -> (Body, VelocityMoments) {
-    // Traces of the upper left blocks are invariant under rotation about z: interned before the rotation, they are the nodes that the sums formed after it resolve to.
+    // Traces of the upper left blocks are invariant under rotation about z: interned before the rotation, they are the nodes that the sums
+    // formed after it resolve to.
     pool.intern_sum(body.second[0], body.second[2]);
     pool.intern_sum(flow.second[0][0], flow.second[1][1]);
     let turned = joint.body_about_axis(pool, body);

@@ -131,7 +131,8 @@ const LOAD: &str =
 
 type Rows = Vec<Vec<ExprId>>;
 
-/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, F_v + 3 F_3 dq² and the slope of Stribeck friction in the second, and springs, k in the first; Coulomb friction counts as constant.
+/// ∂tau/∂q and ∂tau/∂dq of the torques with friction, F_v + 3 F_3 dq² and the slope of Stribeck friction in the second, and springs, k in
+/// the first; Coulomb friction counts as constant.
 pub fn inverse_dynamics_derivatives(pool: &mut Pool, arm: &Arm, plan: &mut Plan, motion: &Motion) -> (Rows, Rows) {
     let c = coriolis::coriolis_matrix(pool, arm, plan);
     let two = pool.integer(2);

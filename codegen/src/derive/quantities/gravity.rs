@@ -56,7 +56,8 @@ fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
 
 /// g(q), with the direction of gravity handed from the base outwards.
 ///
-/// Way 0 projects it on the joint axis in the joint frame; way 1 in the joint frame at theta = 0, where the composite first moment is needed for the parent anyway.
+/// Way 0 projects it on the joint axis in the joint frame; way 1 in the joint frame at theta = 0, where the composite first moment is
+/// needed for the parent anyway.
 pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
     let composite = composite_moments(pool, arm);
     let mut direction: Vec<Vector> = Vec::with_capacity(arm.dof());

@@ -41,7 +41,7 @@ pub fn print_inverse_kinematics_trait(module: &Module, found: &Result<InverseKin
     let ik = format_ident!("{ik}");
     let robot = quote!(armgen_runtime::robot);
     let postures = quote!(#robot::Postures<Real, DOF, { super::#ik::MAX_SOLUTIONS }>);
-    // One argument more, and one function, of an arm with a joint too many.
+    // One argument more, and one function, of a redundant arm.
     let (interface, parameter, argument, redundancy) = match found.redundancy {
         None => (quote!(InverseKinematics), None, None, None),
         Some(_) => {
@@ -321,7 +321,7 @@ fn arrangement(way: &Arrangement, scalar: Scalar) -> TokenStream {
     }
 }
 
-/// What the argument beside the pose is, of an arm with a joint too many.
+/// What the argument beside the pose is, of a redundant arm.
 pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<String> {
     Some(match found.redundancy.as_ref()? {
         Redundancy::Joint(given) => {
