@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::kinds::MAX_JOINTS;
 use armgen_codegen::source::{Source, Span};
+use armgen_codegen::suggest::did_you_mean;
 use armgen_codegen::validate::{is_free_name, is_rust_name};
 
 use crate::body::Body;
@@ -84,6 +85,8 @@ pub(crate) struct Arm {
     pub(crate) left_out_branches: usize,
     /// Notes for the user.
     pub(crate) notes: Vec<String>,
+    /// What was taken where the file says nothing, and what of the base has no part in the equations.
+    pub(crate) assumed: Vec<String>,
 }
 
 /// What is being put together.
@@ -159,6 +162,10 @@ pub(crate) fn arm(
     let on_base = path[..first].iter().map(|&j| tree.joints[j].parent).chain(path.get(first).map(|&j| tree.joints[j].parent));
     let left_out_branches = on_base.flat_map(|link| &tree.links[link].below).filter(|joint| !builder.on_path.contains(joint));
     let left_out_branches = left_out_branches.filter(|&&joint| tree.links[tree.joints[joint].child].role != Role::Frame).count();
+    let mut assumed = format.assumed(&moving);
+    if format.has_body(base) {
+        assumed.push(format!("the mass of the base link `{}` is left out: it does not move", shown(&tree.links[base].name)));
+    }
     builder.values.warn_of_near_angles();
     let Builder { values: Values { snap, impossible, boundless, .. }, locked, massless, .. } = builder;
     let robot_name = options.name.clone().unwrap_or_else(|| identifier(&tree.name, &mut BTreeSet::new(), is_rust_name));
@@ -180,6 +187,7 @@ pub(crate) fn arm(
         boundless,
         left_out_branches,
         notes,
+        assumed,
     })
 }
 
@@ -303,9 +311,13 @@ impl Builder<'_> {
                 let word = self.format.kind_of(index);
                 let message =
                     format!("the joint `{}` is `{word}`, which is no joint about or along one axis", shown(&joint.name));
-                let help = match on_path {
-                    true => format!("begin the arm below it with `--base`, or hold it: `--lock {}=0`", shown(&joint.name)),
-                    false => format!("hold it: `--lock {}=0`", shown(&joint.name)),
+                let kinds = ["revolute", "continuous", "prismatic", "fixed", "hinge", "slide"];
+                let help = match (did_you_mean(&word, &kinds), on_path) {
+                    (Some(meant), _) => format!("did you mean `{meant}`?"),
+                    (None, true) => {
+                        format!("begin the arm below it with `--base`, or hold it: `--lock {}=0`", shown(&joint.name))
+                    }
+                    (None, false) => format!("hold it: `--lock {}=0`", shown(&joint.name)),
                 };
                 self.values.report(Code::UnsupportedJoint, joint.span, message, "", help);
             }

@@ -87,6 +87,11 @@ pub(crate) trait Format {
     /// Gravity in the root link's frame.
     fn gravity(&self, values: &mut Values<'_>) -> [Decimal; 3];
 
+    /// What is taken where the file says nothing, of joints that move: a line for each.
+    fn assumed(&self, _moving: &[usize]) -> Vec<String> {
+        Vec::new()
+    }
+
     /// What concerns the arm as a whole.
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics);
 

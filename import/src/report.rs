@@ -117,7 +117,7 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
         let (name, unit) =
             arm.rows.get(bound.joint).map_or(("", "N m"), |row| (&row.name, if row.prismatic { "N" } else { "N m" }));
         lines.push(format!(
-            "{} taken for what {}: within the limits the end effector moves by at most {} m and {} rad, and a torque changes by at most {} {unit} (that of `{name}`)",
+            "{} taken for what {}: within the limits, at accelerations up to 10 rad/s² or m/s², the end effector moves by at most {} m and {} rad, and a torque changes by at most {} {unit} (the largest bound, that of `{name}`)",
             counted(arm.snap.snapped.len(), "number"),
             if arm.snap.snapped.len() == 1 { "it means" } else { "they mean" },
             rounded_up(bound.flange),
@@ -147,6 +147,7 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
     if !arm.impossible.is_empty() {
         lines.push(format!("inertias that no body has, taken as written: those of {}", arm.impossible.join(", ")));
     }
+    lines.extend(arm.assumed.iter().cloned());
     if arm.left_out_branches > 0 {
         lines.push(format!("{} of the base left out: they do not move with the arm", counted(arm.left_out_branches, "branch")));
     }

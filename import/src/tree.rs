@@ -212,7 +212,8 @@ impl Tree {
         let names: Vec<String> = names.iter().map(|name| format!("`{}`", shown(name))).collect();
         let message = format!("links hang on each other in a loop: {}", names.join(", "));
         let span = self.links[start].above.map_or(Span::default(), |joint| self.joints[joint].span);
-        let help = "an arm is a tree: take one of the joints out to open the loop";
+        let help =
+            "name other links if `parent` or `child` is a slip; of a loop take one of the joints out, since an arm is a tree";
         diagnostics.push(Diagnostic::new(code, span, message, "this joint closes it", help));
     }
 }

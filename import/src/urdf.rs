@@ -63,7 +63,7 @@ pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) ->
         let (Some(kind), Some((parent, _)), Some((child, child_span))) = (kind, parent, child) else { continue };
         if let Some(first) = tree.links[child].above {
             let message = format!("the link `{}` hangs on two joints", shown(&tree.links[child].name));
-            let help = "an arm is a tree: take one of the joints out to open the loop";
+            let help = "name another link if `child` is a slip; of a loop take one of the joints out, since an arm is a tree";
             let fault = Diagnostic::new(Code::TwoParents, child_span, message, "the second one", help);
             diagnostics.push(fault.also(tree.joints[first].span, "the first one"));
             continue;
@@ -265,6 +265,30 @@ impl Format for Urdf<'_, '_> {
     fn gravity(&self, _values: &mut Values<'_>) -> [Decimal; 3] {
         let down = Decimal { text: "-9.81".into(), value: -9.81, span: Span::default() };
         [Decimal::zero(), Decimal::zero(), down]
+    }
+
+    fn assumed(&self, moving: &[usize]) -> Vec<String> {
+        let lacking = |element: &str, needed: &dyn Fn(&str) -> bool| {
+            let joints = moving.iter().map(|&joint| self.joints[joint]);
+            let lacking =
+                joints.filter(|node| child(*node, element).is_none() && needed(node.attribute("type").unwrap_or_default()));
+            let names: Vec<String> =
+                lacking.map(|node| format!("`{}`", shown(node.attribute("name").unwrap_or_default()))).collect();
+            (!names.is_empty()).then(|| names.join(", "))
+        };
+        let axes = lacking("axis", &|_| true);
+        let limits = lacking("limit", &|kind| kind != "continuous");
+        let gravity = "a URDF does not say how the arm stands: gravity is 9.81 m/s² against z of its root link; turn `gravity` for another one";
+        [
+            Some(gravity.to_owned()),
+            axes.map(|names| format!("without `axis`, taken to be (1, 0, 0): {names}")),
+            limits.map(|names| {
+                format!("without `limit`, taken to have none (bounds take ±π rad or ±1 m, 4 rad/s or 1 m/s): {names}")
+            }),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
     /// Warns of what a simulator would take into account of joints and links that the arm has, and robot.yaml does not; once a kind.
