@@ -15,7 +15,6 @@ use crate::equations::parameters::{self, Standard, Vector};
 use crate::formula::Formula;
 use crate::program::Literal;
 use crate::reader::{Constant, Module};
-use crate::reference::BASE_REGRESSOR;
 use crate::report::{ConstantReport, Exact, Verdict};
 
 /// A constant as it should be.
@@ -83,7 +82,7 @@ pub fn names(module: &Module, constant: &str) -> Option<Vec<String>> {
 
 /// Names of the base parameters of a module that has a function of them.
 fn base_names(module: &Module) -> Option<Vec<String>> {
-    let present = module.functions.iter().any(|(name, _)| name == BASE_REGRESSOR);
+    let present = module.functions.iter().any(|(name, _)| name == "base_regressor");
     names(module, "BASE_PARAMETER_NAMES").filter(|_| present)
 }
 

@@ -36,11 +36,11 @@
 //! The factor 2^4 is a digit and a fifth: a sum in another order, a product multiplied out and a constant that is not folded cost a factor of two or
 //! three each, and none is a loss that a user would notice beside the equations themselves.
 //!
-//! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside the largest of the
-//! torques, the Jacobian and the inertia matrix, the whole to (e); an entry in which no quotient takes part, to as many times the same as
-//! it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has 2^(12 + 5n/2) u S instead of
-//! it, with S the largest entry of the function. Intervals say nothing behind a quotient in general; of `forward_dynamics` the bound of
-//! torques ([`mod@crate::residual`]) does.
+//! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside twice the largest of
+//! the torques, the Jacobian and the inertia matrix, of which it is a part, the whole to (e); an entry in which no quotient takes part, to
+//! as many times the same as it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has 2^(12
+//! + 5n/2) u S instead of it, with S the largest entry of the function. Intervals say nothing behind a quotient in general; of
+//! `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -60,12 +60,13 @@ use crate::formula::Formula;
 use crate::program::{Argument, Program};
 use crate::ranges::{literal_errors, worst, Domain};
 use crate::reader::Module;
-use crate::reference::BASE_REGRESSOR;
 use crate::report::Unfit;
 use crate::yardstick::Subject;
 
 /// As many times the error that a plain program of the equations has: at states, and over a box.
 const FACTOR: f64 = 16.0;
+/// By so much a part of a torque may be off as the torque: what is larger than the whole cancels with other parts.
+const PARTS: f64 = 2.0;
 
 /// Where the equations themselves lose more units of the last place nothing is asked for.
 const LOST: f64 = (1 << 24) as f64;
@@ -294,7 +295,7 @@ fn beside_their_units<'a>(
     };
     let of_rates = worst(states.map(|state| turns(&state.dq) * turns(&state.dqr)));
     let base = checker.base().map(|own| units(own.named.iter().map(|(parameter, _)| *parameter)));
-    for (name, columns) in [("regressor", checker.vector().units()), (BASE_REGRESSOR, base.unwrap_or_default())] {
+    for (name, columns) in [("regressor", checker.vector().units()), ("base_regressor", base.unwrap_or_default())] {
         let Some(entries) = plain.get_mut(name) else { continue };
         let rows = joints.iter().map(|joint| joint.kind == JointKind::Revolute);
         let units: Vec<(bool, Unit)> = rows.flat_map(|turns| columns.iter().map(move |unit| (turns, *unit))).collect();
@@ -429,7 +430,7 @@ impl<'a> Trial<'a> {
         let yardstick = |&operand: &usize| {
             let entries = program.outputs.iter().zip(own).filter(|(output, _)| output.step == operand);
             let scale = worst(entries.map(|(_, entry)| entry.size() / most.size()));
-            most.times(if scale.is_finite() { scale.max(1.0) } else { 1.0 })
+            most.times(PARTS * if scale.is_finite() { scale.max(1.0) } else { 1.0 })
         };
         operands.iter().map(yardstick).collect()
     }
