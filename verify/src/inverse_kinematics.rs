@@ -1,7 +1,7 @@
 //! Certificates of emitted inverse kinematics: whether a module `robot_ik.rs` finds all solutions.
 //!
 //! 1. *Text*: every building block is byte for byte the tested one, every number the float nearest to its exact value, the function a call
-//! of a construction;
+//!    of a construction;
 //!    all else, comments and names of branches, is what armgen writes for the description.
 //!    With these exact values the loop closes, J1 L1 ... Jn Ln = 1, at random points of prime fields; the construction may be called with it.
 //! 2. *Soundness*: the blocks of closed forms, as texts, run in prime fields: every branch closes the loop exactly (`soundness`).
