@@ -5,7 +5,7 @@ use armgen_codegen::{schedule::Options, source::Source, Generated};
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
 fn project(path: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../..").join(path)
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
 fn generated() -> Generated {
