@@ -54,10 +54,10 @@ pub struct Joint {
     /// cos(theta).
     pub cosine: ExprId,
     /// Rate at which the joint frame turns about its z axis, seen from the parent's: dq, and 0 for a prismatic joint.
-    pub spin: ExprId,
+    pub frame_rate: ExprId,
     /// Rate at which the link turns about the z axis of the frame that it is described in, seen from that frame: 0 unless parallel axes
     /// share one orientation.
-    pub drift: ExprId,
+    pub link_rate: ExprId,
     /// The joint frame in the axes that the link is described in: turned only where parallel axes share one orientation.
     pub own_axes: Matrix,
     /// The origin of the joint frame before it slid along the axis.
@@ -393,7 +393,7 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
     let (rotation, mut origin) = placement(pool, manipulator, view, &joint.placement);
     let (link_rotation, link_origin) = placement(pool, manipulator, view, &joint.link_frame);
     let (mut fixed, mut sine, mut cosine) = (rotation, ExprId::ZERO, ExprId::ONE);
-    let spin = if joint.kind == JointKind::Prismatic { ExprId::ZERO } else { pool.symbol(Symbol::Rate(index)) };
+    let frame_rate = if joint.kind == JointKind::Prismatic { ExprId::ZERO } else { pool.symbol(Symbol::Rate(index)) };
     if joint.kind == JointKind::Prismatic {
         let position = pool.symbol(Symbol::Position(index));
         let slide = pool.scale(position, &[rotation[0][2], rotation[1][2], rotation[2][2]]);
@@ -441,8 +441,8 @@ fn joint(pool: &mut Pool, manipulator: &Manipulator, view: View<'_>, i: usize) -
         fixed,
         sine,
         cosine,
-        spin,
-        drift: ExprId::ZERO,
+        frame_rate,
+        link_rate: ExprId::ZERO,
         own_axes: crate::ring::matrix::IDENTITY,
         own_origin: ZERO,
         origin,

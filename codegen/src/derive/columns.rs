@@ -49,6 +49,21 @@ pub(super) struct Entries {
     pub(super) transposed: ExprId,
 }
 
+impl Column {
+    /// B_jj and C_jj of the joint that the column is of.
+    pub(super) fn own_entries(&self, pool: &mut Pool, joint: &Joint) -> (ExprId, ExprId) {
+        let axis = |(force, moment): (Vector, Vector)| if joint.is_revolute() { moment[2] } else { force[2] };
+        let mut own = axis(self.inertial);
+        if let Some(rotor) = joint.rotor {
+            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+            let reflected = pool.mul(coupling, rotor.ratio);
+            own = pool.add(own, reflected);
+        }
+        own = pool.add(own, joint.armature);
+        (own, self.rate.map_or(ExprId::ZERO, |rate| axis(rate.coriolis)))
+    }
+}
+
 /// The wrenches of one column of B (and C) at the link that the recursion towards the base has reached.
 pub(super) struct PropagatedColumn {
     column: Column,
@@ -90,8 +105,8 @@ impl<'a> ColumnPropagator<'a> {
         if let (Some(moving), Some(p), Some(omega)) = (&mut column.rate, relative, self.omega) {
             if plan.way(Pass::RelativeMoment, Place::Joint(joint), 2) == 1 {
                 let turning = pool.transform_back(&self.arm.joints[joint].fixed, &omega[p]);
-                let swept = pool.cross(&turning, &column.inertial.1);
-                moving.transposed = pool.add_vectors(&moving.transposed, &swept);
+                let transport = pool.cross(&turning, &column.inertial.1);
+                moving.transposed = pool.add_vectors(&moving.transposed, &transport);
                 relative = None;
             }
         }
@@ -104,9 +119,9 @@ impl<'a> ColumnPropagator<'a> {
         let (Some(p), Some(omega)) = (joint.parent, self.omega) else {
             return Offset { d: joint.origin, rate: ZERO, relative: ZERO };
         };
-        let swept = pool.cross(&omega[p], &joint.origin);
+        let transport = pool.cross(&omega[p], &joint.origin);
         let relative = origin_rate(pool, self.arm, i);
-        Offset { d: joint.origin, rate: pool.add_vectors(&swept, &relative), relative }
+        Offset { d: joint.origin, rate: pool.add_vectors(&transport, &relative), relative }
     }
 
     /// o_r - o_i, in frame i.
@@ -124,8 +139,8 @@ impl<'a> ColumnPropagator<'a> {
         let mut beyond = self.offset(pool, r, next);
         let step = self.step(pool, next);
         let joint = &self.arm.joints[next];
-        let swept = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.spin], &beyond.d);
-        beyond.relative = pool.add_vectors(&beyond.relative, &swept);
+        let transport = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.frame_rate], &beyond.d);
+        beyond.relative = pool.add_vectors(&beyond.relative, &transport);
         let mut sum = |beyond: &Vector, step: &Vector| {
             let turned = outward(pool, joint, beyond);
             pool.add_vectors(&turned, step)
@@ -139,7 +154,8 @@ impl<'a> ColumnPropagator<'a> {
         found
     }
 
-    /// Transforms the wrenches into the frame of the parent link and gives its index; None at the base.
+    /// Transforms the wrenches into the frame of the parent link and gives its index; None at the base. The link before the joint that the
+    /// column is of carries that joint's rotor, whose moment enters there.
     pub(super) fn propagate_to_parent(&mut self, pool: &mut Pool, plan: &mut Plan, t: &mut PropagatedColumn) -> Option<usize> {
         let from = t.link;
         let joint = &self.arm.joints[from];
@@ -148,15 +164,15 @@ impl<'a> ColumnPropagator<'a> {
         // The parent's angular velocity in the axes that the column is in.
         let mut outer = ZERO;
         if let Some(omega) = self.omega {
-            let hat = pool.transform_back(&joint.fixed, &omega[parent]);
-            outer = if t.before_joint_rotation { hat } else { joint.about_axis_back(pool, &hat) };
+            let at_zero = pool.transform_back(&joint.fixed, &omega[parent]);
+            outer = if t.before_joint_rotation { at_zero } else { joint.about_axis_back(pool, &at_zero) };
         }
         if let (Some(moving), Some(omega)) = (&mut t.column.rate, self.omega) {
             if t.relative == Some(from) {
                 let n = t.column.inertial.1;
                 let change = if plan.way(Pass::RelativeMoment, Place::Leaving(from), 2) == 0 {
                     t.relative = Some(parent);
-                    pool.cross(&n, &[ExprId::ZERO, ExprId::ZERO, -joint.spin])
+                    pool.cross(&n, &[ExprId::ZERO, ExprId::ZERO, -joint.frame_rate])
                 } else {
                     t.relative = None;
                     pool.cross(&omega[from], &n)
@@ -168,12 +184,12 @@ impl<'a> ColumnPropagator<'a> {
         if way == 1 {
             let mut total = self.offset(pool, t.about, from);
             let step = self.step(pool, from);
-            let swept = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.spin], &total.d);
-            total.relative = pool.add_vectors(&total.relative, &swept);
+            let transport = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.frame_rate], &total.d);
+            total.relative = pool.add_vectors(&total.relative, &transport);
             let before_joint_rotation = t.before_joint_rotation;
             let mut sum = |beyond: &Vector, step: &Vector| {
-                let hat = pool.transform_back(&joint.fixed, step);
-                let own = if before_joint_rotation { hat } else { joint.about_axis_back(pool, &hat) };
+                let at_zero = pool.transform_back(&joint.fixed, step);
+                let own = if before_joint_rotation { at_zero } else { joint.about_axis_back(pool, &at_zero) };
                 pool.add_vectors(beyond, &own)
             };
             let total = Offset {
@@ -198,6 +214,14 @@ impl<'a> ColumnPropagator<'a> {
             let outer = self.omega.map_or(ZERO, |omega| omega[parent]);
             t.shift(pool, &offset, &outer);
             t.about = parent;
+        }
+        if let (Some(rotor), true) = (joint.rotor, t.before_joint_rotation) {
+            let coupling = pool.mul(rotor.inertia, rotor.ratio);
+            let momentum = pool.scale(coupling, &rotor.axis);
+            let relative = self.omega.map_or(ZERO, |omega| omega[parent]);
+            let mut absolute = relative;
+            absolute[2] = pool.add(absolute[2], self.arm.joints[parent].link_rate);
+            t.add_moment(pool, &momentum, &absolute, &relative);
         }
         (t.link, t.before_joint_rotation) = (parent, false);
         Some(parent)
@@ -238,8 +262,16 @@ impl<'a> ColumnPropagator<'a> {
 }
 
 impl PropagatedColumn {
+    /// The wrench (f, n) about the origin of the frame of link `link`, and E + n × Ω relative to that frame. Only where every fork of the plan
+    /// took way 0 is it there without more terms.
+    pub(super) fn in_link_frame(&self) -> (Vector, Vector, Vector) {
+        debug_assert!(self.about == self.link && self.relative == Some(self.link), "the plain way");
+        let (f, n) = self.column.inertial;
+        (f, n, self.column.rate.map_or(ZERO, |rate| rate.transposed))
+    }
+
     /// Adds the moment of a rotor, which is about no point, and its rate ½ ω × `moment`.
-    pub(super) fn add_moment(&mut self, pool: &mut Pool, moment: &Vector, omega: &Vector, frame: &Vector) {
+    fn add_moment(&mut self, pool: &mut Pool, moment: &Vector, omega: &Vector, frame: &Vector) {
         self.column.inertial.1 = pool.add_vectors(&self.column.inertial.1, moment);
         if let Some(moving) = &mut self.column.rate {
             let half = pool.fraction(1, 2);
@@ -288,12 +320,12 @@ fn outward(pool: &mut Pool, joint: &Joint, v: &Vector) -> Vector {
 /// Velocity of the origin of joint frame i relative to its parent's joint frame.
 pub(super) fn origin_rate(pool: &mut Pool, arm: &Arm, i: usize) -> Vector {
     let joint = &arm.joints[i];
-    let drift = joint.parent.map_or(ExprId::ZERO, |p| arm.joints[p].drift);
-    let drifting = pool.cross(&[ExprId::ZERO, ExprId::ZERO, drift], &joint.origin);
+    let link_rate = joint.parent.map_or(ExprId::ZERO, |p| arm.joints[p].link_rate);
+    let turning = pool.cross(&[ExprId::ZERO, ExprId::ZERO, link_rate], &joint.origin);
     if joint.is_revolute() {
-        return drifting;
+        return turning;
     }
     let rate = pool.symbol(Symbol::Rate(i as u16));
     let sliding = pool.scale(rate, &joint.fixed.map(|row| row[2]));
-    pool.add_vectors(&drifting, &sliding)
+    pool.add_vectors(&turning, &sliding)
 }

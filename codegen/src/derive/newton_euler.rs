@@ -179,7 +179,7 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
         let (force, moment) = wrench[i];
         tau[i] = along(arm, i, &force, &moment);
         let parent = arm.joints[i].parent;
-        let mut spin = ZERO;
+        let mut gyroscopic = ZERO;
         if let Some(rotor) = arm.joints[i].rotor {
             let coupling = pool.mul(rotor.inertia, rotor.ratio);
             let outer = parent.map(|p| motions[p]);
@@ -194,14 +194,14 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
                 let turning = polarised_cross(pool, &m.omega, &axis_reference, &m.omega_r, &axis_rate);
                 let accelerated = pool.scale(motion.accelerations[i], &rotor.axis);
                 let change = pool.add_vectors(&accelerated, &turning);
-                spin = pool.scale(coupling, &change);
+                gyroscopic = pool.scale(coupling, &change);
             }
         }
         let felt = pool.mul(arm.joints[i].armature, motion.accelerations[i]);
         tau[i] = pool.add(tau[i], felt);
         if let Some(p) = parent {
             let (force, moment) = wrench_outward(pool, arm, i, &force, &moment);
-            let moment = pool.add_vectors(&moment, &spin);
+            let moment = pool.add_vectors(&moment, &gyroscopic);
             wrench[p] = (pool.add_vectors(&wrench[p].0, &force), pool.add_vectors(&wrench[p].1, &moment));
         }
     }

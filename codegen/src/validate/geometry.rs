@@ -213,9 +213,9 @@ pub(super) fn rotation(description: &RotationDescription, what: &str, context: &
                     let rest = (0..3).filter(|k| *k != i).fold(Number::zero(), |sum, k| &sum + &(v[k] * v[k]));
                     return &Number::one() - &(&twice * &rest);
                 }
-                let spin = &w * v[k];
-                let spin = if (i + 1) % 3 == j { -&spin } else { spin };
-                &twice * &(&(v[i] * v[j]) + &spin)
+                let skew = &w * v[k];
+                let skew = if (i + 1) % 3 == j { -&skew } else { skew };
+                &twice * &(&(v[i] * v[j]) + &skew)
             };
             Some(vec![turn(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))])
         }
@@ -232,8 +232,8 @@ pub(super) fn rotation(description: &RotationDescription, what: &str, context: &
                 if i == j {
                     return product.plus(&cosine);
                 }
-                let spin = sine.times(&u[(6 - i - j) % 3]);
-                product.plus(&if (i + 1) % 3 == j { -&spin } else { spin })
+                let skew = sine.times(&u[(6 - i - j) % 3]);
+                product.plus(&if (i + 1) % 3 == j { -&skew } else { skew })
             };
             Some(vec![turn(std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j))))])
         }

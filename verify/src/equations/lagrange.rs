@@ -75,17 +75,17 @@ pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>>
     for (i, joint) in arm.joints.iter().enumerate() {
         accumulate(&[i], &|_, _| joint.armature.clone());
         let Some(motor) = &joint.motor else { continue };
-        let mut spin = vec![arm.zero.clone(); n];
+        let mut rotor_speed = vec![arm.zero.clone(); n];
         let mut columns = vec![i];
         if let Some(parent) = joint.parent {
             let axis = pose.links[parent].direction(&motor.axis);
             for (j, (_, w)) in pose.jacobian(Some(parent), &pose.links[parent].origin).iter().enumerate() {
-                spin[j] = dot(&axis, w);
+                rotor_speed[j] = dot(&axis, w);
             }
             columns.extend(&pose.ancestors[parent]);
         }
-        spin[i] = spin[i].plus(&motor.ratio);
-        accumulate(&columns, &|i, j| motor.inertia.times(&spin[i]).times(&spin[j]));
+        rotor_speed[i] = rotor_speed[i].plus(&motor.ratio);
+        accumulate(&columns, &|i, j| motor.inertia.times(&rotor_speed[i]).times(&rotor_speed[j]));
     }
     for i in 0..n {
         for j in 0..i {

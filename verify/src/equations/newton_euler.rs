@@ -145,8 +145,8 @@ impl<'a, E: Element> Moving<'a, E> {
         let h = [1, 2, 3].map(|i| ten[i].clone());
         let inertia = symmetric(&ten[4..10]);
         let force = add(&scale(&ten[0], &a), &add(&cross(&alpha, &h), &cross(&omega, &cross(&omega, &h))));
-        let spin = cross(&omega, &apply(&inertia, &omega));
-        let moment = add(&apply(&inertia, &alpha), &add(&spin, &cross(&h, &a)));
+        let gyroscopic = cross(&omega, &apply(&inertia, &omega));
+        let moment = add(&apply(&inertia, &alpha), &add(&gyroscopic, &cross(&h, &a)));
         self.add_wrench(Some(link), &frame.origin, &frame.direction(&force), &frame.direction(&moment), torques);
     }
 
@@ -181,9 +181,9 @@ impl<'a, E: Element> Moving<'a, E> {
             let turning = &self.links[parent];
             let axis = self.pose.links[parent].direction(&motor.axis);
             change = change.plus(&dot(&axis, &turning.alpha));
-            let spin = dot(&axis, &turning.omega).plus(&motor.ratio.times(&self.motion.rates[i]));
+            let rotor_speed = dot(&axis, &turning.omega).plus(&motor.ratio.times(&self.motion.rates[i]));
             // d/dt (I s z) = I (ds/dt z + s ω × z)
-            let rate = add(&scale(&change, &axis), &scale(&spin, &cross(&turning.omega, &axis)));
+            let rate = add(&scale(&change, &axis), &scale(&rotor_speed, &cross(&turning.omega, &axis)));
             let nothing = self.arm.nothing();
             let point = self.pose.links[parent].origin.clone();
             self.add_wrench(Some(parent), &point, &nothing, &scale(inertia, &rate), torques);

@@ -58,7 +58,7 @@ impl Angle {
                 (joint.sine == pool.symbol(Symbol::Sine(i as u16))).then_some(own)
             }
         });
-        Angle { sine: joint.sine, cosine: joint.cosine, rate: joint.spin, sum }
+        Angle { sine: joint.sine, cosine: joint.cosine, rate: joint.frame_rate, sum }
     }
 }
 
@@ -116,12 +116,12 @@ fn orient(pool: &mut Pool, arm: &mut Arm, run: &[usize], reference: usize, sums:
         let turn = between(pool, axes(k), axes(k + 1));
         let own = between(pool, axes(k + 1), k + 1);
         let joint = &mut arm.joints[i];
-        (joint.sine, joint.cosine, joint.spin) = (turn.sine, turn.cosine, turn.rate);
+        (joint.sine, joint.cosine, joint.frame_rate) = (turn.sine, turn.cosine, turn.rate);
         if k + 1 == last {
             continue;
         }
         let link = Joint { sine: own.sine, cosine: own.cosine, ..*joint };
-        joint.drift = own.rate;
+        joint.link_rate = own.rate;
         joint.body = link.body_about_axis(pool, &link.body);
         joint.link_origin = link.about_axis(pool, &link.link_origin);
         let about_z = link.about_axis_matrix();

@@ -25,7 +25,7 @@
 //! symbols for rigid-body systems"); moments instead of 6 x 6 matrices and the relative velocities are ours.
 //!
 //! A rotor of inertia I_m about a, ratio k, on the parent of joint j, adds I_m k a to n and ½ I_m k ω × a to N and to E; and what
-//! carries spinning rotors feels the spin s = Σ I_m k dq a: ½ z × s in N, its opposite in E.
+//! carries turning rotors feels their momentum s = Σ I_m k dq a: ½ z × s in N, its opposite in E.
 
 use super::inertia::composite_bodies;
 use crate::derive::arm::{symmetric, Arm, Body, Joint};
@@ -67,8 +67,8 @@ pub(super) struct VelocityMoments {
     pub(super) first: Vector,
     /// K = ∫ v r' dm.
     pub(super) second: Matrix,
-    /// s = Σ I_m k dq a.
-    pub(super) spin: Vector,
+    /// s = Σ I_m k dq a: angular momentum of rotors about their own axes.
+    pub(super) rotors: Vector,
 }
 
 /// C(q, dq), all entries.
@@ -87,20 +87,10 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
     let mut c = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         let joint = &arm.joints[j];
-        let outer = joint.parent.map_or(ZERO, |p| omega[p]);
-        let turning = pool.transform_back(&joint.fixed, &outer);
-        let (body, flow) = about_axis(pool, joint, &composite[j], &velocity_moments[j]);
-        let column = column(pool, joint, &turning, &body, &flow);
-        (b[j][j], c[j][j]) = own_entries(pool, joint, &column);
+        let column = composite_column(pool, arm, j, &omega, &composite[j], &velocity_moments[j]);
+        (b[j][j], c[j][j]) = column.own_entries(pool, joint);
         let mut propagated = propagator.start(pool, plan, column, j);
         while let Some(parent) = propagator.propagate_to_parent(pool, plan, &mut propagated) {
-            if let (Some(rotor), true) = (joint.rotor, joint.parent == Some(parent)) {
-                let coupling = pool.mul(rotor.inertia, rotor.ratio);
-                let momentum = pool.scale(coupling, &rotor.axis);
-                let mut w = omega[parent];
-                w[2] = pool.add(w[2], arm.joints[parent].drift);
-                propagated.add_moment(pool, &momentum, &w, &omega[parent]);
-            }
             let entries = propagator.entries(pool, &propagated);
             b[parent][j] = entries.inertia;
             b[j][parent] = entries.inertia;
@@ -111,26 +101,13 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
     (b, c)
 }
 
-/// B_jj and C_jj.
-fn own_entries(pool: &mut Pool, joint: &Joint, column: &Column) -> (ExprId, ExprId) {
-    let axis = |(force, moment): (Vector, Vector)| if joint.is_revolute() { moment[2] } else { force[2] };
-    let mut own = axis(column.inertial);
-    if let Some(rotor) = joint.rotor {
-        let coupling = pool.mul(rotor.inertia, rotor.ratio);
-        let seen = pool.mul(coupling, rotor.ratio);
-        own = pool.add(own, seen);
-    }
-    own = pool.add(own, joint.armature);
-    (own, column.rate.map_or(ExprId::ZERO, |rate| axis(rate.coriolis)))
-}
-
 /// Angular velocity of each joint frame, in its own axes.
 pub(super) fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
     let mut omega: Vec<Vector> = Vec::with_capacity(arm.dof());
     for joint in &arm.joints {
         let outer = joint.parent.map_or(ZERO, |p| omega[p]);
         let mut own = joint.inward(pool, &outer);
-        own[2] = pool.add(own[2], joint.spin);
+        own[2] = pool.add(own[2], joint.frame_rate);
         omega.push(own);
     }
     omega
@@ -138,19 +115,19 @@ pub(super) fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
 
 /// Velocity moments of each composite body relative to the link that carries all of it, in its joint frame.
 pub(super) fn velocity_moments(pool: &mut Pool, arm: &Arm, composite: &[Body]) -> Vec<VelocityMoments> {
-    let still = VelocityMoments { first: ZERO, second: [ZERO; 3], spin: ZERO };
+    let still = VelocityMoments { first: ZERO, second: [ZERO; 3], rotors: ZERO };
     let mut velocity_moments: Vec<VelocityMoments> =
-        arm.joints.iter().map(|joint| swept(pool, joint.drift, &joint.body, &still)).collect();
+        arm.joints.iter().map(|joint| turning_about_z(pool, joint.link_rate, &joint.body, &still)).collect();
     for i in (0..arm.dof()).rev() {
         let joint = &arm.joints[i];
         let Some(p) = joint.parent else { continue };
-        let (body, flow) = about_axis(pool, joint, &composite[i], &velocity_moments[i]);
-        let (h, rate) = (pool.transform(&joint.fixed, &body.first), pool.transform(&joint.fixed, &flow.first));
+        let (body, moments) = about_axis(pool, joint, &composite[i], &velocity_moments[i]);
+        let (h, rate) = (pool.transform(&joint.fixed, &body.first), pool.transform(&joint.fixed, &moments.first));
         let velocity = origin_rate(pool, arm, i);
         // x = o + r moves with o' + v: ∫ (o' + v)(o + r)' dm.
         let weighted = pool.scale(body.mass, &velocity);
         let first = pool.add_vectors(&rate, &weighted);
-        let half = pool.product(&joint.fixed, &flow.second);
+        let half = pool.product(&joint.fixed, &moments.second);
         let mut second = pool.product(&half, &crate::ring::matrix::transpose(&joint.fixed));
         for a in 0..3 {
             for b in 0..3 {
@@ -158,81 +135,97 @@ pub(super) fn velocity_moments(pool: &mut Pool, arm: &Arm, composite: &[Body]) -
                 second[a][b] = pool.add(second[a][b], moved);
             }
         }
-        let mut spin = pool.transform(&joint.fixed, &flow.spin);
+        let mut rotors = pool.transform(&joint.fixed, &moments.rotors);
         if let Some(rotor) = joint.rotor {
             let coupling = pool.mul(rotor.inertia, rotor.ratio);
             let rate = pool.symbol(Symbol::Rate(i as u16));
             let momentum = pool.mul(coupling, rate);
             let own = pool.scale(momentum, &rotor.axis);
-            spin = pool.add_vectors(&spin, &own);
+            rotors = pool.add_vectors(&rotors, &own);
         }
         velocity_moments[p] = VelocityMoments {
             first: pool.add_vectors(&velocity_moments[p].first, &first),
             second: pool.add_matrices(&velocity_moments[p].second, &second),
-            spin: pool.add_vectors(&velocity_moments[p].spin, &spin),
+            rotors: pool.add_vectors(&velocity_moments[p].rotors, &rotors),
         };
     }
     velocity_moments
 }
 
 /// Velocity moments of a body that also turns about z at `rate` w: h' + w z × h, K + w [z] S.
-fn swept(pool: &mut Pool, rate: ExprId, body: &Body, flow: &VelocityMoments) -> VelocityMoments {
+fn turning_about_z(pool: &mut Pool, rate: ExprId, body: &Body, moments: &VelocityMoments) -> VelocityMoments {
     let s = symmetric(&body.second);
-    let mut flow = *flow;
+    let mut moments = *moments;
     for (to, from, rate) in [(0, 1, -rate), (1, 0, rate)] {
         let moved = pool.mul(rate, body.first[from]);
-        flow.first[to] = pool.add(flow.first[to], moved);
+        moments.first[to] = pool.add(moments.first[to], moved);
         for b in 0..3 {
             let moved = pool.mul(rate, s[from][b]);
-            flow.second[to][b] = pool.add(flow.second[to][b], moved);
+            moments.second[to][b] = pool.add(moments.second[to][b], moved);
         }
     }
-    flow
+    moments
 }
 
 /// A composite body in the axes of its parent turned by `fixed`, and its motion relative to that parent.
-pub(super) fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, flow: &VelocityMoments) -> (Body, VelocityMoments) {
+fn about_axis(pool: &mut Pool, joint: &Joint, body: &Body, moments: &VelocityMoments) -> (Body, VelocityMoments) {
     // Traces of the upper left blocks are invariant under rotation about z: interned before the rotation, they are the nodes that the sums
     // formed after it resolve to.
     pool.intern_sum(body.second[0], body.second[2]);
-    pool.intern_sum(flow.second[0][0], flow.second[1][1]);
+    pool.intern_sum(moments.second[0][0], moments.second[1][1]);
     let turned = joint.body_about_axis(pool, body);
-    let flow = VelocityMoments {
-        first: joint.about_axis(pool, &flow.first),
-        second: joint.tensor_about_axis(pool, &flow.second),
-        spin: joint.about_axis(pool, &flow.spin),
+    let moments = VelocityMoments {
+        first: joint.about_axis(pool, &moments.first),
+        second: joint.tensor_about_axis(pool, &moments.second),
+        rotors: joint.about_axis(pool, &moments.rotors),
     };
-    (turned, swept(pool, joint.spin, &turned, &flow))
+    (turned, turning_about_z(pool, joint.frame_rate, &turned, &moments))
+}
+
+/// The wrenches of column j of what joint j carries, about the origin of its frame, in the axes of `about_axis`.
+pub(super) fn composite_column(
+    pool: &mut Pool,
+    arm: &Arm,
+    j: usize,
+    omega: &[Vector],
+    body: &Body,
+    moments: &VelocityMoments,
+) -> Column {
+    let joint = &arm.joints[j];
+    let outer = joint.parent.map_or(ZERO, |p| omega[p]);
+    let w = pool.transform_back(&joint.fixed, &outer);
+    let (body, moments) = about_axis(pool, joint, body, moments);
+    column(pool, joint, &w, &body, &moments)
 }
 
 /// The wrenches of column j about the origin of its frame, in the axes of `about_axis`.
-pub(super) fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, flow: &VelocityMoments) -> Column {
-    let (h, rate, k) = (body.first, flow.first, flow.second);
+fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, moments: &VelocityMoments) -> Column {
+    let (h, rate, k) = (body.first, moments.first, moments.second);
     if !joint.is_revolute() {
         // ∂x = z, its rate Ω × z; E + n × Ω = h' × z + (Ω × z) × h.
         let turning = [w[1], -w[0], ExprId::ZERO];
-        let swept = pool.cross(&turning, &h);
+        let transport = pool.cross(&turning, &h);
         return Column {
             inertial: ([ExprId::ZERO, ExprId::ZERO, body.mass], [h[1], -h[0], ExprId::ZERO]),
             rate: Some(Rate {
-                coriolis: (pool.scale(body.mass, &turning), swept.map(|x| -x)),
-                transposed: pool.add_vectors(&[rate[1], -rate[0], ExprId::ZERO], &swept),
+                coriolis: (pool.scale(body.mass, &turning), transport.map(|x| -x)),
+                transposed: pool.add_vectors(&[rate[1], -rate[0], ExprId::ZERO], &transport),
             }),
         };
     }
     let [xx, xy, yy, xz, yz, _] = body.second;
     let f = [-h[1], h[0], ExprId::ZERO];
-    let swept = pool.cross(w, &f);
-    let force = pool.add_vectors(&swept, &[-rate[1], rate[0], ExprId::ZERO]);
+    let transport = pool.cross(w, &f);
+    let force = pool.add_vectors(&transport, &[-rate[1], rate[0], ExprId::ZERO]);
     let trace = pool.add(k[0][0], k[1][1]);
     let half = pool.fraction(1, 2);
-    let spin = [pool.mul(half, flow.spin[0]), pool.mul(half, flow.spin[1])];
+    let rotors = [pool.mul(half, moments.rotors[0]), pool.mul(half, moments.rotors[1])];
     let (ax, ay) = (pool.dot(&[xx, xy, xz], w), pool.dot(&[xy, yy, yz], w));
     Column {
         inertial: (f, [-xz, -yz, pool.add(xx, yy)]),
         rate: Some(Rate {
-            coriolis: (force, [pool.sum([ay, -k[0][2], -spin[1]]), pool.sum([-ax, -k[1][2], spin[0]]), trace]),
-            transposed: [pool.sum([-ay, -k[2][0], spin[1]]), pool.sum([ax, -k[2][1], -spin[0]]), trace],
+            coriolis: (force, [pool.sum([ay, -k[0][2], -rotors[1]]), pool.sum([-ax, -k[1][2], rotors[0]]), trace]),
+            transposed: [pool.sum([-ay, -k[2][0], rotors[1]]), pool.sum([ax, -k[2][1], -rotors[0]]), trace],
         }),
     }
 }

@@ -23,7 +23,7 @@
 //!
 //! where E + n × Ω is what `coriolis.rs` hands on, and z'' - 2 Ω × z' is the z row of U, negated: both are known already.
 //! A prismatic joint has ∂_j x = z: F = m z'', N = z × f + h × z'' before it, z'' · f_i beyond it.
-//! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and its spin s adds z' × s to N.
+//! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and the momentum s of rotors adds z' × s to N.
 //! The formulas are those of Singh, Russell and Wensing (2022, "Efficient analytical derivatives of rigid-body dynamics using spatial
 //! vector algebra"); moments instead of 6 x 6 matrices, and one set of columns for B, C and ∂tau/∂q, are ours.
 //!
@@ -36,14 +36,14 @@ use super::gravity::gravity;
 use super::inertia::composite_bodies;
 use super::load_friction::{add_load_friction, add_load_friction_derivatives};
 use crate::derive::arm::{symmetric, Arm, Body};
-use crate::derive::columns::origin_rate;
+use crate::derive::columns::ColumnPropagator;
 use crate::derive::factors::LdlFactors;
 use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, stribeck_slope, wrenches, LinkMotion, Motion};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
 use crate::derive::wrench::{along, wrench_outward};
-use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool, Symbol};
 
 /// In the order of the emitted module.
@@ -192,12 +192,14 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
     let composite = composite_bodies(pool, arm);
     let omega = coriolis::angular_velocities(pool, arm);
     let velocity_moments = coriolis::velocity_moments(pool, arm, &composite);
-    let before: Vec<Before> = (0..n).map(|j| Before::new(pool, &omega[j], &motions[j])).collect();
+    let axes: Vec<AxisMotion> = (0..n).map(|j| AxisMotion::new(pool, &omega[j], &motions[j])).collect();
+    let mut propagator = ColumnPropagator::new(arm, Some(&omega));
+    let mut plain = Plan::default();
     let mut derivative = vec![vec![ExprId::ZERO; n]; n];
     for j in (0..n).rev() {
         // What joint j changes at itself and before it.
         let (mut force, mut moment) =
-            changed_wrench(pool, arm, j, &before[j], &omega[j], &loads[j], &composite[j], &velocity_moments[j]);
+            changed_wrench(pool, arm, j, &axes[j], &omega[j], &loads[j], &composite[j], &velocity_moments[j]);
         derivative[j][j] = along(arm, j, &force, &moment);
         let mut link = j;
         while let Some(parent) = arm.joints[link].parent {
@@ -206,16 +208,17 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
             link = parent;
         }
         // What the joints before j change at it.
-        let mut travelling = PropagatedMoments::start(pool, arm, j, &omega, &composite[j], &velocity_moments[j]);
-        while let Some(parent) = travelling.propagate_to_parent(pool, arm, &omega) {
-            derivative[j][parent] = travelling.felt(pool, arm.joints[parent].is_revolute(), &before[parent]);
+        let column = coriolis::composite_column(pool, arm, j, &omega, &composite[j], &velocity_moments[j]);
+        let mut propagated = propagator.start(pool, &mut plain, column, j);
+        while let Some(parent) = propagator.propagate_to_parent(pool, &mut plain, &mut propagated) {
+            derivative[j][parent] = felt(pool, arm.joints[parent].is_revolute(), &axes[parent], propagated.in_link_frame());
         }
     }
     derivative
 }
 
 /// Motion of a joint axis, in its joint frame.
-struct Before {
+struct AxisMotion {
     /// 2 z'.
     twice_rate: Vector,
     /// z''.
@@ -223,18 +226,18 @@ struct Before {
     /// z'' - 2 Ω × z'.
     row: Vector,
     /// z × a.
-    swept: Vector,
+    z_cross_a: Vector,
 }
 
-impl Before {
-    fn new(pool: &mut Pool, omega: &Vector, motion: &LinkMotion) -> Before {
+impl AxisMotion {
+    fn new(pool: &mut Pool, omega: &Vector, motion: &LinkMotion) -> AxisMotion {
         let two = pool.integer(2);
         let twice_rate = [pool.mul(two, omega[1]), -pool.mul(two, omega[0]), ExprId::ZERO];
         let second_rate = motion.field.map(|row| row[2]);
         let turning = pool.cross(omega, &twice_rate);
         let row = pool.sub_vectors(&second_rate, &turning);
         let a = motion.acceleration;
-        Before { twice_rate, second_rate, row, swept: [-a[1], a[0], ExprId::ZERO] }
+        AxisMotion { twice_rate, second_rate, row, z_cross_a: [-a[1], a[0], ExprId::ZERO] }
     }
 }
 
@@ -244,37 +247,37 @@ fn changed_wrench(
     pool: &mut Pool,
     arm: &Arm,
     j: usize,
-    before: &Before,
+    axis: &AxisMotion,
     omega: &Vector,
     load: &(Vector, Vector),
     body: &Body,
-    flow: &VelocityMoments,
+    moments: &VelocityMoments,
 ) -> (Vector, Vector) {
     let (h, second) = (body.first, symmetric(&body.second));
-    let Before { twice_rate, second_rate, swept, .. } = before;
+    let AxisMotion { twice_rate, second_rate, z_cross_a, .. } = axis;
     let about_z = |v: &Vector| [-v[1], v[0], ExprId::ZERO];
     if !arm.joints[j].is_revolute() {
         let lever = pool.cross(&h, second_rate);
         return (pool.scale(body.mass, second_rate), pool.add_vectors(&about_z(&load.0), &lever));
     }
     let mut force = about_z(&load.0);
-    let weighted = pool.scale(body.mass, swept);
+    let weighted = pool.scale(body.mass, z_cross_a);
     force = pool.sub_vectors(&force, &weighted);
     let along_rate = pool.dot3(twice_rate, &h);
-    for part in [pool.cross(second_rate, &h), pool.scale(along_rate, omega), pool.cross(twice_rate, &flow.first)] {
+    for part in [pool.cross(second_rate, &h), pool.scale(along_rate, omega), pool.cross(twice_rate, &moments.first)] {
         force = pool.add_vectors(&force, &part);
     }
     let mut moment = about_z(&load.1);
-    let lever = pool.cross(&h, swept);
+    let lever = pool.cross(&h, z_cross_a);
     moment = pool.sub_vectors(&moment, &lever);
     let half = pool.fraction(1, 2);
-    let spin = pool.scale(half, &flow.spin);
+    let rotors = pool.scale(half, &moments.rotors);
     let turned = pool.transform(&second, twice_rate);
     for part in [
         less_trace(pool, &second, second_rate),
         pool.cross(&turned, omega),
-        less_trace(pool, &flow.second, twice_rate),
-        pool.cross(twice_rate, &spin),
+        less_trace(pool, &moments.second, twice_rate),
+        pool.cross(twice_rate, &rotors),
     ] {
         moment = pool.add_vectors(&moment, &part);
     }
@@ -290,76 +293,11 @@ fn less_trace(pool: &mut Pool, m: &crate::ring::matrix::Matrix, v: &Vector) -> V
     pool.transform(&less, v)
 }
 
-/// The column (f, n) of B and E + n × Ω of C on their way to the base, about the origin and relative to the frame of the link that they are at.
-struct PropagatedMoments {
-    link: usize,
-    /// Whether they are still in the axes of the parent turned by `fixed`, E relative to the parent.
-    before_joint_rotation: bool,
-    force: Vector,
-    moment: Vector,
-    rate: Vector,
-}
-
-impl PropagatedMoments {
-    fn start(pool: &mut Pool, arm: &Arm, j: usize, omega: &[Vector], body: &Body, flow: &VelocityMoments) -> PropagatedMoments {
-        let joint = &arm.joints[j];
-        let outer = joint.parent.map_or(ZERO, |p| omega[p]);
-        let turning = pool.transform_back(&joint.fixed, &outer);
-        let (body, flow) = coriolis::about_axis(pool, joint, body, flow);
-        let column = coriolis::column(pool, joint, &turning, &body, &flow);
-        let rate = column.rate.map_or(ZERO, |rate| rate.transposed);
-        PropagatedMoments { link: j, before_joint_rotation: true, force: column.inertial.0, moment: column.inertial.1, rate }
+/// ∂tau_i/∂q_j, with the wrench (f_i, n_i) of the column of joint i and its E_i + n_i × Ω in the frame of joint j, where axis j moves so.
+fn felt(pool: &mut Pool, revolute: bool, axis: &AxisMotion, (force, moment, rate): (Vector, Vector, Vector)) -> ExprId {
+    if !revolute {
+        return pool.dot3(&axis.second_rate, &force);
     }
-
-    /// On to the parent, if there is one.
-    fn propagate_to_parent(&mut self, pool: &mut Pool, arm: &Arm, omega: &[Vector]) -> Option<usize> {
-        let joint = &arm.joints[self.link];
-        let parent = joint.parent?;
-        if !self.before_joint_rotation {
-            let change = pool.cross(&self.moment, &[ExprId::ZERO, ExprId::ZERO, -joint.spin]);
-            self.rate = pool.add_vectors(&self.rate, &change);
-        }
-        let before_joint_rotation = self.before_joint_rotation;
-        let mut turn = |v: &Vector| match (*v == ZERO, before_joint_rotation) {
-            (true, _) => ZERO,
-            (_, true) => pool.transform(&joint.fixed, v),
-            (_, false) => joint.outward(pool, v),
-        };
-        (self.force, self.moment, self.rate) = (turn(&self.force), turn(&self.moment), turn(&self.rate));
-        let relative = origin_rate(pool, arm, self.link);
-        let lagging = pool.cross(&self.force, &omega[parent]);
-        for (at, force) in [(&relative, &self.force), (&joint.origin, &lagging)] {
-            let lever = pool.cross(at, force);
-            self.rate = pool.add_vectors(&self.rate, &lever);
-        }
-        let lever = pool.cross(&joint.origin, &self.force);
-        self.moment = pool.add_vectors(&self.moment, &lever);
-        if let (Some(rotor), true) = (joint.rotor, self.before_joint_rotation) {
-            let (coupling, half) = (pool.mul(rotor.inertia, rotor.ratio), pool.fraction(1, 2));
-            let momentum = pool.scale(coupling, &rotor.axis);
-            let mut turning = omega[parent];
-            turning[2] = pool.add(turning[2], arm.joints[parent].drift);
-            let gyroscopic = pool.cross(&turning, &momentum);
-            let gyroscopic = pool.scale(half, &gyroscopic);
-            let seen = pool.cross(&momentum, &omega[parent]);
-            self.moment = pool.add_vectors(&self.moment, &momentum);
-            self.rate = pool.add_vectors(&self.rate, &gyroscopic);
-            self.rate = pool.add_vectors(&self.rate, &seen);
-        }
-        (self.link, self.before_joint_rotation) = (parent, false);
-        Some(parent)
-    }
-
-    /// ∂tau_i/∂q_j, joint j being that of the link which the column of joint i is at.
-    fn felt(&self, pool: &mut Pool, revolute: bool, before: &Before) -> ExprId {
-        if !revolute {
-            return pool.dot3(&before.second_rate, &self.force);
-        }
-        let parts = [
-            pool.dot3(&before.row, &self.moment),
-            pool.dot3(&before.twice_rate, &self.rate),
-            -pool.dot3(&before.swept, &self.force),
-        ];
-        pool.sum(parts)
-    }
+    let parts = [pool.dot3(&axis.row, &moment), pool.dot3(&axis.twice_rate, &rate), -pool.dot3(&axis.z_cross_a, &force)];
+    pool.sum(parts)
 }

@@ -64,16 +64,20 @@ pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
     let mut g = Vec::with_capacity(arm.dof());
     for (i, joint) in arm.joints.iter().enumerate() {
         let outer = joint.parent.map_or(arm.gravity, |p| direction[p]);
-        let hat = pool.transform_back(&joint.fixed, &outer);
-        let own = joint.about_axis_back(pool, &hat);
+        let at_zero = pool.transform_back(&joint.fixed, &outer);
+        let own = joint.about_axis_back(pool, &at_zero);
         direction.push(own);
         let (mass, mut h) = composite[i];
-        let mut meets = own;
+        let mut direction_there = own;
         if plan.way(Pass::WrenchFrame, Place::Gravity(i), 2) == 1 {
             h = joint.about_axis(pool, &h);
-            meets = hat;
+            direction_there = at_zero;
         }
-        g.push(if joint.is_revolute() { pool.dot(&[h[1], -h[0]], &[meets[0], meets[1]]) } else { -pool.mul(mass, meets[2]) });
+        g.push(if joint.is_revolute() {
+            pool.dot(&[h[1], -h[0]], &[direction_there[0], direction_there[1]])
+        } else {
+            -pool.mul(mass, direction_there[2])
+        });
     }
     add_springs(pool, arm, &mut g);
     g

@@ -14,9 +14,8 @@ use crate::derive::columns::{Column, ColumnPropagator};
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
-use crate::derive::wrench::along;
 use crate::kinds::JointKind;
-use crate::ring::matrix::{Vector, ZERO};
+use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool};
 
 /// B(q).
@@ -67,20 +66,10 @@ pub fn inertia_matrix(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<Vec<Ex
             JointKind::Revolute => ([-h[1], h[0], ExprId::ZERO], [-xz, -yz, pool.add(xx, yy)]),
             JointKind::Prismatic => ([ExprId::ZERO, ExprId::ZERO, mass], [h[1], -h[0], ExprId::ZERO]),
         };
-        let mut own = along(arm, j, &force, &moment);
-        let coupling = joint.rotor.map(|rotor| (pool.mul(rotor.inertia, rotor.ratio), rotor));
-        if let Some((coupling, rotor)) = coupling {
-            let seen = pool.mul(coupling, rotor.ratio);
-            own = pool.add(own, seen);
-        }
-        own = pool.add(own, joint.armature);
-        b[j][j] = own;
-        let mut propagated = propagator.start(pool, plan, Column { inertial: (force, moment), rate: None }, j);
+        let column = Column { inertial: (force, moment), rate: None };
+        b[j][j] = column.own_entries(pool, joint).0;
+        let mut propagated = propagator.start(pool, plan, column, j);
         while let Some(parent) = propagator.propagate_to_parent(pool, plan, &mut propagated) {
-            if let (Some((coupling, rotor)), true) = (coupling, joint.parent == Some(parent)) {
-                let spin = pool.scale(coupling, &rotor.axis);
-                propagated.add_moment(pool, &spin, &ZERO, &ZERO);
-            }
             b[parent][j] = propagator.entries(pool, &propagated).inertia;
             b[j][parent] = b[parent][j];
         }

@@ -47,12 +47,12 @@ pub fn kinetic_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
         let body = &joint.body;
         let square = pool.dot3(&v, &v);
         let linear = pool.mul(body.mass, square);
-        let swept = pool.cross(&omega, &body.first);
+        let omega_cross_h = pool.cross(&omega, &body.first);
         let two_v = v.map(|x| {
             let two = pool.integer(2);
             pool.mul(two, x)
         });
-        let mixed = pool.dot3(&two_v, &swept);
+        let mixed = pool.dot3(&two_v, &omega_cross_h);
         let second = symmetric(&body.second);
         let trace = pool.sum([second[0][0], second[1][1], second[2][2]]);
         let mut inertia = second.map(|row| row.map(|x| -x));

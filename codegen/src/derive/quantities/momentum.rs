@@ -103,8 +103,8 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
     let mut states: Vec<State> = Vec::with_capacity(arm.dof());
     for (joint, &rate) in arm.joints.iter().zip(&rates) {
         let (outer, moving) = joint.parent.map_or((ZERO, ZERO), |p| (states[p].omega, states[p].velocity));
-        let swept = pool.cross(&outer, &joint.origin);
-        let origin = pool.add_vectors(&moving, &swept);
+        let transport = pool.cross(&outer, &joint.origin);
+        let origin = pool.add_vectors(&moving, &transport);
         let (mut omega, mut velocity) = (joint.inward(pool, &outer), joint.inward(pool, &origin));
         let driven = if joint.is_revolute() { &mut omega } else { &mut velocity };
         driven[2] = pool.add(driven[2], rate);
@@ -118,8 +118,8 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
         for (k, (i, j)) in [(1, 2), (2, 0), (0, 1)].into_iter().enumerate() {
             inertia[k][k] = pool.add(second[i][i], second[j][j]);
         }
-        let (spun, lever) = (pool.transform(&inertia, &omega), pool.cross(&body.first, &velocity));
-        let angular = pool.add_vectors(&spun, &lever);
+        let (turned, lever) = (pool.transform(&inertia, &omega), pool.cross(&body.first, &velocity));
+        let angular = pool.add_vectors(&turned, &lever);
         states.push(State { omega, velocity, linear, angular });
     }
     let mut p = vec![ExprId::ZERO; arm.dof()];
@@ -127,7 +127,7 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
         let joint = &arm.joints[i];
         let (linear, angular) = (states[i].linear, states[i].angular);
         p[i] = along(arm, i, &linear, &angular);
-        let mut spin = ZERO;
+        let mut rotor_momentum = ZERO;
         if let Some(rotor) = joint.rotor {
             let coupling = pool.mul(rotor.inertia, rotor.ratio);
             let outer = joint.parent.map_or(ZERO, |parent| states[parent].omega);
@@ -136,13 +136,13 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
             let felt = pool.mul(coupling, speed);
             p[i] = pool.add(p[i], felt);
             let momentum = pool.mul(coupling, rates[i]);
-            spin = pool.scale(momentum, &rotor.axis);
+            rotor_momentum = pool.scale(momentum, &rotor.axis);
         }
         let own = pool.mul(joint.armature, rates[i]);
         p[i] = pool.add(p[i], own);
         if let Some(parent) = joint.parent {
             let (linear, angular) = wrench_outward(pool, arm, i, &linear, &angular);
-            let angular = pool.add_vectors(&angular, &spin);
+            let angular = pool.add_vectors(&angular, &rotor_momentum);
             states[parent].linear = pool.add_vectors(&states[parent].linear, &linear);
             states[parent].angular = pool.add_vectors(&states[parent].angular, &angular);
         }
