@@ -220,7 +220,7 @@ const VERIFY: Layers = &[
     ),
     ("influence", &["arithmetic", "checker", "element", "formula", "program"]),
     (
-        "stability",
+        "rounding",
         &[
             "arithmetic",
             "bounds",

@@ -6,7 +6,7 @@ use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
 use armgen_verify::claims::Claims;
-use armgen_verify::stability::{Criterion, Trial};
+use armgen_verify::rounding::{Criterion, Trial};
 use armgen_verify::{bounds, checker::Effort, prepare};
 
 fn main() {

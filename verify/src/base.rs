@@ -30,7 +30,7 @@ use crate::arithmetic::Arithmetic;
 use crate::element::Element;
 use crate::equations::arm::Arm;
 use crate::equations::lagrange::{friction, spring_torques};
-use crate::equations::newton_euler::{Carrier, Motion, Moving};
+use crate::equations::newton_euler::{ArmMotion, Carrier, Motion};
 use crate::equations::parameters::Standard;
 use crate::equations::pose::Pose;
 use crate::equations::state::State;
@@ -92,7 +92,7 @@ fn sample<E: Element>(arm: &Arm<E>, state: State<E>, named: &[(Standard, bool)])
     let described = Pose::new(arm, &state);
     let in_joint_frames = described.clone().with_links_in_joint_frames();
     // Rotors and the load stand where the description says.
-    let (whole, links) = (Moving::new(arm, &described, motion()), Moving::new(arm, &in_joint_frames, motion()));
+    let (whole, links) = (ArmMotion::new(arm, &described, motion()), ArmMotion::new(arm, &in_joint_frames, motion()));
     let nothing = || vec![arm.zero.clone(); arm.dof()];
     let unit = |k: usize| -> Vec<E> { (0..10).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
     let column = |parameter: Standard| {

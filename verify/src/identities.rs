@@ -26,7 +26,7 @@ struct Running<'a> {
 const ABSENT: &str = "the module does not have its functions";
 
 type Entries = Vec<Residue>;
-type Moving = Dual<Residue>;
+type Rates = Dual<Residue>;
 
 impl Running<'_> {
     fn program(&self, name: &str) -> Result<(&Program, Entries), String> {
@@ -55,9 +55,9 @@ impl Running<'_> {
     }
 
     /// The rates of change of a function's entries.
-    fn rates(&self, name: &str, state: &State<Moving>) -> Result<Entries, String> {
+    fn rates(&self, name: &str, state: &State<Rates>) -> Result<Entries, String> {
         let (program, literals) = self.program(name)?;
-        let literals: Vec<Moving> = literals.iter().map(Dual::constant).collect();
+        let literals: Vec<Rates> = literals.iter().map(Dual::constant).collect();
         let entries: Option<Entries> = program.run(state, &literals).into_iter().map(|e| Some(e?.rate)).collect();
         entries.ok_or(format!("`{name}` has no value"))
     }

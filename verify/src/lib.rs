@@ -75,9 +75,9 @@ pub mod report;
 #[doc(hidden)]
 pub mod residual;
 #[doc(hidden)]
-pub mod seed;
+pub mod rounding;
 #[doc(hidden)]
-pub mod stability;
+pub mod seed;
 #[doc(hidden)]
 pub mod stated;
 #[doc(hidden)]
@@ -104,7 +104,7 @@ use equations::parameters::Vector;
 use formula::Formula;
 use reader::{Constant, Module, ModuleText};
 use report::{Report, Verdict};
-use stability::Trial;
+use rounding::Trial;
 
 /// SHA-256 of a text, hexadecimal.
 pub fn hash(text: &str) -> String {

@@ -14,7 +14,7 @@ use crate::equations::lagrange::{
     accelerations, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix, load_friction,
     potential_energy, spring_torques, times_vector, Parts,
 };
-use crate::equations::newton_euler::{Motion, Moving};
+use crate::equations::newton_euler::{ArmMotion, Motion};
 use crate::equations::parameters::{
     base_map, reference_torques, standard_columns, with_standard, KeptAlone, LinkFrames, Standard, Vector,
 };
@@ -135,7 +135,7 @@ fn quantities<E: Element>(arm: &Arm<E>, state: &State<E>, values: &mut Values<E>
     let without_friction = of_parts(arm, state, parts, values, suffix)?;
     let pose = Pose::new(arm, state);
     let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: arm.gravity.clone() };
-    let torques = Moving::new(arm, &pose, motion).torques();
+    let torques = ArmMotion::new(arm, &pose, motion).torques();
     let torques: Vec<E> = torques.iter().zip(spring_torques(arm, &state.q)).map(|(a, b)| a.plus(&b)).collect();
     Some(torques == without_friction)
 }
@@ -215,7 +215,7 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>, by: By) -> Vec
         };
         let pose = Pose::new(&moving_arm, &state);
         let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: moving_arm.gravity.clone() };
-        let torques = Moving::new(&moving_arm, &pose, motion).torques();
+        let torques = ArmMotion::new(&moving_arm, &pose, motion).torques();
         let friction = friction(&moving_arm, &state, &state.dq);
         let springs = spring_torques(&moving_arm, &state.q);
         let rates = torques.iter().zip(friction).zip(springs).map(|((t, f), s)| t.plus(&f).plus(&s).rate);

@@ -68,7 +68,7 @@ pub struct FunctionReport {
     pub literals: Vec<Exact>,
     /// How far rounding can take its entries from the exact ones over the box, where it equals the equations.
     pub bound: Option<Bound>,
-    /// Why it is useless in floats although it equals the equations, if it is ([`mod@crate::stability`]).
+    /// Why it is useless in floats although it equals the equations, if it is ([`mod@crate::rounding`]).
     pub unfit: Option<Unfit>,
 }
 

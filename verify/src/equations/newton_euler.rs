@@ -71,13 +71,13 @@ pub struct Motion<E> {
 
 /// ω, α and the acceleration of the joint frame's origin (gravity taken off), all in the base frame.
 #[derive(Clone, Debug)]
-struct Turning<E> {
+struct LinkMotion<E> {
     omega: Vector<E>,
     alpha: Vector<E>,
     a: Vector<E>,
 }
 
-impl<E: Element> Turning<E> {
+impl<E: Element> LinkMotion<E> {
     /// The acceleration of a point at `lever` from the origin.
     fn at(&self, lever: &Vector<E>) -> Vector<E> {
         let centripetal = cross(&self.omega, &cross(&self.omega, lever));
@@ -86,11 +86,11 @@ impl<E: Element> Turning<E> {
 }
 
 /// A motion of an arm at a state, ready for the torques that any body in it needs.
-pub struct Moving<'a, E> {
+pub struct ArmMotion<'a, E> {
     arm: &'a Arm<E>,
     pose: &'a Pose<E>,
     motion: Motion<E>,
-    links: Vec<Turning<E>>,
+    links: Vec<LinkMotion<E>>,
 }
 
 /// What carries a body.
@@ -102,13 +102,13 @@ pub enum Carrier {
     Tool,
 }
 
-impl<'a, E: Element> Moving<'a, E> {
+impl<'a, E: Element> ArmMotion<'a, E> {
     /// Velocities and accelerations of all links, base to tip.
-    pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, motion: Motion<E>) -> Moving<'a, E> {
-        let mut links: Vec<Turning<E>> = Vec::new();
+    pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, motion: Motion<E>) -> ArmMotion<'a, E> {
+        let mut links: Vec<LinkMotion<E>> = Vec::new();
         for (i, joint) in arm.joints.iter().enumerate() {
             let nothing = || arm.nothing();
-            let rest = Turning { omega: nothing(), alpha: nothing(), a: motion.gravity.clone().map(|g| g.negated()) };
+            let rest = LinkMotion { omega: nothing(), alpha: nothing(), a: motion.gravity.clone().map(|g| g.negated()) };
             let (before, from) = match joint.parent {
                 Some(parent) => (links[parent].clone(), pose.joints[parent].origin.clone()),
                 None => (rest, nothing()),
@@ -125,9 +125,9 @@ impl<'a, E: Element> Moving<'a, E> {
                 let twice = add(&turn, &turn);
                 a = add(&a, &add(&change, &cross(&omega, &twice)));
             }
-            links.push(Turning { omega, alpha, a });
+            links.push(LinkMotion { omega, alpha, a });
         }
-        Moving { arm, pose, motion, links }
+        ArmMotion { arm, pose, motion, links }
     }
 
     /// Adds the torques that a body needs.
@@ -215,14 +215,14 @@ impl<'a, E: Element> Moving<'a, E> {
 }
 
 /// B ddqr + C(q, dq) dqr + g as a sum over motions, ready for any body.
-pub struct Reference<'a, E> {
+pub struct ReferenceMotion<'a, E> {
     /// Motions with their weights: accelerations and gravity alone; then V(dq + dqr), V(dq), V(dqr).
-    parts: Vec<(E, Moving<'a, E>)>,
+    parts: Vec<(E, ArmMotion<'a, E>)>,
 }
 
-impl<'a, E: Element> Reference<'a, E> {
+impl<'a, E: Element> ReferenceMotion<'a, E> {
     /// The motions of a reference.
-    pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, dq: &[E], dqr: &[E], ddqr: &[E]) -> Reference<'a, E> {
+    pub fn new(arm: &'a Arm<E>, pose: &'a Pose<E>, dq: &[E], dqr: &[E], ddqr: &[E]) -> ReferenceMotion<'a, E> {
         let (zero, half) = (&arm.zero, arm.half());
         let still = vec![zero.clone(); arm.dof()];
         let nothing = arm.nothing();
@@ -235,11 +235,11 @@ impl<'a, E: Element> Reference<'a, E> {
             (half.negated(), velocity(dq)),
             (half.negated(), velocity(dqr)),
         ];
-        Reference { parts: parts.into_iter().map(|(k, motion)| (k, Moving::new(arm, pose, motion))).collect() }
+        ReferenceMotion { parts: parts.into_iter().map(|(k, motion)| (k, ArmMotion::new(arm, pose, motion))).collect() }
     }
 
     /// The torques that `add` adds, over all motions.
-    pub fn torques(&self, add: &dyn Fn(&Moving<'a, E>, &mut [E])) -> Vec<E> {
+    pub fn torques(&self, add: &dyn Fn(&ArmMotion<'a, E>, &mut [E])) -> Vec<E> {
         let (_, first) = &self.parts[0];
         let mut total = vec![first.arm.zero.clone(); first.arm.dof()];
         for (weight, moving) in &self.parts {

@@ -8,7 +8,7 @@ use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
 
 use super::arm::{Arm, Body, Joint};
 use super::lagrange::{friction, spring_energy, spring_torques, Parts};
-use super::newton_euler::{body, ten, Carrier, Reference};
+use super::newton_euler::{body, ten, Carrier, ReferenceMotion};
 use super::pose::Pose;
 use super::state::State;
 use super::vector::{add, dot, scale, solve};
@@ -184,8 +184,8 @@ pub fn standard_columns<E: Element>(arm: &Arm<E>, state: &State<E>, columns: &[S
         LinkFrames::Described => described.clone(),
         LinkFrames::Joint => described.clone().with_links_in_joint_frames(),
     };
-    let reference = Reference::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr);
-    let of_rotors = Reference::new(arm, &described, &state.dq, &state.dqr, &state.ddqr);
+    let reference = ReferenceMotion::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr);
+    let of_rotors = ReferenceMotion::new(arm, &described, &state.dq, &state.dqr, &state.ddqr);
     let unit = |k: usize| -> Vec<E> { (0..10).map(|i| if i == k { arm.one.clone() } else { arm.zero.clone() }).collect() };
     let single = |i: usize, value: E| {
         let mut column = vec![arm.zero.clone(); arm.dof()];
@@ -245,12 +245,12 @@ impl<E: Element> KeptAlone<'_, E> {
     /// B ddqr + C(q, dq) dqr + g.
     fn torques(&self, poses: (&Pose<E>, &Pose<E>), dq: &[E], dqr: &[E], ddqr: &[E]) -> Vec<E> {
         let (described, joint_frames) = poses;
-        let of_links = Reference::new(self.arm, joint_frames, dq, dqr, ddqr).torques(&|moving, torques| {
+        let of_links = ReferenceMotion::new(self.arm, joint_frames, dq, dqr, ddqr).torques(&|moving, torques| {
             for i in 0..self.arm.dof() {
                 moving.add_body(Carrier::Link(i), &self.ten(|k| Standard::Link(i, k)), torques);
             }
         });
-        let of_others = Reference::new(self.arm, described, dq, dqr, ddqr).torques(&|moving, torques| {
+        let of_others = ReferenceMotion::new(self.arm, described, dq, dqr, ddqr).torques(&|moving, torques| {
             for (i, joint) in self.arm.joints.iter().enumerate() {
                 moving.add_rotor_mass(i, torques);
                 moving.add_armature(i, &self.of(Standard::Armature(i), &joint.armature), torques);
@@ -324,7 +324,7 @@ impl<E: Element> KeptAlone<'_, E> {
 /// B ddqr + C(q, dq) dqr + F + g of an arm, friction with dqr, the squares and the signs of dq.
 pub fn reference_torques<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
     let pose = Pose::new(arm, state);
-    let torques = Reference::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr).whole();
+    let torques = ReferenceMotion::new(arm, &pose, &state.dq, &state.dqr, &state.ddqr).whole();
     let friction = friction(arm, state, &state.dqr);
     let springs = spring_torques(arm, &state.q);
     torques.iter().zip(friction).zip(springs).map(|((a, b), c)| a.plus(&b).plus(&c)).collect()

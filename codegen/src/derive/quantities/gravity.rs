@@ -68,16 +68,12 @@ pub fn gravity(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> Vec<ExprId> {
         let own = joint.about_axis_back(pool, &at_zero);
         direction.push(own);
         let (mass, mut h) = composite[i];
-        let mut direction_there = own;
+        let mut g0 = own;
         if plan.way(Pass::WrenchFrame, Place::Gravity(i), 2) == 1 {
             h = joint.about_axis(pool, &h);
-            direction_there = at_zero;
+            g0 = at_zero;
         }
-        g.push(if joint.is_revolute() {
-            pool.dot(&[h[1], -h[0]], &[direction_there[0], direction_there[1]])
-        } else {
-            -pool.mul(mass, direction_there[2])
-        });
+        g.push(if joint.is_revolute() { pool.dot(&[h[1], -h[0]], &[g0[0], g0[1]]) } else { -pool.mul(mass, g0[2]) });
     }
     add_springs(pool, arm, &mut g);
     g

@@ -42,9 +42,9 @@
 //! + 5n/2) u S instead of it, with S the largest entry of the function. Intervals say nothing behind a quotient in general; of
 //! `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
 
-use std::collections::{BTreeMap, BTreeSet};
+mod plain;
 
-use armgen_codegen::kinds::JointKind;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::arithmetic::twofold::{self, pair, Circle, Pair, TwofoldArguments};
 use crate::arithmetic::wide::Wide;
@@ -54,7 +54,6 @@ use crate::checker::Checker;
 use crate::companion::{LaneArguments, LaneTable, Table};
 use crate::divisors::{needed, undivided_operands, Matrix};
 use crate::enclosure::Float;
-use crate::equations::parameters::{units, Unit};
 use crate::float::{Arguments, LANES};
 use crate::formula::Formula;
 use crate::program::{Argument, Program};
@@ -62,6 +61,7 @@ use crate::ranges::{literal_errors, worst, Domain};
 use crate::reader::Module;
 use crate::report::Unfit;
 use crate::yardstick::Subject;
+use plain::{beside_their_units, is_finite, Kind, Plain};
 
 /// As many times the error that a plain program of the equations has: at states, and over a box.
 const FACTOR: f64 = 16.0;
@@ -137,80 +137,6 @@ impl Compared {
     }
 }
 
-/// What a plain program of the equations makes of an entry.
-#[derive(Clone, Debug, Default)]
-struct Plain {
-    /// State by state the error and the size of the value, in f64.
-    states: Vec<(f64, f64)>,
-    /// State by state the value.
-    values: Vec<f64>,
-    /// The error over the wide box, and over that with the parameters of the description.
-    boxes: [f64; 2],
-    /// The size of what stands beside it: of an entry of a regressor the largest of the same unit, of inertias at least that of rates.
-    /// Rates about the axes of a tensor make its columns, and all of one can be what an angle of 1e-5 between two axes leaves of them.
-    beside: f64,
-}
-
-impl Plain {
-    /// States where the program has a value: one that divides by a mass has none where that is 0.
-    fn finite(&self) -> impl Iterator<Item = &(f64, f64)> {
-        self.states.iter().filter(|state| is_finite(state))
-    }
-
-    /// At random states.
-    fn random(&self) -> Plain {
-        let random = self.states.iter().enumerate().filter(|(state, _)| Kind::of(*state) == Kind::Random);
-        Plain { states: random.map(|(_, own)| *own).collect(), values: Vec::new(), ..*self }
-    }
-
-    /// Whether it has a value at all states.
-    fn is_whole(&self) -> bool {
-        self.states.iter().all(is_finite)
-    }
-
-    /// The largest error at states, one rounding included.
-    fn error(&self) -> f64 {
-        worst(self.finite().map(|(error, _)| *error)) + self.rounding()
-    }
-
-    /// One rounding of the largest value, in f64.
-    fn rounding(&self) -> f64 {
-        Float::F64.unit() * self.size().max(self.beside)
-    }
-
-    fn size(&self) -> f64 {
-        worst(self.finite().map(|(_, size)| *size))
-    }
-
-    /// That of so many times the entry.
-    fn times(&self, scale: f64) -> Plain {
-        let states = self.states.iter().map(|(error, size)| (scale * error, scale * size)).collect();
-        Plain { states, values: Vec::new(), boxes: self.boxes.map(|error| scale * error), beside: 0.0 }
-    }
-}
-
-/// Where states are drawn from.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    /// Within the limits, with the parameters of the description.
-    Random,
-    /// At the ends of the wide box.
-    Corner,
-    /// Within the limits at rest, or slow.
-    Slow,
-}
-
-impl Kind {
-    /// That of a state by its number: batch by batch one and another.
-    fn of(state: usize) -> Kind {
-        match state / LANES {
-            0 | 2 => Kind::Random,
-            1 | 3 => Kind::Corner,
-            _ => Kind::Slow,
-        }
-    }
-}
-
 /// What rounding does to a text.
 struct Errors {
     /// Over the two boxes: bounds of the entries, and the largest size of a value.
@@ -269,48 +195,12 @@ fn size_of(states: &[Vec<(f64, f64)>]) -> f64 {
     states.iter().flatten().fold(0.0f64, |size, (value, _)| size.max(value.abs()))
 }
 
-fn is_finite((error, size): &(f64, f64)) -> bool {
-    error.is_finite() && size.is_finite()
-}
-
 /// A state without motion, or a thousand times as slow.
 fn slow(mut state: Arguments<f64>, rests: bool) -> Arguments<f64> {
     for rate in [&mut state.dq, &mut state.ddq, &mut state.dqr, &mut state.ddqr].into_iter().flatten() {
         *rate *= if rests { 0.0 } else { 2f64.powi(-10) };
     }
     state
-}
-
-/// Gives each entry of a regressor the largest size and the largest errors over boxes of its unit ([`Plain::beside`]).
-fn beside_their_units<'a>(
-    plain: &mut BTreeMap<String, Vec<Plain>>,
-    checker: &Checker,
-    states: impl Iterator<Item = &'a Arguments<f64>>,
-) {
-    // Links can turn as fast as the rates of all joints together, though of parallel axes no square of a rate may be left.
-    let joints = &checker.manipulator().joints;
-    let turns = |rates: &[f64]| -> f64 {
-        let revolute = joints.iter().zip(rates).filter(|(joint, _)| joint.kind == JointKind::Revolute);
-        revolute.map(|(_, rate)| rate.abs()).sum()
-    };
-    let of_rates = worst(states.map(|state| turns(&state.dq) * turns(&state.dqr)));
-    let base = checker.base().map(|own| units(own.named.iter().map(|(parameter, _)| *parameter)));
-    for (name, columns) in [("regressor", checker.vector().units()), ("base_regressor", base.unwrap_or_default())] {
-        let Some(entries) = plain.get_mut(name) else { continue };
-        let rows = joints.iter().map(|joint| joint.kind == JointKind::Revolute);
-        let units: Vec<(bool, Unit)> = rows.flat_map(|turns| columns.iter().map(move |unit| (turns, *unit))).collect();
-        let mut largest = BTreeMap::from([((true, Unit::Inertia), (of_rates, [0.0f64; 2]))]);
-        for (unit, entry) in units.iter().zip(entries.iter()) {
-            let (size, boxes) = largest.entry(*unit).or_default();
-            *size = worst([*size, entry.size()]);
-            *boxes = [0, 1].map(|k| if entry.boxes[k].is_finite() { boxes[k].max(entry.boxes[k]) } else { boxes[k] });
-        }
-        for (unit, entry) in units.iter().zip(entries) {
-            let (size, boxes) = largest[unit];
-            entry.beside = size;
-            entry.boxes = [0, 1].map(|k| entry.boxes[k].max(boxes[k]));
-        }
-    }
 }
 
 /// States at which functions of a module are run.
