@@ -129,56 +129,74 @@ fn wave(low: f64, high: f64, shift: f64) -> (f64, f64) {
 
 /// Values and errors of all steps of a program over a domain; `errors` are those of its literals, no divisor is below `smallest`.
 pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Option<f64>, real: Float) -> Vec<Range> {
-    let u = real.unit();
-    let tiny = real.smallest_normal();
-    let angle = |angle: &Angle, shift: f64| {
-        let terms = &angle.terms;
+    let evaluation = Evaluation { program, errors, domain, smallest, real };
+    let mut ranges: Vec<Range> = Vec::with_capacity(program.steps.len());
+    for step in &program.steps {
+        ranges.push(evaluation.step(step, &ranges).within(real));
+    }
+    ranges
+}
+
+/// A program over a domain.
+struct Evaluation<'a> {
+    program: &'a Program,
+    /// Of its literals.
+    errors: &'a [f64],
+    domain: &'a Domain,
+    /// No divisor is below.
+    smallest: Option<f64>,
+    real: Float,
+}
+
+impl Evaluation<'_> {
+    /// The sine of an angle, `shift` ahead, with the rounding of the angle's sum.
+    fn sine(&self, angle: &Angle, shift: f64) -> Range {
+        let (u, terms, q) = (self.real.unit(), &angle.terms, &self.domain.q);
         let (mut low, mut high) = (0.0, 0.0);
         for &(joint, factor) in terms {
-            let (a, b) = (domain.q[joint].0 * factor as f64, domain.q[joint].1 * factor as f64);
+            let (a, b) = (q[joint].0 * factor as f64, q[joint].1 * factor as f64);
             (low, high) = (low + a.min(b), high + a.max(b));
         }
-        let literal = angle.turn.map(|(k, minus)| (program.turns[k], minus));
-        let turn = literal.map_or(0.0, |(literal, minus)| program.literals[literal].value * if minus { -1.0 } else { 1.0 });
+        let literal = angle.turn.map(|(k, minus)| (self.program.turns[k], minus));
+        let value = |literal: usize| self.program.literals[literal].value;
+        let turn = literal.map_or(0.0, |(literal, minus)| value(literal) * if minus { -1.0 } else { 1.0 });
         (low, high) = (low + turn, high + turn);
         let parts = terms.len() + usize::from(literal.is_some());
         let slack = if parts > 1 || terms.iter().any(|(_, k)| k.abs() != 1) {
-            let size =
-                |&(joint, factor): &(usize, i64)| domain.q[joint].0.abs().max(domain.q[joint].1.abs()) * factor.abs() as f64;
-            parts as f64 * u * (terms.iter().map(size).sum::<f64>() + turn.abs()) + literal.map_or(0.0, |(l, _)| errors[l])
+            let size = |&(joint, factor): &(usize, i64)| q[joint].0.abs().max(q[joint].1.abs()) * factor.abs() as f64;
+            parts as f64 * u * (terms.iter().map(size).sum::<f64>() + turn.abs()) + literal.map_or(0.0, |(l, _)| self.errors[l])
         } else {
             0.0
         };
         let (low, high) = wave(low, high, shift);
-        Range::of(&[low, high], 2.0 * u * low.abs().max(high.abs()) + slack + tiny)
-    };
-    let mut ranges: Vec<Range> = Vec::with_capacity(program.steps.len());
-    for (i, step) in program.steps.iter().enumerate() {
+        Range::of(&[low, high], 2.0 * u * low.abs().max(high.abs()) + slack + self.real.smallest_normal())
+    }
+
+    /// The rounding of a step, whose operands bring in `carried`.
+    fn rounded(&self, ends: &[f64], carried: f64) -> Range {
+        Range::of(ends, carried + self.real.unit() * (largest(ends) + carried))
+    }
+
+    /// A step from those before it.
+    fn step(&self, step: &Step, ranges: &[Range]) -> Range {
         let of = |i: &usize| ranges[*i];
-        let power_of_two = |i: &usize| matches!(program.steps[*i], Step::Literal(l) if errors[l] == 0.0 && is_power_of_two(program.literals[l].value));
-        // The rounding of this step, whose operands bring in `carried`.
-        let rounded = |ends: &[f64], carried: f64, times: f64| {
-            let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-            Range::of(ends, carried + times * u * (size + carried))
-        };
-        let range = match step {
+        match step {
             Step::Input(argument, index) => {
-                let (low, high) = domain.of(*argument)[*index];
+                let (low, high) = self.domain.of(*argument)[*index];
                 Range::exact(low, high)
             }
             Step::Literal(index) => {
-                let value = program.literals[*index].value;
-                let error = errors[*index];
+                let (value, error) = (self.program.literals[*index].value, self.errors[*index]);
                 Range { low: value - error, high: value + error, error }
             }
-            Step::Sine(combination) => angle(combination, 0.0),
-            Step::Cosine(combination) => angle(combination, std::f64::consts::FRAC_PI_2),
+            Step::Sine(angle) => self.sine(angle, 0.0),
+            Step::Cosine(angle) => self.sine(angle, std::f64::consts::FRAC_PI_2),
             Step::Sign(joint) => {
-                let (low, high) = domain.of(Argument::Dq)[*joint];
+                let (low, high) = self.domain.of(Argument::Dq)[*joint];
                 Range::exact(low.signum().min(0.0), high.signum().max(0.0))
             }
             Step::Stribeck(joint, literal) => {
-                Range::stribeck(domain.of(Argument::Dq)[*joint], program.literals[*literal].value, real)
+                Range::stribeck(self.domain.of(Argument::Dq)[*joint], self.program.literals[*literal].value, self.real)
             }
             Step::SignOf(a) => of(a).sign(),
             Step::Negate(a) => {
@@ -187,48 +205,55 @@ pub fn ranges(program: &Program, errors: &[f64], domain: &Domain, smallest: Opti
             }
             Step::Add(a, b) => {
                 let (a, b) = (of(a), of(b));
-                rounded(&[a.low + b.low, a.high + b.high], a.error + b.error, 1.0)
+                self.rounded(&[a.low + b.low, a.high + b.high], a.error + b.error)
             }
             Step::Subtract(a, b) => {
                 let (a, b) = (of(a), of(b));
-                rounded(&[a.low - b.high, a.high - b.low], a.error + b.error, 1.0)
+                self.rounded(&[a.low - b.high, a.high - b.low], a.error + b.error)
             }
-            Step::Multiply(x, y) => {
-                let (a, b) = (of(x), of(y));
-                let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
-                let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
-                if x == y && a.low < 0.0 && a.high > 0.0 {
-                    ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
-                }
-                if power_of_two(x) || power_of_two(y) {
-                    // A product with ½ or less of what is hardly normal loses digits.
-                    let factor = if power_of_two(x) { a.size() } else { b.size() };
-                    Range::of(&ends, carried + if factor < 1.0 { real.smallest() } else { 0.0 })
-                } else {
-                    rounded(&ends, carried + tiny, 1.0)
-                }
-            }
-            Step::Divide(x, y) => {
-                let (a, mut b) = (of(x), of(y));
-                let least = smallest.unwrap_or(0.0);
-                // All divisors are positive or all negative: pivots of B keep their sign.
-                if b.high >= -b.low {
-                    b.low = b.low.max(least);
-                } else {
-                    b.high = b.high.min(-least);
-                }
-                let left = b.low.abs().min(b.high.abs()) - b.error;
-                if left > 0.0 && b.low.signum() == b.high.signum() {
-                    let ends = [a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high];
-                    let size = ends.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-                    rounded(&ends, (a.error + size * b.error) / left + tiny, 1.0)
-                } else {
-                    Range::ANYTHING
-                }
-            }
-        };
-        debug_assert_eq!(ranges.len(), i);
-        ranges.push(range.within(real));
+            Step::Multiply(x, y) => self.product((*x, of(x)), (*y, of(y))),
+            Step::Divide(x, y) => self.quotient(of(x), of(y)),
+        }
     }
-    ranges
+
+    fn is_power_of_two(&self, step: usize) -> bool {
+        matches!(self.program.steps[step], Step::Literal(l) if self.errors[l] == 0.0 && is_power_of_two(self.program.literals[l].value))
+    }
+
+    /// Of two steps by their numbers and ranges.
+    fn product(&self, (x, a): (usize, Range), (y, b): (usize, Range)) -> Range {
+        let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
+        let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
+        if x == y && a.low < 0.0 && a.high > 0.0 {
+            ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
+        }
+        if self.is_power_of_two(x) || self.is_power_of_two(y) {
+            // A product with ½ or less of what is hardly normal loses digits.
+            let factor = if self.is_power_of_two(x) { a.size() } else { b.size() };
+            Range::of(&ends, carried + if factor < 1.0 { self.real.smallest() } else { 0.0 })
+        } else {
+            self.rounded(&ends, carried + self.real.smallest_normal())
+        }
+    }
+
+    fn quotient(&self, a: Range, mut b: Range) -> Range {
+        let least = self.smallest.unwrap_or(0.0);
+        // All divisors are positive or all negative: pivots of B keep their sign.
+        if b.high >= -b.low {
+            b.low = b.low.max(least);
+        } else {
+            b.high = b.high.min(-least);
+        }
+        let left = b.low.abs().min(b.high.abs()) - b.error;
+        if left > 0.0 && b.low.signum() == b.high.signum() {
+            let ends = [a.low / b.low, a.low / b.high, a.high / b.low, a.high / b.high];
+            self.rounded(&ends, (a.error + largest(&ends) * b.error) / left + self.real.smallest_normal())
+        } else {
+            Range::ANYTHING
+        }
+    }
+}
+
+fn largest(ends: &[f64]) -> f64 {
+    ends.iter().fold(0.0f64, |a, b| a.max(b.abs()))
 }

@@ -215,69 +215,12 @@ impl<'a> Items<'a> {
             *parser = beginning;
             documentation = parser.documentation()?;
         }
+        let head = Head { beginning, first, keyword, name, documentation };
         match (public, keyword.text) {
-            (true, "type") => {
-                parser.expect(&format!("{LINTS} pub type Real ="))?;
-                self.documented(&documentation, SCALAR, &first);
-                let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
-                let word = parser.take()?;
-                let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
-                if self.real.replace(real).is_some() && Check::Once.is_made() {
-                    return Err(word.fault("`Real` stands twice"));
-                }
-                parser.expect(";")
-            }
-            (true, "const") => {
-                let known = CONSTANTS.into_iter().find(|(known, ..)| name.is(known));
-                let (known, ty, text) =
-                    known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
-                let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
-                parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
-                if text == IN_PARTS {
-                    self.documentation.insert(name.text, documentation);
-                } else {
-                    self.documented(&documentation, text, &first);
-                }
-                if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
-                    return Err(name.fault(format!("constant `{known}` stands twice")));
-                }
-                // Read where `Real` is known.
-                while !parser.is(";") && parser.peek().kind != Kind::End {
-                    parser.take()?;
-                }
-                parser.expect(";")
-            }
-            (true, "struct") => {
-                let [text, begin] = STRUCT;
-                parser.expect(begin)?;
-                self.documented(&documentation, text, &first);
-                for [text, field] in FIELDS {
-                    let place = parser.peek();
-                    self.documented(&parser.documentation()?, text, &place);
-                    parser.expect(field)?;
-                }
-                parser.expect("}")?;
-                match self.structure.replace(beginning) {
-                    Some(_) if Check::Once.is_made() => Err(name.fault("the struct stands twice")),
-                    _ => Ok(()),
-                }
-            }
-            (true, "fn") => {
-                let (promise, with) = Promise::of(name.text)
-                    .ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
-                parser.expect(&format!("{ALL_LINTS} pub fn {}", name.text))?;
-                if self.public.iter().any(|other| other.name == name.text) && Check::Once.is_made() {
-                    return Err(name.fault(format!("function `{}` stands twice", name.text)));
-                }
-                signature(parser, &promise.signature(with))?;
-                let arguments = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied());
-                let arguments = arguments.filter_map(Argument::named).collect();
-                let body = *parser;
-                self.public.push(Public { name: name.text, arguments, documentation, body });
-                parser.expect("{")?;
-                *parser = body;
-                parser.skip("{", "}")
-            }
+            (true, "type") => self.scalar(parser, &head),
+            (true, "const") => self.constant(parser, head),
+            (true, "struct") => self.structure(parser, &head),
+            (true, "fn") => self.function(parser, head),
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
                 let part = part(parser, named)?;
@@ -286,30 +229,116 @@ impl<'a> Items<'a> {
                 }
                 Ok(())
             }
-            (false, "fn" | "const") if is_private && name.kind == Kind::Word => {
-                if !sines::NAMES.contains(&name.text) && Check::PrivateNames.is_made() {
-                    return Err(name.fault(format!("{} is not a private item of an emitted module", name.shown())));
-                }
-                if self.private.insert(name.text, beginning).is_some() && Check::Once.is_made() {
-                    return Err(name.fault(format!("`{}` stands twice", name.text)));
-                }
-                // Its tokens are compared as a whole where `Real` is known.
-                let last = if keyword.is("fn") { "{" } else { ";" };
-                while !parser.is(last) && parser.peek().kind != Kind::End {
-                    parser.take()?;
-                }
-                if keyword.is("fn") {
-                    parser.skip("{", "}")
-                } else {
-                    parser.expect(";")
-                }
-            }
+            (false, "fn" | "const") if is_private && name.kind == Kind::Word => self.private_item(parser, &head),
             _ => {
                 let wrong = if public { keyword } else { first };
                 Err(wrong.fault(format!("{} begins no item of an emitted module for one state", wrong.shown())))
             }
         }
     }
+
+    /// `pub type Real = f64;`
+    fn scalar(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
+        parser.expect(&format!("{LINTS} pub type Real ="))?;
+        self.documented(&head.documentation, SCALAR, &head.first);
+        let real = [Float::F64, Float::F32].into_iter().zip(["f64", "f32"]).find(|(_, word)| parser.is(word));
+        let word = parser.take()?;
+        let (real, _) = real.ok_or_else(|| word.fault(format!("`Real` is {}, neither f64 nor f32", word.shown())))?;
+        if self.real.replace(real).is_some() && Check::Once.is_made() {
+            return Err(word.fault("`Real` stands twice"));
+        }
+        parser.expect(";")
+    }
+
+    /// A public constant; its value is read where `Real` is known.
+    fn constant(&mut self, parser: &mut Parser<'a>, head: Head<'a>) -> Result<(), Fault> {
+        let name = head.name;
+        let known = CONSTANTS.into_iter().find(|(known, ..)| name.is(known));
+        let (known, ty, text) =
+            known.ok_or_else(|| name.fault(format!("{} is not a constant that an emitted module has", name.shown())))?;
+        let lints = if ty.contains("Real") { ALL_LINTS } else { LINTS };
+        parser.expect(&format!("{lints} pub const {known}: {ty} ="))?;
+        if text == IN_PARTS {
+            self.documentation.insert(name.text, head.documentation);
+        } else {
+            self.documented(&head.documentation, text, &head.first);
+        }
+        if self.constants.insert(name.text, (ty, *parser)).is_some() && Check::Once.is_made() {
+            return Err(name.fault(format!("constant `{known}` stands twice")));
+        }
+        while !parser.is(";") && parser.peek().kind != Kind::End {
+            parser.take()?;
+        }
+        parser.expect(";")
+    }
+
+    /// The struct of what `equations_of_motion` gives.
+    fn structure(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
+        let [text, begin] = STRUCT;
+        parser.expect(begin)?;
+        self.documented(&head.documentation, text, &head.first);
+        for [text, field] in FIELDS {
+            let place = parser.peek();
+            self.documented(&parser.documentation()?, text, &place);
+            parser.expect(field)?;
+        }
+        parser.expect("}")?;
+        match self.structure.replace(head.beginning) {
+            Some(_) if Check::Once.is_made() => Err(head.name.fault("the struct stands twice")),
+            _ => Ok(()),
+        }
+    }
+
+    /// A public function: its signature; the body is read where all items are known.
+    fn function(&mut self, parser: &mut Parser<'a>, head: Head<'a>) -> Result<(), Fault> {
+        let name = head.name;
+        let (promise, with) = Promise::of(name.text)
+            .ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
+        parser.expect(&format!("{ALL_LINTS} pub fn {}", name.text))?;
+        if self.public.iter().any(|other| other.name == name.text) && Check::Once.is_made() {
+            return Err(name.fault(format!("function `{}` stands twice", name.text)));
+        }
+        signature(parser, &promise.signature(with))?;
+        let arguments = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied());
+        let arguments = arguments.filter_map(Argument::named).collect();
+        let body = *parser;
+        self.public.push(Public { name: name.text, arguments, documentation: head.documentation, body });
+        parser.expect("{")?;
+        *parser = body;
+        parser.skip("{", "}")
+    }
+
+    /// A private function or constant, whose tokens are compared as a whole where `Real` is known.
+    fn private_item(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
+        let name = head.name;
+        if !sines::NAMES.contains(&name.text) && Check::PrivateNames.is_made() {
+            return Err(name.fault(format!("{} is not a private item of an emitted module", name.shown())));
+        }
+        if self.private.insert(name.text, head.beginning).is_some() && Check::Once.is_made() {
+            return Err(name.fault(format!("`{}` stands twice", name.text)));
+        }
+        let last = if head.keyword.is("fn") { "{" } else { ";" };
+        while !parser.is(last) && parser.peek().kind != Kind::End {
+            parser.take()?;
+        }
+        if head.keyword.is("fn") {
+            parser.skip("{", "}")
+        } else {
+            parser.expect(";")
+        }
+    }
+}
+
+/// The first tokens of an item.
+struct Head<'a> {
+    /// Where its documentation begins.
+    beginning: Parser<'a>,
+    /// Its first token behind documentation and attributes.
+    first: Token<'a>,
+    keyword: Token<'a>,
+    name: Token<'a>,
+    /// Lines of its documentation; none of a private item.
+    documentation: Vec<&'a str>,
 }
 
 /// Behind `fn`: `gravity_part_1(q: &[Real; DOF], values: [Real; 3]) -> [Real; 5] { ... }`.
