@@ -8,7 +8,10 @@ use crate::html::escape;
 
 /// The table, of all functions of a module.
 pub(crate) fn table(module: &Module) -> String {
-    let mut text = String::from("<p class=\"small\">Operations of the functions that <code>armgen generate</code> writes; a column is sorted by a click. Functions that end in <code>_with</code> take the parameters as an argument.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\">\n<thead><tr>");
+    let mut text = format!("<p class=\"small\">Operations of the functions that <code>armgen generate</code> writes; a column is sorted by a click. Functions that end in <code>_with</code> take the parameters as an argument. The weight counts a multiplication or an addition 1, a division {}, a sine with its cosine or an exponential {}, a change of sign 0.</p>\n<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Operations\"><table class=\"costs\">\n<thead><tr>",
+        Cost { div: 1, ..Cost::default() }.weight(),
+        Cost { sincos: 1, ..Cost::default() }.weight(),
+    );
     for column in ["function", "mul", "add", "div", "neg", "sincos", "exp", "derived by"] {
         let _ = write!(text, "<th scope=\"col\"><button type=\"button\">{column}</button></th>");
     }

@@ -21,6 +21,8 @@ pub(crate) struct Parts<'p> {
     pub(crate) description: &'p RobotDescription,
     pub(crate) rows: &'p [Row],
     pub(crate) warnings: warnings::Warnings<'p>,
+    /// Tables of motors, friction, limits and parameters.
+    pub(crate) drives: &'p str,
     pub(crate) equations: &'p str,
     pub(crate) cost: &'p str,
     /// The logs, or the experiments; none without any.
@@ -33,7 +35,9 @@ pub(crate) struct Parts<'p> {
 
 /// The whole page.
 pub(crate) fn document(parts: &Parts<'_>) -> String {
-    let style = if parts.logs.is_some() { format!("{PLOTS}\n{STYLE}") } else { STYLE.to_owned() };
+    // Indentation is for whoever reads `page/web`.
+    let own: String = STYLE.lines().flat_map(|line| [line.trim_start(), "\n"]).collect();
+    let style = if parts.logs.is_some() { format!("{PLOTS}\n{own}") } else { own };
     let name = escape(&parts.model.manipulator.name);
     let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     let _ = write!(
@@ -84,7 +88,7 @@ fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
     let frames = "<details open><summary>Frames</summary><div id=\"frames\"></div></details>\n";
     let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
     let mut all = vec![
-        ("data-sheet", "Data sheet", table + frames + bodies),
+        ("data-sheet", "Data sheet", table + frames + bodies + parts.drives),
         ("check", "Check against the real arm", CHECK.into()),
         ("numbers", "Numbers", NUMBERS.into()),
         ("equations", "Equations", parts.equations.into()),
@@ -131,6 +135,7 @@ const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
 <label><input type="checkbox" id="show-points"> workspace</label>
 <label><input type="checkbox" id="show-velocity"> velocity ellipsoid</label>
 <label><input type="checkbox" id="show-force"> force ellipsoid</label>
+<label><input type="checkbox" id="show-lost" checked> lost motion</label>
 </div>
 "##;
 

@@ -13,6 +13,7 @@
 mod bodies;
 mod cost;
 mod document;
+mod drives;
 mod equations;
 mod html;
 mod logs;
@@ -98,6 +99,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
     let script = script::script(&text, !runs.is_empty());
     let page = document::document(&document::Parts {
         model: &model,
+        drives: &drives::tables(source, &description, &model.manipulator),
         description: &description,
         rows: &rows,
         warnings: warnings::Warnings::new(source, &description, &diagnostics),

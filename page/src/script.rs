@@ -30,6 +30,7 @@ const FILES: &[(&str, &str)] = &[
     ("sliders", include_str!("../web/sliders.mjs")),
     ("picture", include_str!("../web/picture.mjs")),
     ("sheet", include_str!("../web/sheet.mjs")),
+    ("lost", include_str!("../web/lost.mjs")),
     ("numbers", include_str!("../web/numbers.mjs")),
     ("suspects", include_str!("../web/suspects.mjs")),
     ("check", include_str!("../web/check.mjs")),
@@ -56,13 +57,14 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
     text += &closed(module);
     for (name, file) in FILES {
         let _ = write!(text, "const {} = ", variable(name));
-        text += &closed(&without_comments(file));
+        text += &closed(&brief(file));
     }
     inert(&text)
 }
 
-/// A file without the lines that are comments alone, a fifth of it: they are for whoever reads `page/web`.
-fn without_comments(file: &str) -> String {
+/// A file without the lines that are comments alone, a fifth of it, and without indentation, an eighth: both are for whoever reads `page/web`.
+/// A text of a file ends on the line on which it begins, so that no indentation is part of one.
+fn brief(file: &str) -> String {
     let mut text = String::with_capacity(file.len());
     let mut within = false;
     for line in file.lines() {
@@ -73,7 +75,7 @@ fn without_comments(file: &str) -> String {
         let comment = within || words.starts_with("//") || (begins && (ends || !words.contains("*/")));
         within = comment && begins && !ends;
         if !comment {
-            text.push_str(line);
+            text.push_str(line.trim_start());
             text.push('\n');
         }
     }
@@ -157,9 +159,13 @@ mod tests {
     }
 
     #[test]
-    fn lines_of_comments_alone_are_left_out() {
-        let file = "/** Of a file.\n *\n * More. */\nconst a = 1; // one\n    // two\n    /** three */\n/** @type {X} */ (a).b();\n/**\n * four\n */\nc();\n";
-        assert_eq!(without_comments(file), "const a = 1; // one\n/** @type {X} */ (a).b();\nc();\n");
+    fn lines_of_comments_alone_and_indentation_are_left_out() {
+        let file = "/** Of a file.\n *\n * More. */\nconst a = 1; // one\n    // two\n    /** three */\n    /** @type {X} */ (a).b();\n/**\n * four\n */\nc();\n";
+        assert_eq!(brief(file), "const a = 1; // one\n/** @type {X} */ (a).b();\nc();\n");
+        for (name, file) in FILES {
+            let broken = file.lines().find(|line| line.matches('`').count() % 2 == 1);
+            assert_eq!(broken, None, "{name}: a text goes on over lines, whose indentation is left out");
+        }
     }
 
     #[test]

@@ -2,45 +2,21 @@
 //!
 //! Where there is no browser a line says so, and the tests pass.
 
+#[path = "browser/budgets.rs"]
+mod budgets;
 #[path = "browser/driver.rs"]
 mod driver;
+#[path = "browser/pages.rs"]
+mod pages;
 #[path = "browser/rust.rs"]
 mod rust;
 
-use std::path::{Path, PathBuf};
-
 use armgen_codegen::source::Source;
 use armgen_page::{Figure, Log, Run, Verdict};
-use driver::{Browser, Tab};
+use driver::Tab;
+use pages::{long, opened, robot, robots, written, written_with};
 use rust::State;
 use serde_json::Value;
-
-/// All descriptions of the project, sorted.
-fn robots() -> Vec<Source> {
-    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-    let folders = ["robots", "tests/robots"].map(|folder| format!("{root}/{folder}"));
-    let entries = folders.iter().flat_map(|folder| std::fs::read_dir(folder).expect("a folder of robots"));
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
-    paths.sort();
-    let source = |path: PathBuf| {
-        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
-        Source::new(name, std::fs::read_to_string(path).expect("a description"))
-    };
-    paths.into_iter().map(source).collect()
-}
-
-fn robot(name: &str) -> Source {
-    robots().into_iter().find(|source| source.name() == format!("{name}.yaml")).expect("a robot of the project")
-}
-
-/// Writes the page of a robot.
-fn written(folder: &Path, source: &Source) -> PathBuf {
-    let file = folder.join(Path::new(source.name()).with_extension("html"));
-    let (page, diagnostics) = armgen_page::page(source, &[]).expect("no logs");
-    std::fs::write(&file, page.unwrap_or_else(|| panic!("{diagnostics:?}"))).expect("the page is written");
-    file
-}
 
 /// Moves the sliders to places of their ranges, types rates and accelerations, and gives what the document then holds.
 const MOVE: &str = r##"((k) => {
@@ -73,25 +49,18 @@ fn numbers(texts: &Value) -> Vec<f64> {
 
 #[test]
 fn shown_numbers_have_the_bits_of_rust() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("bits");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let mut shown = Vec::new();
-    let robots: Vec<(Source, Vec<State>)> = robots()
-        .into_iter()
-        .map(|source| {
-            let file = written(&folder, &source);
-            let mut tab = browser.open(&file, 1600, "light");
-            let results: Vec<Value> = (1..=3).map(|k| tab.run(&format!("{MOVE}({k})"))).collect();
-            tab.close(&file);
-            let states = results.iter().map(|result| [0, 1, 2].map(|i| numbers(&result["state"][i]))).collect();
-            shown.push(results);
-            (source, states)
-        })
-        .collect();
-    let expected = rust::results(&folder, &robots);
+    let mut moved: Vec<(Source, Vec<State>)> = Vec::new();
+    for source in robots() {
+        let Some(mut tab) = opened(&source, 1600, "light") else { return };
+        let results: Vec<Value> = (1..=3).map(|k| tab.run(&format!("{MOVE}({k})"))).collect();
+        tab.close();
+        moved.push((source, results.iter().map(|result| [0, 1, 2].map(|i| numbers(&result["state"][i]))).collect()));
+        shown.push(results);
+    }
+    let expected = rust::results(&driver::folder("bits"), &moved);
     let mut compared = 0;
-    for (((source, _), shown), expected) in robots.iter().zip(&shown).zip(&expected) {
+    for (((source, _), shown), expected) in moved.iter().zip(&shown).zip(&expected) {
         for (shown, expected) in shown.iter().zip(expected) {
             for (name, values) in expected {
                 let place = format!("{}: {name}", source.name());
@@ -108,7 +77,7 @@ fn shown_numbers_have_the_bits_of_rust() {
             }
         }
     }
-    println!("{compared} numbers of {} robots have the bits of Rust", robots.len());
+    println!("{compared} numbers of {} robots have the bits of Rust", moved.len());
     assert!(compared > 1000);
 }
 
@@ -128,20 +97,16 @@ fn check_frames(place: &str, frames: &Value, values: &[f64]) {
 /// The widest and the narrowest window, both themes, print: nothing is said, nothing overflows.
 #[test]
 fn pages_fit_windows_themes_and_paper() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("windows");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     for source in [robot("scara"), robot("panda7"), robot("everything")] {
-        let file = written(&folder, &source);
         for (width, theme) in [(360, "dark"), (1600, "light"), (1360, "dark"), (810, "dark"), (800, "light")] {
-            let mut tab = browser.open(&file, width, theme);
+            let Some(mut tab) = opened(&source, width, theme) else { return };
             let overflow = tab.run("document.documentElement.scrollWidth - innerWidth");
             assert!(overflow.as_f64().is_some_and(|by| by <= 0.0), "{}: {width} px: {overflow} px too wide", source.name());
             let cut = "const pane = document.getElementById('arm-pane'); pane.scrollWidth - pane.clientWidth";
             assert_eq!(tab.run(cut), 0, "{}: {width} px: the sliders are cut off", source.name());
-            keep(&folder, &format!("{}-{width}-{theme}.png.base64", source.name()), &mut tab);
+            keep(&format!("{}-{width}-{theme}.png.base64", source.name()), &mut tab);
             assert!(tab.print() > 10_000);
-            tab.close(&file);
+            tab.close();
         }
     }
 }
@@ -170,9 +135,6 @@ const UNFOLD: &str = r#"(async () => {
 /// somewhere, and every text has a contrast of 4.5 to 1; the key of tabulators reaches all controls in their order, and the focus is seen.
 #[test]
 fn everybody_can_read_and_use_a_page() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("everybody");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let log =
         Log::read("t,q_shoulder,q_elbow,q_quill,q_wrist,other\n0,0,0,0,0,1\n1,1,1,0,0,2\n", |_| "rad".into()).expect("a log");
     let verdict = |met| Verdict { what: "w".into(), found: "1".into(), expected: "2".into(), met };
@@ -182,21 +144,17 @@ fn everybody_can_read_and_use_a_page() {
         verdicts: vec![verdict(true), verdict(false)],
         ..Run::default()
     };
-    let file = folder.join("scara.html");
-    let (page, _) = armgen_page::page(&robot("scara"), &[named("one"), named("two")]).expect("the joints are those of the arm");
-    std::fs::write(&file, page.expect("a page")).expect("written");
-    for (file, width, theme) in
-        [(&file, 1600, "light"), (&file, 360, "dark"), (&written(&folder, &robot("panda7")), 1600, "dark")]
-    {
-        let mut tab = browser.open(file, width, theme);
+    let file = written_with("two-logs", &robot("scara"), &[named("one"), named("two")]);
+    for (file, width, theme) in [(&file, 1600, "light"), (&file, 360, "dark"), (&written(&robot("panda7")), 1600, "dark")] {
+        let Some(mut tab) = Tab::open(file, width, theme) else { return };
         tab.run(UNFOLD);
         let found = tab.run(include_str!("browser/audit.js"));
         assert_eq!(found["faults"], serde_json::json!([]), "{}, {theme}", file.display());
         assert!(found["texts"].as_u64().is_some_and(|texts| texts > 300), "{found}");
         println!("{}, {theme}: {} texts, the least contrast is {}", file.display(), found["texts"], found["least"]);
-        tab.close(file);
+        tab.close();
     }
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = Tab::open(&file, 1600, "light") else { return };
     tab.run(UNFOLD);
     let controls = tab.run(include_str!("browser/keyboard.js")).as_u64().expect("a number");
     for _ in 0..controls {
@@ -212,26 +170,22 @@ fn everybody_can_read_and_use_a_page() {
                     seen.push(one.getAttribute('aria-checked'), one.closest('.u-series').classList.contains('u-off')); } return seen; })()";
     assert_eq!(tab.run(switched), serde_json::json!(["false", true, "true", false]));
     println!("{controls} controls are reached by the keyboard");
-    tab.close(&file);
+    tab.close();
 }
 
 /// A picture to be looked at, where somebody asks for them.
-fn keep(folder: &Path, name: &str, tab: &mut Tab<'_>) {
+fn keep(name: &str, tab: &mut Tab) {
     if std::env::var_os("ARMGEN_PICTURES").is_some() {
-        std::fs::write(folder.join(name), tab.picture()).expect("a picture is written");
+        std::fs::write(driver::folder("windows").join(name), tab.picture()).expect("a picture is written");
     }
 }
 
 /// A row in focus is drawn as on a sheet; limits that are left are marked; keys turn the arm.
 #[test]
 fn rows_are_drawn_and_limits_marked() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("rows");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let text = robot("scara").text().replacen("    type: revolute\n", "    type: revolute\n    limits: {position: [-1, 1]}\n", 1);
     let source = Source::new("limited.yaml", text);
-    let file = written(&folder, &source);
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = opened(&source, 1600, "light") else { return };
     let texts = "document.querySelector('#sheet tr[data-row=\"1\"]').focus(); \
                  [...document.querySelectorAll('#arm g[data-dimension=\"1\"] text')].map((text) => text.textContent)";
     assert_eq!(tab.run(texts), serde_json::json!(["θ = 0 rad", "d = 1 m", "a = 0.5 m"]));
@@ -248,17 +202,14 @@ fn rows_are_drawn_and_limits_marked() {
                   document.getElementById('arm').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' })); return before !== at(); })()";
     assert_eq!(tab.run(turned), true);
     assert_eq!(tab.run("Object.isFrozen(globalThis.robot) && robot.NAME"), "scara");
-    tab.close(&file);
+    tab.close();
 }
 
-/// The fields of joints take expressions, show six digits of all those that they hold, and say what is no number instead of forgetting it.
+/// The fields of joints take expressions, show six digits of all those that they hold, and say what is no number instead of forgetting it, even
+/// when another joint moves.
 #[test]
 fn fields_take_expressions() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("fields");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
-    let file = written(&folder, &robot("scara"));
-    let mut tab = browser.open(&file, 500, "light");
+    let Some(mut tab) = opened(&robot("scara"), 500, "light") else { return };
     let seen = tab.run(
         "(() => { const field = document.getElementById('q1-value'), fault = document.getElementById('q1-fault'), seen = []; \
          const put = (text) => { field.value = text; for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind, { bubbles: true })); \
@@ -266,7 +217,10 @@ fn fields_take_expressions() {
                         fault.hidden, field.getAttribute('aria-invalid') === 'true']); }; \
          for (const text of ['-pi/4', '2*(pi - 1)/3', '1e-3', 'pie', '0x10', '1.25']) put(text); \
          document.getElementById('angle-unit').click(); put('-pi/4'); put('-68.754935'); put(''); \
-         field.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' })); seen.push(Number(field.value).toFixed(6)); return seen; })()",
+         field.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' })); seen.push(Number(field.value).toFixed(6)); \
+         put('1.5x'); const slide = (id) => { document.getElementById(id).value = 0.3; \
+             document.getElementById(id).dispatchEvent(new Event('input', { bubbles: true })); seen.push([field.value, fault.hidden]); }; \
+         slide('q2'); slide('q1'); return seen; })()",
     );
     let expected = serde_json::json!([
         ["-0.7853981633974483", "−0.785398", "-0.785", true, false],
@@ -278,39 +232,40 @@ fn fields_take_expressions() {
         ["-45", "−45", "-0.785", true, false],
         ["-68.754935", "−68.7549", "-1.200", true, false],
         ["-68.754935", "−68.7549", "-1.200", true, false],
-        "-67.754935"
+        "-67.754935",
+        ["1.5x", "−67.7549", "-1.183", false, true],
+        ["1.5x", false],
+        ["17.188733853924695", true]
     ]);
     assert_eq!(seen, expected);
     let shown = "[...document.querySelectorAll('#sliders .rate .unit')].every((unit) => unit.checkVisibility())";
     assert_eq!(tab.run(shown), true, "units of rates are seen in a narrow window");
-    tab.close(&file);
+    tab.close();
 }
 
 /// Entries say their units where some joints turn and some slide; bodies their tensors and what the linter says of them; a tick in the list of
 /// layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
 #[test]
 fn tables_say_units_and_doubts() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("units");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
-    let file = written(&folder, &robot("scara"));
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
     let seen = tab.run(
         "(() => { const row = document.querySelector('[data-quantity=gravity][data-row=\"3\"]').parentElement.firstChild.textContent; \
          const unit = (i, j) => document.querySelector(`[data-quantity=inertia_matrix][data-row=\"${i}\"][data-column=\"${j}\"]`).title; \
          const top = () => document.getElementById('q4').getBoundingClientRect().top, before = top(); document.getElementById('show-velocity').click(); \
-         return [row, unit(1, 2), unit(1, 3), unit(3, 3), top() === before, document.getElementById('ellipsoid-axes').textContent !== '']; })()",
+         const drives = document.getElementById('drives').rows, parameters = document.getElementById('parameters').rows; \
+         return [row, unit(1, 2), unit(1, 3), unit(3, 3), top() === before, document.getElementById('ellipsoid-axes').textContent !== '', \
+                 [...drives[3].cells].map((cell) => cell.textContent), [...parameters[1].cells].map((cell) => cell.textContent)]; })()",
     );
-    assert_eq!(seen, serde_json::json!(["3 quill, N", "kg m²", "kg m", "kg", true, true]));
-    tab.close(&file);
-    let file = written(&folder, &robot("everything"));
-    let mut tab = browser.open(&file, 1600, "light");
+    let drives = ["3 quill", "50 50 rad/m", "I_m3 0.005 kg m²", "F_m3 0.01 N m s"];
+    assert_eq!(seen, serde_json::json!(["3 quill, N", "kg m²", "kg m", "kg", true, true, drives, ["m_l1", "20"]]));
+    tab.close();
+    let Some(mut tab) = opened(&robot("everything"), 1600, "light") else { return };
     let wide = "[...document.querySelectorAll('#frames .scroll, #bodies .scroll')].filter((table) => table.scrollWidth > table.clientWidth).length";
     for unit in ["m", "mm"] {
         assert_eq!(tab.run(&format!("{MOVE}(2); {wide}")), 0, "a table is cut off, in {unit}");
         tab.run("document.getElementById('length-unit').click()");
     }
-    tab.close(&file);
+    tab.close();
     let link = |name: &str, link: &str| {
         format!("  - {{name: {name}, type: revolute, a: 0.5, alpha: 0, d: 0, theta: 0, link: {{com: [0, 0, 0], {link}}}}}\n")
     };
@@ -320,12 +275,11 @@ fn tables_say_units_and_doubts() {
         link("massless", "mass: 0, inertia: {zz: 2}"),
         link("planar", "mass: 1, inertia: {zz: 0.01}")
     );
-    let file = written(&folder, &Source::new("bodies.yaml", text));
-    let mut tab = browser.open(&file, 500, "light");
+    let Some(mut tab) = opened(&Source::new("bodies.yaml", text), 500, "light") else { return };
     let bodies = tab.run("[...document.querySelectorAll('.bodies tbody tr')].map((row) => row.innerText)");
     let bodies: Vec<&str> = bodies.as_array().expect("rows").iter().filter_map(Value::as_str).collect();
     let [large, doubt, massless, said, planar] = bodies[..] else { panic!("{bodies:?}") };
-    assert!(large.contains("xx 1") && large.contains("6.804e−12") && large.ends_with("doubtful"), "{large}");
+    assert!(large.contains("xx 1") && large.contains("6.804e−12") && large.ends_with("doubtful: lighter than foam"), "{large}");
     assert!(doubt.contains("radius of gyration of 100 m"), "{doubt}");
     assert!(massless.contains("zz 2") && massless.ends_with("no mass"), "{massless}");
     assert!(said.contains("one moment of inertia alone belongs to no solid body"), "{said}");
@@ -337,19 +291,15 @@ fn tables_say_units_and_doubts() {
     let lines = "[document.querySelector('#sheet caption').textContent.includes('Lines are those of bodies.yaml'), \
                  document.querySelector('#sheet .warning').textContent.includes(' of bodies.yaml)')]";
     assert_eq!(tab.run(lines), serde_json::json!([true, true]));
-    tab.close(&file);
+    tab.close();
 }
 
 /// Every section of equations opens, with numbers and with names, and never holds more nodes than a browser lays out at once.
 #[test]
 fn equations_are_set_when_they_are_opened() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("equations");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     for name in ["scara", "ur5", "everything"] {
         let source = robot(name);
-        let file = written(&folder, &source);
-        let mut tab = browser.open(&file, 1600, "light");
+        let Some(mut tab) = opened(&source, 1600, "light") else { return };
         let opened = tab.run(OPEN);
         let opened = opened.as_array().expect("sections");
         assert!(opened.len() > 25, "{name}");
@@ -362,15 +312,15 @@ fn equations_are_set_when_they_are_opened() {
             assert_eq!(tab.run(&format!("{entry}.textContent")), "5cosq2+8.766");
             assert_eq!(tab.run(&choose("digits", "exact", &format!("{entry}.querySelectorAll('mfrac').length"))), 1);
             assert_eq!(tab.run(&choose("form", "symbolic", &format!("{entry}.textContent.includes('ml2')"))), true);
-            let near = "[...document.querySelectorAll('.near')].map((e) => e.textContent).filter((text) => text).join()";
-            assert_eq!(tab.run(near), "⚠ near zero: singular", "the arm is stretched at q = 0");
+            let near = "[...document.querySelectorAll('strong.near')].map((e) => e.textContent).filter((text) => text).join()";
+            assert_eq!(tab.run(near), "⚠ zero: singular", "the arm is stretched at q = 0");
         }
         if name == "everything" {
             // One entry is shown before the steps that it needs, and they are fewer than all; no step that is named is missing.
             let chosen = tab.run(CHOOSE_ENTRY);
             assert_eq!(chosen, serde_json::json!(["1,2", true, [], true, true]));
         }
-        tab.close(&file);
+        tab.close();
     }
 }
 
@@ -378,11 +328,7 @@ fn equations_are_set_when_they_are_opened() {
 /// the buttons beside the factors lead to it.
 #[test]
 fn entries_have_numbers_and_singular_postures_a_badge() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("badge");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
-    let file = written(&folder, &robot("scara"));
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
     let seen = tab.run(
         "(async () => { for (const name of ['inertia_matrix', 'determinant']) { const details = document.querySelector(`details[data-equation=${name}]`); \
          details.open = true; while (!details.querySelector('.copies')) await new Promise((done) => setTimeout(done, 5)); } \
@@ -398,18 +344,23 @@ fn entries_have_numbers_and_singular_postures_a_badge() {
          set.click(); seen.push([q2.value, badge() !== '']); turn('3'); set.click(); seen.push([q2.value, badge() !== '']); \
          const link = document.querySelector('#singular-posture a').hash; \
          const there = document.querySelector(`[data-equation=inertia_matrix] a[href=\"#number-inertia_matrix\"]`) !== null; \
-         seen.push([document.querySelector(link).querySelector('h3').textContent, there]); return seen; })()",
+         seen.push([document.querySelector(link).querySelector('h3').textContent, there]); \
+         const lost = () => [document.getElementById('lost-motion').textContent, document.querySelector('#arm .lost text')?.textContent ?? '']; \
+         seen.push(lost()); turn('0.01'); seen.push([lost()[0].split(',')[0], lost()[1], badge().split(':')[0]]); turn('1'); seen.push(lost()); return seen; })()",
     );
-    let told = "⚠ singular posture: factor 1, 1/4 sin(q2), of det J is near zero";
+    let told = "⚠ singular posture: factor 1, 1/4 sin(q2), of det J is zero";
     let expected = serde_json::json!([
         ["= 13.766", true, "0", told],
         ["= 11.4675", true, ""],
         ["0", true],
         ["3.141592653589793", true],
-        ["Singular postures", true]
+        ["Singular postures", true],
+        ["Lost: whatever the rates, vx = 0.", "no motion along this line"],
+        ["Nearly lost: vx + 0.005 vy + 0.0008333 ωz", "hardly any motion along this line", "⚠ nearly singular posture"],
+        ["", ""]
     ]);
     assert_eq!(seen, expected);
-    tab.close(&file);
+    tab.close();
 }
 
 const OPEN: &str = r#"(async () => {
@@ -434,22 +385,17 @@ fn choose(name: &str, value: &str, then: &str) -> String {
 /// Poses of the true arm on the page of a description with one wrong value: the first suspect is the row, and a ghost can be drawn of it.
 #[test]
 fn a_planted_mistake_is_the_first_suspect() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("suspects");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let truth = robot("ur5");
-    let file = written(&folder, &truth);
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = opened(&truth, 1600, "light") else { return };
     let poses = tab.run(&format!(
         "{MOVE}(1); document.getElementById('measured-add').click(); {MOVE}(2); document.getElementById('measured-add').click(); \
          document.getElementById('measured').value"
     ));
     assert_eq!(tab.run("document.querySelectorAll('#suspects li').length"), 0, "the true arm agrees");
-    tab.close(&file);
+    tab.close();
     let wrong = truth.text().replacen("alpha: pi/2", "alpha: -pi/2", 1);
     assert_ne!(wrong, truth.text());
-    let file = written(&folder, &Source::new("wrong.yaml", wrong));
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = opened(&Source::new("wrong.yaml", wrong), 1600, "light") else { return };
     let first = tab.run(&format!(
         "(() => {{ const field = document.getElementById('measured'); field.value = {poses}; field.dispatchEvent(new Event('input')); \
          const first = document.querySelector('#suspects li'); first.querySelector('button').click(); \
@@ -480,24 +426,20 @@ fn a_planted_mistake_is_the_first_suspect() {
          for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
          for (const id of ['reach', 'w-map']) document.getElementById(id).open = true; await new Promise((done) => setTimeout(done, 300)); \
          return [document.querySelectorAll('#arm .ellipsoids ellipse').length, document.querySelectorAll('#reach svg').length, \
-                 said().includes('det J changes its sign'), stretched, document.getElementById('w-across').textContent, \
+                 said().includes('a factor of det J changes its sign'), stretched, document.getElementById('w-across').textContent, \
                  document.querySelector('#reach text').textContent.startsWith('distance, ')]; })()",
     );
     assert_eq!(drawn, serde_json::json!([2, 2, true, true, "−3.14159q2 joint2, rad3.14159", true]));
-    tab.close(&file);
+    tab.close();
 }
 
 /// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; the joint of a redundant arm is held.
 #[test]
 fn other_postures_at_a_pose_are_ghosts() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("postures");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     // The number of postures, how many ghosts beside the arm, how far the end effector moves when the second posture is taken, and the joint
     // that is held then.
     for (name, postures) in [("scara", 2), ("puma560", 8), ("panda7", 4)] {
-        let file = written(&folder, &robot(name));
-        let mut tab = browser.open(&file, 1600, "light");
+        let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
         let found = tab.run(&format!(
             "(async () => {{ {MOVE}(1); const details = document.getElementById('postures'); details.open = true; \
              while (!document.getElementById('postures-said').textContent) await new Promise((done) => setTimeout(done, 20)); \
@@ -515,16 +457,13 @@ fn other_postures_at_a_pose_are_ghosts() {
         let listed = found[0].as_u64().expect("a number");
         assert!(if name == "panda7" { listed >= postures } else { listed == postures }, "{name}: {found}");
         assert_eq!(found, serde_json::json!([listed, listed - 1, true, true, true, name != "panda7"]), "{name}");
-        tab.close(&file);
+        tab.close();
     }
 }
 
 /// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
 #[test]
 fn a_log_is_played_on_the_arm() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("logs");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let rows: String = (0..=100)
         .map(|k| {
             let t = f64::from(k) / 10.0;
@@ -540,11 +479,8 @@ fn a_log_is_played_on_the_arm() {
     .expect("a log");
     let run = Run { name: "small".into(), log: Some(log.clone()), ..Run::default() };
     let large = Run { name: "large".into(), log: Some(log), ..Run::default() };
-    let source = robot("scara");
-    let file = folder.join("scara.html");
-    let (page, _) = armgen_page::page(&source, &[run.clone(), large]).expect("the joints are those of the arm");
-    std::fs::write(&file, page.expect("a page")).expect("written");
-    let mut tab = browser.open(&file, 1600, "light");
+    let file = written_with("logs", &robot("scara"), &[run.clone(), large]);
+    let Some(mut tab) = Tab::open(&file, 1600, "light") else { return };
     let played = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'); log.open = true; \
          while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
@@ -575,7 +511,7 @@ fn a_log_is_played_on_the_arm() {
          return seen; })()",
     );
     assert_eq!(stays, serde_json::json!(["5", "-0.5", true, true, "5", "-0.5", false, true]));
-    tab.close(&file);
+    tab.close();
     let other = robot("ur5");
     let misfit = armgen_page::page(&other, &[run]).expect_err("other joints");
     assert!(misfit.reason.contains("shoulder, elbow") && misfit.reason.contains("the arm's are joint1"), "{misfit:?}");
@@ -584,26 +520,20 @@ fn a_log_is_played_on_the_arm() {
 /// An arm without mass has its frames, its Jacobian and nothing of the dynamics.
 #[test]
 fn an_arm_without_mass_has_its_kinematics() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("massless");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let row = |name: &str| format!("  - {{name: {name}, type: revolute, a: 0.4, alpha: 0, d: 0, theta: 0, link: {{mass: 0}}}}\n");
     let text = format!("name: light\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{}{}", row("one"), row("two"));
-    let file = written(&folder, &Source::new("light.yaml", text));
-    let mut tab = browser.open(&file, 1600, "light");
+    let Some(mut tab) = opened(&Source::new("light.yaml", text), 1600, "light") else { return };
     let count = |quantity: &str| format!("document.querySelectorAll('[data-quantity={quantity}]').length");
     let shown =
         tab.run(&format!("[{}, {}, {}]", count("direct_kinematics"), count("geometric_jacobian"), count("inertia_matrix")));
     assert_eq!(shown, serde_json::json!([16, 12, 0]));
-    tab.close(&file);
+    tab.close();
 }
 
 /// Texts of files that would be markup are texts, and nothing of them runs, with the policy removed as well.
 #[test]
 fn hostile_texts_are_inert() {
-    let Some(program) = driver::program() else { return };
     let folder = driver::folder("hostile");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
     let hostile = "</script><script>hacked=1</script><img src=x onerror=hacked=1>\"'\u{2028}<!--<script>";
     let csv = format!("t,x,{hostile}\n0,1,2\n1,2,3\n");
     let log = Log::read(&csv, |_| hostile.to_owned()).expect("a log");
@@ -626,7 +556,7 @@ fn hostile_texts_are_inert() {
     for (name, text) in [("with", page), ("without", without)] {
         let file = folder.join(format!("{name}.html"));
         std::fs::write(&file, text).expect("written");
-        let mut tab = browser.open(&file, 1600, "light");
+        let Some(mut tab) = Tab::open(&file, 1600, "light") else { return };
         let found = tab.run(
             "(async () => { const log = document.querySelector('[data-log]'); log.open = true; \
              while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
@@ -636,44 +566,27 @@ fn hostile_texts_are_inert() {
                      [...log.querySelectorAll('.u-label')].some((label) => label.textContent.startsWith('</script>'))]; })()",
         );
         assert_eq!(found, serde_json::json!(["undefined", 2, 0, true, true, true]), "{name}");
-        tab.close(&file);
+        tab.close();
     }
-}
-
-/// An arm of so many joints, the first of them prismatic.
-fn long(joints: usize) -> Source {
-    let mut text = String::from("name: long\nconvention: modified\ngravity: [0, 0, -9.81]\njoints:\n");
-    for i in 0..joints {
-        let kind = if i == 0 { "prismatic" } else { "revolute" };
-        let alpha = ["pi/2", "-pi/2"][i % 2];
-        text += &format!(
-            "  - {{name: j{i}, type: {kind}, a: 0.{}, alpha: {alpha}, d: 0.{}, theta: 0, limits: {{position: [0.2, 1]}}, \
-             link: {{mass: {}, com: [0.1, 0.02, 0.03], inertia: {{xx: 0.3, yy: 0.35, zz: 0.32}}}}}}\n",
-            i + 11,
-            i + 21,
-            i + 2
-        );
-    }
-    Source::new(format!("long{joints}.yaml"), text)
 }
 
 /// Arms of one, twelve and thirty-two joints, the first of them prismatic, in modified rows, with limits.
 #[test]
 fn short_and_long_arms_have_pages() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("sizes");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
+    let size = |source: &Source| std::fs::metadata(written(source)).expect("a file").len();
+    for (name, most) in [("scara", 250_000), ("panda7", 1_000_000)] {
+        assert!(size(&robot(name)) < most, "{name}: {} bytes", size(&robot(name)));
+    }
     for joints in [1, 12, 32] {
-        let file = written(&folder, &long(joints));
-        let size = std::fs::metadata(&file).expect("a file").len();
-        assert!(size < 1_500_000, "{joints} joints: {size} bytes");
-        let mut tab = browser.open(&file, 1600, "dark");
+        let source = long(joints);
+        assert!(size(&source) < 1_500_000, "{joints} joints: {} bytes", size(&source));
+        let Some(mut tab) = opened(&source, 1600, "dark") else { return };
         let shown = tab.run(
             "[document.querySelectorAll('#sliders input[type=range]').length, document.getElementById('q1-value').value, \
               document.querySelectorAll('[data-quantity=inertia_matrix]').length, document.querySelectorAll('[data-quantity=inverse_dynamics]').length]",
         );
         assert_eq!(shown, serde_json::json!([joints, "0.6", joints * joints, joints]));
-        tab.close(&file);
+        tab.close();
     }
 }
 
@@ -699,72 +612,4 @@ const CHOOSE_ENTRY: &str = r#"(async () => {
     const number = document.querySelector('[data-quantity=inertia_matrix][data-row="1"][data-column="2"]').dataset.value;
     const beside = first.querySelector("[data-number]").dataset.value === number;
     return [first.dataset.entry, steps.length + 1 < before, missing, (await lines()).length === before, beside];
-})()"#;
-
-/// The table of docs/page.md: `cargo test -p armgen-page --test browser -- --ignored --nocapture table_of_budgets`.
-#[test]
-#[ignore = "measures times: alone, on a machine that does nothing else"]
-fn table_of_budgets() {
-    let Some(program) = driver::program() else { return };
-    let folder = driver::folder("budgets");
-    let mut browser = Browser::start(&program, &folder.join("browser"));
-    println!("| robot | page, kB | drawn after, ms | slider, ms | slowest section of equations, ms | longest standstill, ms |\n|---|---|---|---|---|---|");
-    let named = ["scara", "puma560", "ur5", "panda7", "everything"].map(robot);
-    for source in named.into_iter().chain([long(32)]) {
-        let name = source.name().trim_end_matches(".yaml");
-        let file = written(&folder, &source);
-        let size = std::fs::metadata(&file).expect("a file").len() / 1000;
-        let mut ready: Vec<f64> = Vec::new();
-        let (mut slider, mut section) = (0.0, String::new());
-        for k in 0..5 {
-            let mut tab = browser.open(&file, 1600, "light");
-            let text = tab.run("document.documentElement.dataset.ready");
-            ready.push(text.as_str().expect("a text").parse().expect("ms"));
-            if k == 4 {
-                slider = tab.run(SLIDE).as_f64().expect("ms");
-                section = tab.run(SLOWEST).as_str().expect("a text").to_owned();
-            }
-            tab.close(&file);
-        }
-        ready.sort_by(f64::total_cmp);
-        println!("| {name} | {size} | {:.0} | {slider:.1} | {section} |", ready[2]);
-    }
-}
-
-/// The median time of the script for a movement of a slider.
-const SLIDE: &str = r#"(() => {
-    const times = [];
-    for (let k = 0; k < 41; k++) {
-        const q = document.getElementById("q1");
-        q.value = String(Number(q.min) + (k / 41) * (Number(q.max) - Number(q.min)));
-        const begin = performance.now();
-        q.dispatchEvent(new Event("input"));
-        times.push(performance.now() - begin);
-    }
-    return times.sort((a, b) => a - b)[20];
-})()"#;
-
-/// The section of equations that takes longest to open, until its first lines are laid out; and the longest that the page stands still while any
-/// is set, between two frames.
-const SLOWEST: &str = r#"(async () => {
-    let [slowest, name, still, which] = [0, "", 0, ""];
-    const frame = () => new Promise((done) => requestAnimationFrame(done));
-    for (const details of document.querySelectorAll("details[data-equation]")) {
-        await frame();
-        let begin = performance.now();
-        details.open = true;
-        while (!details.querySelector("math")) await new Promise((done) => setTimeout(done, 0));
-        details.getBoundingClientRect();
-        const time = performance.now() - begin;
-        if (time > slowest) [slowest, name] = [time, details.dataset.equation];
-        do {
-            await frame();
-            const gap = performance.now() - begin;
-            if (gap > still) [still, which] = [gap, details.dataset.equation];
-            begin = performance.now();
-        } while (details.querySelector("[aria-busy=true]"));
-        details.open = false;
-        details.querySelector("div").replaceChildren();
-    }
-    return `${Math.round(slowest)} (${name}) | ${Math.round(still)} (${which})`;
 })()"#;

@@ -9,8 +9,7 @@
 export function eigen(symmetric) {
     const n = symmetric.length;
     const a = symmetric.map((row) => row.slice());
-    /** @type {Matrix} */
-    const v = a.map((_, i) => a.map((_, j) => (i === j ? 1 : 0)));
+    const v = identityOf(n);
     for (let sweep = 0; sweep < 60; sweep++) {
         let off = 0;
         for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) off += a[p][q] * a[p][q];
@@ -95,13 +94,16 @@ export function gram(j) {
 }
 
 /**
- * Singular values of a matrix, largest first, by rotations that make its columns (or rows, where there are fewer) perpendicular to each
- * other (Hestenes, 1958): small ones keep their digits, which eigenvalues of J J' do not.
+ * Singular values of a matrix, largest first, and the left singular vectors that belong to them, by rotations that make its rows perpendicular
+ * to each other (Hestenes, 1958): small values keep their digits, which eigenvalues of J J' do not. A value below what the rounding of the
+ * entries can make is 0.
  *
  * @param {Matrix} j
  */
-export function singularValues(j) {
+export function singular(j) {
     const rows = j.map((row) => row.slice());
+    const left = identityOf(j.length);
+    const turn = (all, p, q, c, s) => all[p].forEach((x, k) => ([all[p][k], all[q][k]] = [c * x - s * all[q][k], s * x + c * all[q][k]]));
     for (let sweep = 0; sweep < 60; sweep++) {
         let turned = false;
         for (let p = 0; p < rows.length; p++) {
@@ -113,29 +115,60 @@ export function singularValues(j) {
                 const zeta = (bb - aa) / (2 * ab);
                 const t = (zeta < 0 ? -1 : 1) / (Math.abs(zeta) + Math.sqrt(1 + zeta * zeta));
                 const c = 1 / Math.sqrt(1 + t * t);
-                const s = c * t;
-                for (let k = 0; k < rows[p].length; k++) {
-                    const [x, y] = [rows[p][k], rows[q][k]];
-                    rows[p][k] = c * x - s * y;
-                    rows[q][k] = s * x + c * y;
-                }
+                turn(rows, p, q, c, c * t);
+                turn(left, p, q, c, c * t);
             }
         }
         if (!turned) break;
     }
-    return rows.map((row) => Math.hypot(...row)).sort((a, b) => b - a);
+    const lengths = rows.map((row) => Math.hypot(...row));
+    const order = lengths.map((_, k) => k).sort((a, b) => lengths[b] - lengths[a]);
+    const least = j.length * j[0].length * ROUNDING * lengths[order[0]];
+    return { values: order.map((k) => (lengths[k] <= least ? 0 : lengths[k])), left: order.map((k) => left[k]) };
 }
+
+/** The spacing of floats at 1. */
+export const ROUNDING = 2 ** -52;
 
 /** w = sqrt(det(J J')) = the product of the singular values; 0 for more rows than columns. @param {Matrix} j */
 export function manipulability(j) {
-    return j.length > j[0].length ? 0 : singularValues(j).reduce((product, s) => product * s, 1);
+    return j.length > j[0].length ? 0 : singular(j).values.reduce((product, s) => product * s, 1);
 }
 
 /** The largest singular value over the smallest; infinite at a singular posture. @param {Matrix} j */
 export function condition(j) {
     if (j.length > j[0].length) return Infinity;
-    const values = singularValues(j);
+    const { values } = singular(j);
     return values[0] / values[values.length - 1];
+}
+
+/**
+ * The combinations of the rows that no rates move, u' J = 0: a basis of them in echelon form, each with 1 at its largest entry; where there is
+ * none, the one that they move least. Also by how much rates of norm 1 move it at most.
+ *
+ * @param {Matrix} j @returns {{most: number, of: number[][]}}
+ */
+export function lost(j) {
+    const { values, left } = singular(j);
+    const least = values[values.length - 1];
+    const of = left.filter((_, k) => (least > 0 ? k === left.length - 1 : values[k] === 0));
+    let most = least;
+    for (let k = 0; k < of.length; k++) {
+        // The largest entry of those that are left: nothing that rounding made becomes a pivot.
+        let [row, column] = [k, 0];
+        for (let i = k; i < of.length; i++) of[i].forEach((x, c) => Math.abs(x) > Math.abs(of[row][column]) + 1e-9 && ([row, column] = [i, c]));
+        [of[k], of[row]] = [of[row], of[k]];
+        const pivot = of[k][column];
+        of[k] = of[k].map((x) => x / pivot);
+        of.forEach((other, i) => i !== k && (of[i] = other.map((x, c) => x - other[column] * of[k][c])));
+        most /= Math.abs(pivot);
+    }
+    return { most, of: of.map((row) => row.map((x) => (Math.abs(x) < 1e-9 ? 0 : Math.abs(x - 1) < 1e-9 ? 1 : x))) };
+}
+
+/** @param {number} n @returns {Matrix} */
+function identityOf(n) {
+    return Array.from({ length: n }, (_, i) => Array.from({ length: n }, (_, j) => (i === j ? 1 : 0)));
 }
 
 /**

@@ -6,18 +6,20 @@
 import { byId, copy, html } from "./dom.mjs";
 import { exact, short } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
-import { condition, determinant, manipulability } from "./linear.mjs";
+import { condition, determinant, manipulability, ROUNDING } from "./linear.mjs";
+import { VELOCITY } from "./lost.mjs";
 import { range } from "./state.mjs";
 
-/** A factor is near zero below this part of what it can be. */
+/** A factor is near zero below this part of what it can be, and zero below that which rounding of it and of q makes. */
 const NEAR = 0.02;
+const ZERO = 8 * ROUNDING;
 
 /** From this condition number on a posture is called singular. */
 const SINGULAR = 1000;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     unitOf?: (row: number, column: number) => string, rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => string, formula?: string,
+ *     unitOf?: (row: number, column: number) => string, rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => number, words?: string[], formula?: string,
  *     buttons?: HTMLElement[]}} Quantity
  */
 
@@ -26,7 +28,8 @@ export function numbers(data, state) {
     const host = byId("quantities");
     const shown = quantities(data, state).map((quantity) => table(quantity));
     const title = html("h3", { id: "singular-title" }, "Singular postures");
-    const singular = html("section", { id: "singular", "aria-labelledby": "singular-title" }, title);
+    const lost = html("p", { id: "lost-motion", class: "near" });
+    const singular = html("section", { id: "singular", "aria-labelledby": "singular-title" }, title, lost);
     for (const { element, quantity } of shown) {
         if (quantity.singular) singular.append(element);
         host.append(quantity.singular ? singular : element);
@@ -38,11 +41,13 @@ export function numbers(data, state) {
     const badge = byId("singular-posture");
     const update = () => {
         for (const one of shown) if (one.element.open || one.quantity.rows === 0) one.update();
-        const near = shown.filter((one) => one.said.textContent).map(({ quantity }) => quantity);
+        state.singular = Math.max(0, ...shown.map((one) => one.level));
+        const near = shown.filter((one) => one.level === state.singular).map(({ quantity }) => quantity);
         const factors = near.filter(({ symbol }) => symbol !== "w").map(({ symbol, formula }) => (formula ? `${symbol}, ${formula},` : symbol));
-        const why = factors.length > 0 ? `: ${factors.join(" and ")} of det J is near zero` : ", or nearly so";
-        const text = near.length > 0 ? `⚠ singular posture${why}` : "";
+        const why = factors.length > 0 ? `: ${factors.join(" and ")} of det J is ${["", "near ", ""][state.singular]}zero` : "";
+        const text = ["", `⚠ nearly singular posture${why}`, `⚠ singular posture${why}`][state.singular];
         if (badge.textContent !== text) badge.replaceChildren(...(text ? [html("a", { href: "#singular" }, text)] : []));
+        state.changed("singular");
     };
     state.on("motion", update);
     for (const one of shown) one.element.addEventListener("toggle", () => one.element.open && one.update());
@@ -64,30 +69,32 @@ function quantities(data, state) {
         const unitOf = (i, j) => names[Number(slides[i]) + Number(slides[j])];
         return { unit: mixed ? `${names[0]}; ${names[1]} between a joint that turns and one that slides, ${names[2]} of those that slide` : unitOf(0, 0), unitOf };
     };
-    const velocity = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
     /** @type {Quantity[]} */
     const list = [
         { ...matrix("direct_kinematics", "Tₑ", "Pose of the end effector in the base frame: its axes and its origin, m", "", 4, 4, () => robot.directKinematics(state.q)), rowNames: ["x", "y", "z", ""], columnNames: ["x axis", "y axis", "z axis", "origin"] },
         vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]),
-        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for a rate of 1 rad/s, or of 1 m/s", "", 6, n, () => robot.geometricJacobian(state.q)), rowNames: velocity, columnNames: joints },
+        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for a rate of 1 rad/s, or of 1 m/s", "", 6, n, () => robot.geometricJacobian(state.q)), rowNames: VELOCITY, columnNames: joints },
     ];
-    const rows = data.task.map((row) => velocity[row]).join(" ");
+    const rows = data.task.map((row) => VELOCITY[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
-    if (data.task.length === n) list.push({ ...scalar("det", "det J", `Determinant of the rows ${rows} of J`, "", () => determinant(task())), singular: true });
+    if (data.task.length === n) list.push({ ...scalar("det", "det J", `Determinant of the rows ${rows} of J`, "", () => (manipulability(task()) === 0 ? 0 : determinant(task()))), singular: true });
     (data.determinant?.factors ?? []).forEach((text, k) => {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
         const zero = data.determinant.singular[k];
         const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}${rounded(zero)}` : (zero ?? "zero where several joints together make it so");
-        const of = () => evaluate(factor, lookup);
-        const near = () => (Math.abs(of()) < NEAR * bound(factor, lookup) ? "⚠ near zero: singular" : "");
+        const part = () => Math.abs(evaluate(factor, lookup)) / bound(factor, lookup);
+        const of = () => (part() < ZERO ? 0 : evaluate(factor, lookup));
+        const near = () => Number(part() < NEAR) + Number(part() < ZERO);
+        const words = ["", "⚠ near zero: nearly singular", "⚠ zero: singular"];
         const formula = text.length < 60 ? text.replaceAll("*", " ").replaceAll("-", "−") : "";
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${formula || "see the equations"}; ${where}`, "", of), formula, singular: true, near, buttons: zeroButtons(zero, data, state) });
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${formula || "see the equations"}; ${where}`, "", of), formula, singular: true, near, words, buttons: zeroButtons(zero, data, state) });
     });
     // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
-    const singular = () => (told || condition(task()) < SINGULAR ? "" : "⚠ singular, or nearly so");
-    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), singular: true, near: singular });
+    const words = ["", "⚠ nearly singular", "⚠ singular"];
+    const singular = () => (told ? 0 : Number(condition(task()) >= SINGULAR) + Number(condition(task()) === Infinity));
+    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), singular: true, near: singular, words });
     list.push({ ...scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())), singular: true });
     if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
@@ -218,10 +225,13 @@ function table(quantity) {
             cell.td.textContent = short(value);
             cell.td.setAttribute("data-value", exact(value));
         });
-        const near = quantity.near?.() ?? "";
+        one.level = quantity.near?.() ?? 0;
+        const near = quantity.words?.[one.level] ?? "";
         if (said.textContent !== near) said.textContent = near;
     };
-    return { element, update, quantity, said };
+    /** How singular it says that the posture is: 0 not, 1 nearly, 2 quite. */
+    const one = { element, update, quantity, level: 0 };
+    return one;
 }
 
 /** An entry under the pointer lights the names of its row and its column. @param {HTMLElement} table */

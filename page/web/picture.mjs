@@ -9,7 +9,7 @@ import { Ball, Box, drawSolids } from "./solids.mjs";
 import { along, column, compose, identity, norm, origin, place } from "./vector.mjs";
 import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
 
-const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "dimensions", "marks", "gravity"];
+const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "lost", "dimensions", "marks", "gravity"];
 
 export class Picture {
     /** @param {any} data @param {import("./state.mjs").State} state */

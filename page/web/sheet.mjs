@@ -89,6 +89,18 @@ function brief(x) {
     return short(tidy(Number(x.toPrecision(5))));
 }
 
+/** Densities below that of foam and above that of osmium, kg/m³, are doubtful. */
+const [FOAM, OSMIUM] = [20, 22600];
+
+/** Whether there is such a body, in words. @param {any} body @param {any} shape its cuboid */
+function verdict(body, shape) {
+    const alone = body.inertia.filter((element) => element !== 0).length === 1;
+    if (!shape.possible) return alone ? "planar: one moment alone" : "impossible";
+    if (shape.density < FOAM) return "doubtful: lighter than foam";
+    if (!shape.empty && shape.density > OSMIUM && shape.density < Infinity) return "doubtful: denser than osmium";
+    return body.said.length > 0 ? "doubtful" : "possible";
+}
+
 /** @param {any} data */
 function bodyTable(data) {
     const columns = ["body", "frame", "mass, kg", `centre of mass in that frame, ${units.length}`, "inertia tensor about it, kg m²", `edges of its cuboid, ${units.length}`, "density of the cuboid, kg/m³", "such a body"];
@@ -103,7 +115,6 @@ function bodyTable(data) {
         const product = (name, k) => (body.inertia[k] === 0 ? "" : `  ${element(name, k)}`);
         const tensor = [element("xx", 0) + product("xy", 1), element("yy", 2) + product("xz", 3), element("zz", 5) + product("yz", 4)].join("\n");
         // What the linter says of the tensor, in its own words.
-        const alone = body.inertia.filter((element) => element !== 0).length === 1;
         const impossible = shape !== null && !shape.possible;
         const said = body.said.length === 0 && impossible ? ["no solid body has these moments"] : body.said.filter((message) => !told.has(message));
         said.forEach((message) => told.add(message));
@@ -113,12 +124,12 @@ function bodyTable(data) {
                   tensor,
                   shape.empty ? "no inertia" : lengths(shape.edges),
                   Number.isFinite(shape.density) ? short(Number(shape.density.toPrecision(4))) : shape.empty ? "none" : "flat: none",
-                  impossible ? (alone ? "planar: one moment alone" : "impossible") : body.said.length > 0 ? "doubtful" : "possible",
+                  verdict(body, shape),
               ]
             : ["none", tensor, "none", "none", "no mass"];
         const row = html(
             "tr",
-            { class: impossible ? "doubtful" : "" },
+            { class: cells.at(-1) === "possible" || !shape ? "" : "doubtful" },
             html("th", { scope: "row" }, body.name),
             ...[String(body.frame), short(body.mass), ...cells].map((text) => html("td", {}, text)),
         );

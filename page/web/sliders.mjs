@@ -8,6 +8,9 @@ import { exact, fromUnit, inUnit, short, unitName } from "./format.mjs";
 import { typed } from "./formula.mjs";
 import { range } from "./state.mjs";
 
+/** Fields with a text that is no number, and what the number was: the text stays until that is another one. @type {Map<any, number>} */
+const refused = new Map();
+
 /** @param {any} data @param {import("./state.mjs").State} state */
 export function sliders(data, state) {
     const parts = data.rows.map((row, i) => {
@@ -34,7 +37,11 @@ export function sliders(data, state) {
                 const value = meant(field.value, unit);
                 const wrong = !Number.isFinite(value);
                 field.setAttribute("aria-invalid", String(wrong));
-                if (wrong) return;
+                if (wrong) {
+                    refused.set(field, values()[i]);
+                    return;
+                }
+                refused.delete(field);
                 values()[i] = value;
                 state.changed("motion");
             });
@@ -46,6 +53,7 @@ export function sliders(data, state) {
                 const expected = field.value.includes(",") ? "a decimal point is a point" : `digits in ${unitName(unit)}, pi in ${unit}, + − * / and parentheses are`;
                 part.fault.textContent = badInput ? "this field takes digits alone" : `“${field.value}” is no number: ${expected}`;
                 if (wrong) return;
+                refused.delete(field);
                 field.value = exact(inUnit(values()[i], unit));
                 field.removeAttribute("aria-invalid");
             });
@@ -85,6 +93,7 @@ export function sliders(data, state) {
         show();
     });
     byId("zero").addEventListener("click", () => {
+        refused.clear();
         state.dq.fill(0);
         state.ddq.fill(0);
         state.move(state.q.map(() => 0));
@@ -97,9 +106,10 @@ function meant(text, unit) {
     return text.includes("pi") ? typed(text) : fromUnit(typed(text), unit);
 }
 
-/** Leaves a field alone that holds the number already, while somebody types into it. @param {any} field @param {number} value @param {string} unit */
+/** Leaves a field alone that holds the number already, while somebody types into it, and one whose text is said to be no number. @param {any} field @param {number} value @param {string} unit */
 function write(field, value, unit) {
-    if (meant(field.value, unit) === value) return false;
+    if (meant(field.value, unit) === value || refused.get(field) === value) return false;
+    refused.delete(field);
     field.value = exact(inUnit(value, unit));
     field.removeAttribute("aria-invalid");
     return true;

@@ -1,7 +1,7 @@
 /**
  * What is shown: the posture, rates and accelerations, and who has to know when they change.
  *
- * Kinds of changes: "motion" (q, dq or ddq), "units" (m or mm, rad or deg), "view", "sweep" (the joints begin to sweep), "theme".
+ * Kinds of changes: "motion" (q, dq or ddq), "singular" (after every motion, once it is known whether the posture is), "units" (m or mm, rad or deg), "view", "sweep" (the joints begin to sweep), "theme".
  */
 
 export class State {
@@ -10,6 +10,8 @@ export class State {
         this.q = new Array(joints).fill(0);
         this.dq = new Array(joints).fill(0);
         this.ddq = new Array(joints).fill(0);
+        /** Whether the posture is singular: 0 no, 1 nearly, 2 yes. */
+        this.singular = 0;
         /** @type {Map<string, (() => void)[]>} */
         this.listeners = new Map();
     }

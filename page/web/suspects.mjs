@@ -146,20 +146,19 @@ export function difference(arm, all, size) {
 }
 
 /**
- * Suspects that leave less difference than the arm as it is written, smallest first; those that explain as much as the first are marked.
+ * Suspects that leave less difference than the arm as it is written, smallest first; those that explain as much as the first are marked, and
+ * stand in the order of the rows, of which rounding knows nothing.
  *
  * @param {any} data @param {Measured[]} measured @param {number} size
  */
 export function explain(data, measured, size) {
     const before = difference(asWritten(data), measured, size);
     const all = suspects(data).map((suspect) => ({ ...suspect, difference: difference(suspect.arm, measured, size) }));
-    all.sort((a, b) => a.difference - b.difference);
-    const best = all[0]?.difference ?? Infinity;
-    const equal = best * 1.02 + 1e-9 * size;
-    return {
-        before,
-        suspects: all.filter((suspect) => suspect.difference < 0.9 * before).map((suspect) => ({ ...suspect, equal: suspect.difference <= equal })),
-    };
+    const least = Math.min(...all.map((suspect) => suspect.difference)) * 1.02 + 1e-9 * size;
+    const marked = all.map((suspect) => ({ ...suspect, equal: suspect.difference <= least }));
+    const place = ({ equal, difference }) => (equal ? 0 : difference);
+    marked.sort((a, b) => place(a) - place(b));
+    return { before, suspects: marked.filter((suspect) => suspect.difference < 0.9 * before) };
 }
 
 /**

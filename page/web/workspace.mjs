@@ -4,6 +4,7 @@
 
 import { byId, html, svg } from "./dom.mjs";
 import { inUnit, short, unitName, withUnit } from "./format.mjs";
+import { evaluate, parse } from "./formula.mjs";
 import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
 import { sequence } from "./search.mjs";
 import { range } from "./state.mjs";
@@ -109,7 +110,7 @@ function ellipsoids(data, state, picture) {
     });
 }
 
-/** w of the task over two joints as brightness, where the determinant changes its sign as lines. */
+/** w of the task over two joints as brightness, where a factor of the determinant changes its sign as lines. */
 function map(data, state, picture) {
     const details = byId("w-map");
     const [first, second] = [byId("w-first"), byId("w-second")];
@@ -123,12 +124,14 @@ function map(data, state, picture) {
     [first.value, second.value] = [data.rows.length > 2 ? "1" : "0", data.rows.length > 2 ? "2" : "1"];
     const canvas = /** @type {HTMLCanvasElement} */ (byId("w-canvas"));
     const square = data.task.length === data.rows.length;
+    const factors = (data.determinant?.factors ?? []).map(parse);
     const draw = () => {
         if (!details.open) return;
         const [i, j] = [Number(first.value), Number(second.value)];
         const [[a, b], [c, d]] = [range(data.rows[i]), range(data.rows[j])];
         const at = (k, low, high) => low + ((k + 0.5) / CELLS) * (high - low);
         const values = [];
+        // Of each factor: where two of them change together, as in a folded arm, the determinant changes not at all.
         const signs = [];
         for (let y = 0; y < CELLS; y++) {
             for (let x = 0; x < CELLS; x++) {
@@ -139,7 +142,8 @@ function map(data, state, picture) {
                 const task = data.task.map((row) => jacobian[row]);
                 const det = square ? determinant(task) : NaN;
                 values.push(square ? Math.abs(det) : manipulability(task));
-                signs.push(Math.sign(det));
+                const each = factors.length > 0 ? factors.map((factor) => evaluate(factor, (name) => q[Number(name.slice(1)) - 1])) : [det];
+                signs.push(each.map((value) => value < 0));
             }
         }
         const largest = Math.max(...values);
@@ -165,17 +169,18 @@ function map(data, state, picture) {
             context.fillRect(x * cell, SIDE - (y + 1) * cell, cell + 0.5, cell + 0.5);
         });
         context.fillStyle = "#ffffff";
-        signs.forEach((sign, k) => {
+        const change = (k, other) => square && signs[k].some((sign, i) => sign !== signs[other][i]);
+        signs.forEach((_, k) => {
             const [x, y] = [k % CELLS, Math.floor(k / CELLS)];
-            if (x + 1 < CELLS && sign * signs[k + 1] < 0) context.fillRect((x + 1) * cell - 1, SIDE - (y + 1) * cell, 2.5, cell);
-            if (y + 1 < CELLS && sign * signs[k + CELLS] < 0) context.fillRect(x * cell, SIDE - (y + 1) * cell - 1, cell, 2.5);
+            if (x + 1 < CELLS && change(k, k + 1)) context.fillRect((x + 1) * cell - 1, SIDE - (y + 1) * cell, 2.5, cell);
+            if (y + 1 < CELLS && change(k, k + CELLS)) context.fillRect(x * cell, SIDE - (y + 1) * cell - 1, cell, 2.5);
         });
         context.strokeStyle = "#ff3b30";
         context.lineWidth = 2;
         context.strokeRect(((state.q[i] - a) / (b - a)) * SIDE - 5, SIDE - ((state.q[j] - c) / (d - c)) * SIDE - 5, 10, 10);
         byId("w-said").textContent =
             `Across: q${i + 1} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: q${j + 1} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
-            `w from 0 (dark) to ${short(largest)} (bright)${square ? ", white lines where det J changes its sign" : ""}; the square is the posture that is shown.`;
+            `w from 0 (dark) to ${short(largest)} (bright)${square ? ", white lines where a factor of det J changes its sign" : ""}; the square is the posture that is shown.`;
     };
     details.addEventListener("toggle", draw);
     let waiting = 0;

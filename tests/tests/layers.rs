@@ -84,6 +84,7 @@ const PAGE: Layers = &[
     ("rows", &[]),
     ("bodies", &["rows"]),
     ("cost", &["html"]),
+    ("drives", &["html"]),
     ("words", &[]),
     ("equations", &["html", "words"]),
     ("logs", &["html", "rows"]),

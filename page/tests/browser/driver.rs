@@ -5,24 +5,31 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use serde_json::{json, Value};
 
 /// The browser of this machine: `CHROMIUM`, or one of the usual names; none is said in a line.
-pub(crate) fn program() -> Option<String> {
-    let named = std::env::var("CHROMIUM").ok();
-    let names = named.iter().map(String::as_str).chain(["chromium", "chromium-browser", "google-chrome"]);
-    let there = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
-    let found = names.into_iter().find(there).map(str::to_owned);
-    if found.is_none() || !cfg!(unix) {
+pub(crate) fn program() -> Option<&'static str> {
+    static FOUND: OnceLock<Option<String>> = OnceLock::new();
+    let found = FOUND.get_or_init(|| {
+        let named = std::env::var("CHROMIUM").ok();
+        let mut names = named.iter().map(String::as_str).chain(["chromium", "chromium-browser", "google-chrome"]);
+        let there = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
+        names.find(there).map(str::to_owned).filter(|_| cfg!(unix))
+    });
+    if found.is_none() {
         println!("skipped: no `chromium` here (Debian: chromium); CHROMIUM names another browser of its kind");
-        return None;
     }
-    found
+    found.as_deref()
 }
 
+/// Browsers that no test uses at the moment: one starts only where all others have a page open. They end with the tests, when their pipes close.
+static IDLE: Mutex<Vec<Browser>> = Mutex::new(Vec::new());
+
 /// A running browser.
-pub(crate) struct Browser {
+struct Browser {
     child: Child,
     to: File,
     from: BufReader<File>,
@@ -30,18 +37,21 @@ pub(crate) struct Browser {
     events: Vec<Value>,
 }
 
-/// An open page.
-pub(crate) struct Tab<'b> {
-    browser: &'b mut Browser,
+/// An open page, in a browser of its own as long as it is open.
+pub(crate) struct Tab {
+    browser: Browser,
     session: String,
     target: String,
+    address: String,
 }
 
 impl Browser {
-    /// Starts a browser with an empty profile in `folder`, which is made anew.
-    pub(crate) fn start(program: &str, folder: &Path) -> Browser {
-        let _ = std::fs::remove_dir_all(folder);
-        std::fs::create_dir_all(folder).expect("a folder for the browser");
+    /// Starts a browser with an empty profile.
+    fn start(program: &str) -> Browser {
+        static STARTED: AtomicU32 = AtomicU32::new(0);
+        let folder = folder(&format!("browser-{}", STARTED.fetch_add(1, Ordering::Relaxed)));
+        std::fs::remove_dir_all(&folder).expect("an old profile goes");
+        std::fs::create_dir_all(&folder).expect("a folder for the browser");
         let [to, from] = ["to", "from"].map(|name| folder.join(name));
         let made = Command::new("mkfifo").args([&to, &from]).status().expect("mkfifo runs");
         assert!(made.success(), "named pipes");
@@ -90,31 +100,6 @@ impl Browser {
             self.events.push(message);
         }
     }
-
-    /// Opens a file in a window of a width, in a theme, and waits until the page is drawn.
-    #[track_caller]
-    pub(crate) fn open(&mut self, file: &Path, width: u32, theme: &str) -> Tab<'_> {
-        self.events.clear();
-        let target = self.call(None, "Target.createTarget", json!({"url": "about:blank"}))["targetId"].take();
-        let session = self.call(None, "Target.attachToTarget", json!({"targetId": target, "flatten": true}))["sessionId"].take();
-        let text = |value: Value| value.as_str().expect("an identifier").to_owned();
-        let mut tab = Tab { session: text(session), target: text(target), browser: self };
-        for domain in ["Runtime", "Log", "Network", "Page"] {
-            tab.call(&format!("{domain}.enable"), json!({}));
-        }
-        let size = json!({"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": false});
-        tab.call("Emulation.setDeviceMetricsOverride", size);
-        let theme = json!({"features": [{"name": "prefers-color-scheme", "value": theme}]});
-        tab.call("Emulation.setEmulatedMedia", theme);
-        tab.call("Page.navigate", json!({"url": format!("file://{}", file.display())}));
-        for _ in 0..500 {
-            if tab.run("document.documentElement?.dataset.ready ?? ''") != "" {
-                return tab;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(20));
-        }
-        panic!("{} is never drawn: {:?}", file.display(), tab.messages());
-    }
 }
 
 impl Drop for Browser {
@@ -124,7 +109,37 @@ impl Drop for Browser {
     }
 }
 
-impl Tab<'_> {
+impl Tab {
+    /// Opens a file in a window of a width, in a theme, and waits until the page is drawn; none where there is no browser.
+    #[track_caller]
+    pub(crate) fn open(file: &Path, width: u32, theme: &str) -> Option<Tab> {
+        let program = program()?;
+        let idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut browser = idle.unwrap_or_else(|| Browser::start(program));
+        browser.events.clear();
+        let target = browser.call(None, "Target.createTarget", json!({"url": "about:blank"}))["targetId"].take();
+        let session =
+            browser.call(None, "Target.attachToTarget", json!({"targetId": target, "flatten": true}))["sessionId"].take();
+        let text = |value: Value| value.as_str().expect("an identifier").to_owned();
+        let address = format!("file://{}", file.display());
+        let mut tab = Tab { session: text(session), target: text(target), browser, address: address.clone() };
+        for domain in ["Runtime", "Log", "Network", "Page"] {
+            tab.call(&format!("{domain}.enable"), json!({}));
+        }
+        let size = json!({"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": false});
+        tab.call("Emulation.setDeviceMetricsOverride", size);
+        let theme = json!({"features": [{"name": "prefers-color-scheme", "value": theme}]});
+        tab.call("Emulation.setEmulatedMedia", theme);
+        tab.call("Page.navigate", json!({"url": address}));
+        for _ in 0..500 {
+            if tab.run("document.documentElement?.dataset.ready ?? ''") != "" {
+                return Some(tab);
+            }
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        panic!("{address} is never drawn: {:?}", tab.messages());
+    }
+
     #[track_caller]
     fn call(&mut self, method: &str, parameters: Value) -> Value {
         let session = self.session.clone();
@@ -173,13 +188,13 @@ impl Tab<'_> {
 
     /// Closes the page; nothing may have been said and nothing asked for but the file.
     #[track_caller]
-    pub(crate) fn close(mut self, file: &Path) {
+    pub(crate) fn close(mut self) {
         // What is said late is said until then.
         self.run("new Promise((done) => setTimeout(done, 20)).then(() => 0)");
-        assert_eq!(self.messages(), Vec::<String>::new(), "{}", file.display());
-        assert_eq!(self.requests(), [format!("file://{}", file.display())]);
-        let target = self.target.clone();
-        self.browser.call(None, "Target.closeTarget", json!({"targetId": target}));
+        assert_eq!(self.messages(), Vec::<String>::new(), "{}", self.address);
+        assert_eq!(self.requests(), [self.address.as_str()]);
+        self.browser.call(None, "Target.closeTarget", json!({"targetId": self.target}));
+        IDLE.lock().unwrap_or_else(PoisonError::into_inner).push(self.browser);
     }
 }
 

@@ -2,7 +2,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { cuboid } from "../bodies.mjs";
-import { condition, determinant, eigen, manipulability, outline } from "../linear.mjs";
+import { condition, determinant, eigen, lost, manipulability, outline } from "../linear.mjs";
+import { combination, line } from "../lost.mjs";
 
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12 * Math.max(1, Math.abs(b)), `${a} is not ${b}`);
 
@@ -44,4 +45,25 @@ test("a cuboid gives its own inertia back, and an impossible tensor says so", ()
     near(of.density, m / (a * b * c));
     assert.ok(of.possible);
     assert.ok(!cuboid(body([1, 0, 1, 0, 0, 3])).possible);
+});
+
+test("what is lost is in echelon form, and what rounding leaves is 0", () => {
+    // A stretched planar arm: no motion along it. One of two links of 0.5 m and an angle of 0.01: nearly none along the outer link.
+    assert.deepEqual(lost([[0, 0], [1, 0.5]]), { most: 0, of: [[1, 0]] });
+    const { most, of } = lost([[-0.5 * Math.sin(0.01), -0.5 * Math.sin(0.01)], [0.5 + 0.5 * Math.cos(0.01), 0.5 * Math.cos(0.01)]]);
+    assert.ok(most > 0.002 && most < 0.0025 && of.length === 1 && of[0][0] === 1, `${most}`);
+    // Two rows that are three times the first one: two combinations, each with 1 at an entry where the other has 0.
+    assert.deepEqual(lost([[1, 2, 3], [3, 6, 9], [-3, -6, -9]]).of.map((row) => row.map((x) => Number(x.toFixed(9)))), [[1, 0, 1 / 3].map((x) => Number(x.toFixed(9))), [0, 1, 1]]);
+    assert.equal(manipulability([[1e-80, 0], [0, 1]]), 0);
+    assert.equal(condition([[1, 1], [1, 1 + 1e-16]]), Infinity);
+});
+
+test("the line of a wrench is where it has no moment across it", () => {
+    const straight = line([1, 0, 0, 0, 0, 0], [1, 2, 3], false);
+    assert.deepEqual([straight.at, straight.direction, straight.text], [[1, 2, 3], [1, 0, 0], "no motion along this line"]);
+    assert.equal(line([0, 0, 0, 0, 2, 0], [0, 0, 0], true).text, "hardly any turn about this line");
+    // A force along x whose line lies 0.5 above the tip turns about y at the tip: m = (at - tip) x f.
+    assert.deepEqual(line([1, 0, 0, 0, 0.5, 0], [0, 0, 0], false).at, [0, 0, 0.5]);
+    assert.equal(line([1, 0, 0, 0.2, 0, 0], [0, 0, 0], false).text, "v + 0.2 ω along this line stays 0");
+    assert.equal(combination([-1, 0, 0.5], ["vx", "vy", "ωz"]), "−vx + 0.5 ωz");
 });
