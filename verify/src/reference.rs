@@ -351,7 +351,6 @@ impl<E: Element> Reference<E> {
         mut state: State<E>,
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
-        let divided = || "a constant of the description divides by zero here".to_string();
         let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
         let arm = Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)?;
         let n = arm.dof();
@@ -364,89 +363,14 @@ impl<E: Element> Reference<E> {
             let pivots = wanted.pivots.then(|| (none(), State::draw(arithmetic, n), none()));
             return Ok(Reference { state, values, elsewhere: None, nominal: None, two_derivations_agree: true, pivots });
         }
-        let singular = || "the inertia matrix is singular at a random state".to_string();
         let mut agree = quantities(&arm, &state, &mut values, "").ok_or_else(singular)?;
         let task = manipulator.task_rows();
         derivatives_and_task(&arm, &state, &task, &mut values).ok_or_else(singular)?;
 
-        let (mut elsewhere, mut nominal) = (None, None);
-        let mut other_parameters = None;
-        let (columns, known, run_time) = match vector {
-            Vector::Names(ids) => {
-                if state.pi.is_empty() {
-                    state.pi = ids.iter().map(|_| arithmetic.draw()).collect();
-                }
-                let other = wanted.pivots.then(|| ids.iter().map(|_| arithmetic.draw()).collect::<Vec<E>>());
-                let at = |pi: &[E]| {
-                    let mut names = names.clone();
-                    ids.iter().zip(pi).for_each(|(&id, value)| names[id] = value.clone());
-                    Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)
-                };
-                let zero = vec![arm.zero.clone(); ids.len()];
-                let known = reference_torques(&at(&zero)?, &state);
-                let mut columns = Vec::new();
-                for k in 0..ids.len() {
-                    let mut unit = zero.clone();
-                    unit[k] = arm.one.clone();
-                    let torques = reference_torques(&at(&unit)?, &state);
-                    columns.push(torques.iter().zip(&known).map(|(a, b)| a.minus(b)).collect::<Vec<E>>());
-                }
-                if let Some(pi) = other {
-                    other_parameters = Some((at(&pi)?, pi));
-                }
-                (columns, known, Some(at(&state.pi)?))
-            }
-            Vector::Standard(all) => {
-                if state.pi.is_empty() {
-                    state.pi = all.iter().map(|_| arithmetic.draw()).collect();
-                }
-                nominal = Some(all.iter().map(|parameter| parameter.value(&arm)).collect());
-                let columns = standard_columns(&arm, &state, all, LinkFrames::Described);
-                if wanted.pivots {
-                    let pi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
-                    other_parameters = Some((with_standard(&arm, all, &pi).ok_or_else(divided)?, pi));
-                }
-                (columns, known_torque(&arm, &state, all)?, Some(with_standard(&arm, all, &state.pi).ok_or_else(divided)?))
-            }
-            Vector::Base(base, all) => {
-                let kept: Vec<Standard> = base.iter().map(|(parameter, _)| *parameter).collect();
-                let columns = standard_columns(&arm, &state, &kept, LinkFrames::Joint);
-                let known = known_torque(&arm, &state, all)?;
-                if wanted.base == BaseParameters::LeftOut {
-                    (columns, known, None)
-                } else if wanted.base == BaseParameters::Kept {
-                    state.pi = kept.iter().map(|_| arithmetic.draw()).collect();
-                    let alone = KeptAlone { arm: &arm, kept: &kept, all, pi: &state.pi };
-                    of_parts(&arm, &state, alone.parts(&state), &mut values, "_with").ok_or_else(singular)?;
-                    let mut there = State::draw(arithmetic, n);
-                    there.pi.clone_from(&state.pi);
-                    let energy = alone.potential_energy(&there);
-                    elsewhere = Some((there, energy));
-                    (columns, known, None)
-                } else {
-                    let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
-                    state.pi = if wanted.base == BaseParameters::Solved {
-                        let map = base_map(arithmetic, &arm, &kept, all)?;
-                        check_names(&map, base, all, &arm)?;
-                        let standard: Vec<E> = all.iter().map(|parameter| parameter.value(&arm)).collect();
-                        nominal = Some(times_vector(&map, &standard));
-                        if wanted.pivots {
-                            let phi: Vec<E> = all.iter().map(|_| arithmetic.draw()).collect();
-                            let other = with_standard(&arm, all, &phi).ok_or_else(divided)?;
-                            other_parameters = Some((other, times_vector(&map, &phi)));
-                        }
-                        times_vector(&map, &phi)
-                    } else {
-                        base.iter().map(|_| arithmetic.draw()).collect()
-                    };
-                    let other = with_standard(&arm, all, &phi).ok_or_else(divided)?;
-                    let mut there = State::draw(arithmetic, n);
-                    there.pi.clone_from(&state.pi);
-                    let energy = potential_energy(&other, &there);
-                    elsewhere = Some((there, energy));
-                    (columns, known, Some(other))
-                }
-            }
+        let Linear { columns, known, run_time, other, nominal, elsewhere } = match vector {
+            Vector::Names(ids) => of_names(arithmetic, manipulator, &arm, &names, ids, &mut state, wanted)?,
+            Vector::Standard(all) => of_standard(arithmetic, &arm, all, &mut state, wanted)?,
+            Vector::Base(base, all) => of_base(arithmetic, &arm, (base, all), &mut state, &mut values, wanted)?,
         };
         let y = (0..n).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
         values.insert("regressor".into(), y);
@@ -459,13 +383,148 @@ impl<E: Element> Reference<E> {
             values.remove("center_of_mass_with");
         }
         let pivots = wanted.pivots.then(|| {
-            let (other, pi) = other_parameters.unzip();
+            let (other, pi) = other.unzip();
             let there = State { pi: pi.unwrap_or_default(), ..State::draw(arithmetic, n) };
             let at = |run_time: Option<&Arm<E>>, state: &State<E>| pivots(&arm, run_time, state, &task);
             (at(run_time.as_ref(), &state), there.clone(), at(other.as_ref(), &there))
         });
         Ok(Reference { state, values, elsewhere, nominal, two_derivations_agree: agree, pivots })
     }
+}
+
+fn divided() -> String {
+    "a constant of the description divides by zero here".into()
+}
+
+fn singular() -> String {
+    "the inertia matrix is singular at a random state".into()
+}
+
+/// The torques of the four-argument form as they depend on a parameter vector, and what else belongs to the vector.
+struct Linear<E> {
+    /// Columns of the regressor.
+    columns: Vec<Vec<E>>,
+    /// What no parameter enters.
+    known: Vec<E>,
+    /// The arm with the parameters of the state.
+    run_time: Option<Arm<E>>,
+    /// The arm with other parameters, where pivots are wanted.
+    other: Option<(Arm<E>, Vec<E>)>,
+    /// The values of the description.
+    nominal: Option<Vec<E>>,
+    /// Another configuration with the same parameters, and the potential energy there.
+    elsewhere: Option<(State<E>, E)>,
+}
+
+fn draws<K: Arithmetic>(arithmetic: &mut K, count: usize) -> Vec<K::Element> {
+    (0..count).map(|_| arithmetic.draw()).collect()
+}
+
+/// Named quantities of the description: columns are differences, since the torques are affine in them.
+fn of_names<E: Element, K: Arithmetic<Element = E>>(
+    arithmetic: &mut K,
+    manipulator: &Manipulator,
+    arm: &Arm<E>,
+    names: &[E],
+    ids: &[usize],
+    state: &mut State<E>,
+    wanted: Wanted,
+) -> Result<Linear<E>, String> {
+    if state.pi.is_empty() {
+        state.pi = draws(arithmetic, ids.len());
+    }
+    let other = wanted.pivots.then(|| draws(arithmetic, ids.len()));
+    let at = |pi: &[E]| {
+        let mut names = names.to_vec();
+        ids.iter().zip(pi).for_each(|(&id, value)| names[id] = value.clone());
+        Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)
+    };
+    let zero = vec![arm.zero.clone(); ids.len()];
+    let known = reference_torques(&at(&zero)?, state);
+    let mut columns = Vec::new();
+    for k in 0..ids.len() {
+        let mut unit = zero.clone();
+        unit[k] = arm.one.clone();
+        let torques = reference_torques(&at(&unit)?, state);
+        columns.push(torques.iter().zip(&known).map(|(a, b)| a.minus(b)).collect::<Vec<E>>());
+    }
+    let other = other.map(|pi| Ok::<_, String>((at(&pi)?, pi))).transpose()?;
+    let run_time = Some(at(&state.pi)?);
+    Ok(Linear { columns, known, run_time, other, nominal: None, elsewhere: None })
+}
+
+/// All standard parameters.
+fn of_standard<E: Element, K: Arithmetic<Element = E>>(
+    arithmetic: &mut K,
+    arm: &Arm<E>,
+    all: &[Standard],
+    state: &mut State<E>,
+    wanted: Wanted,
+) -> Result<Linear<E>, String> {
+    if state.pi.is_empty() {
+        state.pi = draws(arithmetic, all.len());
+    }
+    let other = wanted.pivots.then(|| draws(arithmetic, all.len()));
+    let at = |pi: &[E]| with_standard(arm, all, pi).ok_or_else(divided);
+    Ok(Linear {
+        columns: standard_columns(arm, state, all, LinkFrames::Described),
+        known: known_torque(arm, state, all)?,
+        run_time: Some(at(&state.pi)?),
+        other: other.map(|pi| Ok::<_, String>((at(&pi)?, pi))).transpose()?,
+        nominal: Some(all.iter().map(|parameter| parameter.value(arm)).collect()),
+        elsewhere: None,
+    })
+}
+
+/// Base parameters, after the standard ones that they are named for.
+fn of_base<E: Element, K: Arithmetic<Element = E>>(
+    arithmetic: &mut K,
+    arm: &Arm<E>,
+    (base, all): (&[(Standard, bool)], &[Standard]),
+    state: &mut State<E>,
+    values: &mut Values<E>,
+    wanted: Wanted,
+) -> Result<Linear<E>, String> {
+    let kept: Vec<Standard> = base.iter().map(|(parameter, _)| *parameter).collect();
+    let columns = standard_columns(arm, state, &kept, LinkFrames::Joint);
+    let known = known_torque(arm, state, all)?;
+    let mut linear = Linear { columns, known, run_time: None, other: None, nominal: None, elsewhere: None };
+    if wanted.base == BaseParameters::LeftOut {
+        return Ok(linear);
+    }
+    // With the potential energy elsewhere, once the parameters are known.
+    let elsewhere = |arithmetic: &mut K, state: &State<E>, energy: &dyn Fn(&State<E>) -> E| {
+        let mut there = State::draw(arithmetic, arm.dof());
+        there.pi.clone_from(&state.pi);
+        let energy = energy(&there);
+        Some((there, energy))
+    };
+    if wanted.base == BaseParameters::Kept {
+        state.pi = draws(arithmetic, kept.len());
+        let pi = state.pi.clone();
+        let alone = KeptAlone { arm, kept: &kept, all, pi: &pi };
+        of_parts(arm, state, alone.parts(state), values, "_with").ok_or_else(singular)?;
+        linear.elsewhere = elsewhere(arithmetic, state, &|there| alone.potential_energy(there));
+        return Ok(linear);
+    }
+    let phi = draws(arithmetic, all.len());
+    state.pi = if wanted.base == BaseParameters::Solved {
+        let map = base_map(arithmetic, arm, &kept, all)?;
+        check_names(&map, base, all, arm)?;
+        let standard: Vec<E> = all.iter().map(|parameter| parameter.value(arm)).collect();
+        linear.nominal = Some(times_vector(&map, &standard));
+        if wanted.pivots {
+            let phi = draws(arithmetic, all.len());
+            linear.other = Some((with_standard(arm, all, &phi).ok_or_else(divided)?, times_vector(&map, &phi)));
+        }
+        times_vector(&map, &phi)
+    } else {
+        draws(arithmetic, base.len())
+    };
+    let run_time = with_standard(arm, all, &phi).ok_or_else(divided)?;
+    linear.elsewhere = elsewhere(arithmetic, state, &|there| potential_energy(&run_time, there));
+    linear.run_time = Some(run_time);
+    Ok(linear)
 }
 
 /// What remains without the standard parameters: the masses of rotors.
