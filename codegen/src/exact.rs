@@ -1,7 +1,7 @@
 //! Numbers exactly as written: no float until emission.
 //!
-//! A [`Number`] is a polynomial with rational coefficients in *atoms*: square roots of integers, pi, angles of points, and sines and cosines of
-//! angles that are not multiples of pi/12. Products are reduced at once by
+//! A [`Number`] is a polynomial with rational coefficients in *atoms* ([`Atom`]): square roots, pi, angles of points, sines and cosines of
+//! angles that are not multiples of pi/12, and what is not multiplied out. Products are reduced at once by
 //!
 //! ```text
 //! sqrt(n)² = n,    sin(a)² = 1 - cos(a)²,    pi^i pi^j = pi^(i+j)
@@ -472,26 +472,25 @@ impl Angle {
 
     /// Sine and cosine: exact roots for multiples of pi/12, a pair of atoms for the rest, brought to the first octant.
     fn sine_cosine(&self) -> (Number, Number) {
-        let eighth = Rational::from_parts(1.into(), 4u8.into());
-        // angle = turns · pi/2 + rest with |rest| ≤ pi/4: exactly by the multiple of pi where there is one, else by enclosure.
+        // angle = quarters · pi/2 + reduced with |reduced| ≤ pi/4: exactly by the multiple of pi where there is one, else by enclosure.
         let multiple = self.0.terms.get(&vec![(Atom::Pi, 1)]).cloned().unwrap_or(Rational::ZERO);
-        let rest = &self.0 - &(&Number::from(multiple.clone()) * &Number::pi());
-        let turns = if rest.is_zero() {
+        let without_pi = &self.0 - &(&Number::from(multiple.clone()) * &Number::pi());
+        let quarters = if without_pi.is_zero() {
             (multiple.clone() * Rational::from(2)).round()
         } else {
             let (low, high) = (&self.0 * &Number::from(2)).checked_div(&Number::pi()).expect("pi is not zero").enclose(256);
             ((low + high) / Rational::from(2)).round()
         };
         let reduced = &self.0
-            - &(&Number::from(Rational::from(turns.clone()) * Rational::from_parts(1.into(), 2u8.into())) * &Number::pi());
-        let (sine, cosine) = if rest.is_zero() {
-            let part = multiple - Rational::from(turns.clone()) / Rational::from(2);
-            debug_assert!(part.clone().abs() <= eighth);
+            - &(&Number::from(Rational::from(quarters.clone()) * Rational::from_parts(1.into(), 2u8.into())) * &Number::pi());
+        let (sine, cosine) = if without_pi.is_zero() {
+            let part = multiple - Rational::from(quarters.clone()) / Rational::from(2);
+            debug_assert!(part.clone().abs() <= Rational::from_parts(1.into(), 4u8.into()));
             first_octant(&part, &reduced)
         } else {
             atoms(&reduced)
         };
-        match i64::try_from(turns % IBig::from(4)).expect("a remainder of 4 is small").rem_euclid(4) {
+        match i64::try_from(quarters % IBig::from(4)).expect("a remainder of 4 is small").rem_euclid(4) {
             0 => (sine, cosine),
             1 => (cosine, -&sine),
             2 => (-&sine, -&cosine),

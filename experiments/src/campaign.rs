@@ -47,7 +47,7 @@ impl<'a> Job<'a> {
 
     /// Warnings of settings that are possible and probably mistakes, before anything moves.
     pub fn implausible_settings(&self) -> Vec<String> {
-        self.arm.look(self.experiment)
+        self.arm.implausible_settings(self.experiment)
     }
 
     /// What has to be said of its loop before anything moves.

@@ -16,8 +16,8 @@ mod branch;
 mod clik;
 mod control;
 mod demonstration;
+mod implausible_settings;
 mod instance;
-mod look;
 mod path;
 mod postures;
 mod solver;
@@ -35,7 +35,7 @@ pub trait Arm: Sync {
 
     /// What can be seen of an experiment before anything moves, and hardly is meant: a start outside the limits, a path beyond reach, a
     /// start off the path.
-    fn look(&self, experiment: &Experiment) -> Vec<String>;
+    fn implausible_settings(&self, experiment: &Experiment) -> Vec<String>;
 
     /// What is known of a run before anything moves.
     ///

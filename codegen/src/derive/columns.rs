@@ -9,8 +9,8 @@
 //! B_ij = z_i · f,             C_ij = z_i · F,             C_ji = dz_i/dt · f                                     (prismatic)
 //! ```
 //!
-//! E is kept relative to a rotating frame, E + n × Ω with Ω the angular velocity of the frame of link k: relative to link i itself the term
-//! dz_i/dt · n is gone. Moved by d it gains d' × f - d × (Ω × f), d' the rate of d in that frame.
+//! E is kept relative to a rotating frame, E + n × Ω with Ω the angular velocity of the link that E is relative to: relative to link i
+//! itself the term dz_i/dt · n is gone. Moved by d it gains d' × f - d × (Ω × f), d' the rate of d in that frame.
 //!
 //! From one link to the next there are three ways: shift the moments to the new origin in the new axes (way 0) or before turning, in
 //! the old axes (way 1), which saves turning a force that nothing needs any more; or keep them about the old point (way 2), which pays where
@@ -262,8 +262,8 @@ impl<'a> ColumnPropagator<'a> {
 }
 
 impl PropagatedColumn {
-    /// The wrench (f, n) about the origin of the frame of link `link`, and E + n × Ω relative to that frame. Only where every fork of the plan
-    /// took way 0 is it there without more terms.
+    /// The wrench (f, n) about the origin of the frame of link `link`, and E + n × Ω relative to that frame: so the column is kept where every
+    /// fork of the plan took way 0.
     pub(super) fn in_link_frame(&self) -> (Vector, Vector, Vector) {
         debug_assert!(self.about == self.link && self.relative == Some(self.link), "the plain way");
         let (f, n) = self.column.inertial;

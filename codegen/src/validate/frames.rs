@@ -25,7 +25,7 @@ use crate::manipulator::{Joint, Parameter, Placement, Pose};
 /// Terms of a number of a joint frame.
 const MAX_TERMS: usize = 16;
 
-/// Lays the joint frames. `anywhere`: rows have no joint frames of their own.
+/// Moves each placement into the joint frame of its parent. `anywhere`: rows say nothing of joint frames, which are laid first.
 pub(super) fn lay(joints: &mut [Joint], tool: &Pose, anywhere: bool, parameters: &[Parameter]) {
     let mut frames: Vec<Placement> = Vec::new();
     let reach =

@@ -63,7 +63,7 @@ pub(super) fn joint(
         name: description.name.as_ref()?.value.clone(),
         kind: kind?,
         parent,
-        // Of Denavit-Hartenberg rows as they are; of others laid later, when all rows are known.
+        // In the link frame before, until all rows are known: `frames::lay` moves it into the joint frame of the parent.
         placement: row.before.frame.clone(),
         link_frame: row.after.frame.clone(),
         row,

@@ -30,7 +30,7 @@ pub(super) trait Nominals {
     fn nominal(&self, name: &str) -> Option<Number>;
 }
 
-/// The nominal value of `expression`. `None`: there is none, which is reported here or was already.
+/// The nominal value of `expression`, if it is one that the scalar can hold. `None`: there is none, which is reported here or was already.
 pub(super) fn number(
     expression: &Expression,
     nominals: &dyn Nominals,
@@ -80,6 +80,7 @@ pub(super) fn text_of(value: &Number) -> String {
     }
 }
 
+/// The exact value of `expression` at the values of its names, whatever its size.
 pub(super) fn nominal(expression: &Expression, nominals: &dyn Nominals) -> Evaluated<Number> {
     let of = |e: &Expression| nominal(e, nominals);
     let value = match &expression.kind {
@@ -106,7 +107,7 @@ pub(super) fn nominal(expression: &Expression, nominals: &dyn Nominals) -> Evalu
             })?
         }
         ExpressionKind::Binary(operator, a, b) => {
-            let (a, divisor, b) = (of(a)?, b, of(b)?);
+            let (divisor, a, b) = (b, of(a)?, of(b)?);
             match operator {
                 Operator::Add => &a + &b,
                 Operator::Subtract => &a - &b,

@@ -48,8 +48,8 @@ trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P
     /// What it told before the last torque, in the order of [`LawKind::watched`].
     fn watched(&self) -> &[f64];
 
-    /// The law where the arm can rest, and where it begins.
-    fn at_rest(&self) -> &dyn Settle<W, R, N>;
+    /// The controller, to be linearised.
+    fn as_settle(&self) -> &dyn Settle<W, R, N>;
 
     /// How the motion goes.
     fn rehearse(
@@ -109,7 +109,7 @@ where
         &self.watched
     }
 
-    fn at_rest(&self) -> &dyn Settle<W, R, N> {
+    fn as_settle(&self) -> &dyn Settle<W, R, N> {
         &self.controller
     }
 
@@ -180,7 +180,7 @@ where
         let plant = (self.with_parameters)(sized(&run.plant));
         let no_answer = |error: StabilityError| format!("the loop cannot be linearised: {error}");
         let at_rest: &dyn Settle<W, R, N> = match &drive {
-            Drive::Sampled(law) => law.at_rest(),
+            Drive::Sampled(law) => law.as_settle(),
             Drive::Continuous(law) => law,
         };
         let rest =
@@ -227,7 +227,7 @@ where
             let delay = Delay::samples(run.delay);
             let holds = || {
                 let law = self.sampled_law(&run.law, shortest).ok()?;
-                let mut report = analyse(plant, &self.nominal, law.at_rest(), postures, shortest, delay).ok()?;
+                let mut report = analyse(plant, &self.nominal, law.as_settle(), postures, shortest, delay).ok()?;
                 if report.is_stable() {
                     let (joints, tip, _) = self.desired(run, begins, period).ok()?;
                     let rehearsal = Self::rehearsal(run, begins, plant, &joints, shortest);

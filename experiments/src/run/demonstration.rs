@@ -81,8 +81,12 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         .map_err(|e| fault(&e))?;
 
         let mut summary = vec![
-            format!("Demonstration: each joint to either side, then all together, {:.1} s sampled at 1 ms", record.end()),
-            format!("inverse dynamics with K_P = 10000 1/s², K_D = 200 1/s; {stable}"),
+            format!(
+                "Demonstration: each joint to either side, then all together, {:.1} s sampled at {} ms",
+                record.end(),
+                PERIOD.as_millis()
+            ),
+            format!("inverse dynamics with K_P = {} 1/s², K_D = {} 1/s; {stable}", GAINS.0, GAINS.1),
         ];
         summary.extend(pace);
         Ok(Demonstration { summary, fault: self.missed(&record, &postures), record })

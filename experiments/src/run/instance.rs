@@ -64,8 +64,8 @@ where
         &self.robot
     }
 
-    fn look(&self, experiment: &Experiment) -> Vec<String> {
-        Instance::look(self, experiment)
+    fn implausible_settings(&self, experiment: &Experiment) -> Vec<String> {
+        Instance::implausible_settings(self, experiment)
     }
 
     fn prepare<'a>(&'a self, experiment: &'a Experiment) -> Result<Box<dyn Run + 'a>, String> {

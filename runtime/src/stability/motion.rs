@@ -231,7 +231,7 @@ where
     ///
     /// # Errors
     /// [`StabilityError::NoSample`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,
-    /// [`StabilityError::Singular`] with the number of the sample at which the law is singular on the reference.
+    /// [`StabilityError::SingularAtSample`] with the number of the sample at which the law is singular on the reference.
     pub fn of<R, C>(&self, model: &R, controller: &C, references: &[C::Reference]) -> Result<Motion<T>, StabilityError>
     where
         R: Dynamics<N, Real = T>,

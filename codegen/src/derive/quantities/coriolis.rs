@@ -5,26 +5,29 @@
 //!      = ∫ ∂x/∂q_i · d/dt (∂x/∂q_j) dm
 //! ```
 //!
-//! since ∫ ∂_i x · ∂_j ∂_k x dm is c_ijk. With this choice dB/dt - 2C is skew-symmetric, as passivity-based control needs.
+//! where b_ij = ∫ ∂_i x · ∂_j x dm: of the six terms in the three derivatives two are equal and the others cancel, so that the ½ goes and
+//! c_ijk = ∫ ∂_i x · ∂_j ∂_k x dm. With this choice dB/dt - 2C is skew-symmetric, as passivity-based control needs.
 //!
 //! For a revolute joint j, ∂_j x = z × r with r from a point of its axis, and d/dt ∂_j x = dz/dt × r + z × dr/dt, over all that joint j
 //! carries. With Ω the angular velocity of the parent link, dr/dt = Ω × r + v: what is left is the velocity v *relative to the
-//! parent*, and its moments K = ∫ v rᵀ dm, h' = ∫ v dm beside h = ∫ r dm and S = ∫ r rᵀ dm hold everything. An ancestor i feels
+//! parent*, and its moments K = ∫ v rᵀ dm, h_v = ∫ v dm beside h = ∫ r dm and S = ∫ r rᵀ dm hold everything. An ancestor i feels
 //! the wrench of ∂_j x in B_ij, that of d/dt ∂_j x in C_ij, and in C_ji = ∫ ∂_j x · (dz_i/dt × r + z_i × dr/dt) dm
 //!
 //! ```text
 //! f = z × h,              n = (tr S) z - S z                            B_ij = z_i · n
-//! F = Ω × f + z × h',     N = (S Ω) × z + (tr K) z - K z                C_ij = z_i · N
+//! F = Ω × f + z × h_v,    N = (S Ω) × z + (tr K) z - K z                C_ij = z_i · N
 //!                         E = ∫ dr/dt × (z × r) dm                      C_ji = z_i · E + dz_i/dt · n
 //! ```
 //!
 //! E is a moment without a force, because the force of d/dt ∂_j x is the rate of f: moved from o_j to o_i it gains
 //! d(o_j - o_i)/dt × f, where n gains (o_j - o_i) × f. No linear velocity occurs elsewhere. Relative to the parent link it is
-//! E + n × Ω = z × (S Ω) + (tr K) z - K' z, with the same S Ω as N.
+//! E + n × Ω = z × (S Ω) + (tr K) z - Kᵀ z, with the same S Ω as N.
 //! The composite method for C is that of Echeandia and Wensing (2021, "Numerical methods to compute the Coriolis matrix and Christoffel
 //! symbols for rigid-body systems"); moments instead of 6 x 6 matrices and the relative velocities are ours.
 //!
-//! A rotor of inertia I_m about a, ratio k, on the parent of joint j, adds I_m k a to n and ½ I_m k ω × a to N and to E; and what
+//! A rotor of inertia I_m about a, ratio k, on the parent of joint j, adds I_m k a to n. What b_ij has of it, I_m k a · z_i, changes with the
+//! joints between i and the parent, and b_ik has nothing that changes with q_j: one of the three derivatives is 0, and the ½ stays, as
+//! ½ I_m k ω × a in N and in E, ω the angular velocity of the parent link; and what
 //! carries turning rotors feels their momentum s = Σ I_m k dq a: ½ z × s in N, its opposite in E.
 
 use super::inertia::composite_bodies;
@@ -63,9 +66,9 @@ pub static CORIOLIS_MATRIX: Quantity = Quantity {
 /// What moves in a composite body, in its joint frame and relative to it.
 #[derive(Clone, Copy)]
 pub(super) struct VelocityMoments {
-    /// h' = ∫ v dm.
+    /// h_v = ∫ v dm.
     pub(super) first: Vector,
-    /// K = ∫ v r' dm.
+    /// K = ∫ v rᵀ dm.
     pub(super) second: Matrix,
     /// s = Σ I_m k dq a: angular momentum of rotors about their own axes.
     pub(super) rotors: Vector,
@@ -124,7 +127,7 @@ pub(super) fn velocity_moments(pool: &mut Pool, arm: &Arm, composite: &[Body]) -
         let (body, moments) = about_axis(pool, joint, &composite[i], &velocity_moments[i]);
         let (h, rate) = (pool.transform(&joint.fixed, &body.first), pool.transform(&joint.fixed, &moments.first));
         let velocity = origin_rate(pool, arm, i);
-        // x = o + r moves with o' + v: ∫ (o' + v)(o + r)' dm.
+        // x = o + r moves with do/dt + v: ∫ (do/dt + v)(o + r)ᵀ dm.
         let weighted = pool.scale(body.mass, &velocity);
         let first = pool.add_vectors(&rate, &weighted);
         let half = pool.product(&joint.fixed, &moments.second);
@@ -152,7 +155,7 @@ pub(super) fn velocity_moments(pool: &mut Pool, arm: &Arm, composite: &[Body]) -
     velocity_moments
 }
 
-/// Velocity moments of a body that also turns about z at `rate` w: h' + w z × h, K + w [z] S.
+/// Velocity moments of a body that also turns about z at `rate` w: h_v + w z × h, K + w [z] S.
 fn turning_about_z(pool: &mut Pool, rate: ExprId, body: &Body, moments: &VelocityMoments) -> VelocityMoments {
     let s = symmetric(&body.second);
     let mut moments = *moments;
@@ -202,7 +205,7 @@ pub(super) fn composite_column(
 fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, moments: &VelocityMoments) -> Column {
     let (h, rate, k) = (body.first, moments.first, moments.second);
     if !joint.is_revolute() {
-        // ∂x = z, its rate Ω × z; E + n × Ω = h' × z + (Ω × z) × h.
+        // ∂x = z, its rate Ω × z; E + n × Ω = h_v × z + (Ω × z) × h.
         let turning = [w[1], -w[0], ExprId::ZERO];
         let transport = pool.cross(&turning, &h);
         return Column {

@@ -1,17 +1,17 @@
 //! Derivatives of inverse and of forward dynamics by joint variables and rates.
 //!
 //! ```text
-//! ∂tau/∂dq = 2 C(q, dq) + F_v           as C dq is quadratic in dq with Christoffel's symbols for coefficients, symmetric in the last two
+//! ∂tau/∂dq = 2 C(q, dq) + ∂F/∂dq         as C dq is quadratic in dq with Christoffel's symbols for coefficients, symmetric in the last two
 //! ∂tau_i/∂q_j = ∫ ∂_i ∂_j x · (d²x/dt² - g0) dm + ∫ ∂_i x · d²/dt² (∂_j x) dm         from tau_i = ∫ ∂_i x · (d²x/dt² - g0) dm
 //! ```
 //!
 //! For a revolute joint j, ∂_j x = z × r with r from its origin o, over all that joint j carries, and
 //! d²/dt² (z × r) = z'' × r + 2 z' × r' + z × r''. With the force f and moment n that move what joint j carries (Newton-Euler), the
 //! acceleration a of o less g0, the angular velocity Ω and acceleration field U of the link, z' = Ω × z and z'' = U z, r' = Ω × r + v,
-//! and the moments S, h, K = ∫ v rᵀ dm, h' = ∫ v dm of `coriolis.rs`, each joint at or before j feels the wrench
+//! and the moments S, h, K = ∫ v rᵀ dm, h_v = ∫ v dm of `coriolis.rs`, each joint at or before j feels the wrench
 //!
 //! ```text
-//! F = z × f - m z × a + z'' × h + 2 (z' · h) Ω + 2 z' × h'
+//! F = z × f - m z × a + z'' × h + 2 (z' · h) Ω + 2 z' × h_v
 //! N = z × n - h × (z × a) + (tr S - S) z'' + 2 (S z') × Ω + 2 (tr K - K) z'
 //! ```
 //!
@@ -23,7 +23,7 @@
 //!
 //! where E + n × Ω is what `coriolis.rs` hands on, and z'' - 2 Ω × z' is the z row of U, negated: both are known already.
 //! A prismatic joint has ∂_j x = z: F = m z'', N = z × f + h × z'' before it, z'' · f_i beyond it.
-//! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and the momentum s of rotors adds z' × s to N.
+//! A rotor adds to n, n_i and E_i what it adds to them in `newton_euler.rs` and `coriolis.rs`, and the rotors' momentum s adds z' × s to N.
 //! The formulas are those of Singh, Russell and Wensing (2022, "Efficient analytical derivatives of rigid-body dynamics using spatial
 //! vector algebra"); moments instead of 6 x 6 matrices, and one set of columns for B, C and ∂tau/∂q, are ours.
 //!

@@ -13,7 +13,8 @@ use crate::program::listing::decimal;
 pub(super) fn literal(value: &Number, scalar: Scalar) -> TokenStream {
     let text = decimal(value, scalar);
     let (negative, digits) = text.strip_prefix('-').map_or((false, text.as_str()), |digits| (true, digits));
-    let literal = Literal::from_str(digits).expect("a finite float prints as a literal: the range is checked in validation");
+    let literal =
+        Literal::from_str(digits).expect("a finite float prints as a literal: its range was checked before a module was formed");
     if negative {
         quote!(-#literal)
     } else {

@@ -23,7 +23,7 @@ const STEP: Duration = Duration::from_millis(10);
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
     /// What is to be said of an experiment.
-    pub(super) fn look(&self, experiment: &Experiment) -> Vec<String> {
+    pub(super) fn implausible_settings(&self, experiment: &Experiment) -> Vec<String> {
         let (sampling, start) = match &experiment.body {
             Body::Clik(run) => (&run.sampling, &run.start),
             Body::Branch(run) => (&run.sampling, &run.start),
