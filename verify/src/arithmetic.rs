@@ -49,3 +49,23 @@ pub trait Arithmetic {
         }
     }
 }
+
+impl<A: Arithmetic + ?Sized> Arithmetic for &mut A {
+    type Element = A::Element;
+
+    fn integer(&self, value: i64) -> A::Element {
+        (**self).integer(value)
+    }
+
+    fn constant(&self, formula: &Formula) -> Option<A::Element> {
+        (**self).constant(formula)
+    }
+
+    fn draw(&mut self) -> A::Element {
+        (**self).draw()
+    }
+
+    fn draw_angle(&mut self) -> (A::Element, A::Element) {
+        (**self).draw_angle()
+    }
+}

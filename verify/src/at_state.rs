@@ -3,6 +3,7 @@
 use armgen_codegen::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::Arithmetic;
+use crate::base;
 use crate::bounds;
 use crate::checker::Checker;
 use crate::contract::Promise;
@@ -12,7 +13,7 @@ use crate::float::Arguments;
 use crate::formula::Formula;
 use crate::program::Argument;
 use crate::reader::Module;
-use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::reference::{BaseParameters, Wanted};
 use crate::report::{FunctionReport, Verdict};
 
 /// Floats that are nearer than this part of the larger one are said to agree.
@@ -48,10 +49,12 @@ pub(crate) fn say(functions: &mut [FunctionReport], module: &Module, checker: &C
     let arguments = Arguments { pi: drawn.pi.clone(), ..drawn.map(thousandths) };
     let state = state(&arguments, checker.manipulator());
     let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
-    let Ok(reference) = Reference::at(&mut Floats, checker.manipulator(), checker.vector(), state, wanted) else { return };
+    let Ok(equations) = base::values_in_numbers(&mut Floats, checker.manipulator(), checker.vector(), None, state, wanted) else {
+        return;
+    };
     for function in functions {
         let Verdict::Different { entry, why } = &mut function.verdict else { continue };
-        let (Some(program), Some(expected)) = (module.program(&function.name), reference.values.get(&function.name)) else {
+        let (Some(program), Some(expected)) = (module.program(&function.name), equations.get(&function.name)) else {
             continue;
         };
         let Some(index) = program.outputs.iter().position(|output| output.place == *entry) else { continue };

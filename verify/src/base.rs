@@ -31,12 +31,13 @@ use crate::element::Element;
 use crate::equations::arm::Arm;
 use crate::equations::lagrange::{friction, spring_torques};
 use crate::equations::newton_euler::{ArmMotion, Carrier, Motion};
-use crate::equations::parameters::Standard;
+use crate::equations::parameters::{Standard, Vector};
 use crate::equations::pose::Pose;
 use crate::equations::state::State;
 use crate::formula::Formula;
+use crate::number::{Erased, Member, Numbers};
 use crate::program::{Program, Step};
-use crate::reference::Reference;
+use crate::reference::{Reference, Values, Wanted, BASE_REGRESSOR};
 
 /// The base parameters of a module: the standard ones after which they are named with whether others are carried along, and their claimed values.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,6 +133,55 @@ pub fn sums_of_kinds<E: Element>(arm: &Arm<E>, state: &State<E>, named: &[(Stand
         kind(parameter).iter().map(|k| columns[k][i].clone()).reduce(|a, b| a.plus(&b)).unwrap_or(arm.zero.clone())
     };
     (0..arm.dof()).flat_map(|i| named.iter().map(move |(parameter, _)| entry(i, *parameter)).collect::<Vec<E>>()).collect()
+}
+
+/// Values of all functions at a state, of `base_regressor` those of [`sums_of_kinds`] where its parameters are given.
+pub fn values<K: Arithmetic>(
+    arithmetic: &mut K,
+    manipulator: &Manipulator,
+    vector: &Vector,
+    named: Option<&[(Standard, bool)]>,
+    state: State<K::Element>,
+    wanted: Wanted,
+) -> Result<Values<K::Element>, String> {
+    let mut values = Reference::at(arithmetic, manipulator, vector, state.clone(), wanted)?.values;
+    if let Some(named) = named {
+        let arm = Arm::nominal(arithmetic, manipulator).and_then(|names| Arm::new(arithmetic, manipulator, &names));
+        let arm = arm.ok_or("a constant of the description divides by zero")?;
+        values.insert(BASE_REGRESSOR.into(), sums_of_kinds(&arm, &state, named));
+    }
+    Ok(values)
+}
+
+/// The same, compiled once for all arithmetics of a [`Number`](crate::number::Number).
+pub fn values_in_numbers<K: Arithmetic>(
+    arithmetic: &mut K,
+    manipulator: &Manipulator,
+    vector: &Vector,
+    named: Option<&[(Standard, bool)]>,
+    state: State<K::Element>,
+    wanted: Wanted,
+) -> Result<Values<K::Element>, String>
+where
+    K::Element: Member,
+{
+    let mut erased = Erased(arithmetic);
+    let mut numbers: Numbers<'_> = &mut erased;
+    let values = values(&mut numbers, manipulator, vector, named, state.map(&Member::into_number), wanted)?;
+    Ok(values.into_iter().map(|(name, entries)| (name, entries.into_iter().map(Member::of).collect())).collect())
+}
+
+impl<E> Samples<E> {
+    /// The same samples in other numbers.
+    pub fn map<F>(self, of: &dyn Fn(E) -> F) -> Samples<F> {
+        let all = |values: Vec<E>| values.into_iter().map(of).collect::<Vec<F>>();
+        let each = |sample: Sample<E>| Sample {
+            state: sample.state.map(of),
+            torques: all(sample.torques),
+            columns: sample.columns.into_iter().map(|(parameter, column)| (parameter, all(column))).collect(),
+        };
+        Samples(self.0.into_iter().map(each).collect())
+    }
 }
 
 impl<E: Element> Samples<E> {

@@ -22,10 +22,11 @@ use crate::equations::arm::{formula, Arm};
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::formula::{Atoms, Dependent, Formula};
+use crate::number::{Erased, Member, Number, Numbers};
 use crate::powers::{joints_asked, Powers};
 use crate::program::{Program, Step, MOST_BITS};
 use crate::reader::{Function, Module};
-use crate::reference::{BaseParameters, Reference, Wanted, BASE_REGRESSOR};
+use crate::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
 use crate::seed;
 use crate::stream::Stream;
@@ -528,7 +529,8 @@ fn zero_operand(program: &Program) -> Option<Verdict> {
 /// Degrees and heights of what the equations say, for the odds of a miss.
 struct Odds {
     degrees: Degrees,
-    reference: Reference<Degree>,
+    state: State<Degree>,
+    values: Values<Degree>,
     /// The named parameters of a `base_regressor` and their values.
     base: Option<(Samples<Degree>, OwnParameters, Vec<Degree>)>,
     circles: usize,
@@ -559,14 +561,19 @@ impl Odds {
         let nominal = base.iter().flat_map(|base| &base.nominal);
         let mut degrees = Degrees::new(own.iter().chain(literals.iter().flat_map(|(_, values)| values)).chain(nominal));
         let wanted = Wanted { base: BaseParameters::Free, pivots: false };
-        let Ok(reference) = Reference::new(&mut degrees, manipulator, vector, wanted) else { return BTreeMap::new() };
-        let base = base.and_then(|own| {
-            let samples = Samples::draw(&mut degrees, manipulator, &own.named, &reference, 0)?;
+        let mut erased = Erased(&mut degrees);
+        let mut numbers: Numbers<'_> = &mut erased;
+        let Ok(reference) = Reference::new(&mut numbers, manipulator, vector, wanted) else { return BTreeMap::new() };
+        let samples = base.and_then(|own| Samples::draw(&mut numbers, manipulator, &own.named, &reference, 0));
+        let base = base.zip(samples).and_then(|(own, samples)| {
             let nominal = own.nominal.iter().map(|value| degrees.constant(value)).collect::<Option<Vec<_>>>()?;
-            Some((samples, own.clone(), nominal))
+            Some((samples.map(&Degree::of), own.clone(), nominal))
         });
         let circles = manipulator.joints.len() + constants.atoms.angles.len();
-        let odds = Odds { degrees, reference, base, circles, roots: constants.roots() };
+        let state = reference.state.map(&Degree::of);
+        let of_entries = |(name, entries): (String, Vec<Number>)| (name, entries.into_iter().map(Degree::of).collect());
+        let values = reference.values.into_iter().map(of_entries).collect();
+        let odds = Odds { degrees, state, values, base, circles, roots: constants.roots() };
         literals.iter().map(|(program, values)| (program.name.clone(), odds.of(program, values))).collect()
     }
 
@@ -578,8 +585,8 @@ impl Odds {
         if let (BASE_REGRESSOR, Some((samples, own, nominal))) = (program.name.as_str(), &self.base) {
             return samples.log2_odds(program, &literals, (&own.named, nominal), odds).min(0.0);
         }
-        let outputs = program.run(&self.reference.state, &literals);
-        let Some(expected) = self.reference.values.get(&program.name) else { return 0.0 };
+        let outputs = program.run(&self.state, &literals);
+        let Some(expected) = self.values.get(&program.name) else { return 0.0 };
         let of_entry = |(output, expected): (&Option<Degree>, &Degree)| match output {
             Some(output) => {
                 let (degree, height) = output.of_difference(expected);

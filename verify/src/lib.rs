@@ -62,6 +62,8 @@ mod interval;
 pub mod inverse_kinematics;
 mod marked;
 #[doc(hidden)]
+pub mod number;
+#[doc(hidden)]
 pub mod powers;
 #[doc(hidden)]
 pub mod program;

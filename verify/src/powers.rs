@@ -28,7 +28,7 @@ use armgen_codegen::manipulator::Manipulator;
 
 use crate::arithmetic::growth::{Beyond, Growth, Growths};
 use crate::arithmetic::Arithmetic;
-use crate::base::{sums_of_kinds, OwnParameters};
+use crate::base::{self, OwnParameters};
 use crate::check::Check;
 use crate::divisors::{needed, undivided_operands, Matrix};
 use crate::element::Element;
@@ -95,8 +95,8 @@ impl Powers {
         let mut growths = Growths::new(joints, parameters);
         let state = letters(&growths, joints, vector);
         let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
-        let reference = Reference::at(&mut growths, manipulator, vector, state.clone(), wanted)?;
-        let mut own = reference.values;
+        let named = base.map(|base| base.named.as_slice());
+        let mut own = base::values_in_numbers(&mut growths, manipulator, vector, named, state, wanted)?;
         // Which of a kind a column of base parameters is made of is the generator's choice, and may be a pair that cancels.
         let torques = own.get("inverse_dynamics").cloned().unwrap_or_default();
         let with_torques = |columns: &[Growth]| columns.iter().chain(&torques).fold(growths.integer(0), Growth::most);
@@ -104,11 +104,9 @@ impl Powers {
             let most = with_torques(columns);
             columns.fill(most);
         }
-        if let Some(base) = base {
-            let names = Arm::nominal(&growths, manipulator).ok_or_else(divided)?;
-            let arm = Arm::new(&growths, manipulator, &names).ok_or_else(divided)?;
-            let columns = sums_of_kinds(&arm, &state, &base.named);
-            own.insert(BASE_REGRESSOR.into(), vec![with_torques(&columns); columns.len()]);
+        if let Some(columns) = own.get_mut(BASE_REGRESSOR) {
+            let most = with_torques(columns);
+            columns.fill(most);
         }
         let largest = |names: &[&str]| {
             let entries = names.iter().filter_map(|name| own.get(*name)).flatten();

@@ -13,6 +13,7 @@ use armgen_codegen::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::wide::{Wide, WideArguments};
 use crate::arithmetic::Arithmetic;
+use crate::base;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::equations::arm::formula;
@@ -23,7 +24,7 @@ use crate::formula::Formula;
 use crate::marked::{marked, LOAD};
 use crate::program::Inputs;
 use crate::reader::Module;
-use crate::reference::{BaseParameters, Reference, Wanted};
+use crate::reference::{BaseParameters, Wanted};
 use crate::stream::Stream;
 
 /// Floats of 256 bits as an arithmetic.
@@ -126,8 +127,8 @@ impl Kit {
             let arguments = arguments(&mut stream, manipulator.joints.len(), sizes.p);
             let state = wide_state(&arguments, manipulator).ok_or("a joint variable out of reach")?;
             let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
-            let reference = Reference::at(&mut fine, manipulator, &vector, state, wanted)?;
-            for (name, entries) in reference.values.iter().filter(|(name, _)| present(name)) {
+            let equations = base::values_in_numbers(&mut fine, manipulator, &vector, None, state, wanted)?;
+            for (name, entries) in equations.iter().filter(|(name, _)| present(name)) {
                 let Some((promise, with)) = Promise::of(name) else { continue };
                 let entries = nearest(entries);
                 kit.values.push(Value { name: name.to_string(), promise, with, state: index, entries });

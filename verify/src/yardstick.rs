@@ -10,16 +10,16 @@ use armgen_codegen::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::running::{Running, RunningNumbers};
 use crate::arithmetic::Arithmetic;
-use crate::base::{sums_of_kinds, OwnParameters};
+use crate::base::{self, OwnParameters};
 use crate::element::Element;
 use crate::enclosure::Float;
-use crate::equations::arm::{formula, Arm};
+use crate::equations::arm::formula;
 use crate::equations::parameters::Vector;
 use crate::equations::state::State;
 use crate::float::{stribeck, stribeck_error, Arguments, LANES};
 use crate::formula::Formula;
 use crate::ranges::{Domain, Range};
-use crate::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
+use crate::reference::{BaseParameters, Values, Wanted};
 
 /// An arm whose equations are measured.
 #[derive(Clone, Copy)]
@@ -36,13 +36,8 @@ impl Subject<'_> {
     /// All functions in an arithmetic that gives `pi` where it draws.
     fn values<K: Arithmetic>(&self, numbers: &mut K, state: State<K::Element>) -> Option<Values<K::Element>> {
         let wanted = Wanted { base: BaseParameters::Kept, pivots: false };
-        let mut values = Reference::at(numbers, self.manipulator, self.vector, state.clone(), wanted).ok()?.values;
-        if let Some(base) = self.base {
-            let names = Arm::nominal(numbers, self.manipulator)?;
-            let arm = Arm::new(numbers, self.manipulator, &names)?;
-            values.insert(BASE_REGRESSOR.into(), sums_of_kinds(&arm, &state, &base.named));
-        }
-        Some(values)
+        let named = self.base.map(|base| base.named.as_slice());
+        base::values(numbers, self.manipulator, self.vector, named, state, wanted).ok()
     }
 
     /// The velocities at which Stribeck friction fades, of joints that have it.

@@ -101,6 +101,28 @@ impl<E: Element> State<E> {
     }
 }
 
+impl<E> State<E> {
+    /// The same state in other numbers.
+    pub fn map<F>(self, of: &dyn Fn(E) -> F) -> State<F> {
+        let all = |values: Vec<E>| values.into_iter().map(of).collect::<Vec<F>>();
+        State {
+            angles: self.angles.into_iter().map(|(sine, cosine)| (of(sine), of(cosine))).collect(),
+            q: all(self.q),
+            dq: all(self.dq),
+            ddq: all(self.ddq),
+            dqr: all(self.dqr),
+            ddqr: all(self.ddqr),
+            tau: all(self.tau),
+            signs: all(self.signs),
+            stribeck: all(self.stribeck),
+            stribeck_velocities: all(self.stribeck_velocities),
+            pi: all(self.pi),
+            zero: of(self.zero),
+            one: of(self.one),
+        }
+    }
+}
+
 impl<E: Element> Inputs<E> for State<E> {
     fn entry(&self, argument: Argument, index: usize) -> E {
         let values = match argument {
