@@ -6,6 +6,8 @@
 mod budgets;
 #[path = "browser/driver.rs"]
 mod driver;
+#[path = "browser/figures.rs"]
+mod figures;
 #[path = "browser/pages.rs"]
 mod pages;
 #[path = "browser/rust.rs"]

@@ -126,8 +126,7 @@ impl Tab {
         for domain in ["Runtime", "Log", "Network", "Page"] {
             tab.call(&format!("{domain}.enable"), json!({}));
         }
-        let size = json!({"width": width, "height": 1000, "deviceScaleFactor": 1, "mobile": false});
-        tab.call("Emulation.setDeviceMetricsOverride", size);
+        tab.resize(width, 1000, 1.0);
         let theme = json!({"features": [{"name": "prefers-color-scheme", "value": theme}]});
         tab.call("Emulation.setEmulatedMedia", theme);
         tab.call("Page.navigate", json!({"url": address}));
@@ -167,6 +166,12 @@ impl Tab {
         let events = self.browser.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
         let addresses = events.filter_map(|event| event["params"]["request"]["url"].as_str());
         addresses.filter(|address| !address.starts_with("data:")).map(str::to_owned).collect()
+    }
+
+    /// Gives the window another size, a pixel of it `scale` of the picture's.
+    pub(crate) fn resize(&mut self, width: u32, height: u32, scale: f64) {
+        let size = json!({"width": width, "height": height, "deviceScaleFactor": scale, "mobile": false});
+        self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
     /// Presses the key of tabulators.
