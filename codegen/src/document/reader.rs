@@ -142,21 +142,27 @@ impl<'d> Reader<'d> {
         }
         for (key, value) in unknown {
             let absent: Vec<&'static str> = names.iter().copied().filter(|name| !fields.has(name)).collect();
+            // `izz= 0.1`, with the sign that other formats have there.
+            let assigned = key.value.split_once('=').map(|(word, behind)| (word.trim(), behind.trim()));
+            let word = assigned.map_or(key.value.as_str(), |(word, _)| word);
             let other =
-                self.other_names.iter().find(|(other, name)| *other == key.value && names.contains(name)).map(|(_, name)| *name);
+                self.other_names.iter().find(|(other, name)| *other == word && names.contains(name)).map(|(_, name)| *name);
             let place = self.other_places.iter().find(|(other, beside, _)| *other == key.value && names.contains(beside));
-            let near = || did_you_mean(&key.value, &absent).or_else(|| did_you_mean(&key.value, &names));
+            let near = || did_you_mean(word, &absent).or_else(|| did_you_mean(word, &names));
             let meant = other.or_else(|| near().filter(|_| place.is_none()));
             let found = excerpt(&key.value);
             let allowed = format!("keys here: {}", names.join(", "));
             let help = match meant {
                 _ if key.value == "<<" => "merge keys are not supported: write the values out".to_owned(),
-                Some(meant) => format!("did you mean `{meant}`? {allowed}"),
+                Some(meant) => match assigned {
+                    Some((_, behind)) => format!("write `{meant}: {}`, with a colon and a space", excerpt(behind)),
+                    None => format!("did you mean `{meant}`? {allowed}"),
+                },
                 None => place.map_or(allowed, |(.., help)| (*help).to_owned()),
             };
             self.report(Code::UnknownKey, key.span, format!("{what} has no key `{found}`"), "unknown key", help);
             // Read it as what was meant, so that its value is checked and the other key is not called missing.
-            if let Some(meant) = meant.filter(|meant| !fields.has(meant)) {
+            if let Some(meant) = meant.filter(|meant| !fields.has(meant) && assigned.is_none()) {
                 fields.entries.push((meant, key.span, value));
             }
         }

@@ -316,9 +316,12 @@ impl Builder<'_> {
         let at = error.marker().byte_offset().unwrap_or(0).min(self.source.text().len());
         let mut span = self.visible(at);
         let (mut message, mut help) = explain(error.kind());
+        let text = self.source.text();
         // In brackets a tab is a blank, and the bracket says more.
         let in_brackets = self.open.iter().any(|open| open.flow);
-        if let Some(cause) = cause::find(self.source.text(), at, error.kind()).filter(|_| !in_brackets) {
+        let quote = cause::unclosed_quote(text, at);
+        let is_quote = quote.is_some();
+        if let Some(cause) = quote.or_else(|| cause::find(text, at, error.kind()).filter(|_| !in_brackets)) {
             (span, message, help) = (cause.span, cause.message, cause.help);
         }
         let code = match error.kind() {
@@ -328,7 +331,7 @@ impl Builder<'_> {
         };
         let line = |span: Span| self.source.place(span.start).line;
         let open = self.open.iter().rev().find(|open| open.flow).map(|open| open.start).filter(|open| line(*open) < line(span));
-        self.diagnostics.push(match open.filter(|_| code == Code::YamlSyntax) {
+        self.diagnostics.push(match open.filter(|_| code == Code::YamlSyntax && !is_quote) {
             // A bracket left open lines above explains more than where the reader stumbled.
             Some(open) => {
                 let bracket = self.source.slice(open);

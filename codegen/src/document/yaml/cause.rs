@@ -19,6 +19,15 @@ impl Cause {
     }
 }
 
+/// A quoted text that goes over lines, whose closing quote stands before `at` in its line: it closes with the quote that opens another text, and what
+/// it lacks is the one in its own line.
+pub(super) fn unclosed_quote(text: &str, at: usize) -> Option<Cause> {
+    let before = text.get(..at)?;
+    let line = before.rfind('\n').map_or(0, |end| end + 1);
+    let opened = opened_quote(&before[..line])?;
+    Some(Cause::of(Span::new(opened, opened + 1), &ErrorKind::UnclosedQuotedScalar))
+}
+
 /// The likely cause of a parse error that surfaced at `at`, if it can be found: a quote that was opened above, a tab in the indentation of
 /// the line or of one beside it, a dash or a colon without a space, a missing dash, a line in a column of its own, a key without a colon.
 pub(super) fn find(text: &str, at: usize, kind: &ErrorKind) -> Option<Cause> {

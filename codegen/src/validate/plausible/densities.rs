@@ -1,0 +1,63 @@
+//! Inertias of all links that are too large or too small by a factor which none of them alone betrays.
+//!
+//! A body with mass m and the tensor I about its centre of mass is as wide as the cuboid of even density whose sides have the squares
+//! s_k = 6 (tr I - 2 I_k) / m, I_k its principal moments; so their product is the determinant of 6 (tr I 1 - 2 I) / m, and the density is m over its
+//! root. With all tensors ten times as large it is 32 times as small.
+
+use super::{number, short, Arm, LEAD};
+use crate::description::BodyDescription;
+use crate::diagnostic::Code;
+use crate::source::Span;
+use crate::validate::Context;
+
+/// kg/m³: rigid foam. Links are hollow, and their boxes as light as water at the median.
+const FOAM: f64 = 100.0;
+const WATER: f64 = 1000.0;
+/// So many bodies have a median that says something.
+const FEWEST: usize = 3;
+/// Beside the cube of the sum of the squared sides their product is 0: a plate, a rod.
+const FLAT: f64 = 1e-7;
+
+impl Arm<'_> {
+    /// Whether half of the links are lighter than foam, or denser than lead.
+    pub(super) fn check_densities(&self, context: &mut Context<'_>) {
+        let bodies = self.joints.iter().zip(&self.masses).filter_map(|(joint, mass)| Some((joint.link.as_ref()?, *mass)));
+        let mut densities: Vec<(f64, Span)> = bodies.filter_map(|(link, mass)| density(link, mass, context)).collect();
+        if densities.len() < FEWEST {
+            return;
+        }
+        let place = densities[0].1;
+        densities.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let median = densities[densities.len() / 2].0;
+        // Inertia grows as the density to the power -2/3.
+        let factor = |ratio: f64| short(ratio.powf(2.0 / 3.0).round());
+        let (code, words, slip) = match median {
+            _ if median < FOAM => {
+                (Code::ImplausibleInertia, "lighter than foam", format!("large by a factor of {}", factor(WATER / median)))
+            }
+            _ if median > LEAD => {
+                (Code::ImplausibleDensity, "denser than lead", format!("small by a factor of {}", factor(median / WATER)))
+            }
+            _ => return,
+        };
+        let message = format!(
+            "half of the links are {words}: as cuboids with these masses and inertias they have {} kg/m³ at the median, where those of arms have 200 to 6000",
+            short(median.round())
+        );
+        let help = format!("inertias are in kg m², about the centre of mass; about the density of water is usual, so all may be too {slip} or so");
+        context.report(code, place, message, "this one and others", help);
+    }
+}
+
+/// The density, kg/m³, of the cuboid with the inertia of a link, if that has a volume, and the place of the inertia.
+fn density(link: &BodyDescription, mass: f64, context: &mut Context<'_>) -> Option<(f64, Span)> {
+    let inertia = link.inertia.as_ref().filter(|_| mass > 0.0 && link.attached.is_empty())?;
+    let [xx, xy, yy, xz, yz, zz] = inertia.elements.each_ref().map(|value| number(value, context));
+    let trace = xx + yy + zz;
+    let [a, b, c] = [xx, yy, zz].map(|moment| 6.0 * (trace - 2.0 * moment) / mass);
+    let [d, e, f] = [xy, xz, yz].map(|product| -12.0 * product / mass);
+    let minor = a * b - d * d;
+    let volume = c * minor - a * f * f - b * e * e + 2.0 * d * e * f;
+    let is_a_solid = a > 0.0 && minor > 0.0 && volume > FLAT * (a + b + c).powi(3);
+    is_a_solid.then(|| (mass / volume.sqrt(), inertia.key))
+}
