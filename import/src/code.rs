@@ -86,6 +86,8 @@ codes! {
         LockOutside Warning "lock-outside-limits",
         /// An element that is none of the format, and nearly one.
         MisspeltElement Warning "misspelt-element",
+        /// An attribute that is none of its element, and nearly one that is not there.
+        MisspeltAttribute Warning "misspelt-attribute",
         /// What would change the motion, and is left out.
         ChangesMotion Warning "changes-motion",
     }

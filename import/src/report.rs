@@ -125,13 +125,18 @@ fn words(source: &Source, arm: &Arm, bound: Bound, left_out: &BTreeMap<String, u
             rounded_up(bound.torque)
         ));
     }
+    let every_digit = arm.snap.tolerance == 0.0;
     if let Some((span, text)) = arm.snap.near.first() {
         let place = source.place(span.start);
         lines.push(format!(
-            "{} within 0.002 rad of a multiple of pi/12 and taken as written, the first one {text} in line {}; `--snap` takes more for what they mean",
+            "{}{} within 0.002 rad of a multiple of pi/12 and taken as written, the first one {text} in line {}{}",
+            if every_digit { "every digit is taken, nothing is snapped: " } else { "" },
             counted(arm.snap.near.len(), "angle"),
-            place.line
+            place.line,
+            if every_digit { "" } else { "; `--snap` takes more for what they mean" }
         ));
+    } else if every_digit {
+        lines.push("every digit is taken, nothing is snapped".into());
     }
     let lumped: Vec<&str> = arm.rows.iter().flat_map(lumped).map(|other| other.link.as_str()).collect();
     if !lumped.is_empty() {

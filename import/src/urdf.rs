@@ -294,6 +294,7 @@ impl Format for Urdf<'_, '_> {
     /// Warns of what a simulator would take into account of joints and links that the arm has, and robot.yaml does not; once a kind.
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
         warn_of_misspelt(self.root, diagnostics);
+        warn_of_misspelt_attributes(self.root, diagnostics);
         const FELT: [&str; 6] = [
             "springStiffness",
             "springReference",
@@ -366,6 +367,43 @@ const ELEMENTS_OF: [(&str, &[&str]); 4] = [
     ("joint", &["calibration", "safety_controller"]),
     ("inertial", &["origin", "mass", "inertia"]),
 ];
+
+/// Attributes of elements whose attributes have a value where they are left out.
+const ATTRIBUTES_OF: [(&str, &[&str]); 7] = [
+    ("origin", &["xyz", "rpy"]),
+    ("axis", &["xyz"]),
+    ("mass", &["value"]),
+    ("inertia", &ELEMENTS),
+    ("limit", &["lower", "upper", "effort", "velocity"]),
+    ("dynamics", &["damping", "friction"]),
+    ("mimic", &["joint", "multiplier", "offset"]),
+];
+
+/// Warns of attributes that are nearly one of those that their element lacks: with `iz` it has no `izz`. Once for each spelling.
+fn warn_of_misspelt_attributes(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
+    let parts = root.children().filter(|part| ["link", "joint"].contains(&part.tag_name().name()));
+    let inside = parts.clone().chain(parts.flat_map(|part| part.children()).filter(|n| n.tag_name().name() == "inertial"));
+    let mut seen = BTreeSet::new();
+    for node in inside.flat_map(|parent| parent.children()).filter(Node::is_element) {
+        let element = node.tag_name().name();
+        let Some((_, known)) = ATTRIBUTES_OF.iter().find(|(name, _)| *name == element) else { continue };
+        let lacking: Vec<&str> = known.iter().copied().filter(|name| attribute(node, name).is_none()).collect();
+        for found in node.attributes().filter(|found| !known.contains(&found.name())) {
+            let (name, place) = (found.name(), found.range_qname());
+            let Some(meant) = did_you_mean(name, &lacking).filter(|_| seen.insert((element, name))) else { continue };
+            let message =
+                format!("nothing reads `{}` in `{element}`; it is left out, and `{meant}` is taken as not given", shown(name));
+            let span = Span::new(place.start, place.end);
+            diagnostics.push(Diagnostic::new(
+                Code::MisspeltAttribute,
+                span,
+                message,
+                "left out",
+                format!("did you mean `{meant}`?"),
+            ));
+        }
+    }
+}
 
 /// Warns of elements that are nearly one that is read, and are not: with `orign` a joint stands where its parent does. Once for each spelling.
 fn warn_of_misspelt(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {

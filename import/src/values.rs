@@ -196,7 +196,8 @@ impl Values<'_> {
 
     /// One warning for all angles that are nearly a multiple of pi/12, at the first of them.
     pub(crate) fn warn_of_near_angles(&mut self) {
-        let Some((span, text)) = self.snap.near.first().cloned() else { return };
+        // Who asks for every digit means them.
+        let Some((span, text)) = self.snap.near.first().cloned().filter(|_| self.snap.tolerance > 0.0) else { return };
         let more = match self.snap.near.len() - 1 {
             0 => String::new(),
             more => format!(", and {more} more"),

@@ -36,8 +36,17 @@ pub(crate) fn parse<'s>(source: &'s Source, diagnostics: &mut Diagnostics) -> Op
 }
 
 fn refusal(source: &Source, error: &Error) -> Diagnostic {
-    let at = offset(source, error.pos());
-    let span = Span::new(at, character_end(source.text(), at));
+    let text = source.text();
+    // The parser gives no place to what a file ends without.
+    let ends = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream);
+    let at = if ends { text.trim_end().char_indices().last().map_or(0, |(at, _)| at) } else { offset(source, error.pos()) };
+    let span = Span::new(at, character_end(text, at));
+    if let Some(opened) = unclosed_quote(text, if ends { text.len() } else { at }) {
+        let help = "close the value with the quote that it begins with";
+        let message = "an attribute's value is not closed";
+        return Diagnostic::new(Code::XmlSyntax, Span::new(opened, opened + 1), message, "opened here", help)
+            .also(span, if ends { "the file ends here" } else { "this cannot stand inside it" });
+    }
     let (code, message, help) = match error {
         Error::UnknownNamespace(prefix, _) if prefix == "xacro" => return xacro(span),
         Error::UnknownNamespace(prefix, _) => (
@@ -50,6 +59,11 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             "a document type definition stands here".to_owned(),
             "write what its entities stand for out, and take the definition out".to_owned(),
         ),
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream => (
+            Code::XmlSyntax,
+            "the file ends before its elements are closed".to_owned(),
+            "see whether the rest of it is missing: each tag that is opened is closed".to_owned(),
+        ),
         other => {
             // The message ends with the place, which is shown anyway.
             let text = other.to_string();
@@ -61,17 +75,36 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             )
         }
     };
-    let fault = Diagnostic::new(code, span, message, "here", help);
+    let fault = Diagnostic::new(code, span, message, if ends { "ends here" } else { "here" }, help);
     // What is opened and not closed is told by what follows, far below it.
     let open = match error {
-        Error::UnexpectedCloseTag(..) => still_open(source.text(), at),
-        Error::UnclosedRootNode => still_open(source.text(), source.text().len()),
+        Error::UnexpectedCloseTag(..) => still_open(text, at),
+        _ if ends => still_open(text, text.len()),
         _ => None,
     };
     match open {
         Some(open) => fault.also(open, "opened here, and not closed"),
         None => fault,
     }
+}
+
+/// The quote of a value, in the tag that a place is in, that is open there, or that is closed by the quote of the next value: `a="1 b="2"`.
+fn unclosed_quote(text: &str, at: usize) -> Option<usize> {
+    let tag = text.get(..at)?.rfind('<')?;
+    if text[tag..].starts_with("<!") {
+        return None;
+    }
+    let (mut open, mut closed) = (None, None);
+    for (i, c) in text[tag..at].char_indices() {
+        match open {
+            None if c == '>' => return None,
+            None if matches!(c, '"' | '\'') => open = Some((tag + i, c)),
+            Some((from, quote)) if c == quote => (open, closed) = (None, Some((from, tag + i))),
+            _ => {}
+        }
+    }
+    let holds_a_name = |&(from, to): &(usize, usize)| text[from + 1..to].trim_end().ends_with('=');
+    open.map(|(from, _)| from).or_else(|| closed.filter(holds_a_name).map(|(from, _)| from))
 }
 
 /// A part of xacro at a place.

@@ -10,6 +10,9 @@ use crate::pose::{Pose, Turn};
 use crate::report::Report;
 use crate::snap::Written;
 
+/// Why a description that takes tensors as they are written says so.
+const IMPOSSIBLE: &str = "B(q) may not be positive definite: for kinematics and a look, not for control";
+
 /// The description of an arm.
 pub(crate) fn text(source: &Source, arm: &Arm, report: &Report) -> String {
     let mut text = String::new();
@@ -22,8 +25,13 @@ pub(crate) fn text(source: &Source, arm: &Arm, report: &Report) -> String {
     line(&format!("name: {}", arm.name));
     line("convention: urdf");
     line(&format!("gravity: [{}]", arm.gravity.join(", ")));
-    if !arm.impossible.is_empty() {
-        line("allow: [impossible-inertia]  # B(q) may not be positive definite: for kinematics and a look, not for control");
+    // Who asks for every digit is not asked whether pi/2 is meant.
+    let every_digit = arm.snap.tolerance == 0.0 && !arm.snap.near.is_empty();
+    match (arm.impossible.is_empty(), every_digit) {
+        (true, false) => {}
+        (true, true) => line("allow: [rounded-angle]  # every digit is meant"),
+        (false, false) => line(&format!("allow: [impossible-inertia]  # {IMPOSSIBLE}")),
+        (false, true) => line(&format!("allow: [impossible-inertia, rounded-angle]  # {IMPOSSIBLE}; every digit is meant")),
     }
     line("joints:");
     for row in &arm.rows {
