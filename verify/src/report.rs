@@ -206,11 +206,16 @@ impl fmt::Display for Report {
         if !self.functions.is_empty() {
             writeln!(f, "{:width$}  verdict  points: modular  rational  odds of a miss  rounding error", "function")?;
         }
+        let underflow = if self.scalar == "f32" { 1e-36 } else { 1e-300 };
         for report in &self.functions {
             write!(f, "{:width$}  {}", report.name, report.verdict)?;
             if report.verdict == Verdict::Equal {
                 let odds = format!("2^{:.0}", report.log2_odds.ceil());
-                let error = report.bound.as_ref().map_or_else(String::new, Bound::short);
+                let error = report.bound.as_ref().map_or_else(String::new, |bound| match bound.largest() {
+                    // Products of tiny numbers alone: the value is 0.
+                    largest if largest > 0.0 && largest < underflow => "none".into(),
+                    _ => bound.short(),
+                });
                 write!(f, "    {:15}  {:8}  {odds:<14}  {error}", report.points, report.exact_points)?;
             }
             writeln!(f)?;
@@ -229,6 +234,10 @@ impl fmt::Display for Report {
             .collect();
         if !without.is_empty() {
             writeln!(f, "at no rational point, prime fields alone: {}", without.join(", "))?;
+        }
+        if self.functions.iter().any(|f| f.bound.is_some()) {
+            let of = "how far rounding can take an entry within the limits, in the entry's own unit (m, rad, N m, ...)";
+            writeln!(f, "rounding error: {of}; none where it is exact")?;
         }
         let equal = self.constants.iter().filter(|c| c.verdict == Verdict::Equal).count();
         writeln!(f, "{equal} constants equal the description")?;

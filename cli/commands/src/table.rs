@@ -5,8 +5,10 @@
 pub(crate) enum Align {
     /// Words.
     Left,
-    /// Numbers.
+    /// Counts, and numbers beside words.
     Right,
+    /// Numbers, one decimal point below the other.
+    Point,
 }
 
 /// Rows under a header; cells are as wide as the widest of their column.
@@ -37,9 +39,10 @@ impl Table {
     pub(crate) fn text(&self) -> String {
         let header: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();
         let named = header.iter().any(|name| !name.is_empty());
-        let lines: Vec<&Vec<String>> = named.then_some(&header).into_iter().chain(&self.rows).collect();
-        let width = |j: usize| lines.iter().map(|line| line[j].chars().count()).max().unwrap_or(0);
         let kept: Vec<usize> = (0..header.len()).filter(|&j| self.rows.iter().any(|row| !row[j].is_empty())).collect();
+        let rows = self.with_points_aligned();
+        let lines: Vec<&Vec<String>> = named.then_some(&header).into_iter().chain(&rows).collect();
+        let width = |j: usize| lines.iter().map(|line| line[j].chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..header.len()).map(width).collect();
         let mut text = String::new();
         for line in lines {
@@ -47,7 +50,7 @@ impl Table {
                 .iter()
                 .map(|&j| match self.columns[j].1 {
                     Align::Left => format!("{:<1$}", line[j], widths[j]),
-                    Align::Right => format!("{:>1$}", line[j], widths[j]),
+                    Align::Right | Align::Point => format!("{:>1$}", line[j], widths[j]),
                 })
                 .collect();
             text.push_str(format!("  {}", cells.join("  ")).trim_end());
@@ -55,6 +58,24 @@ impl Table {
         }
         text
     }
+
+    /// The rows, with blanks behind numbers that have less behind their point than others of the column.
+    fn with_points_aligned(&self) -> Vec<Vec<String>> {
+        let mut rows = self.rows.clone();
+        for j in (0..self.columns.len()).filter(|&j| self.columns[j].1 == Align::Point) {
+            let most = rows.iter().map(|row| from_the_point(&row[j])).max().unwrap_or(0);
+            for cell in rows.iter_mut().map(|row| &mut row[j]) {
+                let blanks = most - from_the_point(cell);
+                cell.extend(std::iter::repeat_n(' ', blanks));
+            }
+        }
+        rows
+    }
+}
+
+/// How many characters a number has from its point on.
+fn from_the_point(number: &str) -> usize {
+    number.find('.').map_or(0, |at| number.len() - at)
 }
 
 #[cfg(test)]
@@ -67,5 +88,13 @@ mod tests {
         table.row(["a".into(), String::new(), "1".into()]);
         table.row(["längere".into(), String::new(), "10".into()]);
         assert_eq!(table.text(), "  name      x\n  a         1\n  längere  10\n");
+    }
+
+    #[test]
+    fn points_stand_below_each_other() {
+        let mut table = Table::new([("a", Align::Left), ("mass (kg)", Align::Point), ("x", Align::Point)]);
+        table.row(["one".into(), "0.25".into(), "-1".into()]);
+        table.row(["two".into(), "12".into(), "10.5".into()]);
+        assert_eq!(table.text(), "  a    mass (kg)     x\n  one       0.25  -1\n  two      12     10.5\n");
     }
 }

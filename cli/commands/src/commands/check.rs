@@ -4,6 +4,7 @@ mod bodies;
 mod identification;
 mod joints;
 mod posture;
+mod reach;
 
 use std::path::{Path, PathBuf};
 
@@ -90,8 +91,8 @@ fn summary(source: &Source, description: &RobotDescription, model: &Model, diagn
         Some(joints::rows(source, description, manipulator)),
         joints::limits(manipulator),
         joints::drives(manipulator),
-        Some(bodies::table(manipulator)),
-        Some(posture::table(manipulator)),
+        Some(bodies::tables(manipulator, posture::distances(manipulator))),
+        Some(posture::tables(manipulator)),
         Some(identification::report(model)),
         Some(ADVICE.into()),
     ];
@@ -122,6 +123,7 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     if let Some(payload) = &manipulator.payload {
         row("payload", format!("{} kg", decimal(&at_nominal(&payload.body.mass))));
     }
+    row("reach", reach::in_words(manipulator));
     let rows: Vec<&str> = manipulator.task.iter().map(|row| row.name()).collect();
     let (m, n) = (rows.len(), manipulator.dof());
     let against = match m.cmp(&n) {

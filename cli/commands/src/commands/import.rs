@@ -1,8 +1,10 @@
 //! `armgen import`: a URDF to a robot.yaml.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Severity;
+use armgen_codegen::inverse_kinematics;
 use armgen_codegen::source::Source;
 use armgen_import::{Imported, Options};
 use clap::{Args, ValueHint};
@@ -76,6 +78,7 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
         terminal::error("--name takes letters, digits and `_`, a letter first");
         return UNREADABLE;
     }
+    let every_digit = choices.snap == 0.0;
     let Choices { base, tip, lock, name, snap, massless, inertia_as_written, convention } = choices;
     let options = Options { base, tip, lock, name, snap, massless, inertia_as_written, convention: convention.into() };
     let (imported, diagnostics) = armgen_import::import(&source, &options);
@@ -96,10 +99,10 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     for line in imported.report.short_lines() {
         terminal::note(line);
     }
-    // What only the equations show, such as a last link without inertia about its axis. Of a humanoid beside its arm that takes seconds, and
+    // What only the description shows, such as a last link without inertia about its axis. Of a humanoid beside its arm that takes seconds, and
     // `armgen check` says it of every description.
     if imported.report.attached() <= MOST_BODIES {
-        note_refusals(&imported, results);
+        note_faults(&imported, results, every_digit);
     }
     let json = imported.report.to_json();
     for (path, text) in [(&results.report, &json), (&results.out, &imported.yaml)] {
@@ -115,12 +118,26 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
     }
 }
 
-/// Faults of the description that only its equations show.
-fn note_refusals(imported: &Imported, results: &Results) {
+/// Faults of the description that only its equations show, the kinds of its warnings, and why an arm whose every digit is taken has no inverse
+/// kinematics.
+fn note_faults(imported: &Imported, results: &Results, every_digit: bool) {
     let called = results.out.as_deref().map_or_else(|| "the description".to_owned(), |out| out.display().to_string());
     let as_description = Source::new(called.as_str(), imported.yaml.clone());
-    let (_, of_description) = armgen_codegen::validate::read(&as_description);
-    for refused in of_description.iter().filter(|diagnostic| diagnostic.code.severity() == Severity::Error) {
+    let (valid, of_description) = armgen_codegen::validate::read(&as_description);
+    let of = |severity| of_description.iter().filter(move |diagnostic| diagnostic.code.severity() == severity);
+    for refused in of(Severity::Error) {
         terminal::note(&format!("{called} is refused as it stands: {}; {}", refused.message, refused.help));
+    }
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    of(Severity::Warning).for_each(|warning| *kinds.entry(warning.code.name()).or_default() += 1);
+    if !kinds.is_empty() {
+        let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
+        terminal::note(&format!("{called} has warnings, which `armgen check` shows: {}", kinds.join(", ")));
+    }
+    let Some((manipulator, _)) = valid.filter(|_| every_digit) else { return };
+    if let Err(reason) = inverse_kinematics::of(&manipulator) {
+        terminal::note(&format!(
+            "{called} has no inverse kinematics: {reason}; digits that stand for pi/2 leave axes that meet nearly, which an import without `--snap 0` or rows of `armgen convert` may mend"
+        ));
     }
 }

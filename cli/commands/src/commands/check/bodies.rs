@@ -1,10 +1,12 @@
-//! What the bodies of an arm look like as solids: where their mass is, how far it spreads, and about which sizes of inertia a reader can judge.
+//! What the bodies of an arm look like as solids: where their mass is, and along which of their axes and how far it spreads, in sizes of which a reader
+//! can judge.
 
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::exact::Polynomial;
 use armgen_codegen::manipulator::{Manipulator, PlacedBody};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
+use super::digits;
 use crate::table::{Align, Table};
 
 /// A body with mass, in the frame of what carries it.
@@ -38,77 +40,127 @@ impl Solid {
         });
         Some(Solid { mass, com, inertia: inertia.sum() })
     }
+
+    /// The principal moments, each at the axis of the frame that its own axis is next to, and by how many degrees these are apart at most. An axis
+    /// between two equal moments can be drawn anywhere: it is not turned.
+    fn moments(&self) -> ([f64; 3], f64) {
+        let principal = SymmetricEigen::new(self.inertia);
+        let along = |k: usize, axis: usize| principal.eigenvectors[(axis, k)].abs();
+        const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 2, 1]];
+        let fit = |order: &[usize; 3]| (0..3).map(|axis| along(order[axis], axis)).sum::<f64>();
+        let order = ORDERS.into_iter().reduce(|best, order| if fit(&order) > fit(&best) + 1e-9 { order } else { best });
+        let order = order.unwrap_or([0, 1, 2]);
+        let largest = principal.eigenvalues.amax();
+        let rounding = (largest + self.mass * self.com.norm_squared()) * 1e-12;
+        let moments = order.map(|k| principal.eigenvalues[k]).map(|moment| if moment.abs() <= rounding { 0.0 } else { moment });
+        let is_apart = |a: usize, b: usize| (moments[a] - moments[b]).abs() > EQUAL * largest;
+        let distinct = |axis: usize| is_apart(axis, (axis + 1) % 3) && is_apart(axis, (axis + 2) % 3);
+        let turn = |axis: usize| along(order[axis], axis).min(1.0).acos().to_degrees();
+        (moments, (0..3).filter(|&axis| distinct(axis)).map(turn).fold(0.0, f64::max))
+    }
 }
 
-/// One row per link, and one of the load: mass, centre of mass, principal moments, radius of gyration about the axis of the
-/// largest, the box that has them, and its density: metal has up to 8000 kg/m³, and links, which are hollow, about that of water.
-pub(super) fn table(manipulator: &Manipulator) -> String {
-    use Align::{Left, Right};
-    let mut table = Table::new([
+/// Moments that are nearer to each other than this part of the largest one are equal: the axis between them says nothing.
+const EQUAL: f64 = 0.02;
+
+/// A length beside others of size `scale`, where what is less than its rounding is 0.
+fn small(value: f64, scale: f64) -> String {
+    digits(if value.abs() < 1e-9 * scale { 0.0 } else { value })
+}
+
+/// One row per link, and one of the load, in two tables: mass and centre of mass, then what the inertia says. A link's moments stand in the order of
+/// its own axes, not of their size: two that were exchanged are seen in the sides of the box. `distances` are those of the links, as
+/// `posture::distances` gives them.
+pub(super) fn tables(manipulator: &Manipulator, distances: Vec<[Option<f64>; 2]>) -> String {
+    use Align::{Left, Point};
+    let mut masses = Table::new([
         ("link", Left),
-        ("mass (kg)", Right),
-        ("com x (m)", Right),
-        ("y", Right),
-        ("z", Right),
-        ("principal moments (kg m²)", Left),
-        ("radius of gyration (m)", Right),
-        ("as a box (m)", Left),
-        ("of density (kg/m³)", Right),
+        ("mass (kg)", Point),
+        ("com x (m)", Point),
+        ("y", Point),
+        ("z", Point),
+        ("com to its axis (m)", Point),
+        ("next axis to it (m)", Point),
+    ]);
+    let mut inertias = Table::new([
+        ("link", Left),
+        ("moment about x (kg m²)", Point),
+        ("y", Point),
+        ("z", Point),
+        ("turned", Left),
+        ("radius of gyration (m)", Point),
+        ("box along x (m)", Point),
+        ("y", Point),
+        ("z", Point),
+        ("density (kg/m³)", Point),
     ]);
     let links =
         manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
-    for (name, parts) in links.chain(manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load)))) {
-        let Some(Solid { mass, com, inertia }) = Solid::of(manipulator, parts) else {
-            let none = String::new;
-            table.row([name, "0".into(), none(), none(), none(), none(), none(), none(), none()]);
+    let load = manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load)));
+    let distances = distances.into_iter().chain([[None; 2]]);
+    for ((name, parts), distances) in links.chain(load).zip(distances) {
+        let solid = Solid::of(manipulator, parts);
+        let [to_axis, next] = distances.map(|distance| distance.map_or(String::new(), |x| small(x, 1.0)));
+        let none = String::new;
+        let Some(solid) = solid else {
+            masses.row([name, "0".into(), none(), none(), none(), to_axis, next]);
             continue;
         };
-        let mut moments: Vec<f64> = inertia.symmetric_eigenvalues().iter().copied().collect();
-        moments.sort_by(f64::total_cmp);
-        let rounding = (moments[2].abs() + mass * com.norm_squared()) * 1e-12;
-        let moments = moments.iter().map(|moment| if moment.abs() <= rounding { 0.0 } else { *moment }).collect::<Vec<_>>();
-        table.row([
-            name,
-            short(mass),
-            short(com.x),
-            short(com.y),
-            short(com.z),
-            moments.iter().map(|moment| short(*moment)).collect::<Vec<_>>().join(", "),
-            short((moments[2].max(0.0) / mass).sqrt()),
-            as_box(mass, &moments),
-            density(mass, &moments).map(short).unwrap_or_default(),
-        ]);
+        let [x, y, z] = solid.com.data.0[0].map(digits);
+        masses.row([name.clone(), digits(solid.mass), x, y, z, to_axis, next]);
+        let (moments, turned) = solid.moments();
+        let [xx, yy, zz] = moments.map(digits);
+        let largest = moments.iter().copied().fold(0.0, f64::max);
+        let turned = if turned < 1.0 { none() } else { format!("{turned:.0} deg") };
+        let [a, b, c] = sides(solid.mass, &moments);
+        let density = density(solid.mass, &moments).map_or_else(none, |density| rounded(density).to_string());
+        inertias.row([name, xx, yy, zz, turned, short((largest / solid.mass).sqrt()), a, b, c, density]);
     }
-    table.text()
+    if manipulator.is_massless() {
+        return masses.text();
+    }
+    format!("{}{OF_MASSES}\n{}{OF_INERTIAS}", masses.text(), inertias.text())
 }
 
-/// The sides of the homogeneous cuboid with these moments about its centre, the longest first: I_x = m (y² + z²) / 12. None has those of a body
-/// that breaks the triangle inequality.
-fn as_box(mass: f64, moments: &[f64]) -> String {
+/// What the columns of the masses are.
+const OF_MASSES: &str = "  com: in the link's own frame, that of the payload in the end effector's; its axis: that of the joint
+  which moves the link; next axis: the next joint's, after the last link the end effector
+";
+
+/// What the columns of the inertias are.
+const OF_INERTIAS: &str =
+    "  principal moments about the centre of mass, each at the axis of the link's frame that it is nearest to;
+  turned: by how much they are apart; radius of gyration: sqrt(I/m) of the largest moment
+  box: the cuboid of even density that has these moments; metal has up to 8000 kg/m³
+";
+
+/// The sides of the homogeneous cuboid with these moments about its centre: I_x = m (y² + z²) / 12. None has those of a body that breaks the triangle
+/// inequality.
+fn sides(mass: f64, moments: &[f64; 3]) -> [String; 3] {
     let sum: f64 = moments.iter().sum();
     if sum == 0.0 {
-        return "a point".into();
+        return ["a point".into(), String::new(), String::new()];
     }
     let rounding = sum * 1e-9;
     let squares = squared_sides(mass, moments);
     if squares.iter().any(|square| square * mass < -6.0 * rounding) {
-        return "no box has these".into();
+        return ["no box".into(), String::new(), String::new()];
     }
-    let two = |side: f64| if side * side * mass <= 6.0 * rounding { "0".into() } else { format!("{}", rounded(side)) };
-    squares.iter().map(|square| two(square.max(0.0).sqrt())).collect::<Vec<_>>().join(" x ")
+    let is_none = |square: f64| square * mass <= 6.0 * rounding;
+    squares.map(|square| if is_none(square) { "0".into() } else { rounded(square.sqrt()).to_string() })
 }
 
-fn squared_sides(mass: f64, moments: &[f64]) -> Vec<f64> {
+fn squared_sides(mass: f64, moments: &[f64; 3]) -> [f64; 3] {
     let sum: f64 = moments.iter().sum();
-    moments.iter().map(|moment| 6.0 * (sum - 2.0 * moment) / mass).collect()
+    moments.map(|moment| 6.0 * (sum - 2.0 * moment) / mass)
 }
 
 /// The density of that box, if it has a volume.
-fn density(mass: f64, moments: &[f64]) -> Option<f64> {
+fn density(mass: f64, moments: &[f64; 3]) -> Option<f64> {
     let squares = squared_sides(mass, moments);
     let largest = squares.iter().copied().fold(0.0, f64::max);
     let is_thick = squares.iter().all(|square| *square > largest * 1e-9);
-    is_thick.then(|| rounded(mass / squares.iter().product::<f64>().sqrt()))
+    is_thick.then(|| mass / squares.iter().product::<f64>().sqrt())
 }
 
 /// Two digits.
@@ -175,13 +227,27 @@ mod tests {
     /// 1 kg, 0.3 m by 0.2 m by 0.1 m; a rod; moments of no body.
     #[test]
     fn moments_are_those_of_a_box() {
-        assert_eq!(as_box(1.0, &[0.05 / 12.0, 0.1 / 12.0, 0.13 / 12.0]), "0.3 x 0.2 x 0.1");
-        assert_eq!(as_box(12.0, &[0.0, 4.0, 4.0]), "2 x 0 x 0");
-        assert_eq!(as_box(1.0, &[0.1, 0.1, 0.5]), "no box has these");
-        assert_eq!(as_box(3.0, &[0.0; 3]), "a point");
-        assert_eq!(density(6.0, &[0.3 / 12.0, 0.6 / 12.0, 0.78 / 12.0]), Some(1000.0));
+        assert_eq!(sides(1.0, &[0.05 / 12.0, 0.1 / 12.0, 0.13 / 12.0]), ["0.3", "0.2", "0.1"]);
+        assert_eq!(sides(12.0, &[4.0, 0.0, 4.0]), ["0", "2", "0"]);
+        assert_eq!(sides(1.0, &[0.1, 0.1, 0.5])[0], "no box");
+        assert_eq!(sides(3.0, &[0.0; 3])[0], "a point");
+        assert!((density(6.0, &[0.3 / 12.0, 0.6 / 12.0, 0.78 / 12.0]).expect("a volume") - 1000.0).abs() < 1e-9);
         assert_eq!(density(12.0, &[0.0, 4.0, 4.0]), None);
         assert_eq!(density(3.0, &[0.0; 3]), None);
+    }
+
+    /// A box along x that is turned by 20 degrees about z; then exchanged moments; then a disc, whose axes in its plane may be any.
+    #[test]
+    fn moments_stand_at_the_axes_of_the_frame() {
+        let solid = |inertia: Matrix3<f64>| Solid { mass: 1.0, com: Vector3::zeros(), inertia };
+        let box_ = Matrix3::from_diagonal(&Vector3::new(1.0, 5.0, 5.5));
+        let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 20f64.to_radians());
+        let (moments, turned) = solid(turn * box_ * turn.inverse()).moments();
+        assert!((moments[0] - 1.0).abs() < 1e-9 && (moments[2] - 5.5).abs() < 1e-9, "{moments:?}");
+        assert!((turned - 20.0).abs() < 1e-6, "{turned}");
+        assert_eq!(solid(Matrix3::from_diagonal(&Vector3::new(5.0, 1.0, 5.5))).moments(), ([5.0, 1.0, 5.5], 0.0));
+        let disc = Matrix3::new(1.0, 1e-6, 0.0, 1e-6, 1.0, 0.0, 0.0, 0.0, 2.0);
+        assert_eq!(solid(disc).moments().1, 0.0);
     }
 
     /// Two halves of a rod are the rod: 1/12 m l² about its middle.

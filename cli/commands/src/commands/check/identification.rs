@@ -38,7 +38,8 @@ fn of_base_regressor(model: &Model, all: usize, rank: usize) -> String {
     }
     let (are, they) = if all - own == 1 { ("is", "it") } else { ("are", "them") };
     format!(
-        "\n  The module's `base_regressor` has {} of these {all}: the other {} {are} 0 at the values of this file, and it leaves {they} out.\n  \
+        "\n  The module's `base_regressor` has {} of these {all}:\n  \
+         the other {} {are} 0 at the values of this file, and it leaves {they} out.\n  \
          To identify an arm take `regressor: base`, whose `regressor` has all {all}.\n",
         counted(own, "column"),
         all - own
@@ -56,7 +57,9 @@ fn of_regressor(model: &Model, rank: usize) -> String {
         ParameterKind::Base(_) => {
             let mut table = Table::new([("base parameter", Align::Left), ("value", Align::Right), ("combination", Align::Left)]);
             for entry in &vector.entries {
-                table.row([entry.name.clone(), decimal(&entry.nominal), entry.meaning.clone()]);
+                let mut lines = broken(&entry.meaning).into_iter();
+                table.row([entry.name.clone(), decimal(&entry.nominal), lines.next().unwrap_or_default()]);
+                lines.for_each(|line| table.row([String::new(), String::new(), line]));
             }
             let title = if rank == vector.len() {
                 format!("The minimal parameter set: a motion can identify each of these, {rank} in all.")
@@ -122,6 +125,19 @@ fn of_names(names: &[&str], dependence: &Dependence) -> String {
         text += &list("not at all:         ", &silent.iter().map(|&c| names[c]).collect::<Vec<_>>(), ", ");
     }
     text
+}
+
+/// A sum in lines that leave room for the columns before it.
+fn broken(sum: &str) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in sum.split_inclusive(' ') {
+        let last = lines.last_mut().expect("there is one");
+        match last.chars().count() + word.chars().count() > WIDTH - 25 && word.starts_with(['+', '-']) {
+            true => lines.push(word.to_owned()),
+            false => *last += word,
+        }
+    }
+    lines
 }
 
 /// Words after a title, broken into lines with a hanging indent.

@@ -2,49 +2,101 @@
 //! the file is seen here beside a drawing.
 //!
 //! ```text
-//! T_i = T_(i-1) * before_i * after_i                                link frame i in the base frame (Siciliano et al., Eq. 2.50)
+//! T_i = T_(i-1) * before_i * motion_i(q_i) * after_i                link frame i in the base frame (Siciliano et al., Eq. 2.50)
 //! g_i = -Σ_k m_k g0' (z_i × (p_k - o_i))   or   -Σ_k m_k g0' z_i    over the masses that joint i moves (Eq. 7.39)
 //! ```
 
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
-use armgen_codegen::manipulator::{LinkId, Manipulator, PlacedBody, Placement};
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use armgen_codegen::manipulator::{Joint, LinkId, Manipulator, PlacedBody, Placement};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, Unit, UnitQuaternion, Vector3};
 
 use super::bodies::{short, Solid};
+use super::digits;
 use crate::table::{Align, Table};
 
 /// What is below this beside 1 is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// An arm at q = 0, in the base frame.
-struct Posture {
+/// The frames of an arm as numbers: what lies before and behind the motion of each joint, and its axis.
+pub(super) struct Frames {
+    joints: Vec<Step>,
+    tip: usize,
+    tool: Isometry3<f64>,
+}
+
+/// From the frame of the link that carries a joint to that of the link that it moves.
+struct Step {
+    parent: Option<usize>,
+    before: Isometry3<f64>,
+    axis: Unit<Vector3<f64>>,
+    kind: JointKind,
+    after: Isometry3<f64>,
+}
+
+impl Frames {
+    pub(super) fn of(manipulator: &Manipulator) -> Frames {
+        let step = |joint: &Joint| Step {
+            parent: joint.parent.map(|link| link.0 as usize),
+            before: isometry(manipulator, &joint.row.before.frame),
+            axis: Unit::new_normalize(Vector3::from(joint.row.axis.each_ref().map(Number::to_f64))),
+            kind: joint.kind,
+            after: isometry(manipulator, &joint.row.after.frame),
+        };
+        let tool = isometry(manipulator, &manipulator.tool.frame);
+        Frames { joints: manipulator.joints.iter().map(step).collect(), tip: manipulator.tip.0 as usize, tool }
+    }
+
+    /// The arm at joint variables.
+    pub(super) fn at(&self, q: &[f64]) -> Posture {
+        let (mut links, mut axes) = (Vec::<Isometry3<f64>>::new(), Vec::new());
+        for (step, q) in self.joints.iter().zip(q) {
+            let before = step.parent.map_or_else(Isometry3::identity, |link| links[link]) * step.before;
+            axes.push(Axis { direction: before * step.axis, point: before * Point3::origin() });
+            let motion = match step.kind {
+                JointKind::Revolute => Isometry3::rotation(step.axis.scale(*q)),
+                JointKind::Prismatic => Translation3::from(step.axis.scale(*q)).into(),
+            };
+            links.push(before * motion * step.after);
+        }
+        let flange = links[self.tip] * self.tool;
+        Posture { links, axes, flange }
+    }
+}
+
+/// An arm at some joint variables, in the base frame.
+pub(super) struct Posture {
     links: Vec<Isometry3<f64>>,
-    axes: Vec<Axis>,
-    flange: Isometry3<f64>,
+    pub(super) axes: Vec<Axis>,
+    pub(super) flange: Isometry3<f64>,
 }
 
 /// The axis of a joint.
-struct Axis {
-    direction: Vector3<f64>,
-    point: Point3<f64>,
+pub(super) struct Axis {
+    pub(super) direction: Unit<Vector3<f64>>,
+    pub(super) point: Point3<f64>,
+}
+
+impl Axis {
+    /// How far a point is from it.
+    fn from(&self, point: &Point3<f64>) -> f64 {
+        (point - self.point).cross(&self.direction).norm()
+    }
+
+    /// How far apart two axes are: |z × z' · (p' - p)| / |z × z'|, and where they are parallel the distance of a point of one from the other.
+    fn to(&self, other: &Axis) -> f64 {
+        let across = self.direction.cross(&other.direction);
+        match across.norm() {
+            sine if sine < ROUNDING => self.from(&other.point),
+            sine => (across.dot(&(other.point - self.point)) / sine).abs(),
+        }
+    }
 }
 
 impl Posture {
-    fn of(manipulator: &Manipulator) -> Posture {
-        let (mut links, mut axes) = (Vec::<Isometry3<f64>>::new(), Vec::new());
-        for joint in &manipulator.joints {
-            let parent = joint.parent.map_or_else(Isometry3::identity, |link| links[link.0 as usize]);
-            let before = parent * isometry(manipulator, &joint.row.before.frame);
-            axes.push(Axis {
-                direction: before * Vector3::from(joint.row.axis.each_ref().map(Number::to_f64)),
-                point: before * Point3::origin(),
-            });
-            links.push(before * isometry(manipulator, &joint.row.after.frame));
-        }
-        let flange = links[manipulator.tip.0 as usize] * isometry(manipulator, &manipulator.tool.frame);
-        Posture { links, axes, flange }
+    fn at_zero(manipulator: &Manipulator) -> Posture {
+        Frames::of(manipulator).at(&vec![0.0; manipulator.dof()])
     }
 
     /// Mass and centre of mass of bodies in a frame, in the base frame; none without mass.
@@ -99,46 +151,63 @@ fn isometry(manipulator: &Manipulator, frame: &Placement) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(place), turn)
 }
 
-/// The frames of the links and what they carry, at q = 0.
-pub(super) fn table(manipulator: &Manipulator) -> String {
+/// How far the centre of mass of a link, none without mass, is from the axis of its joint, and the next axis from that; of the last one the end
+/// effector. Both are the same at all q, and of no meaning for a slide, whose axis can be drawn anywhere.
+pub(super) fn distances(manipulator: &Manipulator) -> Vec<[Option<f64>; 2]> {
+    let posture = Posture::at_zero(manipulator);
+    let turns = |i: usize| manipulator.joints[i].kind == JointKind::Revolute;
+    let of = |i: usize| {
+        let axis = &posture.axes[i];
+        let next =
+            (i + 1..manipulator.dof()).find(|&next| manipulator.joints[next].parent.is_some_and(|link| link.0 as usize == i));
+        let next = match next {
+            Some(next) => turns(next).then(|| axis.to(&posture.axes[next])),
+            None => (manipulator.tip.0 as usize == i).then(|| axis.from(&posture.flange.translation.vector.into())),
+        };
+        match turns(i) {
+            true => [posture.of_link(manipulator, i).map(|(_, com)| axis.from(&com)), next],
+            false => [None, None],
+        }
+    };
+    (0..manipulator.dof()).map(of).collect()
+}
+
+/// The frames of the links at q = 0, then what they carry.
+pub(super) fn tables(manipulator: &Manipulator) -> String {
     use Align::{Left, Right};
-    let posture = Posture::of(manipulator);
-    let mut table = Table::new([
+    let posture = Posture::at_zero(manipulator);
+    let mut frames = Table::new([
         ("at q = 0, in the base frame", Left),
         ("joint axis", Left),
         ("link frame at (m)", Left),
+        ("its x axis", Left),
         ("its z axis", Left),
-        ("centre of mass at (m)", Left),
-        ("held against gravity", Right),
     ]);
+    let mut row = |name: String, axis: String, frame: &Isometry3<f64>| {
+        let along = |axis: Unit<Vector3<f64>>| direction(&(frame * axis));
+        frames.row([name, axis, point(&frame.translation.vector), along(Vector3::x_axis()), along(Vector3::z_axis())]);
+    };
+    let mut carried =
+        Table::new([("at q = 0, in the base frame", Left), ("centre of mass at (m)", Left), ("held against gravity", Right)]);
+    row("base frame".into(), String::new(), &Isometry3::identity());
     for (i, (joint, axis)) in manipulator.joints.iter().zip(&posture.axes).enumerate() {
-        let frame = &posture.links[i];
+        let name = format!("{} {}", i + 1, joint.name);
+        row(name.clone(), direction(&axis.direction), &posture.links[i]);
         let unit = if joint.kind == JointKind::Revolute { "N m" } else { "N" };
         let held = posture.gravity(manipulator, i);
         // As small as what sums of such numbers round by.
         let held = if held.abs() < ROUNDING { 0.0 } else { held };
-        table.row([
-            format!("{} {}", i + 1, joint.name),
-            direction(&axis.direction),
-            point(&frame.translation.vector),
-            direction(&(frame * Vector3::z())),
+        carried.row([
+            name,
             posture.of_link(manipulator, i).map_or(String::new(), |(_, com)| point(&com.coords)),
             if manipulator.is_massless() { String::new() } else { format!("{} {unit}", short(held)) },
         ]);
     }
-    let none = String::new;
-    let flange = &posture.flange;
-    table.row([
-        "end effector".into(),
-        none(),
-        point(&flange.translation.vector),
-        direction(&(flange * Vector3::z())),
-        none(),
-        none(),
-    ]);
+    row("end effector".into(), String::new(), &posture.flange);
     let held =
         "  held against gravity: along the joint's axis, as the joint gives it to stand still, without what springs hold\n";
-    table.text() + if manipulator.is_massless() { "" } else { held } + &outside(manipulator)
+    let carried = if manipulator.is_massless() { String::new() } else { format!("\n{}{held}", carried.text()) };
+    frames.text() + &outside(manipulator) + &carried
 }
 
 /// A line where the posture is outside the limits of joints.
@@ -156,7 +225,7 @@ fn outside(manipulator: &Manipulator) -> String {
 
 /// Three numbers in brackets.
 fn point(place: &Vector3<f64>) -> String {
-    let number = |x: f64| if x.abs() < ROUNDING { "0".to_owned() } else { short(x) };
+    let number = |x: f64| if x.abs() < ROUNDING { "0".to_owned() } else { digits(x) };
     format!("({}, {}, {})", number(place.x), number(place.y), number(place.z))
 }
 
@@ -184,10 +253,10 @@ mod tests {
         let manipulator = arm("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {name: s, type: prismatic, a: 0, alpha: pi/2, d: 0, theta: 0, link: {mass: 0}}\n  \
              - {name: h, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, link: {mass: 2, com: [-0.5, 0, 0], inertia: {yy: 1/6, zz: 1/6}}}\n\
              tool: {xyz: [0, 0.25, 0]}\n");
-        let posture = Posture::of(&manipulator);
+        let posture = Posture::at_zero(&manipulator);
         assert!((posture.gravity(&manipulator, 0) - 20.0).abs() < 1e-12);
         assert!((posture.gravity(&manipulator, 1) - 10.0).abs() < 1e-12);
-        let text = table(&manipulator);
+        let text = tables(&manipulator);
         assert!(text.contains("2 h") && text.contains("-y0") && text.contains("10 N m"), "{text}");
         assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
     }
@@ -196,9 +265,9 @@ mod tests {
     fn a_posture_outside_the_limits_is_said_to_be() {
         let of = |limits: &str| {
             let row = "type: revolute, a: 1, alpha: 0, d: 0, theta: 0, link: {mass: 1}";
-            table(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n")))
+            tables(&arm(&format!("name: a\nconvention: standard\ngravity: [0, 0, -10]\njoints:\n  - {{name: elbow, {row}, limits: {{position: {limits}}}}}\n")))
         };
-        assert!(of("[1, 2]").ends_with("  q = 0 is outside the limits of elbow\n"));
+        assert!(of("[1, 2]").contains("\n  q = 0 is outside the limits of elbow\n"));
         assert!(!of("[0, 2]").contains("outside"));
     }
 }
