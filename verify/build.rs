@@ -6,7 +6,7 @@ use std::fmt::Write;
 use armgen_inverse_kinematics::texts::TEXTS;
 
 /// The blocks of closed forms.
-const CLOSED: [&str; 17] = [
+const CLOSED: [&str; 16] = [
     "frame",
     "line_and_circle",
     "turn",
@@ -23,7 +23,6 @@ const CLOSED: [&str; 17] = [
     "arrangement",
     "given",
     "shoulder_elbow_wrist",
-    "angles",
 ];
 
 fn main() {

@@ -49,14 +49,9 @@ in_both_scalars! {
 
     /// The angles of all solutions: what a caller wants of them.
     fn angles<const J: usize, const N: usize>(found: &Branches<J, N>, way: &Arrangement<J>) -> usize {
-        let (mut points, mut angles) = ([[1.0, 0.0]; J], [0.0; J]);
         for branch in found.found() {
-            let known = points.iter_mut().zip(&mut angles);
-            for ((value, p), (point, angle)) in way.of_arm(branch).joints.iter().zip(way.prismatic).zip(known) {
-                *angle = if p { value[0] } else { angle_beside(*point, *angle, *value) };
-                *point = *value;
-            }
-            std::hint::black_box(&angles);
+            let joints = way.of_arm(branch).joints;
+            std::hint::black_box(joints.map(angle));
         }
         found.count
     }

@@ -1,9 +1,9 @@
 //! Building blocks that give **all** real solutions of a serial arm's inverse kinematics.
 //!
-//! `no_std`, no allocation, no panic, no `unsafe`; the scalar functions are those of `libm`, and nothing is fused, so a call gives the same
-//! bits on every machine. Each block is one file of plain Rust over an alias `Real`. This crate compiles every block for both scalars
-//! ([`f64`](mod@f64) and [`f32`](mod@f32)) and tests it there; a generator takes the same files as text ([`texts`]) into a module of its
-//! own.
+//! `no_std`, no allocation, no panic, no `unsafe`; the scalar functions are those of `libm`, but for the arctangent of solutions, and
+//! nothing is fused, so a call gives the same bits on every machine. Each block is one file of plain Rust over an alias `Real`. This
+//! crate compiles every block for both scalars ([`f64`](mod@f64) and [`f32`](mod@f32)) and tests it there; a generator takes the same
+//! files as text ([`texts`]) into a module of its own.
 //!
 //! # The loop
 //!

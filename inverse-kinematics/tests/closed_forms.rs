@@ -25,23 +25,30 @@ in_both_scalars! {
     }
 
     #[test]
-    fn angles_beside_a_known_one() {
+    fn angles_of_points() {
         let random = &mut Random(9);
-        let mut angles: Vec<f64> = (0..200).map(|_| random.angle()).collect();
+        let mut angles: Vec<f64> = (0..4000).map(|_| random.angle()).collect();
         angles.extend([0.0, 1e-9, -1e-9, std::f64::consts::PI, 3.0, -3.0]);
+        // On either side of where the coordinates are exchanged.
+        for eighths in [1.0, 3.0, 5.0, 7.0] {
+            angles.extend([-1e-7, 0.0, 1e-7].map(|off| eighths * std::f64::consts::FRAC_PI_4 + off));
+        }
         for t in angles {
             let [c, s] = point(t);
-            let known = angle_beside([0.0, 0.0], 0.0, [c, s]);
-            for value in [[c, s], [c, -s], [-c, -s], [-c, s], [s, c]] {
-                let found = angle_beside([c, s], known, value);
-                let wanted = atan2(value[1], value[0]);
+            // A point that rounding has taken off the circle has the angle all the same.
+            for over in [1.0, 1.0 + 8.0 * UNIT_ROUNDOFF, 1.0 - 8.0 * UNIT_ROUNDOFF, 1.0 + sqrt(UNIT_ROUNDOFF)] {
+                let [c, s] = [c * over, s * over];
+                let (found, wanted) = (angle([c, s]) as f64, (s as f64).atan2(c as f64));
                 let off = (found - wanted).abs();
-                assert!(off.min((off - 2.0 * HALF_TURN).abs()) <= 8.0 * UNIT_ROUNDOFF, "{t} {value:?}: {found} {wanted}");
-                assert!(-HALF_TURN < found && found <= HALF_TURN);
+                let allowed = UNIT_ROUNDOFF as f64 * (4.0 * wanted.abs() + if wanted.abs() > 1.0 { 6.5 } else { 0.0 });
+                assert!(off.min((off - 2.0 * std::f64::consts::PI).abs()) <= allowed, "{t} {over}: {found} {wanted} {off:e}");
+                assert!(-HALF_TURN < found as Real && found as Real <= HALF_TURN);
             }
         }
-        assert_eq!(angle_beside([1.0, 0.0], 0.0, [-1.0, -0.0]), HALF_TURN);
-        assert_eq!(angle_beside([0.0, 1.0], 0.5 * HALF_TURN, [-1.0, -0.0]), HALF_TURN);
+        for (point, wanted) in [([1.0, 0.0], 0.0), ([0.0, 1.0], 0.5), ([0.0, -1.0], -0.5), ([-1.0, 0.0], 1.0), ([-1.0, -0.0], 1.0)] {
+            assert_eq!(angle(point), wanted * HALF_TURN);
+        }
+        assert_eq!(angle([-1.0, -0.01 * UNIT_ROUNDOFF]), HALF_TURN, "-pi is pi");
     }
 
     #[test]

@@ -224,8 +224,8 @@ impl<const M: usize> CircleRoots<M> {
     /// Two crossings that are one to rounding, up and down, are a double root.
     fn add(&mut self, root: CircleRoot, apart: Real, rising: bool) {
         // Onto the circle: turn by turn it has been left by some rounding.
-        let over = 1.5 - 0.5 * (root.c * root.c + root.s * root.s);
-        let root = CircleRoot { c: root.c * over, s: root.s * over, ..root };
+        let [c, s] = back_on_circle([root.c, root.s]);
+        let root = CircleRoot { c, s, ..root };
         self.near |= root.double;
         let [first, last] = self.ends;
         let places = [(self.count.wrapping_sub(1), last), (0, first)];

@@ -66,9 +66,7 @@ impl Loop<'_> {
                 [c + step.max(-0.5 * self.length).min(0.5 * self.length), 0.0]
             } else {
                 let (cd, sd) = small_turn(step.clamp(-0.5, 0.5));
-                let (c, s) = (c * cd - s * sd, s * cd + c * sd);
-                let over = 1.5 - 0.5 * (c * c + s * s);
-                [c * over, s * over]
+                back_on_circle([c * cd - s * sd, s * cd + c * sd])
             };
         }
         moved

@@ -600,6 +600,9 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         // As near as rounding of the pose: it may have been at this place.
         if closed.residual <= 2.0 * ROUNDING && closed.double {
             merge(&mut result.found, &closed, true);
+        } else {
+            // The search may have gone to another posture nearby.
+            doubtful = true;
         }
     }
     result.found.near = roots.near;

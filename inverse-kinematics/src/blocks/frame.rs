@@ -38,6 +38,17 @@ pub fn length(x: Real, y: Real) -> Real {
     sqrt(x * x + y * y)
 }
 
+/// The direction of a vector of the plane of this length; (1, 0) where that is noise.
+#[inline]
+pub fn direction([x, y]: [Real; 2], length: Real, noise: Real) -> [Real; 2] {
+    if length > noise {
+        let over = 1.0 / length;
+        [x * over, y * over]
+    } else {
+        [1.0, 0.0]
+    }
+}
+
 /// Column j of a frame: a direction for j < 3, the displacement for j = 3.
 #[inline]
 pub fn column(f: &Frame, j: usize) -> Vector {
@@ -84,6 +95,14 @@ pub fn inverse(f: &Frame) -> Frame {
         [r[0], r[1], r[2], -dot(r, t)]
     };
     [row(0), row(1), row(2)]
+}
+
+/// A point that only rounding has taken off the circle, back on it: Newton's step for the root of c² + s², which leaves the square of what it
+/// was off.
+#[inline]
+pub fn back_on_circle([c, s]: [Real; 2]) -> [Real; 2] {
+    let over = 1.5 - 0.5 * (c * c + s * s);
+    [c * over, s * over]
 }
 
 /// Rz(angle) v for the angle of (c, s).

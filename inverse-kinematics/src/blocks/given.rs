@@ -50,9 +50,10 @@ impl Given {
         let mut all = Branches { miss: found.miss, near: found.near, continuum: found.continuum, ..Branches::new() };
         for branch in found.found() {
             let mut joints = [value; J];
-            let others = joints.iter_mut().enumerate().filter(|(place, _)| *place != self.joint);
-            for ((_, joint), known) in others.zip(&branch.joints) {
-                *joint = *known;
+            for (place, known) in branch.joints.iter().enumerate() {
+                if let Some(joint) = joints.get_mut(if place < self.joint { place } else { place + 1 }) {
+                    *joint = *known;
+                }
             }
             let before = (1 << self.joint) - 1;
             let free = branch.free & before | (branch.free & !before) << 1;

@@ -125,10 +125,10 @@ fn seen_beside(v: Vector, q: [Real; 2], f: &Frame, wanted: Real) -> ([Real; 2], 
 
 /// Where qc is free: an angle that leaves the elbow within reach, (1, 0) if that does. The squared distance that two links have to reach is
 /// k0 + kc c + ks s; the middle of what of it is within their reach is aimed at.
-fn within_reach(bracket: &impl Fn([Real; 2]) -> Frame, l1: Real, l2: Real) -> [Real; 2] {
+fn within_reach(place: &impl Fn([Real; 2]) -> [Real; 2], l1: Real, l2: Real) -> [Real; 2] {
     let square = |q: [Real; 2]| {
-        let m = bracket(q);
-        m[0][3] * m[0][3] + m[1][3] * m[1][3]
+        let [x, y] = place(q);
+        x * x + y * y
     };
     let (x, y, z) = (square([1.0, 0.0]), square([-1.0, 0.0]), square([0.0, 1.0]));
     let (inner, outer) = ((l1 - l2) * (l1 - l2), (l1 + l2) * (l1 + l2));
@@ -193,14 +193,20 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
         let qc = turn(from_a, from_b, ROUNDING);
         // M = (L3 Jb Lb Jc Lc Ja La)⁻¹
         let (first, last) = (compose(l3, &joint_then(false, qb, lb)), compose(lc, &joint_then(false, qa, la)));
-        let bracket = |qc: [Real; 2]| inverse(&compose(&first, &joint_then(false, qc, &last)));
+        // Of M what is across its axes: the displacement, and the first column.
+        let base = rotate_back(&first, column(&first, 3));
+        let bracket = |qc: [Real; 2]| {
+            let g = joint_then(false, qc, &last);
+            let t = [base[0] + g[0][3], base[1] + g[1][3], base[2] + g[2][3]];
+            ([-dot(column(&g, 0), t), -dot(column(&g, 1), t)], rotate_back(&g, [first[0][0], first[0][1], first[0][2]]))
+        };
         let (a1, a2) = (l1[0][3], l2[0][3]);
         // Where two solutions for qb meet, axes c and of the three are parallel up to rounding, which then decides about qc.
         let open = qc.free || solution.double && qc.miss > 0.0;
-        let qc = if open { Turn { value: within_reach(&bracket, a1.abs(), a2.abs()), ..qc } } else { qc };
-        let m = bracket(qc.value);
+        let qc = if open { Turn { value: within_reach(&|qc| bracket(qc).0, a1.abs(), a2.abs()), ..qc } } else { qc };
+        let (place, turned) = bracket(qc.value);
         let (s1, s2) = (if a1 < 0.0 { -1.0 } else { 1.0 }, if a2 < 0.0 { -1.0 } else { 1.0 });
-        let arm = two_links(a1.abs(), a2.abs(), [m[0][3], m[1][3]], noise, solution.error * lengths);
+        let arm = two_links(a1.abs(), a2.abs(), place, noise, solution.error * lengths);
         found.missed(arm.miss);
         found.near |= solution.double && arm.count == 0;
         for (i, (shoulder, elbow)) in arm.shoulder.iter().zip(&arm.elbow).enumerate().take(arm.count) {
@@ -208,7 +214,7 @@ pub fn three_parallel(links: &[Frame; 6]) -> Branches<6, 8> {
             let q1 = [s1 * shoulder[0], s1 * shoulder[1]];
             let q2 = [s1 * s2 * elbow[0], s1 * s2 * side1 * elbow[1]];
             // What is left of M's turn.
-            let [x, y, _] = turn_vector(q1[0], -q1[1], column(&m, 0));
+            let [x, y, _] = turn_vector(q1[0], -q1[1], turned);
             let [x, y, _] = turn_vector(q2[0], -q2[1], [x, side1 * y, 0.0]);
             let free = [solution.a_free, arm.shoulder_free, arm.elbow_free, false, solution.b_free, qc.free];
             found.add(Branch {

@@ -20,17 +20,27 @@ pub fn parallel_turns(
     let back = inverse(l4);
     let arm = regional(l1, l2, column(l3, 3), column(&back, 3));
     (found.miss, found.near) = (arm.miss, arm.near);
-    let [p1, p2, p3] = prismatic;
-    let whole = [column(&back, 0), column(&back, 1), column(&back, 2)];
+    // What a turn about these axes does not change is judged once: where the loop without its turns takes the directions of the last link.
+    let behind_2 = compose(l2, l3);
+    let behind = [compose(l1, &behind_2), behind_2, *l3];
+    let seen = |v: Vector| rotate_back(&behind[0], v);
+    let (x, y, z) = (seen(column(&back, 0)), seen(column(&back, 1)), seen(column(&back, 2)));
+    let tilt = sqrt(x[2] * x[2] + y[2] * y[2] + z[0] * z[0] + z[1] * z[1]);
+    let met = tilt <= ROUNDING && z[2] > 0.0;
     for branch in arm.found() {
-        let [q1, q2, q3] = branch.joints;
-        let [x, y, z] = seen_behind(p3, q3, l3, seen_behind(p2, q2, l2, seen_behind(p1, q1, l1, whole)));
-        let tilt = sqrt(x[2] * x[2] + y[2] * y[2] + z[0] * z[0] + z[1] * z[1]);
-        if !(tilt <= ROUNDING && z[2] > 0.0) {
+        if !met {
             found.missed(if z[2] > 0.0 { tilt } else { 1.0 - z[2] });
             continue;
         }
-        let q4 = turn([1.0, 0.0], [x[0], x[1]], 0.0).value;
+        let mut left = x;
+        for ((value, prismatic), behind) in branch.joints.iter().zip(prismatic).zip(&behind) {
+            if !prismatic {
+                // Seen from joint 4, this axis points up or down.
+                left = turn_vector(value[0], -value[1] * behind[2][2], left);
+            }
+        }
+        let [q1, q2, q3] = branch.joints;
+        let q4 = back_on_circle([left[0], left[1]]);
         found.add(Branch { joints: [q1, q2, q3, q4], signs: branch.signs, double: branch.double, error: branch.error, free: branch.free });
     }
     found

@@ -108,9 +108,11 @@ fn elbow(b: &Frame, w: Vector, [x, y]: [Real; 2], noise: Real, doubt: Real, mut 
     let sign = if b[0][3] < 0.0 { -1.0 } else { 1.0 };
     let links = two_links(l1, l2, [x, y], noise, doubt);
     let free = if links.shoulder_free { 2 } else { 0 } | if links.elbow_free { 4 } else { 0 };
+    // Rz(q3) w stands at the elbow's angle, seen through Rx(0 or pi).
+    let [wx, wy] = direction([w[0], w[1]], l2, noise);
     for (i, ([c, s], [ce, se])) in links.shoulder.iter().zip(&links.elbow).enumerate().take(links.count) {
-        // Rz(q3) w stands at the elbow's angle, seen through Rx(0 or pi).
-        let q3 = turn([w[0], w[1]], [sign * l2 * ce, sign * b[1][1] * l2 * se], noise).value;
+        let (x, y) = (sign * ce, sign * b[1][1] * se);
+        let q3 = back_on_circle([wx * x + wy * y, wx * y - wy * x]);
         found([sign * c, sign * s], q3, i as u16, links.double, free);
     }
     links.miss

@@ -87,15 +87,16 @@ pub fn regional_mid_slide_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> B
     let (l1, l2) = (length(link[0], link[1]), length(w[0], w[1]));
     let links = two_links(l1, l2, [p[0], p[1]], noise, 0.0);
     found.missed(links.miss);
-    let direction = turn([1.0, 0.0], link, noise).value;
+    // Directions of both links, in the first joint's frame and in the third one's.
+    let ([lx, ly], [wx, wy]) = (direction(link, l1, noise), direction([w[0], w[1]], l2, noise));
     let free = u32::from(links.shoulder_free) | u32::from(links.elbow_free) << 2;
-    for (i, (shoulder, elbow)) in links.shoulder.iter().zip(&links.elbow).enumerate().take(links.count) {
+    for (i, ([c, s], [ce, se])) in links.shoulder.iter().zip(&links.elbow).enumerate().take(links.count) {
+        let q1 = [c * lx + s * ly, s * lx - c * ly];
         // The second link's direction, seen from the third joint.
-        let [x, y, _] = turn_vector(direction[0], direction[1], [l2 * elbow[0], l2 * elbow[1], 0.0]);
-        let seen = [chain[0][0] * x + chain[1][0] * y, chain[0][1] * x + chain[1][1] * y];
-        let q1 = turn_vector(direction[0], -direction[1], [shoulder[0], shoulder[1], 0.0]);
-        let q3 = turn([w[0], w[1]], seen, noise).value;
-        found.add(Branch { joints: [[q1[0], q1[1]], [q2, 0.0], q3], signs: i as u16, double: links.double, error: 0.0, free });
+        let (x, y) = (ce * lx - se * ly, ce * ly + se * lx);
+        let (x, y) = (chain[0][0] * x + chain[1][0] * y, chain[0][1] * x + chain[1][1] * y);
+        let q3 = back_on_circle([wx * x + wy * y, wx * y - wy * x]);
+        found.add(Branch { joints: [q1, [q2, 0.0], q3], signs: i as u16, double: links.double, error: 0.0, free });
     }
     found
 }

@@ -135,35 +135,43 @@ const NO_ROTATION: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-6 } else { ROUNDING };
 
 /// The solutions that a construction has found, as joint variables with their verdict. Joints beyond `DOF` are virtual: they are dropped.
 /// `by_angle`: in the order of the joint variables, for a construction without branches; else in that of the branches.
+#[inline]
 fn conclude<const J: usize, const N: usize>(found: &Branches<J, N>, by_angle: bool) -> Solutions {
     let mut result = Solutions::none(Verdict::Complete);
     let mut near = found.near;
     let mut continuum = found.continuum;
-    let (mut points, mut angles) = ([[1.0, 0.0]; DOF], [0.0; DOF]);
+    // The points of all joints side by side; their angles then stand in the second places, in which slides have nothing.
+    let mut points = [[[1.0, 0.0]; DOF]; MAX_SOLUTIONS];
     for branch in found.found() {
-        let mut solution = Solution { q: [0.0; DOF], branch: branch.signs, double: branch.double, free: 0 };
-        let mut finite = true;
-        let known = points.iter_mut().zip(&mut angles);
-        for (i, ((q, value), ((point, angle), prismatic))) in
-            solution.q.iter_mut().zip(&branch.joints).zip(known.zip(PRISMATIC)).enumerate()
-        {
-            *q = if prismatic { value[0] } else { angle_beside(*point, *angle, *value) };
-            (*point, *angle) = (*value, *q);
-            finite &= value[0].is_finite() && value[1].is_finite();
-            solution.free |= branch.free & 1 << i;
-        }
+        let sizes = branch.joints.iter().take(DOF).fold(0.0, |sum, [c, s]| sum + (c.abs() + s.abs()));
+        near |= branch.double;
+        // Not so of an infinity or NaN.
+        let finite = sizes < Real::INFINITY;
         if !finite {
             near = true;
             continue;
         }
-        near |= solution.double;
-        continuum |= branch.free != 0;
-        match result.all.get_mut(result.count) {
-            Some(slot) => {
-                *slot = solution;
+        let free = branch.free & FIRST_JOINTS;
+        continuum |= free != 0;
+        match (result.all.get_mut(result.count), points.get_mut(result.count)) {
+            (Some(slot), Some(points)) => {
+                *slot = Solution { q: [0.0; DOF], branch: branch.signs, double: branch.double, free };
+                for (point, value) in points.iter_mut().zip(&branch.joints) {
+                    *point = *value;
+                }
                 result.count += 1;
             }
-            None => near = true,
+            _ => near = true,
+        }
+    }
+    // Of few solutions a number that is known makes better code.
+    let used = if MAX_SOLUTIONS > 2 { result.count } else { MAX_SOLUTIONS };
+    for point in points.as_flattened_mut().iter_mut().take(used * DOF) {
+        point[1] = angle(*point);
+    }
+    for (solution, points) in result.all.iter_mut().zip(&points).take(result.count) {
+        for ((q, [length, angle]), prismatic) in solution.q.iter_mut().zip(points).zip(PRISMATIC) {
+            *q = if prismatic { *length } else { *angle };
         }
     }
     // Few: insertion. Only the part that counts, so that the zeros stay behind.
@@ -195,3 +203,6 @@ fn conclude<const J: usize, const N: usize>(found: &Branches<J, N>, by_angle: bo
     }
     result
 }
+
+/// The bits of `free` of the joints that the arm has.
+const FIRST_JOINTS: u32 = (1 << DOF) - 1;

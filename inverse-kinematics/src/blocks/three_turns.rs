@@ -67,19 +67,24 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
     found.free = parallel || nearly;
     found.double = double && !found.free;
     found.count = if double || found.free { 1 } else { 2 };
+    let (side, along) = (ca * c2 * sb + sa * cb, s2 * sb);
+    // Block 2 of the third columns, of the same lengths for both signs of s2.
+    let lengths = length(along, side) * h;
+    let over = if lengths > 0.0 { 1.0 / lengths } else { 0.0 };
     let mut sign = 1.0;
     for turns in &mut found.turns {
-        let s2 = sign * s2;
+        let (s2, along) = (sign * s2, sign * along);
         sign = -sign;
         // Columns of Rx(alpha) Rz(t2) Rx(beta).
         let first = [c2, ca * s2, sa * s2];
         let second = [-s2 * cb, ca * c2 * cb - sa * sb, sa * c2 * cb + ca * sb];
-        let third = [s2 * sb, -ca * c2 * sb - sa * cb];
-        let t1 = if parallel { [1.0, 0.0] } else { turn(third, [r[0][2], r[1][2]], 0.0).value };
+        let t1 = if parallel || over == 0.0 {
+            [1.0, 0.0]
+        } else {
+            [(along * r[0][2] - side * r[1][2]) * over, (along * r[1][2] + side * r[0][2]) * over]
+        };
         let x = turn_vector(t1[0], -t1[1], column(r, 0));
-        let (c3, s3) = (dot(first, x), dot(second, x));
-        let over = 1.0 / length(c3, s3);
-        *turns = [t1, [c2, s2], [c3 * over, s3 * over]];
+        *turns = [t1, [c2, s2], back_on_circle([dot(first, x), dot(second, x)])];
     }
     found
 }

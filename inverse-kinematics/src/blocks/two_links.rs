@@ -63,10 +63,16 @@ pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real, doubt: Real) -> 
         let s = sqrt(outer * (l1 + l2 + distance) * inner * (distance + (l1 - l2).abs())) * over;
         found.elbow = [[c, s], [c, -s]];
     }
-    for (shoulder, elbow) in found.shoulder.iter_mut().zip(&found.elbow) {
-        let first = turn([l1 + l2 * elbow[0], l2 * elbow[1]], p, noise);
-        *shoulder = first.value;
-        found.shoulder_free |= first.free;
+    // Both postures lead to points (x, ±y): block 2 of the first, and of the other with the same lengths.
+    let [first, _] = found.elbow;
+    let (x, y) = (l1 + l2 * first[0], l2 * first[1]);
+    let square = x * x + y * y;
+    if square > noise * noise && distance > noise {
+        let over = 1.0 / (sqrt(square) * distance);
+        let (xs, ys) = ([x * p[0] * over, x * p[1] * over], [y * p[0] * over, y * p[1] * over]);
+        found.shoulder = [[xs[0] + ys[1], xs[1] - ys[0]], [xs[0] - ys[1], xs[1] + ys[0]]];
+    } else {
+        found.shoulder_free = (sqrt(square) - distance).abs() <= noise;
     }
     found
 }
