@@ -86,6 +86,9 @@ fn cosine_of_10_degrees(j: usize) -> Real {
     COSINES_OF_10_DEGREES.get(i).map_or(0.0, |c| sign * c)
 }
 
+/// So many Taylor coefficients are looked at where the polynomial is weak.
+const TERMS: usize = 17;
+
 /// A trigonometric polynomial a_0 + sum_k a_k cos kt + b_k sin kt, with what the search needs of it.
 struct TrigonometricPolynomial<'a, const N: usize> {
     a: &'a [Real; N],
@@ -93,26 +96,29 @@ struct TrigonometricPolynomial<'a, const N: usize> {
     /// The half width h of the first arcs.
     h: Real,
     /// weights[k][j] = (k h)^j / j!.
-    weights: [[Real; 9]; N],
+    weights: [[Real; TERMS]; N],
     /// sum_k (|a_k| + |b_k|) (k h)^9 / 9!: the remainder on the first arcs.
     remainder: Real,
+    /// The same with `TERMS` for 9.
+    last: Real,
 }
 
 impl<'a, const N: usize> TrigonometricPolynomial<'a, N> {
     fn new(a: &'a [Real; N], b: &'a [Real; N]) -> Self {
         const PI: Real = 3.141592653589793238462643383279502884;
         let h = PI / (4 * (N - 1)) as Real;
-        let mut weights = [[0.0; 9]; N];
-        let mut remainder = 0.0;
+        let mut weights = [[0.0; TERMS]; N];
+        let (mut remainder, mut last) = (0.0, 0.0);
         for (k, ((row, a), b)) in weights.iter_mut().zip(a).zip(b).enumerate() {
             let mut w = 1.0;
             for (j, weight) in row.iter_mut().enumerate() {
                 *weight = w;
                 w *= k as Real * h / (j + 1) as Real;
             }
-            remainder += (a.abs() + b.abs()) * w;
+            remainder += (a.abs() + b.abs()) * row[9];
+            last += (a.abs() + b.abs()) * w;
         }
-        TrigonometricPolynomial { a, b, h, weights, remainder }
+        TrigonometricPolynomial { a, b, h, weights, remainder, last }
     }
 
     /// Value and derivative.
@@ -145,6 +151,31 @@ impl<'a, const N: usize> TrigonometricPolynomial<'a, N> {
             p *= part;
         }
         t
+    }
+}
+
+impl<const N: usize> TrigonometricPolynomial<'_, N> {
+    /// A bound of what interpolation at the nine Chebyshev points of the arc about (c, s) leaves: of x^9 and x^10 at most 2^-8, of any higher
+    /// power at most 4 (1 and the Lebesgue constant). Where f is small its high derivatives are too, so that this is far below the bound by the
+    /// amplitudes.
+    fn left_by_interpolation(&self, c: Real, s: Real, part: Real) -> Real {
+        let mut t = [0.0; TERMS];
+        let (mut ck, mut sk) = (1.0, 0.0);
+        for ((w, a), b) in self.weights.iter().zip(self.a).zip(self.b) {
+            let pair = [a * ck + b * sk, b * ck - a * sk];
+            for j in 9..TERMS {
+                // The signs of derivatives: + + - -.
+                let term = pair[j % 2] * w[j];
+                t[j] += if j / 2 % 2 == 0 { term } else { -term };
+            }
+            (ck, sk) = (ck * c - sk * s, sk * c + ck * s);
+        }
+        let mut sum = self.last;
+        for j in (9..TERMS).rev() {
+            sum = sum * part + t[j].abs() * if j < 11 { 1.0 / 1024.0 } else { 1.0 };
+        }
+        let cube = part * part * part;
+        4.0 * sum * (cube * cube * cube)
     }
 }
 
@@ -293,8 +324,8 @@ impl<const M: usize> CircleRoots<M> {
 ///
 /// - `b[0]` is not read. `noise`: how far the coefficients' rounding may move f, > 0; that of evaluating f is added here.
 /// - `exact`: f itself, right relative to its largest value nearby, at nine points (c, s): Chebyshev's of an arc of half width
-///   <= pi/256 on which |f| stays below [`WEAK`] times the noise. There the noise is 1e-13 of the largest value (1000 u), and the
-///   interpolation's remainder sum_k .. (kh)^9/(9! 2^8).
+///   <= pi/256 on which |f| stays below [`WEAK`] times the noise. There the noise is 1e-13 of the largest value (1000 u), and what
+///   interpolation leaves is bounded by the next Taylor coefficients.
 /// - `floor`: how far rounding of what f is computed from may move f, wherever it is: added to the noise of `exact`. Where nobody knows it is 0,
 ///   and `shallow` lists the places that may be roots all the same.
 /// - Two roots nearer than 16 sqrt(u) rad, or a minimum of |f| as flat as that: one root, `double`, and `near`.
@@ -370,6 +401,7 @@ pub fn circle_roots<const N: usize, const M: usize>(
                     continue;
                 }
                 _ if largest(&t) < WEAK * noise && h <= 0.0123 && found.anew < ANEW => {
+                    let remainder = f.left_by_interpolation(c, s, part);
                     found.anew += 1;
                     let mut points = [[0.0; 2]; 9];
                     for (i, point) in points.iter_mut().enumerate() {
@@ -378,7 +410,6 @@ pub fn circle_roots<const N: usize, const M: usize>(
                     }
                     let values = exact(&points);
                     let size = values.iter().fold(0.0, |size: Real, value| size.max(value.abs()));
-                    let remainder = remainder / 256.0;
                     if remainder <= sqrt(UNIT_ROUNDOFF) * size || h <= shortest {
                         let t = interpolation(&values);
                         let error = 1000.0 * UNIT_ROUNDOFF * size + remainder + floor;
