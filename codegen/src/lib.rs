@@ -155,9 +155,21 @@ impl Generated {
         emit::c::print_inverse_kinematics(&self.program, self.construction(), &self.origin)
     }
 
+    /// Inverse kinematics in C alone, `robot_ik.h`: the calls of the header of `inverse_kinematics_for_c`, with their bodies. For an arm that
+    /// has no construction it holds a comment that says why. An error is a fault of this program.
+    pub fn inverse_kinematics_in_c(&self) -> Result<String, String> {
+        emit::c::print_solver(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
+    }
+
     /// What follows in `robot_test.rs`: the tests of inverse kinematics, whose module is in `file` beside.
     pub fn inverse_kinematics_test(&self, file: &str) -> String {
         emit::rust::print_inverse_kinematics_test(&self.program, self.construction(), file)
+    }
+
+    /// The program that tests inverse kinematics in C, `robot_ik_test.c`, with the names of both headers; none where the arm has no construction.
+    pub fn inverse_kinematics_test_in_c(&self, module: &str, solver: &str) -> Option<String> {
+        let found = self.construction().as_ref().ok()?;
+        Some(emit::c::print_solver_test(&self.program, found, [module, solver]))
     }
 
     fn construction(&self) -> &Result<InverseKinematics, String> {

@@ -9,6 +9,8 @@
 //! 4. *Counts*: at rational poses the number of real solutions is known by Sturm's theorem, and the module as it stands there, run in double
 //!    precision, returns so many.
 //!
+//! A module in C is a translation of that in Rust, which is verified in its place; the text in C must be what armgen translates from it.
+//!
 //! Classes are not decided here: the exact values are claims of the generator, and what a construction asks of its loop is tested on them.
 //! The solutions are counted with equations, arrangements and an algebra of their own (`forms`, `quotient`), which know no classes.
 
@@ -28,6 +30,7 @@ mod text;
 
 use std::fmt;
 
+use armgen_codegen::emit::c::print_solver;
 use armgen_codegen::emit::rust::print_inverse_kinematics;
 use armgen_codegen::emit::Origin;
 use armgen_codegen::inverse_kinematics as generator;
@@ -56,7 +59,12 @@ use text::{Construction, Text};
 
 /// Whether a text is a module of inverse kinematics.
 pub fn is_one(text: &str) -> bool {
-    text.contains("\nmod all_solutions {\n") || text.contains("\n// There is no `inverse_kinematics`: ")
+    text.contains("\nmod all_solutions {\n") || text.contains("\n// There is no `inverse_kinematics`: ") || is_c(text)
+}
+
+/// Whether it is one in C.
+fn is_c(text: &str) -> bool {
+    text.starts_with("/*") && (text.contains("_nearest_to(") || text.contains("\n * There is no inverse kinematics: "))
 }
 
 /// So many rational poses are counted.
@@ -77,6 +85,8 @@ pub struct Report {
     pub exact_values: Vec<String>,
     /// The module says that the arm has no construction.
     pub absent: bool,
+    /// The module is in C: what is said is found of the module in Rust, of which it is the translation, line by line.
+    pub translated: bool,
     /// At most so many solutions, as the module says.
     pub most: usize,
     /// So many numbers are the floats nearest to their exact values.
@@ -132,6 +142,9 @@ impl fmt::Display for Report {
         if self.absent {
             return write!(f, "the module says that there is no construction: nothing to verify");
         }
+        if self.translated {
+            writeln!(f, "in C, line by line what armgen translates from the module in Rust, of which this is found:")?;
+        }
         if self.numbers > 0 {
             writeln!(f, "building blocks are the tested ones, {} numbers equal the description, the loop closes", self.numbers)?;
         }
@@ -183,7 +196,10 @@ pub fn verify(source: &Source, text: &str, poses: usize) -> Report {
         return report;
     }
     let found = generator::of(&manipulator);
-    if let Err(fault) = fill(&mut report, &manipulator, &found, source, text, poses) {
+    // A module in C is judged by that in Rust, of which it is a translation.
+    let in_rust = is_c(text).then(|| print_inverse_kinematics(&manipulator, scalar_of(text), &found, &Origin::of(source)));
+    report.translated = in_rust.is_some();
+    if let Err(fault) = fill(&mut report, &manipulator, &found, source, in_rust.as_deref().unwrap_or(text), poses) {
         report.faults.push(fault);
     }
     if report.faults.is_empty() && Check::WholeText.is_made() {
@@ -205,14 +221,32 @@ fn difference(
     source: &Source,
     text: &str,
 ) -> Option<String> {
-    let scalar = if text.contains("pub type Real = f32;") { Scalar::F32 } else { Scalar::F64 };
-    let wanted = print_inverse_kinematics(manipulator, scalar, found, &Origin::of(source));
+    let (scalar, origin) = (scalar_of(text), Origin::of(source));
+    let (comment, wanted) = if is_c(text) {
+        ("/* ", print_solver(manipulator, scalar, found, &origin))
+    } else {
+        ("// ", Ok(print_inverse_kinematics(manipulator, scalar, found, &origin)))
+    };
+    let wanted = match wanted {
+        Ok(wanted) => wanted,
+        Err(reason) => return Some(reason),
+    };
     let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
-    if let Err(fault) = stated::origin(first.strip_prefix("// ").unwrap_or(""), &crate::hash(source.text())) {
+    if let Err(fault) = stated::origin(first.strip_prefix(comment).unwrap_or(""), &crate::hash(source.text())) {
         return Some(format!("line 1: {fault}"));
     }
     let (number, found, wanted) = stated::first_difference(rest.split('\n'), wanted.split('\n').skip(1))?;
     Some(format!("line {}: {found} where armgen writes {wanted}", number + 2))
+}
+
+/// The scalar of a module, as it says.
+fn scalar_of(text: &str) -> Scalar {
+    let single = ["pub type Real = f32;", "\ntypedef float "].iter().any(|line| text.contains(line));
+    if single {
+        Scalar::F32
+    } else {
+        Scalar::F64
+    }
 }
 
 fn fill(

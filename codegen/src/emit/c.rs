@@ -5,8 +5,10 @@
 
 mod batch;
 mod bindings;
+mod from_rust;
 mod header;
 mod inverse_kinematics;
+mod solver;
 mod standalone;
 mod syntax;
 
@@ -14,6 +16,7 @@ use self::header::macro_of;
 #[doc(hidden)]
 pub use self::header::{base_parameters_comment, function_comment, parameters_comment};
 pub use self::inverse_kinematics::print_inverse_kinematics;
+pub use self::solver::{print as print_solver, print_test as print_solver_test};
 use super::origin::{Notes, Origin};
 use crate::catalogue::Quantity;
 use crate::program::Module;

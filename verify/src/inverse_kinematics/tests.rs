@@ -279,6 +279,37 @@ fn what_is_not_armgens_is_refused() {
     assert!(!verify(&source, &(text + "pub static X: u8 = 0;\n"), 0).passed());
 }
 
+/// In C: judged by the module in Rust, and refused wherever it is not its translation.
+#[test]
+fn modules_in_c_are_verified() {
+    let (_, _, shoulder) = made_up().remove(3);
+    let source = Source::new("robot.yaml", shoulder.as_str());
+    let functions = Selection::named(["direct_kinematics"]).expect("a function");
+    for scalar in [Scalar::F64, Scalar::F32] {
+        let options = Options { scalar, functions: functions.clone(), ..Options::default() };
+        let generated = armgen_codegen::generate(&source, &options).0.expect("a valid robot");
+        let text = generated.inverse_kinematics_in_c().expect("a construction");
+        assert!(is_one(&text));
+        let report = verify(&source, &text, 2);
+        assert!(report.passed() && report.translated && report.numbers > 100 && report.sound == Some(8), "{report}");
+        let fault = |old: &str, new: &str| {
+            assert!(text.contains(old), "{old}");
+            verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
+        };
+        let writes = "where armgen writes";
+        assert!(fault("x * along - y * w", "x * along + y * w").contains(writes));
+        assert!(fault("found.count = 2;", "found.count = 1;").contains(writes));
+        assert!(fault("0.4", "0.41").contains(writes));
+        assert!(fault(" < 4; ++i", " < 3; ++i").contains(writes));
+        assert!(fault("UNFUSED", "FUSED").contains(writes));
+    }
+    let source = Source::new("robot.yaml", description("", &[["R", "1", "0", "0", "0"]]));
+    let options = Options { functions, ..Options::default() };
+    let generated = armgen_codegen::generate(&source, &options).0.expect("a valid robot");
+    let report = verify(&source, &generated.inverse_kinematics_in_c().expect("a comment"), 0);
+    assert!(report.passed() && report.absent, "{report}");
+}
+
 type Fault<'a> = &'a dyn Fn() -> Option<String>;
 
 /// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.

@@ -68,7 +68,8 @@ pub(crate) struct Beside {
     /// Write a library of C and its module beside robot.py: robot_native.c and robot_native.py, for arrays of NumPy
     #[arg(long)]
     native: bool,
-    /// Write inverse kinematics beside it, robot_ik.rs: all joint variables that reach a pose, in a module of its own
+    /// Write inverse kinematics beside it, robot_ik.rs: all joint variables that reach a pose, in a module of its own; with
+    /// --language c robot_ik.h, with --tests robot_ik_test.c too
     #[arg(long)]
     ik: bool,
 }
@@ -240,7 +241,7 @@ fn unfit(
         (beside.bounds, "--bounds", "its companion is Rust"),
         (beside.runtime, "--runtime", "the runtime is Rust"),
         (beside.c_abi, "--c-abi", "it is the face for C of a module in Rust"),
-        (beside.ik, "--ik", "inverse kinematics is written in Rust"),
+        (beside.ik && language != Language::C, "--ik", "inverse kinematics is written in Rust and in C"),
         (
             choices.batch.is_some() && language != Language::C,
             "--batch",
@@ -306,22 +307,32 @@ fn files(
                 armgen_verify::test_kit_in(source, ModuleText { language, text: &text }, &taken_in)
             }
         })?;
-        let inverse_kinematics = match beside.ik {
+        let inverse_kinematics = match beside.ik && language == Language::Rust {
             true => generated.inverse_kinematics_test(&format!("{stem}_ik.rs")),
             false => String::new(),
         };
         files.push((out.with_file_name(file), tests + &inverse_kinematics));
+        if beside.ik && language == Language::C {
+            let name = out.file_name().unwrap_or_default().to_string_lossy();
+            if let Some(test) = generated.inverse_kinematics_test_in_c(&name, &format!("{stem}_ik.h")) {
+                files.push((out.with_file_name(format!("{stem}_ik_test.c")), test));
+            }
+        }
     }
-    if beside.ik && beside.verify {
-        let all_solutions = generated.inverse_kinematics();
+    let all_solutions = match (beside.ik, language) {
+        (false, _) => None,
+        (true, Language::C) => Some((out.with_file_name(format!("{stem}_ik.h")), generated.inverse_kinematics_in_c()?)),
+        (true, _) => Some((out.with_file_name(format!("{stem}_ik.rs")), generated.inverse_kinematics())),
+    };
+    if let Some((file, text)) = all_solutions.as_ref().filter(|_| beside.verify) {
         let poses = armgen_verify::inverse_kinematics::POSES;
-        let report = with_spinner("verifying", || armgen_verify::inverse_kinematics::verify(source, &all_solutions, poses));
+        let report = with_spinner("verifying", || armgen_verify::inverse_kinematics::verify(source, text, poses));
         if let Some(fault) = report.faults.first() {
             return Err(format!(
                 "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
             ));
         }
-        let certificate = certificate_beside(&out.with_file_name(format!("{stem}_ik.rs")));
+        let certificate = certificate_beside(file);
         terminal::note(&format!("{}; {}", report.summary(), certificate.display()));
         files.push((certificate, report.to_json()));
     }
@@ -352,9 +363,7 @@ fn files(
         files.push((out.with_file_name(format!("{stem}_native.py")), native.python));
         files.push((out.with_file_name(format!("{stem}_native.c")), native.c));
     }
-    if beside.ik {
-        files.push((out.with_file_name(format!("{stem}_ik.rs")), generated.inverse_kinematics()));
-    }
+    files.extend(all_solutions);
     // The module first.
     let module = match language {
         Language::Matlab => generated.package().into_iter().map(|file| (out.join(file.name), file.text)).collect(),

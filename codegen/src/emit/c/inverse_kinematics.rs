@@ -26,19 +26,51 @@ pub fn print_inverse_kinematics(module: &Module, found: &Result<InverseKinematic
     Some(CFace { header: header(module, found, origin), wrappers: wrappers(module, found, origin) })
 }
 
+/// What the headers of an arm are called, and what they are of.
+pub(super) struct Names {
+    pub(super) robot: String,
+    pub(super) upper: String,
+    pub(super) real: &'static str,
+    pub(super) joints: usize,
+}
+
+impl Names {
+    pub(super) fn of(name: &str, scalar: Scalar, joints: usize) -> Names {
+        let robot = super::spelled(name);
+        let real = match scalar {
+            Scalar::F64 => "double",
+            Scalar::F32 => "float",
+        };
+        Names { upper: macros_of(&robot), robot, real, joints }
+    }
+}
+
+pub(super) fn said(lines: &[String]) -> String {
+    comment(&[Block::Verbatim(lines.to_vec())], &|_| String::new())
+}
+
 fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String {
-    let robot = prefix(module);
-    let upper = macros_of(&robot);
-    let said = |lines: &[String]| comment(&[Block::Verbatim(lines.to_vec())], &|_| String::new());
-    let real = match module.scalar {
-        Scalar::F64 => "double",
-        Scalar::F32 => "float",
-    };
-    let (dof, most) = (module.joints.len(), found.most);
-    let mut text = said(&origin.head(&[format!("Inverse kinematics: {}; at most {most} solutions.", found.class)]));
-    text += &format!("#ifndef ARMGEN_{upper}_IK_H\n#define ARMGEN_{upper}_IK_H\n\n#include <stdint.h>\n\n");
-    text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
-    text += &said(&["At most so many postures reach a pose, where they are finitely many.".into()]);
+    let names = Names::of(&module.name, module.scalar, module.joints.len());
+    let mut text = opening(&names, found, origin);
+    text += "#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
+    text += &types(&names, found);
+    let functions = functions(&names, found);
+    text += &functions.iter().map(|(about, signature)| format!("{about}{signature};\n")).collect::<Vec<_>>().join("\n");
+    text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+}
+
+/// Where the header came from, what it is of, and its guard.
+pub(super) fn opening(names: &Names, found: &InverseKinematics, origin: &Origin) -> String {
+    let upper = &names.upper;
+    let text = said(&origin.head(&[format!("Inverse kinematics: {}; at most {} solutions.", found.class, found.most)]));
+    text + &format!("#ifndef ARMGEN_{upper}_IK_H\n#define ARMGEN_{upper}_IK_H\n\n")
+}
+
+/// The macros and the structs of both headers.
+pub(super) fn types(names: &Names, found: &InverseKinematics) -> String {
+    let Names { robot, upper, real, joints: dof } = names;
+    let most = found.most;
+    let mut text = said(&["At most so many postures reach a pose, where they are finitely many.".into()]);
     text += &format!("#define {upper}_MAX_SOLUTIONS {most}\n\n");
     text += &said(&["What is known of the solutions, `verdict`:".into()]);
     for (number, (name, means)) in VERDICTS.iter().enumerate() {
@@ -51,7 +83,7 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
         text += &said(&rust::meanings(found).iter().map(|line| line.trim().to_owned()).collect::<Vec<_>>());
         text += &format!("#define {upper}_BRANCHES {{ \\\n{names}}}\n");
     }
-    text += &format!(
+    text + &format!(
         "\n/* One posture. */\ntypedef struct {{\n    {real} q[{dof}]; /* joint variables: angles in (-pi, pi], rad; lengths, m */\n    \
          uint32_t branch; /* which of the construction's ways leads here */\n    \
          uint32_t is_double; /* 1: two solutions meet here */\n    \
@@ -59,27 +91,34 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
          /* All postures at a pose. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
          {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
          {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"
-    );
+    )
+}
+
+/// The functions of both headers: what is said of each, and its declaration.
+pub(super) fn functions(names: &Names, found: &InverseKinematics) -> Vec<(String, String)> {
+    let Names { robot, real, joints: dof, .. } = names;
     let mut about = vec!["All joint variables that take the end effector to t, its pose in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.".to_owned()];
     about.extend(rust::about_redundancy(found).map(|about| format!("redundancy: {about}.")));
-    text += &said(&about);
     let redundancy = found.redundancy.as_ref().map_or(String::new(), |_| format!("    {real} redundancy,\n"));
-    text += &format!(
-        "void {robot}_inverse_kinematics(\n    const {real} t[4][4],\n{redundancy}    {robot}_solutions *solutions);\n\n"
-    );
+    let mut functions = vec![(
+        said(&about),
+        format!("void {robot}_inverse_kinematics(\n    const {real} t[4][4],\n{redundancy}    {robot}_solutions *solutions)"),
+    )];
     if found.redundancy.is_some() {
-        text += &said(&["The redundancy of a posture, with which it is found again.".into()]);
-        text += &format!("{real} {robot}_inverse_kinematics_redundancy(const {real} q[{dof}]);\n\n");
+        functions.push((
+            said(&["The redundancy of a posture, with which it is found again.".into()]),
+            format!("{real} {robot}_inverse_kinematics_redundancy(const {real} q[{dof}])"),
+        ));
     }
-    text +=
-        &said(&["Those of the postures that are within the limits of the joints, angles moved by whole turns into them.".into()]);
-    text += &format!("void {robot}_within_limits(\n    const {robot}_solutions *solutions,\n    {robot}_solutions *within);\n\n");
-    text += &said(&[
-        "The index of the posture whose largest difference from q is smallest, angles modulo whole turns; -1 if there is none."
-            .into(),
-    ]);
-    text += &format!("int32_t {robot}_nearest_to(\n    const {robot}_solutions *solutions,\n    const {real} q[{dof}]);\n");
-    text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+    functions.push((
+        said(&["Those of the postures that are within the limits of the joints, angles moved by whole turns into them.".into()]),
+        format!("void {robot}_within_limits(\n    const {robot}_solutions *solutions,\n    {robot}_solutions *within)"),
+    ));
+    functions.push((
+        said(&["The index of the posture whose largest difference from q is smallest, angles modulo whole turns; -1 if there is none.".into()]),
+        format!("int32_t {robot}_nearest_to(\n    const {robot}_solutions *solutions,\n    const {real} q[{dof}])"),
+    ));
+    functions
 }
 
 /// A name of Rust as one of a macro: `NearDouble` as `NEAR_DOUBLE`.

@@ -1,6 +1,6 @@
 //! The header that holds the functions: C99 and C++11, static functions, no allocation, no state.
 //!
-//! Compilers take several liberties with floats, of which each changes bits; `prologue.h` forbids them or refuses to be compiled. Every result
+//! Compilers take several liberties with floats, of which each changes bits; `unfused.h` forbids them or refuses to be compiled. Every result
 //! is written when nothing is left to be read, so that results may lie where arguments do.
 
 use std::fmt::Write;
@@ -17,8 +17,10 @@ use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Line, Listing, Name};
 use crate::program::{Function, Module, Trig};
 
-const PROLOGUE: &str = include_str!("prologue.h");
-const EPILOGUE: &str = include_str!("epilogue.h");
+/// What forbids compilers to change bits.
+pub(super) const PROLOGUE: &str = include_str!("unfused.h");
+const VECTORS: &str = include_str!("vectors.h");
+pub(super) const EPILOGUE: &str = include_str!("epilogue.h");
 const STRIBECK: &str = include_str!("stribeck.h");
 const SIGN: &str = include_str!("sines/sign.h");
 const STD: &str = include_str!("sines/std.h");
@@ -35,6 +37,7 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     }
     text += &of_robot(&sine_of_library(module), &c.name, &c.upper);
     text += &of_robot(PROLOGUE, &c.name, &c.upper);
+    text += &of_robot(VECTORS, &c.name, &c.upper);
     let _ = writeln!(text, "/* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */");
     let _ = writeln!(text, "#define {}_NAME \"{}\"", c.upper, module.name);
     let revolute: Vec<&str> = module.joints.iter().map(|joint| if joint.is_revolute { "1" } else { "0" }).collect();

@@ -144,14 +144,20 @@ fn solver(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String
     let mut text = String::from(
         "\n/// The construction and its building blocks.\n#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n#[rustfmt::skip]\nmod all_solutions {\n\n",
     );
-    text += &format(constants(joints, scalar, found));
+    text += &items(joints, scalar, found);
+    text + "}\n"
+}
+
+/// What stands in the module of the blocks: constants, one function, and the blocks that it calls.
+pub(in crate::emit) fn items(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String {
+    let mut text = format(constants(joints, scalar, found));
     text.push('\n');
     text += &format(function(found));
     for block in needed(scalar, found) {
         text.push('\n');
         text += block.source;
     }
-    text + "}\n"
+    text
 }
 
 /// The texts that a construction needs, each after those that it needs itself.

@@ -1,0 +1,137 @@
+//! The header that finds all postures by itself: the module of Rust, translated, behind the declarations of `--c-abi`.
+//!
+//! Each building block exists once, in Rust (`from_rust`); what is written here for C alone is what Rust takes from the crate `libm`, and the
+//! functions that a caller sees.
+
+use super::from_rust::{translated, Translated};
+use super::inverse_kinematics::{functions, opening, said, types, Names};
+use super::standalone::{EPILOGUE, PROLOGUE};
+use crate::emit::origin::Origin;
+use crate::emit::plain::of_robot;
+use crate::emit::rust;
+use crate::inverse_kinematics::{InverseKinematics, Target};
+use crate::kinds::Scalar;
+use crate::manipulator::Manipulator;
+use crate::program::Module;
+
+const NUMBERS: &str = include_str!("solver/numbers.h");
+const LARGE_ANGLES: &str = include_str!("solver/large_angles.h");
+
+/// Functions of one scalar.
+struct Library {
+    opening: &'static str,
+    atan2: &'static str,
+    sin_cos: &'static str,
+}
+
+const DOUBLE: Library = Library {
+    opening: "typedef double robot_real;\ntypedef uint64_t robot_word;\n#define ROBOT_FABS fabs\n#define ROBOT_SQRT sqrt\n#define ROBOT_FLOOR floor\n",
+    atan2: include_str!("solver/atan2_f64.h"),
+    sin_cos: include_str!("solver/sin_cos_f64.h"),
+};
+
+const SINGLE: Library = Library {
+    opening: "typedef float robot_real;\ntypedef uint32_t robot_word;\n#define ROBOT_FABS fabsf\n#define ROBOT_SQRT sqrtf\n#define ROBOT_FLOOR floorf\n",
+    atan2: include_str!("solver/atan2_f32.h"),
+    sin_cos: include_str!("solver/sin_cos_f32.h"),
+};
+
+/// The header; where the arm has no construction, a comment that says why. An error is one of this program: a block says what the
+/// translation does not know.
+pub fn print(
+    manipulator: &Manipulator,
+    scalar: Scalar,
+    found: &Result<InverseKinematics, String>,
+    origin: &Origin,
+) -> Result<String, String> {
+    let found = match found {
+        Ok(found) => found,
+        Err(reason) => return Ok(said(&origin.head(&[format!("There is no inverse kinematics: {reason}.")]))),
+    };
+    let names = Names::of(&manipulator.name, scalar, manipulator.joints.len());
+    // Everything that is no caller's business has a longer name.
+    let (inner, macros) = (format!("{}_ik", names.robot), format!("{}_IK", names.upper));
+    let mut wanted = vec!["inverse_kinematics"];
+    wanted.extend(found.redundancy.as_ref().map(|_| "inverse_kinematics_redundancy"));
+    wanted.extend(["Solutions::within_limits", "Solutions::nearest_to"]);
+    let source = rust::items_of_inverse_kinematics(&manipulator.joints, scalar, found);
+    let blocks = translated(&source, &wanted, &inner, &macros)
+        .map_err(|reason| format!("inverse kinematics of this arm is not there in C, {reason}; this is a fault of armgen"))?;
+    let own = |text: &str| of_robot(text, &inner, &macros);
+
+    let mut text = opening(&names, found, origin);
+    for header in ["float", "math", "stddef", "stdint", "string"] {
+        text += &format!("#include <{header}.h>\n");
+    }
+    text += "#ifndef __cplusplus\n#include <stdbool.h>\n#endif\n\n";
+    text += &own(PROLOGUE);
+    text += &types(&names, found);
+    text += "/*\n * From here on to the functions at the end: the construction and its building blocks.\n */\n\n";
+    let library = match scalar {
+        Scalar::F64 => DOUBLE,
+        Scalar::F32 => SINGLE,
+    };
+    let Translated { macros, typedefs, tables, functions: bodies } = blocks;
+    text += &own(library.opening);
+    text += &own(NUMBERS);
+    if bodies.contains("_libm_atan2(") {
+        text += &own(library.atan2);
+    }
+    if bodies.contains("_libm_sin_cos(") {
+        text += &own(LARGE_ANGLES);
+        text += &own(library.sin_cos);
+    }
+    text += &(macros + &typedefs + &tables + &bodies);
+    text += &faces(&names, found, &inner);
+    text += "\n";
+    Ok(text + EPILOGUE)
+}
+
+/// The functions that a caller sees.
+fn faces(names: &Names, found: &InverseKinematics, inner: &str) -> String {
+    let Names { robot, joints, .. } = names;
+    let redundancy = if found.redundancy.is_some() { ", redundancy" } else { "" };
+    let q = format!("{inner}_real_{joints}_type");
+    let text = include_str!("solver/faces.h.txt").replace("@invalid", "4");
+    let mut text = text.replace("@posture", &q).replace("@inner", inner).replace("@MACROS", &format!("{}_IK", names.upper));
+    text = text.replace("@most", &format!("{}_MAX_SOLUTIONS", names.upper)).replace("@robot", robot);
+    for (about, signature) in functions(names, found) {
+        let body = if signature.contains("_within_limits(") {
+            "    const INNER_solutions_type found = INNER_from_c(solutions);\n    const INNER_solutions_type kept = INNER_solutions_within_limits(&found);\n    INNER_to_c(&kept, within);\n".to_owned()
+        } else if signature.contains("_nearest_to(") {
+            format!(
+                "    const INNER_solutions_type found = INNER_from_c(solutions);\n    const {q} posture = INNER_posture_of(q);\n    \
+                 const INNER_solution_type *nearest = INNER_solutions_nearest_to(&found, &posture);\n    \
+                 return nearest == NULL ? -1 : (int32_t)(nearest - found.all.at);\n"
+            )
+        } else if signature.contains("_redundancy(") {
+            format!("    const {q} posture = INNER_posture_of(q);\n    return INNER_inverse_kinematics_redundancy(&posture);\n")
+        } else {
+            format!(
+                "    INNER_real_4x4_type pose;\n    INNER_solutions_type found;\n    int i, j;\n    for (i = 0; i < 4; ++i) {{\n        \
+                 for (j = 0; j < 4; ++j) {{\n            pose.at[i].at[j] = t[i][j];\n        }}\n    }}\n    \
+                 found = INNER_inverse_kinematics(&pose{redundancy});\n    INNER_to_c(&found, solutions);\n"
+            )
+        };
+        text += &format!("\n{about}static inline {signature}\n{{\n{}}}\n", body.replace("INNER", inner));
+    }
+    text
+}
+
+/// The program that tests the header, for its user: postures found again at the poses of random ones.
+pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&str; 2]) -> String {
+    let names = Names::of(&module.name, module.scalar, module.joints.len());
+    // Units of rounding times a condition that most random postures have.
+    let (near, far, lost) = match module.scalar {
+        Scalar::F64 => ("1e-9", "1e-5", "0"),
+        Scalar::F32 => ("2e-3", "0.1", "complete / 500"),
+    };
+    let redundancy = match found.redundancy {
+        None => String::new(),
+        Some(_) => format!("{}_inverse_kinematics_redundancy(q), ", names.robot),
+    };
+    let column = if found.target == Target::Position { "3" } else { "0" };
+    let text = include_str!("solver/test.c.txt").replace("@module", file).replace("@solver", solver);
+    let text = text.replace("@redundancy", &redundancy).replace("@column", column).replace("@near", near).replace("@far", far);
+    text.replace("@lost", lost).replace("@robot", &names.robot).replace("@ROBOT", &names.upper)
+}

@@ -1,0 +1,181 @@
+//! The arms that emitted inverse kinematics is tested with.
+
+use std::path::{Path, PathBuf};
+
+use armgen_codegen::schedule::{Options, Selection};
+use armgen_codegen::source::Source;
+use armgen_codegen::{Generated, Scalar};
+
+pub(crate) fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("codegen lies in the workspace")
+}
+
+pub(crate) fn generated(name: &str, text: &str, scalar: Scalar) -> Generated {
+    let functions = Selection::named(["direct_kinematics"]).expect("a function");
+    let options = Options { scalar, functions, ..Options::default() };
+    let (generated, diagnostics) = armgen_codegen::generate(&Source::new(name, text), &options);
+    generated.unwrap_or_else(|| panic!("{name}: {diagnostics:?}"))
+}
+
+/// A description from rows (kind, a, alpha, d, theta).
+pub(crate) fn description(name: &str, task: &str, rows: &[(&str, &str, &str, &str, &str)]) -> String {
+    let joint = |(i, (kind, a, alpha, d, theta)): (usize, &(&str, &str, &str, &str, &str))| {
+        format!(
+            "  - {{name: j{}, type: {kind}, a: {a}, alpha: {alpha}, d: {d}, theta: {theta}, \
+             link: {{mass: 1, com: [0, 0, 0], inertia: {{xx: 1, yy: 1, zz: 1}}}}}}\n",
+            i + 1
+        )
+    };
+    let joints: String = rows.iter().enumerate().map(joint).collect();
+    format!("name: {name}\nconvention: standard\ngravity: [0, 0, -9.81]\n{task}\njoints:\n{joints}")
+}
+
+pub(crate) const R: &str = "revolute";
+pub(crate) const P: &str = "prismatic";
+
+/// Made-up arms: name, task, class, at most, rows.
+pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
+    let arm = |name: &'static str, task: &str, class, most, rows: &[(&str, &str, &str, &str, &str)]| {
+        (name, class, most, description(name, task, rows))
+    };
+    let (elbow, quarter) = ("0.4", "pi/2");
+    vec![
+        arm(
+            "planar3r",
+            "task: [x, y, rz]",
+            "all revolute axes parallel (joints 1 2 3)",
+            2,
+            &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0"), (R, "0.2", "0", "0", "0")],
+        ),
+        arm(
+            "planar2r",
+            "task: [x, y]",
+            "position of three joints, joint 3 slides, axes 2 and 1 are parallel",
+            2,
+            &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0.1", "0.3")],
+        ),
+        arm(
+            "elbow3r",
+            "task: [x, y, z]",
+            "position of three joints, axes 2 and 3 are parallel",
+            4,
+            &[(R, "0.1", quarter, "0.3", "0.1"), (R, elbow, "0", "0.1", "0"), (R, "0.35", "0.2", "0.05", "0.3")],
+        ),
+        // A spherical wrist behind three axes that are not related, with angles that are no fractions of a turn.
+        arm(
+            "pieper",
+            "",
+            "spherical triple (axes 4 5 6 through one point), axes 1, 2 and 3 neither are parallel nor intersect",
+            8,
+            &[
+                (R, "0.2", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (R, "0.1", quarter, "0.05", "0.3"),
+                (R, "0", "0.8", "0.35", "0"),
+                (R, "0", "-1.2", "0", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        // Three parallel axes without a relation between the others.
+        arm(
+            "parallel",
+            "",
+            "three parallel axes (joints 2 3 4)",
+            8,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (R, elbow, "pi", "0.1", "0"),
+                (R, "0.35", "0", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (R, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        // A slide, an elbow, a wrist; modified in nothing else.
+        arm(
+            "track",
+            "",
+            "spherical triple (axes 4 5 6 through one point), joint 1 slides at right angles to axis 2",
+            8,
+            &[
+                (P, "0.1", quarter, "0.2", "0"),
+                (R, elbow, "0.7", "0.1", "0"),
+                (R, "0.1", quarter, "0.05", "0.3"),
+                (R, "0", quarter, "0.35", "0"),
+                (R, "0", "-pi/2", "0", "0.2"),
+                (R, "0", "0", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "gantry",
+            "",
+            "three prismatic joints (joints 1 2 3)",
+            2,
+            &[
+                (P, "0.1", quarter, "0.2", "pi/2"),
+                (P, "0", "pi/2", "0.1", "pi/2"),
+                (P, "0.1", "0.4", "0.05", "0.3"),
+                (R, "0.05", quarter, "0.35", "0"),
+                (R, "0.03", "-pi/2", "0.02", "0.2"),
+                (R, "0", "0", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "slides_apart",
+            "",
+            "two prismatic joints (joints 2 5)",
+            8,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (P, "0.2", "-1.1", "0.1", "0.4"),
+                (R, "0.35", "0.8", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (P, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "table",
+            "",
+            "two prismatic joints (joints 1 2)",
+            8,
+            &[
+                (P, "0", quarter, "0.2", quarter),
+                (P, "0.1", "0", "0.1", "0"),
+                (R, "0.3", quarter, "0.2", "0"),
+                (R, "0.1", quarter, "0.1", "0.3"),
+                (R, "0.05", "-pi/2", "0.35", "0"),
+                (R, "0.02", "0", "0.1", "0"),
+            ],
+        ),
+        arm(
+            "general",
+            "",
+            "general",
+            16,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (R, "0.35", "0.8", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (R, "0.07", "-1.2", "0.2", "0.2"),
+                (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+    ]
+}
+
+/// The robots of the repository, sorted by name.
+pub(crate) fn robots() -> Vec<(String, String)> {
+    let mut robots = Vec::new();
+    for folder in ["robots", "tests/robots"] {
+        let entries = std::fs::read_dir(workspace().join(folder)).expect("a folder of robots");
+        let files: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+        for file in files.iter().filter(|file| file.extension().is_some_and(|e| e == "yaml")) {
+            let name = file.file_stem().expect("a file's name").to_string_lossy().into_owned();
+            robots.push((name, std::fs::read_to_string(file).expect("a description")));
+        }
+    }
+    robots.sort();
+    robots
+}

@@ -1,0 +1,187 @@
+//! Inverse kinematics in C beside that in Rust: the same verdicts, branches and bits.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use armgen_codegen::Scalar;
+
+use crate::arms::{generated, made_up, robots, workspace};
+
+const WARNINGS: [&str; 6] = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"];
+
+/// Runs a command; what went wrong if it failed or warned.
+#[track_caller]
+fn succeed(command: &mut Command) -> String {
+    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success() && !err.contains("warning"), "{command:?}: {}\n{out}{err}", output.status);
+    out.into_owned()
+}
+
+fn there(compiler: &str) -> bool {
+    let found = Command::new(compiler).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        println!("skipped: no `{compiler}` here (Debian: gcc, g++, clang)");
+    }
+    found
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(folder.join("src")).expect("a folder can be made");
+    folder
+}
+
+/// A robot, a scalar, and the modules in both languages.
+struct Arm {
+    name: String,
+    suffix: &'static str,
+    robot: String,
+    ik: String,
+    c: String,
+}
+
+/// The arms that have a construction, in both scalars.
+fn arms(wanted: impl Fn(&str) -> bool) -> Vec<Arm> {
+    let mut all = robots();
+    all.extend(made_up().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
+    let mut arms = Vec::new();
+    for (name, text) in all.into_iter().filter(|(name, _)| wanted(name)) {
+        for (scalar, suffix) in [(Scalar::F64, "f64"), (Scalar::F32, "f32")] {
+            let generated = generated(&name, &text, scalar);
+            let c = generated.inverse_kinematics_in_c().unwrap_or_else(|reason| panic!("{name}: {reason}"));
+            if c.contains("_nearest_to(") {
+                let (robot, ik) = (generated.module.clone(), generated.inverse_kinematics());
+                arms.push(Arm { name: name.clone(), suffix, robot, ik, c });
+            }
+        }
+    }
+    arms
+}
+
+/// Compiles both and compares what they find at so many poses: random ones, on folds, out of reach, not finite.
+fn compare(folder: &Path, arms: &[Arm], compilers: &[(&str, &[&str])], poses: usize) {
+    let write = |path: &str, text: &str| std::fs::write(folder.join(path), text).expect("a file can be written");
+    write("Cargo.lock", &std::fs::read_to_string(workspace().join("Cargo.lock")).expect("the lock file"));
+    write(
+        "Cargo.toml",
+        "[package]\nname = \"judge\"\nversion = \"1.0.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n\n\
+         [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\n",
+    );
+    let mut main = include_str!("compare.rs").to_owned();
+    let mut checks = String::new();
+    for Arm { name, suffix, robot, ik, c } in arms {
+        let module = format!("{name}_{suffix}");
+        write(&format!("src/{module}.rs"), robot);
+        write(&format!("src/{module}_ik.rs"), ik);
+        write(&format!("{module}_ik.h"), c);
+        let robot = c.lines().find_map(|line| line.strip_suffix("_nearest_to(")?.rsplit(' ').next()).expect("a name");
+        let (real, redundancy) =
+            (if *suffix == "f64" { "double" } else { "float" }, if c.contains("_redundancy(") { "r, " } else { "" });
+        write(
+            &format!("{module}.c"),
+            &format!(
+                "#include \"{module}_ik.h\"\n#include \"{module}_ik.h\"\nvoid all_{module}(const {real} t[4][4], {real} r, {robot}_solutions *found);\n\
+                 void within_{module}(const {robot}_solutions *from, {robot}_solutions *within);\n\
+                 int32_t nearest_{module}(const {robot}_solutions *from, const {real} *q);\n\
+                 void all_{module}(const {real} t[4][4], {real} r, {robot}_solutions *found)\n{{\n    (void)r;\n    \
+                 {robot}_inverse_kinematics(t, {redundancy}found);\n}}\n\
+                 void within_{module}(const {robot}_solutions *from, {robot}_solutions *within)\n{{\n    {robot}_within_limits(from, within);\n}}\n\
+                 int32_t nearest_{module}(const {robot}_solutions *from, const {real} *q)\n{{\n    return {robot}_nearest_to(from, q);\n}}\n"
+            ),
+        );
+        main += &format!("#[allow(dead_code)]\nmod {module};\n#[allow(dead_code)]\nmod {module}_ik;\n");
+        let argument = if redundancy.is_empty() { "" } else { ", r" };
+        checks += &format!(
+            "    compare!({module}, {module}_ik, all_{module}, within_{module}, nearest_{module}, {poses}, |t: &_, r| {{\n        \
+             let _ = r;\n        {module}_ik::inverse_kinematics(t{argument})\n    }});\n"
+        );
+    }
+    main += &format!("\nfn main() {{\n{checks}}}\n");
+    write("src/main.rs", &main);
+    for (compiler, flags) in compilers.iter().filter(|(compiler, _)| there(compiler)) {
+        let mut flagged = "-D warnings".to_owned();
+        for Arm { name, suffix, .. } in arms {
+            let object = folder.join(format!("{name}_{suffix}.o"));
+            succeed(
+                Command::new(compiler)
+                    .args(["-std=c99", "-c"])
+                    .args(WARNINGS)
+                    .args(*flags)
+                    .arg("-o")
+                    .arg(&object)
+                    .arg(folder.join(format!("{name}_{suffix}.c"))),
+            );
+            flagged += &format!(" -Clink-arg={}", object.display());
+        }
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let mut command = Command::new(cargo);
+        command.args(["run", "--quiet", "--offline"]).current_dir(folder).env("CARGO_TARGET_DIR", folder.join("target"));
+        // The objects are others with the same names.
+        let main = folder.join("src/main.rs");
+        std::fs::write(&main, format!("// {compiler} {flags:?}\n{}", std::fs::read_to_string(&main).expect("the judge")))
+            .expect("written");
+        println!("{compiler} {flags:?}\n{}", succeed(command.env("RUSTFLAGS", flagged + " -Clink-arg=-lm")));
+    }
+}
+
+/// Three classes and a joint that is given, by one compiler. Some 20 s of a processor.
+#[test]
+fn modules_in_c_have_the_bits_of_rust() {
+    let folder = folder("inverse_kinematics_in_c");
+    compare(&folder, &arms(|name| ["puma560", "panda7"].contains(&name)), &[("gcc", &["-O1"])], 2000);
+}
+
+/// Every class, every compiler, flags that fuse multiplications where they may; C++, and compilers that are asked for fast-math.
+///
+/// `cargo test --release -p armgen-codegen --test inverse_kinematics -- --ignored --nocapture`.
+#[test]
+#[ignore = "takes minutes"]
+fn every_class_in_c_has_the_bits_of_rust() {
+    let folder = folder("every_inverse_kinematics_in_c");
+    let arms = arms(|_| true);
+    let fused: &[&str] = &["-O3", "-march=native"];
+    compare(&folder, &arms, &[("gcc", &["-O2"]), ("gcc", fused), ("clang", &["-O2"]), ("clang", fused)], 2000);
+    for Arm { name, suffix, .. } in &arms {
+        let header = folder.join(format!("{name}_{suffix}_ik.h"));
+        let text = format!("#include \"{0}\"\n#include \"{0}\"\nint main() {{ return 0; }}\n", header.display());
+        std::fs::write(folder.join("header.cpp"), text).expect("a file can be written");
+        for compiler in ["g++", "clang++"].into_iter().filter(|compiler| there(compiler)) {
+            let file = folder.join("header.cpp");
+            succeed(Command::new(compiler).args(["-std=c++11", "-fsyntax-only"]).args(WARNINGS).arg(&file));
+            let refused = Command::new(compiler).args(["-ffast-math", "-fsyntax-only"]).arg(&file).output().expect("it starts");
+            assert!(String::from_utf8_lossy(&refused.stderr).contains("this file computes nonsense under -ffast-math"));
+        }
+    }
+}
+
+/// The caller that stands in the documentation prints what stands below it, and the test that is written beside a module passes.
+#[test]
+fn the_caller_of_the_documentation_runs() {
+    let page = include_str!("../../../docs/inverse-kinematics.md");
+    let section = page.split("\n## In C\n").nth(1).expect("a section");
+    let block = |kind: &str| {
+        let block = section.split(&format!("```{kind}\n")).nth(1).expect("a block");
+        block.split("```").next().expect("its end").to_owned()
+    };
+    if !there("cc") {
+        return;
+    }
+    let folder = folder("inverse_kinematics_caller");
+    let (name, text) = robots().into_iter().find(|(name, _)| name == "scara").expect("the SCARA");
+    let generated = generated(&name, &text, Scalar::F64);
+    let write = |path: &str, text: &str| std::fs::write(folder.join(path), text).expect("a file can be written");
+    write("scara.h", &generated.in_language(armgen_codegen::emit::Language::C));
+    write("scara_ik.h", &generated.inverse_kinematics_in_c().expect("a construction"));
+    write("caller.c", &block("c"));
+    write("scara_ik_test.c", &generated.inverse_kinematics_test_in_c("scara.h", "scara_ik.h").expect("a construction"));
+    let compiled = |name: &str| {
+        let program = folder.join(name);
+        let file = folder.join(format!("{name}.c"));
+        succeed(Command::new("cc").args(["-std=c99", "-O1"]).args(WARNINGS).arg(file).arg("-o").arg(&program).arg("-lm"));
+        succeed(&mut Command::new(program))
+    };
+    assert_eq!(compiled("caller"), block("text"));
+    println!("{}", compiled("scara_ik_test"));
+}
