@@ -2,9 +2,10 @@
 //
 //   bench STATES ROUNDS REFERENCE=LIBRARY:PREFIX[:CHAIN] NAME=LIBRARY:PREFIX[:CHAIN] ...
 //
-// A peer is a shared library with the functions of an emitted C header, each named PREFIX and its name; what it has not got is left out.
+// A peer is a shared library with the functions of an emitted C header, each named PREFIX and its name; what it has not got is left out,
+// and what the first one has not got of all. One that exports `base_parameters` says how many columns their regressor has.
 // A library that exports `load` is told the file CHAIN of the arm first. Prints one line of JSON for each function: nanoseconds per
-// call of every peer in every round, and the error of every peer's values. A peer in the reference's own library is not compared with it.
+// call of every peer in every round, and the error of every peer's values: from those of the reference or, where it has none, of the last peer. None is compared with its own library.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -51,7 +52,8 @@ double run(void *f, const std::vector<Arguments> &states, const Results &results
 }
 
 using Run = double (*)(void *, const std::vector<Arguments> &, const Results &, long, long);
-using Sizes = std::vector<size_t> (*)(size_t);
+// Sizes of the results of an arm of n joints and b base parameters.
+using Sizes = std::vector<size_t> (*)(size_t n, size_t b);
 
 struct Function {
   const char *name;
@@ -60,21 +62,22 @@ struct Function {
   Run run;
 };
 
-std::vector<size_t> vector_of(size_t n) { return {n}; }
-std::vector<size_t> matrix(size_t n) { return {n * n}; }
-std::vector<size_t> two_matrices(size_t n) { return {n * n, n * n}; }
-std::vector<size_t> three_matrices(size_t n) { return {n * n, n * n, n * n}; }
+std::vector<size_t> vector_of(size_t n, size_t) { return {n}; }
+std::vector<size_t> matrix(size_t n, size_t) { return {n * n}; }
+std::vector<size_t> two_matrices(size_t n, size_t) { return {n * n, n * n}; }
+std::vector<size_t> three_matrices(size_t n, size_t) { return {n * n, n * n, n * n}; }
 
 const std::vector<Function> FUNCTIONS = {
-    {"direct_kinematics", {Q}, [](size_t) { return std::vector<size_t>{16}; }, run<1, 1>},
-    {"geometric_jacobian", {Q}, [](size_t n) { return std::vector<size_t>{6 * n}; }, run<1, 1>},
+    {"direct_kinematics", {Q}, [](size_t, size_t) { return std::vector<size_t>{16}; }, run<1, 1>},
+    {"geometric_jacobian", {Q}, [](size_t n, size_t) { return std::vector<size_t>{6 * n}; }, run<1, 1>},
     {"inertia_matrix", {Q}, matrix, run<1, 1>},
     {"coriolis_matrix", {Q, DQ}, matrix, run<2, 1>},
     {"gravity", {Q}, vector_of, run<1, 1>},
-    {"equations_of_motion", {Q, DQ}, [](size_t n) { return std::vector<size_t>{n * n, n * n, n}; }, run<2, 3>},
+    {"equations_of_motion", {Q, DQ}, [](size_t n, size_t) { return std::vector<size_t>{n * n, n * n, n}; }, run<2, 3>},
     {"inverse_dynamics", {Q, DQ, DDQ}, vector_of, run<3, 1>},
     {"forward_dynamics", {Q, DQ, TAU}, vector_of, run<3, 1>},
-    {"regressor", {Q, DQ, DQ, DDQ}, [](size_t n) { return std::vector<size_t>{10 * n * n}; }, run<4, 1>},
+    {"regressor", {Q, DQ, DQ, DDQ}, [](size_t n, size_t) { return std::vector<size_t>{10 * n * n}; }, run<4, 1>},
+    {"base_regressor", {Q, DQ, DDQ}, [](size_t n, size_t b) { return std::vector<size_t>{n * b}; }, run<3, 1>},
     {"inverse_dynamics_derivatives", {Q, DQ, DDQ}, two_matrices, run<3, 2>},
     {"forward_dynamics_derivatives", {Q, DQ, TAU}, three_matrices, run<3, 3>},
 };
@@ -121,7 +124,7 @@ struct Memory {
 };
 
 struct States {
-  size_t joints = 0;
+  size_t joints = 0, base_parameters = 0;
   std::vector<double> values[INPUTS];
 
   explicit States(const std::string &path) {
@@ -149,7 +152,7 @@ struct States {
 
 // Largest error over all states, by the largest entry of the same result; infinite if an entry is missing or too many are written.
 double error(const Function &function, void *f, void *reference, const States &states) {
-  const std::vector<size_t> sizes = function.sizes(states.joints);
+  const std::vector<size_t> sizes = function.sizes(states.joints, states.base_parameters);
   Memory mine(sizes), theirs(sizes);
   const auto arguments = states.arguments(function.inputs);
   std::vector<double> worst(sizes.size()), largest(sizes.size());
@@ -187,7 +190,7 @@ long batch(const Function &function, void *f, const std::vector<Arguments> &argu
 }
 
 std::vector<Contestant> race(const Function &function, const std::vector<Peer> &peers, const States &states, int rounds) {
-  Memory memory(function.sizes(states.joints));
+  Memory memory(function.sizes(states.joints, states.base_parameters));
   const auto arguments = states.arguments(function.inputs);
   std::vector<Contestant> field;
   for (const Peer &peer : peers)
@@ -201,7 +204,10 @@ std::vector<Contestant> race(const Function &function, const std::vector<Peer> &
   return field;
 }
 
-void print(const Function &function, const std::vector<Contestant> &field, const Peer &reference, const States &states) {
+void print(const Function &function, const std::vector<Contestant> &field, const Peer &first, const States &states) {
+  // What the reference has not got is compared with the last peer that has it.
+  const bool referred = first.function(function.name) != nullptr;
+  const Peer &reference = referred || field.empty() ? first : *field.back().peer;
   void *expected = reference.function(function.name);
   std::printf("{\"function\": \"%s\", \"peers\": {", function.name);
   for (size_t i = 0; i < field.size(); ++i) {
@@ -228,5 +234,9 @@ int main(int count, char **values) {
   const std::vector<Peer> peers(values + 4, values + count);
   States states(values[1]);
   states.add_torques(reference);
-  for (const Function &function : FUNCTIONS) print(function, race(function, peers, states, std::atoi(values[2])), reference, states);
+  for (const Peer &peer : peers)
+    if (void *count = peer.function("base_parameters")) states.base_parameters = reinterpret_cast<int (*)()>(count)();
+  for (const Function &function : FUNCTIONS)
+    if (peers.front().function(function.name))
+      print(function, race(function, peers, states, std::atoi(values[2])), reference, states);
 }

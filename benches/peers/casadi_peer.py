@@ -4,6 +4,8 @@ All of it in joint frames, by the recursions that are cheapest for arms of this 
 inertia about the frame's origin), C by Christoffel symbols with CasADi's derivatives of B, torques by Newton and Euler, the regressor
 body by body, forward dynamics by factors of B, and the derivatives of both by CasADi. `casadi.cse` finds what is computed twice.
 """
+import re
+
 import casadi as ca
 import numpy as np
 
@@ -157,13 +159,14 @@ def body_columns(w, dw, a):
     return force, moment
 
 
-def regressor(arm, q, dq, ddq):
+def columns(arm, q, dq, ddq, tails):
+    """What each joint feels of each body: rows of ten entries, for parameters in frames that these lead to from the joint frames."""
     n = len(arm.joints)
     frames = placements(arm, q)
     blocks = [[SX(1, 10)] * n for _ in range(n)]
     for i, (w, dw, a) in enumerate(motions(arm, frames, dq, ddq)):
-        # The parameters are those of the link frame: go there, and come back with forces and moments.
-        turn, origin = constant(arm.joints[i].tail[:3, :3]), constant(arm.joints[i].tail[:3, 3])
+        # Go to the frame of the parameters, and come back with forces and moments.
+        turn, origin = constant(tails[i][:3, :3]), constant(tails[i][:3, 3])
         a = a + ca.cross(dw, origin) + ca.cross(w, ca.cross(w, origin))
         force, moment = body_columns(turn.T @ w, turn.T @ dw, turn.T @ a)
         for j in range(i, -1, -1):
@@ -171,7 +174,33 @@ def regressor(arm, q, dq, ddq):
             moment = turn @ moment + skew(origin) @ force
             blocks[j][i] = moment[2, :] if arm.joints[j].revolute else force[2, :]
             turn, origin = frames[j]
-    return ca.blockcat(blocks)
+    return blocks
+
+
+def regressor(arm, q, dq, ddq):
+    return ca.blockcat(columns(arm, q, dq, ddq, [joint.tail for joint in arm.joints]))
+
+
+PARAMETERS = ("m", "mcx", "mcy", "mcz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
+
+
+def base_regressor(arm, q, dq, ddq, names, turned):
+    """Columns of the base parameters of those names: of the links in their joint frames, that of the last link turned about its axis. A link of
+    a revolute joint has Izz = Ixx + Iyy there."""
+    tails = [np.eye(4) for _ in arm.joints]
+    c, s = np.cos(turned), np.sin(turned)
+    tails[-1][:2, :2] = [[c, -s], [s, c]]
+    blocks = columns(arm, q, dq, ddq, tails)
+    found = []
+    for name in names:
+        kind, link = re.fullmatch(r"([a-zA-Z]+?)(\d+)R?", name).groups()
+        of = int(link) - 1
+        body = ca.vertcat(*(row[of] for row in blocks))
+        column = body[:, PARAMETERS.index(kind)]
+        if kind in ("Ixx", "Iyy") and arm.joints[of].revolute:
+            column = column + body[:, PARAMETERS.index("Izz")]
+        found.append(column)
+    return ca.horzcat(*found)
 
 
 def factors(b):
@@ -216,24 +245,28 @@ def forward_dynamics_derivatives(arm, q, dq, tau):
     return [-(inverse @ m) for m in torques] + [inverse]
 
 
-def functions(arm):
-    """Name, arguments and results of every function, as the emitted header has them."""
+def functions(arm, names, turned):
+    """Name, arguments and how to derive the results of every function, as the emitted header has them."""
     n = len(arm.joints)
     q, dq, dqr, ddq, tau = (SX.sym(name, n) for name in ("q", "dq", "dqr", "ddq", "tau"))
-    b, g = inertia_matrix(arm, q), gravity(arm, q)
-    c = coriolis_matrix(b, q, dq)
+
+    def equations_of_motion():
+        b = inertia_matrix(arm, q)
+        return [b, coriolis_matrix(b, q, dq), gravity(arm, q)]
+
     return {
-        "direct_kinematics": ([q], [direct_kinematics(arm, q)]),
-        "geometric_jacobian": ([q], [geometric_jacobian(arm, q)]),
-        "inertia_matrix": ([q], [b]),
-        "coriolis_matrix": ([q, dq], [c]),
-        "gravity": ([q], [g]),
-        "equations_of_motion": ([q, dq], [b, c, g]),
-        "inverse_dynamics": ([q, dq, ddq], [inverse_dynamics(arm, q, dq, ddq)]),
-        "forward_dynamics": ([q, dq, tau], [forward_dynamics(arm, q, dq, tau)]),
-        "regressor": ([q, dq, dqr, ddq], [regressor(arm, q, dq, ddq)]),
-        "inverse_dynamics_derivatives": ([q, dq, ddq], inverse_dynamics_derivatives(arm, q, dq, ddq)),
-        "forward_dynamics_derivatives": ([q, dq, tau], forward_dynamics_derivatives(arm, q, dq, tau)),
+        "direct_kinematics": ([q], lambda: [direct_kinematics(arm, q)]),
+        "geometric_jacobian": ([q], lambda: [geometric_jacobian(arm, q)]),
+        "inertia_matrix": ([q], lambda: [inertia_matrix(arm, q)]),
+        "coriolis_matrix": ([q, dq], lambda: [coriolis_matrix(inertia_matrix(arm, q), q, dq)]),
+        "gravity": ([q], lambda: [gravity(arm, q)]),
+        "equations_of_motion": ([q, dq], equations_of_motion),
+        "inverse_dynamics": ([q, dq, ddq], lambda: [inverse_dynamics(arm, q, dq, ddq)]),
+        "forward_dynamics": ([q, dq, tau], lambda: [forward_dynamics(arm, q, dq, tau)]),
+        "regressor": ([q, dq, dqr, ddq], lambda: [regressor(arm, q, dq, ddq)]),
+        "base_regressor": ([q, dq, ddq], lambda: [base_regressor(arm, q, dq, ddq, names, turned)]),
+        "inverse_dynamics_derivatives": ([q, dq, ddq], lambda: inverse_dynamics_derivatives(arm, q, dq, ddq)),
+        "forward_dynamics_derivatives": ([q, dq, tau], lambda: forward_dynamics_derivatives(arm, q, dq, tau)),
     }
 
 
@@ -250,13 +283,15 @@ def wrapper(name, function):
             f"  f_{name}(arg, res, iw, w, 0);\n}}\n")
 
 
-def c_text(arm):
-    """One C file with every function of the arm, full matrices by rows."""
+def c_text(arm, wanted, names, turned):
+    """One C file with the wanted functions of the arm, full matrices by rows; base parameters by their names, in a frame of the last link so turned."""
     generator = ca.CodeGenerator("peer.c", {"with_header": False})
-    wrappers = []
-    for name, (arguments, results) in functions(arm).items():
+    wrappers = [f"int casadi_base_parameters(void) {{ return {len(names)}; }}"]
+    for name, (arguments, results) in functions(arm, names, turned).items():
+        if name not in wanted:
+            continue
         # CasADi keeps matrices by columns: the transposed ones are those by rows, at no cost.
-        by_rows = ca.cse([ca.densify(m.T) for m in results])
+        by_rows = ca.cse([ca.densify(m.T) for m in results()])
         function = ca.Function(f"f_{name}", arguments, by_rows)
         generator.add(function)
         wrappers.append(wrapper(name, function))

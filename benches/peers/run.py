@@ -4,6 +4,8 @@
     ./run.py                                    everything: environment, libraries, bench; minutes at the first time
     ./run.py --venv DIR --armgen PROGRAM        with a Python environment and a built armgen that are there already
     ./run.py --robots ur5,panda7 --rounds 101   fewer arms, steadier figures
+    ./run.py --functions regressor,gravity      these alone
+    ./run.py --cpu native                       compiled for this machine alone, not also for any of its kind
     ./run.py --out table.md                     the tables as Markdown, too
 """
 import argparse
@@ -14,6 +16,8 @@ import os
 import pathlib
 import platform
 import random
+import re
+import shutil
 import statistics
 import subprocess
 import sys
@@ -21,9 +25,9 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 PROJECT = HERE.parent.parent
 BUILD = HERE / "build"
-ROBOTS = ["scara4", "puma560", "ur5", "panda7"]
+ROBOTS = ["scara4", "puma560", "ur5", "panda7", "iiwa14"]
 FUNCTIONS = ["direct_kinematics", "geometric_jacobian", "inertia_matrix", "coriolis_matrix", "gravity", "equations_of_motion",
-             "inverse_dynamics", "forward_dynamics", "regressor", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"]
+             "inverse_dynamics", "forward_dynamics", "regressor", "base_regressor", "inverse_dynamics_derivatives", "forward_dynamics_derivatives"]
 STATES = 64
 SEED = 20
 TOLERANCE = 1e-9
@@ -36,7 +40,10 @@ OURS = "armgen"
 PINOCCHIO_FLAGS = ["-O3", "-DNDEBUG", "-w", "-DPINOCCHIO_ENABLE_TEMPLATE_INSTANTIATION", "-DBOOST_MPL_LIMIT_LIST_SIZE=30",
                    "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30", "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS", "-DBOOST_FUSION_INVOKE_MAX_ARITY=12"]
 # The wrappers are then the only callers of CasADi's functions, which the compiler merges into them.
-CASADI_FLAGS = ["-O3", "-march=native", "-DCASADI_SYMBOL_EXPORT=static", "-Wno-unused-function"]
+CASADI_FLAGS = ["-O3", "-DCASADI_SYMBOL_EXPORT=static", "-Wno-unused-function"]
+
+# What is compiled for: flags of the C compilers, and of rustc.
+CPUS = {"native": (["-march=native"], "-Ctarget-cpu=native"), "baseline": ([], "")}
 
 CARGO_TOML = """[package]
 name = "emitted"
@@ -79,9 +86,16 @@ def options():
     parser.add_argument("--armgen", type=pathlib.Path, help="the built program; cargo builds it if not given")
     parser.add_argument("--eigen", type=pathlib.Path, help="folder with Eigen/Core, if the environment has not got it")
     parser.add_argument("--robots", type=names, default=ROBOTS, help="names in robots/, separated by commas")
+    parser.add_argument("--functions", type=names, default=FUNCTIONS, help="names of functions, separated by commas")
+    parser.add_argument("--cpu", type=names, default=list(CPUS), help="what is compiled for: native, baseline (any processor of the kind), or both")
     parser.add_argument("--rounds", type=int, default=41)
     parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the tables")
-    return parser.parse_args()
+    chosen = parser.parse_args()
+    for option, known in (("cpu", CPUS), ("functions", FUNCTIONS)):
+        unknown = [name for name in getattr(chosen, option) if name not in known]
+        if unknown:
+            parser.error(f"--{option} {unknown[0]}: known are {', '.join(known)}")
+    return chosen
 
 
 def enter_environment(venv):
@@ -144,35 +158,61 @@ def pinocchio_library(eigen):
     return compiled(BUILD / "pinocchio.so", HERE / "pinocchio_peer.cpp", CXX, flags, libraries)
 
 
-def casadi_library(arm):
+def description(robot):
+    """The file of an arm: the project's, or one that is here for its joints alone."""
+    return next((path for path in (folder / f"{robot}.yaml" for folder in (PROJECT / "robots", HERE)) if path.exists()), HERE / f"{robot}.yaml")
+
+
+def base_parameters(module):
+    """The names of the base parameters of an emitted module, and by how much the x axis of the last link is turned."""
+    listed = re.search(r"BASE_PARAMETER_NAMES: \[&str; BASE_PARAMETERS\] = \[(.*?)\];", module, re.DOTALL).group(1)
+    turned = re.search(r"The x axis of the last link stands (\S+) rad after the joint variable", module)
+    return re.findall(r'"(\w+)"', listed), float(turned.group(1)) if turned else 0.0
+
+
+def casadi_source(arm, module, functions):
     import casadi
     import casadi_peer
 
     source = BUILD / "casadi" / f"{arm.name}.c"
     derivation = pathlib.Path(casadi_peer.__file__).read_text()
+    base = base_parameters(module) if "base_regressor" in functions else ([], 0.0)
 
     def derive():
         say(f"deriving {source.name} with CasADi")
-        source.write_text(casadi_peer.c_text(arm))
+        source.write_text(casadi_peer.c_text(arm, functions, *base))
 
-    made(source, casadi.__version__ + derivation + repr(arm), derive)
-    return compiled(source.with_suffix(".so"), source, C, ["-fPIC", "-shared", *CASADI_FLAGS], ["-lm"])
+    return made(source, casadi.__version__ + derivation + repr((arm, functions, base)), derive)
 
 
-def emitted_library(armgen, robots):
-    """One library of all arms: the emitted modules and their faces for C."""
+def casadi_libraries(source, cpu):
+    """The same C by every compiler that is there."""
+    libraries = {}
+    for name, compiler in (("casadi", C), ("casadi-clang", ("CLANG", "clang"))):
+        if shutil.which(os.environ.get(*compiler)):
+            target = source.with_name(f"{source.stem}-{name}-{cpu}.so")
+            libraries[name] = compiled(target, source, compiler, ["-fPIC", "-shared", *CASADI_FLAGS, *CPUS[cpu][0]], ["-lm"])
+    return libraries
+
+
+def emit(armgen, robots, functions):
+    """The emitted modules of all arms and their faces for C, as the source of one library; its folder."""
     crate = BUILD / "emitted"
     (crate / "src").mkdir(parents=True, exist_ok=True)
     program = [armgen.absolute()] if armgen else ["cargo", "run", "--release", "--quiet", "--"]
     for robot in robots:
-        run([*program, "generate", PROJECT / "robots" / f"{robot}.yaml", "--trig", "fast", "--c-abi", "--functions", ",".join(FUNCTIONS),
+        run([*program, "generate", description(robot), "--trig", "fast", "--c-abi", "--functions", ",".join(functions),
              "--out", crate / "src" / f"{robot}.rs"], cwd=PROJECT, stdout=subprocess.DEVNULL)
     (crate / "Cargo.toml").write_text(CARGO_TOML)
     (crate / "src" / "lib.rs").write_text("".join(MODULE.format(name=robot) for robot in robots))
-    say("compiling the emitted modules")
-    environment = dict(os.environ, RUSTFLAGS="-Ctarget-cpu=native", CARGO_TARGET_DIR=str(crate / "target"))
-    run(["cargo", "build", "--release", "--quiet"], cwd=crate, env=environment)
-    return next((crate / "target" / "release").glob("libemitted.*[os]"))
+    return crate
+
+
+def emitted_library(crate, cpu):
+    say(f"compiling the emitted modules, {cpu}")
+    target = crate / f"target-{cpu}"
+    run(["cargo", "build", "--release", "--quiet"], cwd=crate, env=dict(os.environ, RUSTFLAGS=CPUS[cpu][1], CARGO_TARGET_DIR=str(target)))
+    return next((target / "release").glob("libemitted.*[os]"))
 
 
 def states_text(arm):
@@ -193,7 +233,8 @@ def race(bench, arm, libraries, rounds):
     states.write_text(states_text(arm))
     chain.write_text(model.chain_text(arm))
     pinocchio = f"{libraries['pinocchio']}:%s:{chain}"
-    peers = [f"{OURS}={libraries[OURS]}:{arm.name}_", f"casadi={libraries['casadi']}:casadi_", "pinocchio=" + pinocchio % "call_"]
+    casadi = [f"{name}={library}:casadi_" for name, library in libraries.items() if name.startswith("casadi")]
+    peers = [f"{OURS}={libraries[OURS]}:{arm.name}_", *casadi, "pinocchio=" + pinocchio % "call_"]
     output = run([bench, states, rounds, "reference=" + pinocchio % "reference_", *peers], stdout=subprocess.PIPE, text=True).stdout
     return [dict(json.loads(line), robot=arm.name) for line in output.splitlines()]
 
@@ -256,16 +297,29 @@ def machine():
         processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
     except (OSError, StopIteration):
         processor = platform.machine()
-    tools = [version([os.environ.get(*C), "--version"]), version(["rustc", "--version"])]
+    compilers = [command for command in (os.environ.get(*C), os.environ.get("CLANG", "clang")) if shutil.which(command)]
+    tools = [version([command, "--version"]) for command in (*compilers, "rustc")]
     return ", ".join([processor, *tools, f"Pinocchio {pinocchio.__version__}", f"CasADi {casadi.__version__}"])
 
 
 def markdown(cases, rounds):
     text = [f"{machine()}.", f"Median nanoseconds of a call over {rounds} rounds; the ratio is the median of those of each round.", ""]
-    for robot in dict.fromkeys(case["robot"] for case in cases):
-        text += [f"### {robot}", "", aligned(table([case for case in cases if case["robot"] == robot]), markdown=True), ""]
+    for cpu in dict.fromkeys(case["cpu"] for case in cases):
+        own = [case for case in cases if case["cpu"] == cpu]
+        text += [f"### Compiled for {'this machine' if cpu == 'native' else 'any x86-64'}", "", summary(own), ""]
+        for robot in dict.fromkeys(case["robot"] for case in own):
+            text += [f"#### {robot}", "", aligned(table([case for case in own if case["robot"] == robot]), markdown=True), ""]
     text += [f"\\* does not count: the fastest peer needs less than {SHORTEST_NS} ns.", ""] if not all(c["counts"] for c in cases) else []
-    return "\n".join([*text, summary(cases), ""])
+    return "\n".join(text)
+
+
+def into(path, text):
+    """Writes the tables to a file, in place of those between its marks if it has them."""
+    before = path.read_text() if path.exists() else ""
+    marks = [f"<!-- run.py writes {word} here -->" for word in ("from", "to")]
+    if all(mark in before for mark in marks):
+        text = before.split(marks[0])[0] + f"{marks[0]}\n\n{text}\n{marks[1]}" + before.split(marks[1])[1]
+    path.write_text(text)
 
 
 def main():
@@ -274,23 +328,28 @@ def main():
     import model
 
     try:
-        arms = {robot: model.read_arm(PROJECT / "robots" / f"{robot}.yaml") for robot in chosen.robots}
+        arms = {robot: model.read_arm(description(robot)) for robot in chosen.robots}
     except (model.Unsuitable, OSError) as reason:
         sys.exit(f"only arms of links alone can be compared: {reason}")
-    libraries = {"pinocchio": pinocchio_library(chosen.eigen), OURS: emitted_library(chosen.armgen, chosen.robots)}
+    pinocchio, crate = pinocchio_library(chosen.eigen), emit(chosen.armgen, chosen.robots, chosen.functions)
     bench = compiled(BUILD / "bench", HERE / "bench.cpp", CXX, ["-std=c++17", "-O2"], ["-ldl"])
     cases = []
-    for robot, arm in arms.items():
-        measured = race(bench, arm, dict(libraries, casadi=casadi_library(arm)), chosen.rounds)
-        cases += [judge(case) for case in measured]
-        print(f"{robot}\n{aligned(table(cases[-len(measured):]))}\n", flush=True)
+    for cpu in chosen.cpu:
+        ours = emitted_library(crate, cpu)
+        for robot, arm in arms.items():
+            source = casadi_source(arm, (crate / "src" / f"{robot}.rs").read_text(), chosen.functions)
+            libraries = {"pinocchio": pinocchio, OURS: ours, **casadi_libraries(source, cpu)}
+            measured = [judge(dict(case, cpu=cpu)) for case in race(bench, arm, libraries, chosen.rounds)]
+            print(f"{robot}, {cpu}\n{aligned(table(measured))}\n", flush=True)
+            cases += measured
     wrong = [case for case in cases if not case["error"] <= TOLERANCE]
     if chosen.out:
-        chosen.out.write_text(markdown(cases, chosen.rounds))
+        into(chosen.out, markdown(cases, chosen.rounds))
     for case in wrong:
         errors = ", ".join(f"{name} {peer['error']:.1e}" for name, peer in case["peers"].items() if "error" in peer)
         print(f"WRONG VALUES: {case['robot']} {case['function']}: {errors}, at most {TOLERANCE:.0e} allowed")
-    print(summary(cases))
+    for cpu in chosen.cpu:
+        print(f"{cpu}: {summary([case for case in cases if case['cpu'] == cpu])}")
     sys.exit(1 if wrong else 0)
 
 
