@@ -10,6 +10,7 @@ mod documentation;
 mod language;
 mod origin;
 mod plain;
+mod private;
 
 pub use documentation::{Described, DescribedParameters};
 pub use language::Language;

@@ -149,11 +149,11 @@ fn meanings(model: &Model, module: &Module) -> Vec<String> {
     let mut faults = Vec::new();
     for (constant, found) in documentation {
         let found: Vec<&str> = found.iter().map(String::as_str).collect();
-        let meanings = named(model, module, constant);
-        let expected = match constant.as_str() {
-            "BASE_PARAMETER_NAMES" => rust::base_parameters_documentation(turn(&found), &meanings),
-            _ => rust::parameters_documentation(grouped, &meanings),
-        };
+        let parameters = named(model, module, constant);
+        let base_parameters = Some(parameters.clone());
+        let described = DescribedParameters { grouped, parameters, base_parameters, turn: turn(&found).map(String::from) };
+        let expected = rust::constants_documentation(&described).into_iter().find(|(name, _)| name == constant);
+        let expected = expected.map_or(Vec::new(), |(_, lines)| lines);
         faults.extend(different(&found, &expected).map(|fault| format!("{constant}: {fault}")));
     }
     faults

@@ -70,9 +70,8 @@ fn other_languages_do_the_operations_of_rust_in_its_order() {
     check_read("base_set", Scalar::F32);
 }
 
-/// A function of thousands of lines is printed in parts, in every language.
-#[test]
-fn parts_of_long_functions_are_put_together() {
+/// A chain of so many revolute joints.
+fn chain(joints: usize) -> Source {
     let joint = |i: usize| {
         let alpha = ["pi/2", "-pi/2"][i % 2];
         format!(
@@ -83,12 +82,22 @@ fn parts_of_long_functions_are_put_together() {
             i + 2
         )
     };
-    let joints: String = (1..=24).map(joint).collect();
+    let joints: String = (1..=joints).map(joint).collect();
     let text = format!("name: chain\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n{joints}regressor: standard\n");
-    let source = Source::new("chain.yaml", text);
-    let functions = Selection::named(&["inverse_dynamics_derivatives".to_string()]).expect("a function");
-    let options = Options { trig: Trig::Fast, functions, ..Options::default() };
-    check_same("chain", &common::generate_with(&source, &options), Scalar::F64);
+    Source::new("chain.yaml", text)
+}
+
+fn some(functions: &[&str]) -> Options {
+    let names: Vec<String> = functions.iter().map(ToString::to_string).collect();
+    let functions = Selection::named(&names).expect("functions of the catalogue");
+    Options { trig: Trig::Fast, functions, ..Options::default() }
+}
+
+/// A function of thousands of lines is printed in parts, in every language.
+#[test]
+fn parts_of_long_functions_are_put_together() {
+    let generated = common::generate_with(&chain(24), &some(&["inverse_dynamics_derivatives"]));
+    check_same("chain", &generated, Scalar::F64);
 }
 
 #[test]
@@ -192,4 +201,14 @@ fn all_robots_have_the_bits_of_rust() {
             run::check(&name, scalar, 10_000, run::Effort::Full);
         }
     }
+}
+
+#[test]
+#[ignore = "minutes: functions of thousands of lines in all languages"]
+fn one_joint_and_thirty_two_have_the_bits_of_rust() {
+    #[allow(clippy::needless_update)]
+    let all = Options { trig: Trig::Fast, ..Options::default() };
+    run::check_with("chain_1", &chain(1), &all, 10_000, run::Effort::Short);
+    let functions = ["link_frames", "gravity", "inertia_matrix", "inverse_dynamics", "forward_dynamics"];
+    run::check_with("chain_32", &chain(32), &some(&functions), 1_000, run::Effort::Short);
 }

@@ -9,6 +9,7 @@ use super::plain::{
     asks_for_exponentials, asks_for_signs, camel, constants, constants_documentation, described, expression, head, waves, Syntax,
     Value,
 };
+use super::private::filled;
 use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
@@ -49,20 +50,25 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     text += CHECK;
     if asks_for_sines(module) {
         text += "\n";
-        text += if module.trig == Trig::Fast { FAST } else { STD };
+        text += &private(if module.trig == Trig::Fast { FAST } else { STD });
     }
     if asks_for_signs(module) {
         text += "\n";
-        text += SIGN;
+        text += &private(SIGN);
     }
     if asks_for_exponentials(module) {
         text += "\n";
-        text += STRIBECK;
+        text += &private(STRIBECK);
     }
     for function in &module.functions {
         print_function(&mut text, module, function, notes);
     }
     text
+}
+
+/// A private function from its template.
+fn private(template: &str) -> String {
+    filled(template, Scalar::F64, "@adding@", &str::to_string)
 }
 
 /// The declarations of the module.

@@ -8,6 +8,7 @@ use std::fmt::Write;
 use super::documentation::{self, Block, Described, DescribedParameters, Link};
 use super::origin::{Notes, Origin};
 use super::plain::{camel, constants, constants_documentation, described, expression, head, places, waves, Syntax, Value};
+use super::private::filled;
 use crate::catalogue::{Argument, Quantity};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -259,7 +260,7 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
     for (wanted, block) in blocks {
         if wanted {
             text += "\n";
-            text += block;
+            text += &filled(block, Scalar::F64, "@adding@", &|value| value.replace(" * ", " .* "));
         }
     }
     File { name: format!("{name}.m"), text }

@@ -11,6 +11,7 @@ use super::origin::{Notes, Origin};
 use super::plain::{
     asks_for_exponentials, asks_for_signs, constants, constants_documentation, described, expression, head, waves, Syntax, Value,
 };
+use super::private::filled;
 use super::rust::asks_for_sines;
 use crate::catalogue::{Argument, Length, Quantity};
 use crate::exact::Number;
@@ -24,8 +25,7 @@ const ARRAYS: &str = include_str!("python/arrays.py");
 const SIGN: &str = include_str!("python/sign.py");
 const STRIBECK: &str = include_str!("python/stribeck.py");
 const STD: &str = include_str!("python/std.py");
-const FAST_F64: &str = include_str!("python/sines_f64.py");
-const FAST_F32: &str = include_str!("python/sines_f32.py");
+const FAST: &str = include_str!("python/sines.py");
 
 struct Python {
     scalar: Scalar,
@@ -49,7 +49,7 @@ impl Syntax for Python {
 pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let python = Python { scalar: module.scalar };
     let mut text = head(module, origin, notes, "#");
-    text += "\nfrom __future__ import annotations\n\nfrom typing import Any, Final, NamedTuple\n\n";
+    text += "\nfrom __future__ import annotations\n\nfrom typing import Any, Callable, Final, NamedTuple, TypeVar\n\n";
     let public: Vec<String> = constants(module, 0)
         .iter()
         .map(|constant| constant.name.to_string())
@@ -69,19 +69,20 @@ pub fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     for (constant, (_, comment)) in constants(module, 0).iter().zip(&documentation) {
         let _ = writeln!(text, "\n{comment}{}: Final = {}", constant.name, python.value(&constant.value));
     }
-    let (dtype, fast) = match module.scalar {
-        Scalar::F64 => ("float64", FAST_F64),
-        Scalar::F32 => ("float32", FAST_F32),
+    let dtype = match module.scalar {
+        Scalar::F64 => "float64",
+        Scalar::F32 => "float32",
     };
+    let private = |template: &str| filled(template, module.scalar, "+ 0.0 makes it no -0", &str::to_string);
     let _ = writeln!(text, "\n# The type of the entries of all arrays.\nDTYPE: Final = \"{dtype}\"\n\n\n{ARRAYS}");
     if asks_for_sines(module) {
-        let _ = writeln!(text, "\n{}", if module.trig == Trig::Fast { fast } else { STD });
+        let _ = writeln!(text, "\n{}", private(if module.trig == Trig::Fast { FAST } else { STD }));
     }
     if asks_for_signs(module) {
-        let _ = writeln!(text, "\n{SIGN}");
+        let _ = writeln!(text, "\n{}", private(SIGN));
     }
     if asks_for_exponentials(module) {
-        let _ = writeln!(text, "\n{STRIBECK}");
+        let _ = writeln!(text, "\n{}", private(STRIBECK));
     }
     let mut known: Vec<String> = Vec::new();
     for function in &module.functions {
@@ -182,6 +183,12 @@ impl Python {
         let entered: Vec<String> = entered.collect();
         let names: Vec<String> = names.iter().map(ToString::to_string).collect();
         let _ = writeln!(text, "    xp, shape, {} = _enter({})", tuple(&names), entered.join(", "));
+        let _ = writeln!(
+            text,
+            "    if _many(xp, shape):\n        return _in_blocks(xp, shape, {}, {})",
+            function.name(),
+            tuple(&names)
+        );
         let waves = waves(module, function, self);
         if !waves.is_empty() {
             let angles: Vec<String> = waves.iter().map(|wave| wave.angle.clone()).collect();

@@ -13,9 +13,10 @@ mod sincos;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote, ToTokens};
 
-use super::documentation::{self as common, Block, Described};
+use super::documentation::{self as common, Described, DescribedParameters};
 use super::origin::{Notes, Origin};
 use super::plain::{asks_for_exponentials, asks_for_signs};
+use super::private::SIGN;
 use crate::catalogue::{Absent, Length, Quantity, ResultPart, Sizes};
 use crate::exact::Number;
 use crate::kinds::Scalar;
@@ -154,44 +155,49 @@ fn constants(module: &Module) -> TokenStream {
     let effort = module.joints.iter().map(|joint| number(&joint.effort, infinity()));
     let parameter_names = module.parameters.iter().map(|parameter| &parameter.name);
     let nominal = module.parameters.iter().map(|parameter| literal(&parameter.nominal, module.scalar));
-    let meanings = parameters_documentation(module.base_parameters, &common::named(&module.parameters));
-    let base = base_constants(module);
+    let documented = documented_constants(module);
+    let said = |constant: &str| documentation_of(&documented, constant);
+    let [of_name, of_dof, of_joint_names, of_revolute] = ["NAME", "DOF", "JOINT_NAMES", "JOINT_IS_REVOLUTE"].map(said);
+    let [of_position, of_velocity, of_effort] = ["POSITION_LIMITS", "VELOCITY_LIMITS", "EFFORT_LIMITS"].map(said);
+    let [of_rows, of_task] = ["TASK_ROWS", "TASK"].map(said);
+    let [of_parameters, of_names, of_nominal] = ["PARAMETERS", "PARAMETER_NAMES", "NOMINAL_PARAMETERS"].map(said);
+    let base = base_constants(module, &documented);
     let structures = structures(module, false);
     quote! {
-        /// Name of the robot.
+        #of_name
         #[allow(dead_code)]
         pub const NAME: &str = #name;
-        /// Number of joints.
+        #of_dof
         #[allow(dead_code)]
         pub const DOF: usize = #dof;
-        /// Names of the joints, base to tip.
+        #of_joint_names
         #[allow(dead_code)]
         pub const JOINT_NAMES: [&str; DOF] = [#(#joint_names),*];
-        /// Whether a joint turns (q in rad) or slides (q in m).
+        #of_revolute
         #[allow(dead_code)]
         pub const JOINT_IS_REVOLUTE: [bool; DOF] = [#(#revolute),*];
-        /// Lowest and highest joint variable, rad or m; infinite where the description gives none.
+        #of_position
         #[allow(dead_code, clippy::all)]
         pub const POSITION_LIMITS: [[Real; 2]; DOF] = [#(#position),*];
-        /// Highest joint rate, rad/s or m/s; infinite where the description gives none.
+        #of_velocity
         #[allow(dead_code, clippy::all)]
         pub const VELOCITY_LIMITS: [Real; DOF] = [#(#velocity),*];
-        /// Highest joint torque on the joint side of the gear, N m or N; infinite where the description gives none.
+        #of_effort
         #[allow(dead_code, clippy::all)]
         pub const EFFORT_LIMITS: [Real; DOF] = [#(#effort),*];
-        /// Number of rows of the operational space.
+        #of_rows
         #[allow(dead_code)]
         pub const TASK_ROWS: usize = #rows;
-        /// Rows of the geometric Jacobian that make up the operational space: 0 1 2 along x y z, 3 4 5 about x y z, in the base frame.
+        #of_task
         #[allow(dead_code)]
         pub const TASK: [usize; TASK_ROWS] = [#(#task),*];
-        /// Number of parameters.
+        #of_parameters
         #[allow(dead_code)]
         pub const PARAMETERS: usize = #parameters;
-        #(#[doc = #meanings])*
+        #of_names
         #[allow(dead_code)]
         pub const PARAMETER_NAMES: [&str; PARAMETERS] = [#(#parameter_names),*];
-        /// Values of the parameters in the description.
+        #of_nominal
         #[allow(dead_code, clippy::all)]
         pub const NOMINAL_PARAMETERS: [Real; PARAMETERS] = [#(#nominal),*];
         #base
@@ -205,39 +211,44 @@ pub fn function_documentation(described: &Described<'_>) -> Vec<String> {
     documentation::lines(&described.blocks(false, None))
 }
 
-/// The documentation of `PARAMETER_NAMES`: names and what they mean, whether they are base parameters.
+/// The documentation of constants, by their names.
 #[doc(hidden)]
-pub fn parameters_documentation(base: bool, named: &[(String, String)]) -> Vec<String> {
-    let title = Block::text("Names of the parameters, in the order of the columns of {regressor}:");
-    let note = base.then(common::base_note);
-    let blocks: Vec<Block> = [title].into_iter().chain(note).chain([Block::Table(named.to_vec())]).collect();
-    documentation::lines(&blocks)
+pub fn constants_documentation(described: &DescribedParameters) -> Vec<(&'static str, Vec<String>)> {
+    super::plain::constants_documentation(described, 0)
+        .into_iter()
+        .map(|(name, blocks)| (name, documentation::lines(&blocks)))
+        .collect()
 }
 
-/// The documentation of `BASE_PARAMETER_NAMES`, and by how many rad the frame of the last link is turned, if it is.
-#[doc(hidden)]
-pub fn base_parameters_documentation(turn: Option<&str>, named: &[(String, String)]) -> Vec<String> {
-    let title = "Names of the base parameters, in the order of the columns of {base_regressor}, each a combination of standard parameters:";
-    documentation::lines(&[Block::text(title), common::own_base_note(turn), Block::Table(named.to_vec())])
+/// The documentation of the constants of a module.
+fn documented_constants(module: &Module) -> Vec<(&'static str, Vec<String>)> {
+    constants_documentation(&DescribedParameters::of(module))
+}
+
+/// The documentation of one of them.
+fn documentation_of(all: &[(&'static str, Vec<String>)], constant: &str) -> TokenStream {
+    let lines = all.iter().find(|(name, _)| *name == constant).map_or(&[][..], |(_, lines)| lines);
+    quote!(#(#[doc = #lines])*)
 }
 
 /// The base parameters, for the function that has them.
-fn base_constants(module: &Module) -> Option<TokenStream> {
-    if !module.functions.iter().any(|function| function.quantity.has_length(Length::BaseParameters)) {
+fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -> Option<TokenStream> {
+    if !common::has_base_parameters(module) {
         return None;
     }
     let count = usize_literal(module.base_set.len());
     let names = module.base_set.iter().map(|parameter| &parameter.name);
     let nominal = module.base_set.iter().map(|parameter| literal(&parameter.nominal, module.scalar));
-    let meanings = base_parameters_documentation(common::turn(module).as_deref(), &common::named(&module.base_set));
+    let said = |constant: &str| documentation_of(documented, constant);
+    let [of_count, of_names, of_nominal] = ["BASE_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS"].map(said);
     Some(quote! {
-        /// Number of base parameters: as many as a motion can tell apart, without those that are 0 at the values of the description.
+        #of_count
         #[allow(dead_code)]
         pub const BASE_PARAMETERS: usize = #count;
-        #(#[doc = #meanings])*
+        #of_names
         #[allow(dead_code)]
         pub const BASE_PARAMETER_NAMES: [&str; BASE_PARAMETERS] = [#(#names),*];
-        /// Values of the base parameters in the description, the masses of rotors included.
+        #of_nominal
         #[allow(dead_code, clippy::all)]
         pub const NOMINAL_BASE_PARAMETERS: [Real; BASE_PARAMETERS] = [#(#nominal),*];
     })
@@ -299,8 +310,9 @@ fn private_block(module: &Module) -> TokenStream {
     let all: Vec<Vec<Symbol>> = module.functions.iter().map(Function::symbols).collect();
     let sin_cos = asks_for_sines(module).then(|| sincos::functions(module, &all));
     let sign = asks_for_signs(module).then(|| {
+        let said = format!(" {SIGN}");
         quote! {
-            /// Sign of a rate: 0 at rest, not a number for what is not a number.
+            #[doc = #said]
             #[inline]
             fn sign(x: Real) -> Real {
                 if x > 0.0 {

@@ -3,7 +3,7 @@
 //! ```text
 //! header   = guard [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } epilogue
 //! function = static inline TYPE ROBOT_NAME( ARGUMENTS ) { ROBOT_UNFUSED { (void)ARGUMENT; } [ angles ] { line } { call { line } } result }
-//! angles   = const ROBOT_real angle[N] = {ANGLES};  ROBOT_real sine[N], cosine[N];  ROBOT_sin_cos(ROBOT_ANGLES(USED, N), angle, sine, cosine);
+//! angles   = const ROBOT_real angle[N] = {ANGLES};  ROBOT_real sine[N], cosine[N];  ROBOT_sin_cos(USED, angle, sine, cosine);
 //!            { const ROBOT_real NAME = sine[I]; | const ROBOT_real NAME = cosine[I]; }
 //! line     = const ROBOT_real NAME = SUM;
 //! result   = return SUM; | { PART[I][J] = SUM; }                   no argument is read once an entry is written: it may be the same array
@@ -313,7 +313,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
 impl<'a> Reader<'a, '_> {
     /// The sines and cosines of all angles of a function.
     fn sines(&self, lines: &mut Lines<'a>, body: &mut Body<'a, '_>) -> Result<(), Fault> {
-        let Robot { name: robot, upper } = self.robot;
+        let robot = &self.robot.name;
         let begin = format!("    const {robot}_real angle[");
         if !lines.peek().starts_with(&begin) {
             return Ok(());
@@ -324,12 +324,12 @@ impl<'a> Reader<'a, '_> {
             text.split_once("] = {").ok_or_else(|| Fault { line, reason: "an array of angles has its values".into() })?;
         let waves = body.angles(angles, line)?;
         let used = waves.len();
-        let wanted = if used > 2 { used.next_multiple_of(4) } else { used };
+        let wanted = used.next_multiple_of(4);
         if filled != wanted.to_string() {
             return Err(Fault { line, reason: format!("an array of {filled} for {used} angles, not of {wanted}") });
         }
         lines.expect(&format!("    {robot}_real sine[{filled}], cosine[{filled}];"))?;
-        lines.expect(&format!("    {robot}_sin_cos({upper}_ANGLES({used}, {filled}), angle, sine, cosine);"))?;
+        lines.expect(&format!("    {robot}_sin_cos({used}, angle, sine, cosine);"))?;
         for (i, (sine, cosine)) in waves.into_iter().enumerate() {
             let first = body.element(lines, &format!("sine[{i}]"), sine)?;
             let second = body.element(lines, &format!("cosine[{i}]"), cosine)?;

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! module   = imports names constants arrays [ sines ] [ sign ] [ stribeck ] { [ class ] { part } function }
-//! function = def NAME(ARGUMENTS) -> TYPE:  xp, shape, (ARGUMENTS,) = _enter(("ARGUMENT", ARGUMENT, LENGTH), ...)  [ waves ] { line } { call { line } } result
+//! function = def NAME(ARGUMENTS) -> TYPE:  xp, shape, (ARGUMENTS,) = _enter(("ARGUMENT", ARGUMENT, LENGTH), ...)
+//!            if _many(xp, shape):  return _in_blocks(xp, shape, NAME, (ARGUMENTS,))  [ waves ] { line } { call { line } } result
 //! waves    = sine, cosine = _sin_cos(xp, (ANGLES,))  { NAME = sine[I] | NAME = cosine[I] }
 //! line     = NAME = SUM
 //! call     = given_K = _NAME_part_K(xp, ARGUMENTS, (NAMES,))  { NAME = given_K[I] }
@@ -60,7 +61,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let mut lines = Lines::new(text, COMMENTS)?;
     let head = text.split('\n').map_while(|line| line.strip_prefix('#')).map(String::from).collect();
     lines.expect("from __future__ import annotations")?;
-    lines.expect("from typing import Any, Final, NamedTuple")?;
+    lines.expect("from typing import Any, Callable, Final, NamedTuple, TypeVar")?;
     lines.expect("__all__ = [")?;
     let mut public = Vec::new();
     while !lines.is("]") {
@@ -184,6 +185,8 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         });
         let entered: Vec<String> = entered.collect();
         lines.expect(&format!("    xp, shape, {} = _enter({})", tuple(&names), entered.join(", ")))?;
+        lines.expect("    if _many(xp, shape):")?;
+        lines.expect(&format!("        return _in_blocks(xp, shape, {name}, {})", tuple(&names)))?;
         let mut body = Body::new(name, arguments, self.syntax, self.real, self.steps);
         if lines.peek().starts_with("    sine, cosine = ") {
             let line = lines.number();

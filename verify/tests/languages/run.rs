@@ -7,6 +7,7 @@ use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
 use armgen_codegen::schedule::Options;
+use armgen_codegen::source::Source;
 use armgen_verify::contract::{Array, Length, Promise, Sizes};
 use armgen_verify::program::Argument;
 use armgen_verify::reader::{Constant, Module};
@@ -132,8 +133,15 @@ impl Robot {
 /// Runs the module in all languages over so many states, and compares.
 #[track_caller]
 pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
-    let source = common::source(name);
-    let generated = crate::generated(&source, scalar, Trig::Fast);
+    #[allow(clippy::needless_update)]
+    check_with(name, &common::source(name), &Options { scalar, trig: Trig::Fast, ..Options::default() }, states, effort);
+}
+
+/// The same of any description and of some functions.
+#[track_caller]
+pub(crate) fn check_with(name: &str, source: &Source, options: &Options, states: usize, effort: Effort) {
+    let scalar = options.scalar;
+    let generated = common::generate_with(source, options);
     let module = Module::read(&generated.module).expect("the module in Rust");
     let robot = Robot::of(&module, scalar);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("languages_{effort:?}_{name}_{scalar:?}"));
@@ -145,8 +153,7 @@ pub(crate) fn check(name: &str, scalar: Scalar, states: usize, effort: Effort) {
         let runs = match language {
             Language::Rust => continue,
             Language::C => {
-                let batched =
-                    common::generate_with(&source, &Options { scalar, trig: Trig::Fast, batch: Some(8), ..Options::default() });
+                let batched = common::generate_with(source, &Options { batch: Some(8), ..options.clone() });
                 let mut runs = c(&folder, &robot, &generated, effort);
                 runs.extend(batch(&folder, &robot, &batched, effort));
                 runs

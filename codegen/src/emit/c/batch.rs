@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::syntax::C;
+use super::syntax::{C, VECTOR};
 use super::{macro_of, returns_a_number};
 use crate::catalogue::{Argument, Sizes};
 use crate::emit::plain::{expression, of_robot, waves, Syntax};
@@ -80,8 +80,11 @@ impl C<'_> {
             );
         }
         if !waves.is_empty() {
-            let shape = format!("[{}][{upper}_LANES]", waves.len());
-            let _ = writeln!(text, "        {name}_real angle{shape}, sine{shape}, cosine{shape};");
+            // Filled up to whole vectors: with zeros, where the lanes of an angle are none.
+            let step = VECTOR / [4, 2, 1].into_iter().find(|n| module.batch.is_some_and(|lanes| lanes % n == 0)).unwrap_or(1);
+            let shape = format!("[{}][{upper}_LANES]", waves.len().next_multiple_of(step));
+            let zeros = if step > 1 { " = {{0}}" } else { "" };
+            let _ = writeln!(text, "        {name}_real angle{shape}{zeros}, sine{shape}, cosine{shape};");
         }
         for part in function.quantity.result {
             let _ = writeln!(text, "        {name}_real lanes_{}[{}][{upper}_LANES];", part.name, part.len(&sizes));

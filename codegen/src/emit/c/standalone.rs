@@ -6,12 +6,13 @@
 use std::fmt::Write;
 
 use super::header::{function_comment, macros, macros_of, opening, signature, POINTERS};
-use super::syntax::C;
+use super::syntax::{C, VECTOR};
 use super::{batch, prefix, returns_a_number};
 use crate::emit::origin::{Notes, Origin};
 use crate::emit::plain::{
     asks_for_exponentials, asks_for_signs, described, expression, of_robot, places, reads_an_argument, waves,
 };
+use crate::emit::private::filled;
 use crate::emit::rust::asks_for_sines;
 use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Line, Listing, Name};
@@ -24,8 +25,11 @@ pub(super) const EPILOGUE: &str = include_str!("epilogue.h");
 const STRIBECK: &str = include_str!("stribeck.h");
 const SIGN: &str = include_str!("sines/sign.h");
 const STD: &str = include_str!("sines/std.h");
-const FAST_F64: &str = include_str!("sines/fast_f64.h");
-const FAST_F32: &str = include_str!("sines/fast_f32.h");
+const FAST: &str = include_str!("sines/fast.h");
+
+/// The lanes of a vector of angles: what a processor with vectors always has, up to `VECTOR`.
+const OF_FOUR: &str = "#define ROBOT_VECTOR_LANES 4\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}";
+const OF_TWO: &str = "#define ROBOT_VECTOR_LANES 2\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1]}";
 
 pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     let name = prefix(module);
@@ -45,20 +49,16 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     text += &macros(module);
     text += "\n";
     if asks_for_sines(module) {
-        let sines = match (module.trig, module.scalar) {
-            (Trig::Fast, Scalar::F64) => FAST_F64,
-            (Trig::Fast, Scalar::F32) => FAST_F32,
-            (Trig::Libm | Trig::Std, _) => STD,
-        };
-        text += &of_robot(sines, &c.name, &c.upper);
+        let sines = if module.trig == Trig::Fast { FAST } else { STD };
+        text += &c.private(sines);
         text += "\n";
     }
     if asks_for_signs(module) {
-        text += &of_robot(SIGN, &c.name, &c.upper);
+        text += &c.private(SIGN);
         text += "\n";
     }
     if asks_for_exponentials(module) {
-        text += &of_robot(STRIBECK, &c.name, &c.upper);
+        text += &c.private(STRIBECK);
         text += "\n";
     }
     text += POINTERS.trim_start();
@@ -110,6 +110,22 @@ fn sine_of_library(module: &Module) -> String {
 }
 
 impl C<'_> {
+    /// A private function from its template.
+    fn private(&self, template: &str) -> String {
+        let scalar = self.module.scalar;
+        let (lanes, mask, suffix) = match scalar {
+            Scalar::F64 => (format!("#if defined(__AVX__)\n{OF_FOUR}\n#else\n{OF_TWO}\n#endif"), "long long", ""),
+            Scalar::F32 => (OF_FOUR.to_string(), "int", "f"),
+        };
+        let suffixed = |word: &str| match word.trim_end_matches(')') {
+            number if number.contains('.') => format!("{number}{suffix}{}", &word[number.len()..]),
+            _ => word.to_string(),
+        };
+        let value = |text: &str| text.split(' ').map(suffixed).collect::<Vec<_>>().join(" ");
+        let text = template.replace("@lanes@", &lanes).replace("@mask@", mask).replace("@f@", suffix);
+        of_robot(&filled(&text, scalar, "@adding@", &value), &self.name, &self.upper)
+    }
+
     fn function(&self, text: &mut String, function: &Function, notes: &Notes) {
         let C { module, name, upper } = self;
         let listing = Listing::of(function);
@@ -135,19 +151,19 @@ impl C<'_> {
         *text += "}\n";
     }
 
-    /// `s1`, `c1` and so on, all angles in one loop.
+    /// `s1`, `c1` and so on, all angles in one loop; arrays are filled up to whole vectors.
     fn sines(&self, text: &mut String, function: &Function) {
-        let C { module, name, upper } = self;
+        let C { module, name, .. } = self;
         let waves = waves(module, function, self);
         let used = waves.len();
         if used == 0 {
             return;
         }
-        let filled = if used > 2 { used.next_multiple_of(4) } else { used };
+        let filled = used.next_multiple_of(VECTOR);
         let angles: Vec<&str> = waves.iter().map(|wave| wave.angle.as_str()).collect();
         let _ = writeln!(text, "    const {name}_real angle[{filled}] = {{{}}};", angles.join(", "));
         let _ = writeln!(text, "    {name}_real sine[{filled}], cosine[{filled}];");
-        let _ = writeln!(text, "    {name}_sin_cos({upper}_ANGLES({used}, {filled}), angle, sine, cosine);");
+        let _ = writeln!(text, "    {name}_sin_cos({used}, angle, sine, cosine);");
         for (i, wave) in waves.iter().enumerate() {
             for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {
                 if let Some(value) = value {

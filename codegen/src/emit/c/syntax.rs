@@ -5,6 +5,9 @@ use crate::emit::plain::Syntax;
 use crate::exact::Number;
 use crate::program::Module;
 
+/// What a vector of angles has lanes at most.
+pub(super) const VECTOR: usize = 4;
+
 /// A module under the names that C gives it.
 pub(super) struct C<'a> {
     pub(super) module: &'a Module,

@@ -1,4 +1,4 @@
-/** Sign of a rate: 0 at rest, not a number for what is not a number. */
+/** @sign@ */
 function sign(x) {
     return x > 0 ? 1 : (x < 0 ? -1 : x);
 }

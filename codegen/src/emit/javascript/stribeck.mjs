@@ -1,8 +1,5 @@
 /**
- * exp(-|rate| / velocity), what is left of Stribeck friction at a rate, within 2 units of roundoff; 0 where it is below 1e-17.
- * x = |rate| / velocity = n ln 2 + r with n the integer nearest to x / ln 2, after Cody and Waite (1980): the first part of ln 2 has 16 bits, so
- * that its product with n is exact, and so is x less that. 2^-n is a product of powers of two; exp(-r) its series up to r^13 / 13!, which leaves
- * out less than 2^-57.
+ * @stribeck@
  */
 function stribeck(rate, velocity) {
     const x = (rate < 0 ? -rate : rate) / velocity;

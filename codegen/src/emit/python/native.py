@@ -68,7 +68,7 @@ def load(compiler: Optional[str] = None, flags: Optional[Sequence[str]] = None, 
 
 
 def _entered(name: str, value: Any, length: int) -> Any:
-    if isinstance(value, np.ndarray):
+    if issubclass(type(value), np.ndarray):
         if value.dtype != _DTYPE:
             raise TypeError(f"{name} has entries of {value.dtype}, and {np.dtype(_DTYPE)} is wanted")
     elif hasattr(value, "__array_namespace__") or type(value).__module__.partition(".")[0] == "torch":

@@ -1,3 +1,7 @@
+_Result = TypeVar("_Result")
+_BLOCK = 4096
+
+
 def _namespace(value: Any) -> Any:
     # The library of an array; lists and numbers become arrays of NumPy, and so do arrays of a NumPy that does not name itself.
     if hasattr(value, "__array_namespace__"):
@@ -8,7 +12,7 @@ def _namespace(value: Any) -> Any:
 def _broadcast(shapes: list[tuple[int, ...]]) -> tuple[int, ...]:
     rank = max(len(shape) for shape in shapes)
     columns = zip(*((1,) * (rank - len(shape)) + shape for shape in shapes))
-    lengths = []
+    lengths: list[int] = []
     for column in columns:
         wanted = set(column) - {1}
         if len(wanted) > 1:
@@ -20,7 +24,8 @@ def _broadcast(shapes: list[tuple[int, ...]]) -> tuple[int, ...]:
 def _enter(*arguments: tuple[str, Any, int]) -> tuple[Any, tuple[int, ...], list[Any]]:
     # The library, the leading axes of the result, and each argument with its entries along the first axis.
     xp = _namespace(arguments[0][1])
-    shapes, arrays = [], []
+    shapes: list[tuple[int, ...]] = []
+    arrays: list[Any] = []
     for name, value, length in arguments:
         own = _namespace(value)
         if own is not xp:
@@ -48,3 +53,30 @@ def _leave(xp: Any, like: Any, shape: tuple[int, ...], lengths: tuple[int, ...],
     stacked = xp.stack([xp.broadcast_to(array, own) for array in arrays])
     result = xp.reshape(stacked, lengths + shape)
     return xp.moveaxis(result, tuple(range(len(lengths))), tuple(range(-len(lengths), 0))) if lengths and shape else result
+
+
+def _many(xp: Any, shape: tuple[int, ...]) -> bool:
+    # Whether there are more states than NumPy should pass over at each operation. Others may trace, and compile what they traced.
+    count = 1
+    for length in shape:
+        count *= length
+    return bool(xp.__name__ == "numpy") and count > _BLOCK
+
+
+def _in_blocks(xp: Any, shape: tuple[int, ...], function: Callable[..., _Result], arguments: tuple[Any, ...]) -> _Result:
+    # The function for so many states at a time that what an operation leaves is in the processor's cache for the next.
+    def flat(argument: Any) -> Any:
+        state = xp.moveaxis(argument, 0, -1)
+        return xp.reshape(xp.broadcast_to(state, shape + state.shape[-1:]), (-1, state.shape[-1]))
+
+    def joined(parts: tuple[Any, ...]) -> Any:
+        whole = xp.concatenate([xp.moveaxis(part, 0, -1) for part in parts], axis=-1)
+        return xp.reshape(xp.moveaxis(whole, -1, 0), shape + whole.shape[:-1])
+
+    states = [flat(argument) for argument in arguments]
+    blocks: list[Any] = [
+        function(*(state[start : start + _BLOCK] for state in states)) for start in range(0, len(states[0]), _BLOCK)
+    ]
+    several = isinstance(blocks[0], tuple)
+    result: _Result = type(blocks[0])(*map(joined, zip(*blocks))) if several else joined(tuple(blocks))
+    return result

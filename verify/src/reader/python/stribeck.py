@@ -1,8 +1,8 @@
 def _stribeck(xp: Any, rate: Any, velocity: float) -> Any:
-    # exp(-|rate| / velocity), what is left of Stribeck friction at a rate, within 2 units of roundoff; 0 where it is below 1e-17.
-    # x = |rate| / velocity = n ln 2 + r with n the integer nearest to x / ln 2, after Cody and Waite (1980): the first part of ln 2 has 16 bits, so
-    # that its product with n is exact, and so is x less that. 2^-n is a product of powers of two; exp(-r) its series up to r^13 / 13!, which leaves
-    # out less than 2^-57.
+    # exp(-|rate| / velocity), what is left of Stribeck friction at a rate, within 2 units of roundoff; 0 where it is below 1e-17, not a number for
+    # what is not a number. x = |rate| / velocity = n ln 2 + r with n the integer nearest to x / ln 2, after Cody and Waite (1980): the first part of
+    # ln 2 has 16 bits, so that its product with n is exact, and so is x less that. 2^-n is a product of powers of two; exp(-r) its series up to
+    # r^13 / 13!, which leaves out less than 2^-57.
     x = xp.where(rate < 0.0, -rate, rate) / velocity
     n, power, rest = xp.zeros_like(x), xp.ones_like(x), x + 0.3465728759765625
     powers = ((32.0, 2.3283064365386963e-10), (16.0, 1.52587890625e-5), (8.0, 0.00390625), (4.0, 0.0625), (2.0, 0.25), (1.0, 0.5))

@@ -1,0 +1,74 @@
+//! What the private functions of all languages share, whose texts are templates: numbers and polynomials of the sines, and what is said of them.
+//!
+//! `@NAME@` in a template is a number or a polynomial; a line that ends in `@NAME@` behind the sign of a comment is a paragraph.
+
+use crate::kinds::Scalar;
+
+/// What is said of the sign of a rate.
+pub(super) const SIGN: &str = "Sign of a rate: 0 at rest, not a number for what is not a number.";
+
+const SINES: [&str; 5] = [
+    "n is the integer nearest to 2x/pi: @rounding@.",
+    "x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have @bits@ bits. Their products",
+    "with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on",
+    "|r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is",
+    "the sine, and the signs.",
+];
+
+const STRIBECK: [&str; 4] = [
+    "exp(-|rate| / velocity), what is left of Stribeck friction at a rate, within 2 units of roundoff; 0 where it is below 1e-17, not a number for",
+    "what is not a number. x = |rate| / velocity = n ln 2 + r with n the integer nearest to x / ln 2, after Cody and Waite (1980): the first part of",
+    "ln 2 has 16 bits, so that its product with n is exact, and so is x less that. 2^-n is a product of powers of two; exp(-r) its series up to",
+    "r^13 / 13!, which leaves out less than 2^-57.",
+];
+
+/// The numbers of the sines of a scalar.
+const NUMBERS: [(&str, [&str; 2]); 12] = [
+    ("limit", ["65536", "128"]),
+    ("square", ["4294967296.0", "16384.0"]),
+    ("bits", ["37", "17"]),
+    ("adding", ["adding 3/2 2^52 rounds", "adding 3/2 2^23 rounds"]),
+    ("round", ["6755399441055744.0", "12582912.0"]),
+    ("two_over_pi", ["0.6366197723675814", "0.63661977"]),
+    ("first", ["1.5707963267923333", "1.5707855"]),
+    ("second", ["2.5633441515839558e-12", "1.0804273e-5"]),
+    ("third", ["1.0562999066987428e-23", "6.0771005e-11"]),
+    ("sixth", ["0.1666666666666663", "0.16666655"]),
+    (
+        "sine",
+        [
+            "(0.008333333333322035 + z * -0.00019841269829660063) \
+             + zz * ((2.7557313668040543e-6 + z * -2.5050756282937577e-8) + zz * 1.5896732662311403e-10)",
+            "0.008332204 + z * -0.00019520518",
+        ],
+    ),
+    (
+        "cosine",
+        [
+            "(0.0416666666666666 + z * -0.0013888888888873453) \
+             + zz * ((2.4801587287964484e-5 + z * -2.7557313594775254e-7) + zz * (2.087558805713208e-9 + z * -1.1351822784169523e-11))",
+            "(0.041666646 + z * -0.0013887332) + zz * 2.443618e-5",
+        ],
+    ),
+];
+
+/// A template with what stands in it for a scalar; `rounding`: how n is rounded; `value`: how a number or a polynomial is written.
+pub(super) fn filled(template: &str, scalar: Scalar, rounding: &str, value: &dyn Fn(&str) -> String) -> String {
+    let mut text = String::new();
+    for line in template.lines() {
+        let paragraph: Option<(&str, &[&str])> = line
+            .strip_suffix("@sines@")
+            .map(|sign| (sign, &SINES[..]))
+            .or(line.strip_suffix("@stribeck@").map(|sign| (sign, &STRIBECK[..])));
+        match paragraph {
+            Some((sign, lines)) => lines.iter().for_each(|line| text += &format!("{sign}{line}\n")),
+            None => text += &format!("{line}\n"),
+        }
+    }
+    let column = match scalar {
+        Scalar::F64 => 0,
+        Scalar::F32 => 1,
+    };
+    text = text.replace("@sign@", SIGN).replace("@rounding@", rounding);
+    NUMBERS.iter().fold(text, |text, (name, values)| text.replace(&format!("@{name}@"), &value(values[column])))
+}
