@@ -104,6 +104,11 @@ impl Function {
     pub fn name(&self) -> String {
         self.quantity.function_name(self.with_parameters)
     }
+
+    /// The name of the form that writes its result where the caller says.
+    pub fn name_into(&self) -> String {
+        format!("{}_into", self.name())
+    }
 }
 
 /// A joint of the emitted module; limits that are not given are infinite.

@@ -21,7 +21,8 @@ pub struct Operations {
     pub exp: usize,
 }
 
-/// Operations of every public function of a module, with those of the private functions `NAME_part_1` and so on that hold parts of it.
+/// Operations of every public function of a module, with those of the functions that hold parts of it, `NAME_part_1` and so on, or that write its
+/// result, `NAME_into`.
 ///
 /// Panics where the text is not Rust, or holds what no emitted function may: another operator or call, an index that is no literal,
 /// a loop, a branch, a macro, an unsafe block.
@@ -32,12 +33,15 @@ pub fn count(text: &str) -> BTreeMap<String, Operations> {
         let syn::Item::Fn(function) = item else { continue };
         let name = function.sig.ident.to_string();
         let public = matches!(function.vis, syn::Visibility::Public(_));
-        let whole = if public { Some(name.as_str()) } else { part_of(&name) };
+        let whole = if public { Some(name.strip_suffix(INTO).unwrap_or(&name)) } else { part_of(&name) };
         let Some(whole) = whole else { continue };
         counted.entry(whole.to_owned()).or_default().visit_block(&function.block);
     }
     counted
 }
+
+/// How the name of a function ends that writes the result of another.
+const INTO: &str = "_into";
 
 /// The function that a private function holds a part of.
 fn part_of(name: &str) -> Option<&str> {
@@ -65,12 +69,20 @@ impl<'a> Visit<'a> for Operations {
                     Some("sin_cos") => self.sincos += 1,
                     Some("stribeck") => self.exp += 1,
                     Some("sign") => (),
-                    Some(name) if part_of(name).is_some() => (),
+                    Some(name) if part_of(name).is_some() || name.ends_with(INTO) => (),
                     _ => panic!("a call of something else than sin_cos, sign and stribeck"),
                 }
             }
             Expr::Index(index) => assert!(matches!(*index.index, Expr::Lit(_)), "an index that is no literal"),
-            Expr::Array(_) | Expr::Lit(_) | Expr::Paren(_) | Expr::Path(_) | Expr::Struct(_) | Expr::Tuple(_) => (),
+            Expr::Array(_)
+            | Expr::Assign(_)
+            | Expr::Lit(_)
+            | Expr::Paren(_)
+            | Expr::Path(_)
+            | Expr::Struct(_)
+            | Expr::Tuple(_) => (),
+            // What a function does that another one writes the result of.
+            Expr::Reference(_) | Expr::Repeat(_) => (),
             _ => panic!("an expression that has no place in an emitted function"),
         }
         visit::visit_expr(self, expr);
@@ -92,6 +104,8 @@ mod tests {
         check("let (s1, _) = sin_cos(q[0]); let t = s1 * q[1] - 2.0 + -0.5 * x / y; [-t, t, -1.0]", [2, 2, 1, 1, 1, 0]);
         check("let _ = q; [0.0]", [0; 6]);
         check("E { a: [[x + y * z; 1][0]], b: -(x + sign(dq[0])) }".replace("; 1][0]", "]").as_str(), [1, 2, 0, 1, 0, 0]);
+        check("y[0][1] = -t1; y[1][0] = t1 + 2.0;", [0, 1, 0, 1, 0, 0]);
+        check("let mut y = [[0.0; P]; DOF]; f_into(q, &mut y); y", [0; 6]);
         check("let t1 = stribeck(dq[0], 0.05); [t1 * 2.0, -t1]", [1, 0, 0, 1, 0, 1]);
     }
 

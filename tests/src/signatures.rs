@@ -14,10 +14,12 @@ pub fn signatures(text: &str, start: &str) -> Vec<Signature> {
     text.split(start).skip(1).filter_map(signature).collect()
 }
 
-/// The functions of an emitted module for one state.
+/// The functions of an emitted module for one state that return their results.
 pub fn of_module(text: &str) -> Vec<Signature> {
     // Those for many states are indented.
-    signatures(text, "\npub fn ")
+    let mut all = signatures(text, "\npub fn ");
+    all.retain(|(name, _)| !name.ends_with("_into"));
+    all
 }
 
 /// The methods that the traits of the runtime have for a robot: `Nominal` or `WithParameters`.

@@ -159,11 +159,25 @@ impl Returned {
 impl Promise {
     /// The signature in Rust, without blanks.
     pub fn signature(&self, with_parameters: bool) -> String {
-        let mut arguments: Vec<String> = self.arguments.iter().map(|name| format!("{name}:&[Real;DOF]")).collect();
-        if with_parameters {
-            arguments.insert(0, "pi:&[Real;PARAMETERS]".into());
+        format!("({})->{}", self.typed(with_parameters).join(","), self.returned.rust())
+    }
+
+    /// The arguments with their types in Rust, without blanks.
+    pub(crate) fn typed(&self, with_parameters: bool) -> Vec<String> {
+        let own = self.arguments.iter().map(|name| format!("{name}:&[Real;DOF]"));
+        with_parameters.then(|| "pi:&[Real;PARAMETERS]".into()).into_iter().chain(own).collect()
+    }
+
+    /// The type in Rust, without blanks, of a result that a function of its own may write where the caller says, and its zeros: a matrix with a
+    /// column for each parameter.
+    pub(crate) fn written(&self) -> Option<[String; 2]> {
+        match self.returned {
+            Returned::One([rows, columns @ (Length::Parameters | Length::BaseParameters)]) => {
+                let [rows, columns] = [rows, columns].map(|length| length.rust());
+                Some([format!("[[Real;{columns}];{rows}]"), format!("[[0.0;{columns}];{rows}]")])
+            }
+            _ => None,
         }
-        format!("({})->{}", arguments.join(","), self.returned.rust())
     }
 
     /// Length of an argument.

@@ -141,6 +141,7 @@ impl Module {
         let mut shared = Shared {
             real,
             parts: &items.parts,
+            written: &items.written,
             together: trig == Some("fast"),
             calls: BTreeSet::new(),
             parts_called: BTreeSet::new(),

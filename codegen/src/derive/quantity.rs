@@ -374,6 +374,17 @@ impl Quantity {
         self.result.iter().any(|part| part.lengths.contains(&length))
     }
 
+    /// Rows and columns of a result that Rust writes into memory of the caller: a matrix with a column for each parameter. For one that is returned
+    /// the compiler gathers rows apart, zeros and all, and copies them together.
+    pub fn written(&self, sizes: &Sizes) -> Option<[Length; 2]> {
+        match self.result {
+            [part @ ResultPart { lengths: &[rows, columns @ (Length::Parameters | Length::BaseParameters)], .. }] => {
+                (part.len(sizes) > 0).then_some([rows, columns])
+            }
+            _ => None,
+        }
+    }
+
     /// The forms that it has: without parameters at run time, and perhaps with them.
     pub fn forms(&self) -> &'static [bool] {
         if self.has_parameters {

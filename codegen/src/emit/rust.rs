@@ -29,7 +29,7 @@ pub use inverse_kinematics::{print_inverse_kinematics, print_inverse_kinematics_
 use literal::literal;
 pub use runtime::single_traits;
 pub(super) use signature::accesses;
-use signature::{argument, ignored, of_parts, structures, type_of, usize_literal, with_fields};
+use signature::{argument, ignored, length, of_parts, structures, type_of, typed, usize_literal, with_fields};
 
 const STRIBECK: &str = include_str!("rust/stribeck.rs");
 
@@ -257,22 +257,55 @@ fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -
 /// A function without its documentation.
 fn function(module: &Module, function: &Function) -> TokenStream {
     let name = format_ident!("{}", function.name());
-    let arguments = function.arguments.iter().map(|&a| {
-        let (name, length) = argument(a);
-        quote!(#name: &[Real; #length])
-    });
+    let arguments: Vec<TokenStream> = function.arguments.iter().map(typed).collect();
     let ignored = ignored(function);
     let sines = sincos::lines(module, function);
     let Body { parts, lines, entries } = body::body(module, function);
-    let (returns, result) = (type_of(function.quantity), result(function.quantity, &entries, &module.sizes()));
-    quote! {
-        #[allow(dead_code, clippy::all)]
-        pub fn #name(#(#arguments),*) -> #returns {
-            #ignored
-            #(#sines)*
-            #(#lines)*
-            #result
+    let (returns, sizes) = (type_of(function.quantity), module.sizes());
+    let own = match function.quantity.written(&sizes) {
+        None => {
+            let result = result(function.quantity, &entries, &sizes);
+            quote! {
+                #[allow(dead_code, clippy::all)]
+                pub fn #name(#(#arguments),*) -> #returns {
+                    #ignored
+                    #(#sines)*
+                    #(#lines)*
+                    #result
+                }
+            }
         }
+        Some([rows, columns]) => {
+            let written = format_ident!("{}", function.name_into());
+            let documentation = format!(" As [`{name}`], written to `y`: every entry of it.");
+            let names = function.arguments.iter().map(|&a| argument(a).0);
+            let [height, width] = [rows, columns].map(length);
+            let columns = columns.of(&sizes);
+            let assignments = entries.iter().enumerate().map(|(k, entry)| {
+                let [row, column] = [k / columns, k % columns].map(usize_literal);
+                quote!(y[#row][#column] = #entry;)
+            });
+            quote! {
+                #[allow(dead_code, clippy::all)]
+                pub fn #name(#(#arguments),*) -> #returns {
+                    let mut y = [[0.0; #width]; #height];
+                    #written(#(#names,)* &mut y);
+                    y
+                }
+
+                #[doc = #documentation]
+                #[allow(dead_code, clippy::all)]
+                pub fn #written(#(#arguments,)* y: &mut #returns) {
+                    #ignored
+                    #(#sines)*
+                    #(#lines)*
+                    #(#assignments)*
+                }
+            }
+        }
+    };
+    quote! {
+        #own
 
         #(#parts)*
     }

@@ -238,6 +238,11 @@ fn unreadable(tally: &mut Tally, scara: &Given) {
     tally.unreadable(scara, B, T1, &format!("{T1}    {impl_drop}\n"), "`impl` is not a value that is given before");
     let part = "only part `inertia_matrix_part_1` can be called";
     tally.unreadable(scara, B, T1, "    let [t1, _] = help(c2);\n", part);
+    let returning = item(&scara.module, "\npub fn base_regressor(");
+    let alone = scara.module.replace(returning, "");
+    let fault = || verify_with(&scara.source, &alone, scara.claims.clone(), Effort::default()).first_fault();
+    let reason = "`base_regressor_into` without the function `base_regressor`";
+    tally.peel("a function that writes alone", &[], Last::Refused(reason), fault);
     let accents = format!("{T1}    let \u{e9} = 5.0 * c2 + 8.766;\n    let e\u{301} = 77.0 * \u{e9};\n");
     tally.unreadable(scara, B, T1, &accents, "the character U+00E9 outside of comments");
 }
@@ -255,6 +260,8 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     );
     let deep = format!("let t1 = {}5.0 * c2 + 8.766{};\n", "(".repeat(17), ")".repeat(17));
     tally.module(scara, B, T1, &deep, &[(Brackets, "brackets in more than 16 others")]);
+    let rows = [(Rows, "row 3 where row 0 goes on or the next one begins")];
+    tally.module(scara, "pub fn base_regressor_into(", "y[0][1] =", "y[3][1] =", &rows);
     tally.module(scara, B, "5.0 * c2", "5.00 * c2", &[(Shortest, "is not the shortest decimal of a float")]);
     let fast = given("scara", &Options { trig: Trig::Fast, ..Options::default() });
     let lanes = "let ([_, _, _, _], [c2, c9, _, _]) = sin_cos_four(1, q[1], q[1], q[1], q[1]);";

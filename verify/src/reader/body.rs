@@ -1,7 +1,8 @@
 //! From the body of a function to its steps.
 //!
 //! ```text
-//! body   = { { line } result }
+//! body   = { { line } result } | { let mut y = [[0.0; count]; count]; NAME_into(arguments, &mut y); y }
+//! body of NAME_into = { { line } { y[index][index] = sum ; } }      entries row by row, in the place of a result
 //! line   = let _ = ignored ;                                        arguments that are not needed: q or (q, dq)
 //!        | let (name, name) = sin_cos(angle) ;                      sin_cos_one in a module with the block for several angles
 //!        | let ([names], [names]) = sin_cos_four(count, angles) ;   four or eight, names of the first `count` ones
@@ -36,6 +37,8 @@ const MOST_BRACKETS: usize = 16;
 pub(super) struct Shared<'a, 'm> {
     pub(super) real: Float,
     pub(super) parts: &'m BTreeMap<&'a str, Part<'a>>,
+    /// The bodies of functions that write their result where the caller says.
+    pub(super) written: &'m BTreeMap<&'a str, Parser<'a>>,
     /// Whether there is a block for several angles at once.
     pub(super) together: bool,
     /// Private items that were called.
@@ -77,11 +80,20 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &mut Shared<'a, '_>) ->
     };
     let arguments = function.arguments.clone();
     let mut compiler = Compiler { shared, parser: function.body, arguments, scope: Scope::new(), program, parts: 0 };
+    let written = compiler.shared.written.get(function.name).copied().zip(function.body_where_written());
+    if let Some((body, call)) = &written {
+        compiler.parser.expect(call)?;
+        compiler.parser = *body;
+    }
     compiler.parser.expect("{")?;
     while compiler.parser.is("let") {
         compiler.line()?;
     }
-    compiler.result(String::new(), 0)?;
+    if written.is_some() {
+        compiler.assignments()?;
+    } else {
+        compiler.result(String::new(), 0)?;
+    }
     compiler.parser.expect("}")?;
     Ok(compiler.program)
 }
@@ -443,6 +455,29 @@ impl<'a> Compiler<'a, '_, '_> {
             Ok(())
         })?;
         Ok(values)
+    }
+
+    /// The entries of a matrix, row by row: `y[0][0] = t1;`.
+    fn assignments(&mut self) -> Result<(), Fault> {
+        let (mut row, mut column) = (0, 0);
+        while self.parser.eat("y")? {
+            self.parser.expect("[")?;
+            let token = self.parser.take()?;
+            let index = integer(&token)?;
+            if column > 0 && index == row + 1 {
+                (row, column) = (index, 0);
+            }
+            if index != row && Check::Rows.is_made() {
+                return Err(token.fault(format!("row {index} where row {row} goes on or the next one begins")));
+            }
+            self.parser.expect(&format!("][{column}] ="))?;
+            self.count()?;
+            let step = self.sum(0)?;
+            self.program.outputs.push(Output { place: format!("[{row}][{column}]"), step });
+            self.parser.expect(";")?;
+            column += 1;
+        }
+        Ok(())
     }
 
     /// What is returned, or a row of it.

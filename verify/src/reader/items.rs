@@ -17,6 +17,9 @@ const LINTS: &str = "#[allow(dead_code)]";
 /// On what holds numbers of a robot: clippy finds pi and e among them.
 const ALL_LINTS: &str = "#[allow(dead_code, clippy::all)]";
 
+/// How the name of a function ends that writes its result where the caller says.
+pub(super) const INTO: &str = "_into";
+
 /// The constants that a module may have, with their types and documentation.
 const CONSTANTS: [(&str, &str, &str); 15] = [
     ("NAME", "&str", "Name of the robot."),
@@ -87,6 +90,16 @@ pub(super) struct Public<'a> {
     pub(super) body: Parser<'a>,
 }
 
+impl Public<'_> {
+    /// Its body where another function writes its result.
+    pub(super) fn body_where_written(&self) -> Option<String> {
+        let (promise, with) = Promise::of(self.name)?;
+        let [_, zeros] = promise.written()?;
+        let arguments: Vec<&str> = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied()).collect();
+        Some(format!("{{ let mut y = {zeros}; {}{INTO}({}, &mut y); y }}", self.name, arguments.join(", ")))
+    }
+}
+
 /// A part of a public function that is too long for one: `NAME_part_K`.
 #[derive(Clone, Debug)]
 pub(super) struct Part<'a> {
@@ -114,6 +127,8 @@ pub(super) struct Items<'a> {
     /// The struct, at its documentation.
     pub(super) structure: Option<Parser<'a>>,
     pub(super) public: Vec<Public<'a>>,
+    /// The bodies of those that write their result where the caller says, by the names of the functions that return it.
+    pub(super) written: BTreeMap<&'a str, Parser<'a>>,
     pub(super) parts: BTreeMap<&'a str, Part<'a>>,
     pub(super) private: Private<'a>,
 }
@@ -175,6 +190,10 @@ impl<'a> Items<'a> {
                 reason: "the struct `EquationsOfMotion` and functions that return it come together".into(),
             });
         }
+        if let Some((name, body)) = self.written.iter().find(|(name, _)| !has(name)) {
+            let reason = format!("`{name}{INTO}` without the function `{name}`");
+            return Err(Fault { line: body.peek().line, reason });
+        }
         let of_base = |name: &&&str| name.contains("BASE_");
         match (has(BASE_REGRESSOR), self.constants.keys().find(of_base)) {
             (false, Some(name)) => {
@@ -220,6 +239,7 @@ impl<'a> Items<'a> {
             (true, "type") => self.scalar(parser, &head),
             (true, "const") => self.constant(parser, head),
             (true, "struct") => self.structure(parser, &head),
+            (true, "fn") if name.text.ends_with(INTO) => self.written(parser, &head),
             (true, "fn") => self.function(parser, head),
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
@@ -305,6 +325,25 @@ impl<'a> Items<'a> {
         self.public.push(Public { name: name.text, arguments, documentation: head.documentation, body });
         parser.expect("{")?;
         *parser = body;
+        parser.skip("{", "}")
+    }
+
+    /// A public function that writes the result of another where the caller says; its body is read with that one.
+    fn written(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
+        let name = head.name;
+        let whole = name.text.strip_suffix(INTO).and_then(|whole| Some((whole, Promise::of(whole)?)));
+        let found = whole.and_then(|(whole, (promise, with))| Some((whole, promise, with, promise.written()?)));
+        let (whole, promise, with, [result, _]) =
+            found.ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
+        parser.expect(&format!("{ALL_LINTS} pub fn {}", name.text))?;
+        self.documented(&head.documentation, &format!("As [`{whole}`], written to `y`: every entry of it."), &head.first);
+        signature(parser, &format!("({},y:&mut{result})", promise.typed(with).join(",")))?;
+        let body = *parser;
+        parser.expect("{")?;
+        *parser = body;
+        if self.written.insert(whole, body).is_some() && Check::Once.is_made() {
+            return Err(name.fault(format!("function `{}` stands twice", name.text)));
+        }
         parser.skip("{", "}")
     }
 

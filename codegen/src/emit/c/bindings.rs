@@ -33,13 +33,13 @@ pub(super) fn wrappers(module: &Module, origin: &Origin) -> String {
     text += "// For C. Each wrapper believes what its declaration in the header says: that its pointers lead to arrays of these lengths.\n";
     for function in &module.functions {
         text += "\n";
-        text += &wrapper(&prefix(module), function);
+        text += &wrapper(module, function);
     }
     text
 }
 
-fn wrapper(robot: &str, function: &Function) -> String {
-    let name = function.name();
+fn wrapper(module: &Module, function: &Function) -> String {
+    let (robot, name) = (prefix(module), function.name());
     let arguments: Vec<(&str, String)> = function.arguments.iter().map(|&a| (a.name(), a.length().constant())).collect();
     let outs = outs(function.quantity);
     let shape =
@@ -72,6 +72,16 @@ fn wrapper(robot: &str, function: &Function) -> String {
     match outs.as_slice() {
         [] => {
             let _ = writeln!(text, "    unsafe {{ {call} }}");
+        }
+        [out] if function.quantity.written(&module.sizes()).is_some() => {
+            let names: Vec<&str> = arguments.iter().map(|(name, _)| *name).collect();
+            let list = |sign: &str| names.iter().map(|name| format!("{sign}{name}")).collect::<Vec<_>>().join(", ");
+            let _ = writeln!(text, "    let ({}) = unsafe {{ ({}) }};", list(""), list("*"));
+            let _ = writeln!(
+                text,
+                "    // SAFETY: the caller promises that the result points to an array of this shape; the arguments are copies."
+            );
+            let _ = writeln!(text, "    unsafe {{ {}({}, &mut *{}) }}", function.name_into(), list("&"), out.name);
         }
         outs => {
             let _ = writeln!(text, "    let value = unsafe {{ {call} }};");

@@ -4,7 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::literal::literal;
-use super::signature::{argument, input, name, usize_literal};
+use super::signature::{argument, input, name, typed, usize_literal};
 use crate::kinds::Scalar;
 use crate::program::listing::{BodyPart, Expression, Line, Listing};
 use crate::program::{Function, Module, Operation};
@@ -43,10 +43,7 @@ fn of_part(module: &Module, function: &Function, part: &BodyPart, number: usize)
     let (taken, given) = (idents(&part.taken), idents(&part.given));
     let own = format_ident!("{}_part_{}", function.name(), number);
     let (takes, gives) = (usize_literal(taken.len()), usize_literal(given.len()));
-    let signature = part.arguments.iter().map(|&a| {
-        let (name, length) = argument(a);
-        quote!(#name: &[Real; #length])
-    });
+    let signature = part.arguments.iter().map(typed);
     let inner = lines(&part.lines, module.scalar);
     let documentation = format!(" Part {number} of `{}`.", function.name());
     let text = quote! {

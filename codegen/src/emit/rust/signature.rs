@@ -50,6 +50,12 @@ pub(super) fn argument(argument: Argument) -> (Ident, TokenStream) {
     (format_ident!("{}", argument.name()), length(argument.length()))
 }
 
+/// An argument with its type.
+pub(super) fn typed(of: &Argument) -> TokenStream {
+    let (name, length) = argument(*of);
+    quote!(#name: &[Real; #length])
+}
+
 /// A dimension: the constant that holds it, or the number.
 pub(super) fn length(length: Length) -> TokenStream {
     match length {
