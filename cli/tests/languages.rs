@@ -102,7 +102,10 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
         (vec!["--language", "javascript", "--batch", "8"], "--batch does not go with `--language javascript`"),
         (vec!["--language", "c", "--native", "--out", "robot.h"], "--native goes with `--language python`"),
         (vec!["--language", "python", "--native"], "say where that goes, with `--out robot.py`"),
-        (vec!["--language", "javascript", "--ik"], "--ik does not go with `--language javascript`: inverse kinematics is written in Rust and in C"),
+        (
+            vec!["--language", "javascript", "--ik"],
+            "--ik does not go with `--language javascript`: inverse kinematics is written in Rust and in C",
+        ),
         (vec!["--language", "python", "--ik"], "--ik does not go with `--language python`"),
         (vec!["--language", "matlab", "--ik"], "--ik does not go with `--language matlab`"),
     ] {
