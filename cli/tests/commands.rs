@@ -402,7 +402,8 @@ fn error_bounds_stand_in_the_documentation_and_in_a_companion() {
     let path = module.to_str().expect("UTF-8");
     check(&["generate", &file("robots/scara.yaml"), "--out", path, "--bounds", "--verify"], 0);
     let text = fs::read_to_string(&module).expect("the module");
-    let functions = text.lines().filter(|line| line.starts_with("pub fn ")).count();
+    // What writes into memory of the caller has the errors of the function that returns the same.
+    let functions = text.lines().filter(|line| line.starts_with("pub fn ") && !line.contains("_into(")).count();
     assert_eq!(text.matches("/// Rounding error: ").count(), functions, "{text}");
     assert!(text.contains("// Box of the rounding errors: "), "{text}");
     let companion = fs::read_to_string(folder.join("arm_bounds.rs")).expect("the companion");

@@ -162,6 +162,11 @@ fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
+    // Exact numbers and what is formed of them may be larger than any float.
+    if !value.is_finite() {
+        let largest = if value < 0.0 { "below -1.8e308" } else { "above 1.8e308" };
+        return if value.is_nan() { "unknown".into() } else { largest.into() };
+    }
     if !(1e-4..1e6).contains(&size) {
         let text = format!("{value:.5e}");
         let (digits, exponent) = text.split_once('e').expect("the exponent was asked for");
@@ -180,6 +185,12 @@ fn digits(value: f64) -> String {
 mod tests {
     use super::*;
     use armgen_codegen::exact::Rational;
+
+    #[test]
+    fn numbers_that_no_float_holds_have_a_text() {
+        let texts = [f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(digits);
+        assert_eq!(texts, ["above 1.8e308", "below -1.8e308", "unknown"]);
+    }
 
     #[test]
     fn numbers_have_six_digits_at_most() {
