@@ -90,6 +90,8 @@ fn nothing_is_left_out() {
                 syn::Item::Fn(f) if matches!(f.vis, syn::Visibility::Public(_)) => Some(f.sig.ident.to_string()),
                 _ => None,
             })
+            // What writes into memory of the caller is called by the function that returns the same.
+            .filter(|name| !name.ends_with("_into"))
             .collect();
         assert_eq!(functions, expected(&absent(robot.text), &robot.description()), "{}", robot.module);
         assert_eq!(robot.narrow, robot.module.ends_with("_f32"));

@@ -34,6 +34,8 @@ pub struct Description {
     #[serde(default)]
     pub task: Vec<String>,
     regressor: Option<RegressorChoice>,
+    #[serde(rename = "allow")]
+    _allow: Option<IgnoredAnyClone>,
 }
 
 /// What the file wants as regressor.
