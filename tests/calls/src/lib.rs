@@ -6,8 +6,8 @@
 mod functions;
 
 pub use functions::{named_functions, public_functions};
-use quote::quote;
-use syn::{FnArg, Item, Pat};
+use quote::{quote, ToTokens};
+use syn::{FnArg, Item, Pat, Type, TypeArray, TypeReference};
 
 /// Rust text to be included beside the emitted module `module`: the arguments, and `each_function`, which visits a call of every
 /// public function by its name.
@@ -98,17 +98,37 @@ fn implementation_calls(implementation: &syn::ItemImpl) -> Option<impl quote::To
 fn visit(function: &syn::ItemFn) -> impl quote::ToTokens {
     let (name, output) = (&function.sig.ident, &function.sig.output);
     let text = name.to_string();
-    let (mut types, mut values) = (Vec::new(), Vec::new());
+    let (mut types, mut values, mut memory) = (Vec::new(), Vec::new(), None);
     for input in &function.sig.inputs {
         let FnArg::Typed(input) = input else { unreachable!("emitted functions are free") };
         let Pat::Ident(argument) = &*input.pat else { unreachable!("arguments of emitted functions are names") };
         types.push(&input.ty);
-        values.push(quote!(core::hint::black_box(&arguments.#argument)));
+        match &*input.ty {
+            // Memory of the caller that the function writes to.
+            Type::Reference(TypeReference { mutability: Some(_), elem, .. }) => {
+                let zeros = zeros(elem);
+                memory = Some(quote!(let mut #argument: #elem = #zeros;));
+                values.push(quote!(core::hint::black_box(&mut #argument)));
+            }
+            _ => values.push(quote!(core::hint::black_box(&arguments.#argument))),
+        }
     }
     quote! {
         visit(#text, &mut || {
+            #memory
             let function: fn(#(#types),*) #output = #name;
             let _ = core::hint::black_box(core::hint::black_box(function)(#(#values),*));
         });
     }
+}
+
+/// Zeros of a type: a number, or arrays of it.
+fn zeros(of: &Type) -> impl ToTokens {
+    fn text(of: &Type) -> String {
+        match of {
+            Type::Array(TypeArray { elem, len, .. }) => format!("[{}; {}]", text(elem), len.to_token_stream()),
+            _ => "0.0".into(),
+        }
+    }
+    syn::parse_str::<syn::Expr>(&text(of)).expect("an array of zeros is an expression")
 }

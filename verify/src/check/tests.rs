@@ -438,17 +438,16 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
     tally.peel("a standard parameter that is not the bodies'", &layers, Last::Accepted, fault);
     // The second column twice, each with half of the value.
     let module = &scara.module;
-    let at = module.find("pub fn base_regressor(").expect("the function");
+    let at = module.find("pub fn base_regressor_into(").expect("the function");
     let mut text = module[at..].to_string();
-    for (end_of_row, entry) in [
-        ("            0.0,\n            0.0,\n            0.0,\n        ],\n", "t2 + 0.5 * t5"),
-        ("0.0, dq[1], 0.0, 0.0],\n", "t2"),
-        ("2500.0 * dq[2],\n            0.0,\n        ],\n", "0.0"),
-        ("400.0 * dq[3],\n        ],\n", "0.0"),
+    for (last_of_row, entry) in [
+        ("    y[0][10] = 0.0;\n", "y[0][11] = t2 + 0.5 * t5"),
+        ("    y[1][10] = 0.0;\n", "y[1][11] = t2"),
+        ("    y[2][10] = 0.0;\n", "y[2][11] = 0.0"),
+        ("    y[3][10] = 400.0 * dq[3];\n", "y[3][11] = 0.0"),
     ] {
-        assert!(text.contains(end_of_row), "{end_of_row}");
-        let before = end_of_row.trim_end().trim_end_matches("],").trim_end().trim_end_matches(',');
-        text = text.replacen(end_of_row, &format!("{before}, {entry}],\n"), 1);
+        assert!(text.contains(last_of_row), "{last_of_row}");
+        text = text.replacen(last_of_row, &format!("{last_of_row}    {entry};\n"), 1);
     }
     let mut text = module[..at].to_string() + &text;
     for (old, new) in [

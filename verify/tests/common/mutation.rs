@@ -219,12 +219,16 @@ impl Mutable {
                                 inner.expression(&mut init.expr);
                             }
                         }
+                        // An entry that is written into memory of the caller.
+                        Stmt::Expr(Expr::Assign(assigned), _) => inner.expression(&mut assigned.right),
                         Stmt::Expr(e, _) => inner.expression(e),
                         _ => {}
                     }
                     (walk.left, walk.places, walk.done) = (inner.left, inner.places, inner.done.take());
                     if walk.done.is_some() {
-                        return Some(function.sig.ident.to_string());
+                        // What writes into memory of the caller is read as the function that returns the same.
+                        let name = function.sig.ident.to_string();
+                        return Some(name.strip_suffix("_into").unwrap_or(&name).to_owned());
                     }
                 }
                 None

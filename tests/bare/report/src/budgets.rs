@@ -95,6 +95,9 @@ pub(crate) fn functions(image: &Image, printed: &Printed) -> Result<Modules, Str
         };
         let text = [path, &twin].into_iter().find_map(|path| image.functions.get(path));
         let text = *text.ok_or(format!("the firmware holds no function `{path}`"))?;
+        // With the code of the function that writes its result, which it calls.
+        let written = [path, &twin].into_iter().find_map(|path| image.functions.get(&format!("{path}_into")));
+        let text = text + written.copied().unwrap_or_default();
         let cost = Cost { instructions: instructions(ticks.saturating_sub(*nothing)), text, stack: *stack };
         modules.entry(module.into()).or_default().insert(name.into(), cost);
     }
