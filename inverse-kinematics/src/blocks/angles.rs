@@ -6,7 +6,7 @@ pub const HALF_TURN: Real = 3.141592653589793238462643383279502884;
 /// The angle of a point (c, s) of the circle in (-pi, pi], rad, right to 4 u of itself and to 2 u of pi beside the rounding of (c, s).
 ///
 /// By its smaller coordinate over the larger one, of an angle a <= pi/4: tan(a/2) = sin a/(r + cos a), whose arctangent is a short series
-/// ([`ARCTANGENT`]). r is the point's distance from the origin, to the square of its difference from 1.
+/// (`ARCTANGENT`). r is the point's distance from the origin, to the square of its difference from 1.
 /// All that is chosen is a value, nothing branches, so angles side by side become vector instructions. Infinite or NaN: anything.
 #[inline]
 pub fn angle([c, s]: [Real; 2]) -> Real {
