@@ -1,7 +1,7 @@
 //! Inverse dynamics by Newton and Euler's equations in joint frames, and friction.
 //!
-//! The acceleration field of link i is a + U r, with U = [domega] + [omega]² ([a]: the matrix of the cross product with a); force and
-//! moment follow from m, h and the second moments S alone:
+//! The acceleration field of link i is a + U r, with U = `[domega] + [omega]²` (`[a]`: the matrix of the cross product with a); force
+//! and moment follow from m, h and the second moments S alone:
 //!
 //! ```text
 //! f = m a + U h,   n = h × a + vee(U S - (U S)ᵀ)                                     (the book, Sect. 7.5, in second-moment form)
