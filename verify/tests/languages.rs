@@ -174,6 +174,11 @@ fn a_package_is_called_as_its_help_says() {
 }
 
 #[test]
+fn torch_has_the_bits_of_numpy_and_its_derivatives() {
+    page::check_torch();
+}
+
+#[test]
 fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
     for language in others() {
         page::check_tests("scara", Scalar::F64, language);

@@ -1,5 +1,6 @@
 //! The module in MATLAB and Octave: a package, a folder with a file for each function. Columns of arguments are states, and the last dimension
-//! of results is that of states.
+//! of results is that of states. Inside of a function entries are columns, so many states at a time as the processor's cache holds: a column is taken
+//! from a matrix without a copy.
 //!
 //! Every file has what it needs as local functions, so that any of them may be copied into a block of Simulink.
 
@@ -9,7 +10,7 @@ use super::documentation::{self, Block, Described, DescribedParameters, Link};
 use super::origin::{Notes, Origin};
 use super::plain::{camel, constants, constants_documentation, described, expression, head, places, waves, Syntax, Value};
 use super::private::filled;
-use crate::catalogue::{Argument, Quantity};
+use crate::catalogue::{Argument, Quantity, ResultPart};
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
@@ -20,6 +21,8 @@ const SIGN: &str = include_str!("matlab/sign.m");
 const STRIBECK: &str = include_str!("matlab/stribeck.m");
 const STD: &str = include_str!("matlab/std.m");
 const FAST: &str = include_str!("matlab/sines.m");
+/// As many states are computed at a time.
+const BLOCK: usize = 4096;
 
 /// A file of a package.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -53,7 +56,7 @@ impl Syntax for Matlab {
     }
 
     fn entry(&self, argument: Argument, index: usize) -> String {
-        format!("{}({}, :)", argument.name(), index + 1)
+        format!("{}(:, {})", argument.name(), index + 1)
     }
 
     fn operator(&self, operation: Operation) -> &'static str {
@@ -113,10 +116,7 @@ pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String
 /// How a function is called.
 fn call(described: &Described<'_>) -> String {
     let names: Vec<&str> = described.arguments().map(|a| a.name()).collect();
-    let returned = match results(described.quantity).as_slice() {
-        [one] => one.clone(),
-        several => format!("[{}]", several.join(", ")),
-    };
+    let returned = listed(&results(described.quantity));
     format!("{returned} = {}({})", camel(&described.name()), names.join(", "))
 }
 
@@ -196,59 +196,29 @@ fn results(quantity: &Quantity) -> Vec<String> {
     quantity.result.iter().map(|part| camel(part.name)).collect()
 }
 
+/// What is said of the function for a block of states.
+pub fn block_comment(function: &str) -> String {
+    format!("% `{function}` of n states, so few that they stay in the processor's cache; inside, an entry is a column.\n")
+}
+
+/// A list of names, in brackets where they are several.
+fn listed(names: &[String]) -> String {
+    match names {
+        [one] => one.clone(),
+        several => format!("[{}]", several.join(", ")),
+    }
+}
+
 /// The file of a function.
 fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File {
     let listing = Listing::of(function);
     let parts = listing.parts();
     let name = camel(&function.name());
-    let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
-    let results = results(function.quantity);
     let (described, note) = described(module, function, notes);
     let mut text = format!("function {}\n{}", call(&described), function_comment(&described, note));
     let _ = write!(text, "\n{}%#codegen\n", origin_of(head));
-    match names.as_slice() {
-        [one] => define(&mut text, "n", &format!("size({one}, 2)")),
-        several => {
-            let sizes: Vec<String> = several.iter().map(|name| format!("size({name}, 2)")).collect();
-            define(&mut text, "n", &format!("max([{}])", sizes.join(", ")));
-        }
-    }
-    for argument in &function.arguments {
-        let rows = match argument {
-            Argument::Pi => module.parameters.len(),
-            _ => module.joints.len(),
-        };
-        let _ = writeln!(text, "    check('{0}', {0}, {rows}, n);", argument.name());
-    }
-    let waves = waves(module, function, &Matlab);
-    if !waves.is_empty() {
-        let angles: Vec<&str> = waves.iter().map(|wave| wave.angle.as_str()).collect();
-        define(&mut text, "[sine, cosine]", &format!("sinCos([{}])", angles.join("; ")));
-    }
-    for (wave, i) in waves.iter().zip(1..) {
-        for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {
-            if let Some(value) = value {
-                define(&mut text, value, &format!("{from}({i}, :)"));
-            }
-        }
-    }
-    if parts.is_empty() {
-        lines(&mut text, &listing.lines);
-    }
-    for (part, number) in parts.iter().zip(1..) {
-        call_of(&mut text, &name, part, number);
-    }
-    for (part, result) in function.quantity.result.iter().zip(&results) {
-        let lengths: Vec<usize> = part.lengths.iter().map(|length| length.of(&module.sizes())).collect();
-        let sizes: Vec<String> = paged(&lengths).iter().map(ToString::to_string).collect();
-        define(&mut text, result, &format!("zeros({}, n)", if sizes.is_empty() { "1".into() } else { sizes.join(", ") }));
-    }
-    for ((part, place), entry) in places(function.quantity, &module.sizes()).iter().zip(&listing.entries) {
-        let indices: Vec<String> = paged(place).iter().map(|index| (index + 1).to_string()).collect();
-        let indices = if indices.is_empty() { "1".into() } else { indices.join(", ") };
-        define(&mut text, &format!("{}({indices}, :)", camel(part.name)), &expression(entry, &Matlab));
-    }
-    text += "end\n";
+    in_blocks(&mut text, module, function, &name);
+    block(&mut text, module, function, &name, &listing);
     for (part, number) in parts.iter().zip(1..) {
         print_part(&mut text, &name, part, number);
     }
@@ -264,6 +234,91 @@ fn file(module: &Module, function: &Function, head: &str, notes: &Notes) -> File
         }
     }
     File { name: format!("{name}.m"), text }
+}
+
+/// The lengths of a part of the result, those of a list of matrices as MATLAB has them.
+fn lengths(module: &Module, part: &ResultPart) -> Vec<usize> {
+    let lengths: Vec<usize> = part.lengths.iter().map(|length| length.of(&module.sizes())).collect();
+    paged(if lengths.is_empty() { &[1] } else { &lengths })
+}
+
+fn joined_by_commas(numbers: &[usize]) -> String {
+    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
+/// The body of the function: checks, and a call of the function for a block, or one for each.
+fn in_blocks(text: &mut String, module: &Module, function: &Function, name: &str) {
+    let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
+    let results = results(function.quantity);
+    match names.as_slice() {
+        [one] => define(text, "n", &format!("size({one}, 2)")),
+        several => {
+            let sizes: Vec<String> = several.iter().map(|name| format!("size({name}, 2)")).collect();
+            define(text, "n", &format!("max([{}])", sizes.join(", ")));
+        }
+    }
+    for argument in &function.arguments {
+        let rows = match argument {
+            Argument::Pi => module.parameters.len(),
+            _ => module.joints.len(),
+        };
+        let _ = writeln!(text, "    check('{0}', {0}, {rows}, n);", argument.name());
+    }
+    let _ = writeln!(text, "    if n <= {BLOCK}");
+    let _ = writeln!(text, "        {} = {name}Block({}, n);\n        return\n    end", listed(&results), names.join(", "));
+    for (part, result) in function.quantity.result.iter().zip(&results) {
+        define(text, result, &format!("zeros({}, n)", joined_by_commas(&lengths(module, part))));
+    }
+    let _ = writeln!(text, "    for first = 1:{BLOCK}:n\n        k = first:min(first + {}, n);", BLOCK - 1);
+    let own = |(part, result): (&ResultPart, &String)| format!("{result}({}k)", ":, ".repeat(part.lengths.len().max(1)));
+    let own: Vec<String> = function.quantity.result.iter().zip(&results).map(own).collect();
+    let columns: Vec<String> = names.iter().map(|name| format!("{name}(:, min(k, size({name}, 2)))")).collect();
+    let _ = writeln!(text, "        {} = {name}Block({}, numel(k));\n    end\nend", listed(&own), columns.join(", "));
+}
+
+/// The function for a block of states.
+fn block(text: &mut String, module: &Module, function: &Function, name: &str, listing: &Listing) {
+    let parts = listing.parts();
+    let names: Vec<&str> = function.arguments.iter().map(|a| a.name()).collect();
+    let results = results(function.quantity);
+    let _ = writeln!(text, "\nfunction {} = {name}Block({}, n)", listed(&results), names.join(", "));
+    *text += &block_comment(name);
+    names.iter().for_each(|name| define(text, name, &format!("{name}.'")));
+    let waves = waves(module, function, &Matlab);
+    if !waves.is_empty() {
+        let angles: Vec<&str> = waves.iter().map(|wave| wave.angle.as_str()).collect();
+        define(text, "[sine, cosine]", &format!("sinCos([{}])", angles.join(", ")));
+    }
+    for (wave, i) in waves.iter().zip(1..) {
+        for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {
+            if let Some(value) = value {
+                define(text, value, &format!("{from}(:, {i})"));
+            }
+        }
+    }
+    if parts.is_empty() {
+        lines(text, &listing.lines);
+    }
+    for (part, number) in parts.iter().zip(1..) {
+        call_of(text, name, part, number);
+    }
+    for (part, result) in function.quantity.result.iter().zip(&results) {
+        define(text, result, &format!("zeros(n, {})", part.len(&module.sizes())));
+    }
+    for ((part, place), entry) in places(function.quantity, &module.sizes()).iter().zip(&listing.entries) {
+        // The first index is the one that changes fastest.
+        let sizes = lengths(module, part);
+        let column = paged(place).iter().zip(&sizes).rev().fold(0, |column, (index, size)| column * size + index) + 1;
+        define(text, &format!("{}(:, {column})", camel(part.name)), &expression(entry, &Matlab));
+    }
+    for (part, result) in function.quantity.result.iter().zip(&results) {
+        let value = match part.lengths.len() {
+            0 | 1 => format!("{result}.'"),
+            _ => format!("reshape({result}.', {}, n)", joined_by_commas(&lengths(module, part))),
+        };
+        define(text, result, &value);
+    }
+    *text += "end\n";
 }
 
 /// Indices of an entry, or lengths: a list of matrices has its place in the list behind rows and columns.

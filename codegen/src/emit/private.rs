@@ -8,11 +8,25 @@ use crate::kinds::Scalar;
 pub(super) const SIGN: &str = "Sign of a rate: 0 at rest, not a number for what is not a number.";
 
 const SINES: [&str; 5] = [
+    REDUCTION[0],
+    REDUCTION[1],
+    REDUCTION[2],
+    "|r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is",
+    "the sine, and the signs.",
+];
+
+const SINES_OF_ARRAYS: [&str; 5] = [
+    REDUCTION[0],
+    REDUCTION[1],
+    REDUCTION[2],
+    "|r| <= pi/4 (Remez). b is at first -n modulo 4, from -2 to 2, then minus the sine of n pi/2, of which a is the cosine: the theorems of addition",
+    "are exact, as a product with 1 and a sum with 0 are, and s is 0 for x = 0 alone.",
+];
+
+const REDUCTION: [&str; 3] = [
     "n is the integer nearest to 2x/pi: @rounding@.",
     "x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have @bits@ bits. Their products",
     "with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on",
-    "|r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is",
-    "the sine, and the signs.",
 ];
 
 const STRIBECK: [&str; 4] = [
@@ -56,10 +70,9 @@ const NUMBERS: [(&str, [&str; 2]); 12] = [
 pub(super) fn filled(template: &str, scalar: Scalar, rounding: &str, value: &dyn Fn(&str) -> String) -> String {
     let mut text = String::new();
     for line in template.lines() {
-        let paragraph: Option<(&str, &[&str])> = line
-            .strip_suffix("@sines@")
-            .map(|sign| (sign, &SINES[..]))
-            .or(line.strip_suffix("@stribeck@").map(|sign| (sign, &STRIBECK[..])));
+        let paragraphs: [(&str, &[&str]); 3] =
+            [("@sines@", &SINES), ("@sines_of_arrays@", &SINES_OF_ARRAYS), ("@stribeck@", &STRIBECK)];
+        let paragraph = paragraphs.into_iter().find_map(|(name, lines)| Some((line.strip_suffix(name)?, lines)));
         match paragraph {
             Some((sign, lines)) => lines.iter().for_each(|line| text += &format!("{sign}{line}\n")),
             None => text += &format!("{line}\n"),

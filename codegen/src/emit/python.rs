@@ -185,9 +185,9 @@ impl Python {
         let _ = writeln!(text, "    xp, shape, {} = _enter({})", tuple(&names), entered.join(", "));
         let _ = writeln!(
             text,
-            "    if _many(xp, shape):\n        return _in_blocks(xp, shape, {}, {})",
-            function.name(),
-            tuple(&names)
+            "    if _many(xp, shape, {0}):\n        return _in_blocks(xp, shape, {1}, {0})",
+            tuple(&names),
+            function.name()
         );
         let waves = waves(module, function, self);
         if !waves.is_empty() {

@@ -3,9 +3,11 @@
 //! ```text
 //! package  = { %%% FILE  file }                    files in the order of their names: Contents.m, which is a comment, model.m, functions
 //! model    = function m = model()  m = struct();  { m.FIELD = VALUE; }  end
-//! function = function RESULTS = NAME(ARGUMENTS)  n = COLUMNS;  { check('ARGUMENT', ARGUMENT, ROWS, n); } [ waves ] { line } { call { line } }
-//!            { RESULT = zeros(SIZES, n); } { RESULT(INDICES, :) = SUM; } end { part } check [ sines ] [ sign ] [ stribeck ]
-//! waves    = [sine, cosine] = sinCos([ANGLES]);  { NAME = sine(I, :); | NAME = cosine(I, :); }
+//! function = function RESULTS = NAME(ARGUMENTS)  n = COLUMNS;  { check('ARGUMENT', ARGUMENT, ROWS, n); } a call of the block or one of
+//!            each 4096 states  end  block { part } check [ sines ] [ sign ] [ stribeck ]
+//! block    = function RESULTS = NAMEBlock(ARGUMENTS, n)  { ARGUMENT = ARGUMENT.'; } [ waves ] { line } { call { line } }
+//!            { RESULT = zeros(n, ENTRIES); } { RESULT(:, ENTRY) = SUM; } { RESULT = reshape(RESULT.', SIZES, n); } end
+//! waves    = [sine, cosine] = sinCos([ANGLES]);  { NAME = sine(:, I); | NAME = cosine(:, I); }
 //! line     = NAME = SUM;
 //! call     = givenK = NAMEPartK(ARGUMENTS, {NAMES});  { NAME = givenK{I}; }
 //! ```
@@ -16,9 +18,9 @@ use armgen_codegen::emit::Language;
 
 use super::plain::{camel, names_of, promised, sizes, Body, Comments, Constants, Entry, Lines, Parts, Syntax, CONSTANTS};
 use super::{Constant, Fault, Function, Module, LONGEST};
-use crate::contract::{Promise, Sizes};
+use crate::contract::{Array, Length, Promise, Sizes};
 use crate::enclosure::Float;
-use crate::program::Argument;
+use crate::program::{Argument, Program};
 
 pub(super) const COMMENTS: Comments = Comments { line: Some("%"), block: None };
 
@@ -106,7 +108,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let constants = constants(&mut model.lines()?)?;
     let sizes = sizes(&constants)?;
     let syntax = Syntax {
-        index: ("(", ", :)"),
+        index: ("(:, ", ")"),
         first: 1,
         operators: [" .* ", " ./ "],
         suffix: "",
@@ -114,7 +116,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         stribeck: "stribeck(".into(),
         define: ["    ".into(), " = ".into(), ";".into()],
         list: ("{", "}"),
-        angles: "; ",
+        angles: ", ",
     };
     let mut reader = Reader { syntax: &syntax, sizes, steps: 0, trig: None };
     let mut functions: Vec<(String, Result<Function, String>)> = Vec::new();
@@ -182,10 +184,7 @@ fn paged(indices: &[usize]) -> Vec<usize> {
 }
 
 fn list(numbers: &[usize]) -> String {
-    match numbers {
-        [] => "1".into(),
-        numbers => numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
-    }
+    numbers.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 struct Reader<'r> {
@@ -205,17 +204,18 @@ impl Reader<'_> {
         let (own, (promise, arguments)) = known
             .and_then(|own| Some((own.clone(), promised(&own)?)))
             .ok_or_else(|| begin(format!("`{}` is not a file that an emitted package has", file.name)))?;
-        // Parts stand behind the function that calls them.
+        // Parts stand behind the functions that call them.
         let mut parts = Parts::default();
-        lines.at =
-            lines.all.iter().skip(1).position(|line| line.text.starts_with("function ")).map_or(lines.all.len(), |at| at + 1);
+        let begins = lines.all.iter().enumerate().filter(|(_, line)| line.text.starts_with("function "));
+        lines.at = begins.map(|(at, _)| at).nth(2).unwrap_or(lines.all.len());
         let behind_function = lines.at;
         while lines.peek().starts_with("function given = ") {
             part(&mut parts, &mut lines)?;
         }
         let behind_parts = std::mem::replace(&mut lines.at, 0);
 
-        let function = self.function(&mut lines, (own.clone(), promise, arguments), name, &mut parts)?;
+        let documentation = self.in_blocks(&mut lines, promise, &arguments, name)?;
+        let (program, asks) = self.block(&mut lines, (&own, promise, arguments), name, &mut parts)?;
         if lines.at != behind_function {
             return Err(lines.fault(format!("{} behind the end of the function", lines.shown())));
         }
@@ -224,7 +224,7 @@ impl Reader<'_> {
         }
         lines.at = behind_parts;
         lines.expect_all(CHECK, COMMENTS)?;
-        let (function, [sines, sign, stribeck]) = function;
+        let [sines, sign, stribeck] = asks;
         if sines {
             let fast = Lines::new(FAST, COMMENTS)?;
             let fast = lines.all.get(lines.at + 1).map(|line| line.text) == fast.all.get(1).map(|line| line.text);
@@ -241,44 +241,76 @@ impl Reader<'_> {
             lines.expect_all(STRIBECK, COMMENTS)?;
         }
         match lines.ended() {
-            true => Ok((own, function)),
+            true => Ok((own, Function { documentation, program })),
             false => Err(lines.fault(format!("{} behind the end of the file's functions", lines.shown()))),
         }
     }
 
-    /// The function itself, and whether it needs sines, signs and what is left of Stribeck friction.
-    fn function<'a>(
-        &mut self,
-        lines: &mut Lines<'a>,
-        (own, promise, arguments): (String, &'static Promise, Vec<Argument>),
+    /// The function itself, which hands its arguments on; its documentation.
+    fn in_blocks(
+        &self,
+        lines: &mut Lines<'_>,
+        promise: &'static Promise,
+        arguments: &[Argument],
         name: &str,
-        parts: &mut Parts<'a>,
-    ) -> Result<(Function, [bool; 3]), Fault> {
+    ) -> Result<Vec<String>, Fault> {
         let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
-        let results: Vec<String> = promise.returned.named().iter().map(|(name, _)| camel(name)).collect();
-        let returned = match results.as_slice() {
-            [one] => one.clone(),
-            several => format!("[{}]", several.join(", ")),
-        };
-        lines.expect(&format!("function {returned} = {name}({})", names.join(", ")))?;
+        let results = results(promise);
+        lines.expect(&format!("function {} = {name}({})", listed(&results), names.join(", ")))?;
         let documentation = lines.all.get(lines.at).map_or(Vec::new(), |line| line.comment.clone());
-        let documentation = documentation.into_iter().map(String::from).collect();
         let columns: Vec<String> = names.iter().map(|name| format!("size({name}, 2)")).collect();
         match columns.as_slice() {
             [one] => lines.expect(&format!("    n = {one};"))?,
             several => lines.expect(&format!("    n = max([{}]);", several.join(", ")))?,
         }
-        for argument in &arguments {
+        for argument in arguments {
             let rows = if *argument == Argument::Pi { self.sizes.p } else { self.sizes.n };
             lines.expect(&format!("    check('{0}', {0}, {rows}, n);", argument.name()))?;
         }
-        let mut body = Body::new(&own, arguments, self.syntax, Float::F64, self.steps);
+        lines.expect("    if n <= 4096")?;
+        lines.expect(&format!("        {} = {name}Block({}, n);", listed(&results), names.join(", ")))?;
+        lines.expect("        return")?;
+        lines.expect("    end")?;
+        let parts = promise.returned.named();
+        for ((_, lengths), result) in parts.iter().zip(&results) {
+            lines.expect(&format!("    {result} = zeros({}, n);", list(&self.lengths(lengths))))?;
+        }
+        lines.expect("    for first = 1:4096:n")?;
+        lines.expect("        k = first:min(first + 4095, n);")?;
+        let own = |((_, lengths), result): (&(String, Array), &String)| match lengths.len() {
+            0 | 1 => format!("{result}(:, k)"),
+            2 => format!("{result}(:, :, k)"),
+            _ => format!("{result}(:, :, :, k)"),
+        };
+        let own: Vec<String> = parts.iter().zip(&results).map(own).collect();
+        let columns: Vec<String> = names.iter().map(|name| format!("{name}(:, min(k, size({name}, 2)))")).collect();
+        lines.expect(&format!("        {} = {name}Block({}, numel(k));", listed(&own), columns.join(", ")))?;
+        lines.expect("    end")?;
+        lines.expect("end")?;
+        Ok(documentation.into_iter().map(String::from).collect())
+    }
+
+    /// The function for a block of states, and whether it needs sines, signs and what is left of Stribeck friction.
+    fn block<'a>(
+        &mut self,
+        lines: &mut Lines<'a>,
+        (own, promise, arguments): (&str, &'static Promise, Vec<Argument>),
+        name: &str,
+        parts: &mut Parts<'a>,
+    ) -> Result<(Program, [bool; 3]), Fault> {
+        let names: Vec<&str> = arguments.iter().map(|a| a.name()).collect();
+        let results = results(promise);
+        lines.expect(&format!("function {} = {name}Block({}, n)", listed(&results), names.join(", ")))?;
+        for name in &names {
+            lines.expect(&format!("    {name} = {name}.';"))?;
+        }
+        let mut body = Body::new(own, arguments, self.syntax, Float::F64, self.steps);
         if lines.peek().starts_with("    [sine, cosine] = ") {
             let line = lines.number();
             let angles = lines.between("    [sine, cosine] = sinCos([", "]);")?;
             for ((sine, cosine), i) in body.angles(angles, line)?.into_iter().zip(1..) {
-                let first = body.element(lines, &format!("sine({i}, :)"), sine)?;
-                let second = body.element(lines, &format!("cosine({i}, :)"), cosine)?;
+                let first = body.element(lines, &format!("sine(:, {i})"), sine)?;
+                let second = body.element(lines, &format!("cosine(:, {i})"), cosine)?;
                 if !first && !second {
                     return Err(lines.fault(format!("neither the sine nor the cosine of angle {i} has a name")));
                 }
@@ -290,22 +322,48 @@ impl Reader<'_> {
             calls += 1;
             body.definitions(lines)?;
         }
-        for ((_, lengths), result) in promise.returned.named().into_iter().zip(&results) {
-            let lengths: Vec<usize> = lengths.iter().map(|length| length.of(&self.sizes)).collect();
-            lines.expect(&format!("    {result} = zeros({}, n);", list(&paged(&lengths))))?;
+        let named = promise.returned.named();
+        for ((_, lengths), result) in named.iter().zip(&results) {
+            let entries: usize = self.lengths(lengths).iter().product();
+            lines.expect(&format!("    {result} = zeros(n, {entries});"))?;
         }
         for place in promise.returned.places(&self.sizes) {
             let (part, indices) = promise.returned.part_of(&place);
-            let indices = indices.split(['[', ']']).filter_map(|index| Some(index.parse::<usize>().ok()? + 1));
-            let indices: Vec<usize> = indices.collect();
-            let begin = format!("    {}({}, :) = ", camel(&part), list(&paged(&indices)));
+            let lengths = named.iter().find(|(name, _)| *name == part).map_or(Vec::new(), |(_, array)| self.lengths(array));
+            let indices: Vec<usize> = indices.split(['[', ']']).filter_map(|index| index.parse().ok()).collect();
+            let column = paged(&indices).iter().zip(&lengths).rev().fold(0, |column, (index, length)| column * length + index);
             let line = lines.number();
-            let value = lines.between(&begin, ";")?;
+            let value = lines.between(&format!("    {}(:, {}) = ", camel(&part), column + 1), ";")?;
             body.output(place, value, line)?;
+        }
+        for ((_, lengths), result) in named.iter().zip(&results) {
+            match lengths.len() {
+                0 | 1 => lines.expect(&format!("    {result} = {result}.';"))?,
+                _ => lines.expect(&format!("    {result} = reshape({result}.', {}, n);", list(&self.lengths(lengths))))?,
+            }
         }
         lines.expect("end")?;
         self.steps = body.steps();
-        Ok((Function { documentation, program: body.program }, body.asks))
+        Ok((body.program, body.asks))
+    }
+
+    /// The lengths of a result, of a number as well.
+    fn lengths(&self, array: &[Length]) -> Vec<usize> {
+        let lengths: Vec<usize> = array.iter().map(|length| length.of(&self.sizes)).collect();
+        paged(if lengths.is_empty() { &[1] } else { &lengths })
+    }
+}
+
+/// The names of the results of a function.
+fn results(promise: &Promise) -> Vec<String> {
+    promise.returned.named().iter().map(|(name, _)| camel(name)).collect()
+}
+
+/// Names with commas between, in brackets where they are several.
+fn listed(names: &[String]) -> String {
+    match names {
+        [one] => one.clone(),
+        several => format!("[{}]", several.join(", ")),
     }
 }
 

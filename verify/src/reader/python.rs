@@ -3,7 +3,7 @@
 //! ```text
 //! module   = imports names constants arrays [ sines ] [ sign ] [ stribeck ] { [ class ] { part } function }
 //! function = def NAME(ARGUMENTS) -> TYPE:  xp, shape, (ARGUMENTS,) = _enter(("ARGUMENT", ARGUMENT, LENGTH), ...)
-//!            if _many(xp, shape):  return _in_blocks(xp, shape, NAME, (ARGUMENTS,))  [ waves ] { line } { call { line } } result
+//!            if _many(xp, shape, (ARGUMENTS,)):  return _in_blocks(xp, shape, NAME, (ARGUMENTS,))  [ waves ] { line } { call { line } } result
 //! waves    = sine, cosine = _sin_cos(xp, (ANGLES,))  { NAME = sine[I] | NAME = cosine[I] }
 //! line     = NAME = SUM
 //! call     = given_K = _NAME_part_K(xp, ARGUMENTS, (NAMES,))  { NAME = given_K[I] }
@@ -185,7 +185,7 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         });
         let entered: Vec<String> = entered.collect();
         lines.expect(&format!("    xp, shape, {} = _enter({})", tuple(&names), entered.join(", ")))?;
-        lines.expect("    if _many(xp, shape):")?;
+        lines.expect(&format!("    if _many(xp, shape, {}):", tuple(&names)))?;
         lines.expect(&format!("        return _in_blocks(xp, shape, {name}, {})", tuple(&names)))?;
         let mut body = Body::new(name, arguments, self.syntax, self.real, self.steps);
         if lines.peek().starts_with("    sine, cosine = ") {

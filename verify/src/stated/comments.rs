@@ -118,7 +118,9 @@ fn expected(module: &Module, words: &Words<'_>) -> Vec<Expected> {
                 .iter()
                 .map(|(own, described, note)| {
                     let text = matlab::function_comment(described, *note);
-                    (format!("{}.m", camel(own)), vec![Expected::new(text, "    n = "), origin("    n = ")])
+                    let name = camel(own);
+                    let block = Expected::new(matlab::block_comment(&name), "    ");
+                    (format!("{name}.m"), vec![Expected::new(text, "    n = "), origin("    n = "), block])
                 })
                 .collect();
             let constants = matlab::constants_comments(parameters).into_iter().map(constant);

@@ -10,7 +10,7 @@ use armgen_codegen::Generated;
 use armgen_verify::reader::ModuleText;
 
 use crate::common;
-use crate::tools::{numpy, succeed, there, write, write_package};
+use crate::tools::{numpy, python_with, succeed, there, write, write_package};
 
 /// The block of a kind of the page of languages, the first behind a heading.
 fn block(heading: &str, kind: &str) -> String {
@@ -106,6 +106,21 @@ pub(crate) fn check_package() {
         max(max(abs(scara.gravityWith(model.nominalParameters, q) - scara.gravity(q)))) < 1e-9);
     assert(isequal(size(scara.gravity(zeros(4, 0))), [4, 0]));
     assert(isequal(block(q, q, q), scara.inverseDynamics(q, q, q)));
+    % More states than a block has, the last block of one.
+    many = linspace(-3, 3, 4 * 8193);
+    many = reshape(many, 4, 8193);
+    rates = [1; 2; 3; 4];
+    [inertia, coriolis, gravity] = scara.equationsOfMotion(many, rates);
+    frames = scara.linkFrames(many);
+    energy = scara.kineticEnergy(many, rates);
+    torques = scara.inverseDynamics(many(:, 1), rates, many);
+    for k = [1, 4096, 4097, 8192, 8193]
+        [b, c, g] = scara.equationsOfMotion(many(:, k), rates);
+        assert(isequal(inertia(:, :, k), b) && isequal(coriolis(:, :, k), c) && isequal(gravity(:, k), g));
+        assert(isequal(frames(:, :, :, k), scara.linkFrames(many(:, k))));
+        assert(isequal(energy(k), scara.kineticEnergy(many(:, k), rates)));
+        assert(isequal(torques(:, k), scara.inverseDynamics(many(:, 1), rates, many(:, k))));
+    end
     assert(~isempty(strfind(evalc('help scara.inertiaMatrix'), 'inertiaMatrix(q)')));
 end
 
@@ -121,6 +136,54 @@ end
 ",
     );
     succeed(Command::new("octave-cli").current_dir(&folder).args(["--no-init-file", "--eval", "main"]));
+}
+
+/// Tensors of torch: the bits of NumPy in blocks and out of them, and whole where they are recorded, mapped over or compiled.
+pub(crate) fn check_torch() {
+    let Some(python) = python_with("torch") else { return };
+    let (folder, generated) = folder_of("languages_torch");
+    write(folder.join("scara.py"), generated.in_language(Language::Python));
+    write(
+        folder.join("main.py"),
+        "import inspect
+import warnings
+
+import numpy as np
+import torch
+
+import scara
+
+warnings.simplefilter('ignore')
+rng = np.random.default_rng(1)
+for count in (1, 5000):
+    for name in (name for name in scara.__all__ if name[0].islower()):
+        function = getattr(scara, name)
+        of = lambda argument: scara.PARAMETERS if argument == 'pi' else scara.DOF
+        states = [rng.uniform(-9, 9, (count, of(argument))) for argument in inspect.signature(function).parameters]
+        states[-1][:1] *= 7e2
+        one, other = function(*states), function(*map(torch.from_numpy, states))
+        one, other = [result if isinstance(result, tuple) else (result,) for result in (one, other)]
+        assert all(np.array_equal(a, b.numpy()) for a, b in zip(one, other)), name
+many, rates = (torch.from_numpy(rng.uniform(-3, 3, (5000, 4))) for _ in range(2))
+few = many[:8]
+near = lambda a, b: bool((a - b).abs().max() < 1e-11)
+momentum = scara.momentum(many, rates)
+tracked = rates.clone().requires_grad_()
+scara.kinetic_energy(many, tracked).sum().backward()
+assert near(tracked.grad, momentum)
+# Angles beyond the range of the sines, by a program that was recorded within it; and one that is as long for more states than a block has.
+traced = [torch.jit.trace(scara.inertia_matrix, (states,)) for states in (many, few)]
+assert all(near(program(few * 1e10), scara.inertia_matrix(few * 1e10)) for program in traced)
+assert len({len(list(program.graph.nodes())) for program in traced}) == 1
+try:
+    from torch.func import grad, vmap
+except ImportError:
+    from functorch import grad, vmap
+assert near(vmap(grad(scara.kinetic_energy, argnums=1))(few, rates[:8]), momentum[:8])
+assert near(vmap(scara.inertia_matrix)(few), scara.inertia_matrix(few))
+",
+    );
+    succeed(Command::new(python).current_dir(&folder).arg("main.py"));
 }
 
 /// The test file of a language passes beside the module, and fails beside one whose gravity is another.

@@ -28,11 +28,16 @@ pub(crate) fn write(path: PathBuf, text: impl AsRef<[u8]>) {
 
 /// A Python that has NumPy.
 pub(crate) fn numpy() -> Option<&'static str> {
-    let has =
-        |python: &&str| Command::new(python).args(["-c", "import numpy"]).output().is_ok_and(|output| output.status.success());
+    python_with("numpy")
+}
+
+/// A Python that has a library.
+pub(crate) fn python_with(library: &str) -> Option<&'static str> {
+    let import = format!("import {library}");
+    let has = |python: &&str| Command::new(python).args(["-c", &import]).output().is_ok_and(|output| output.status.success());
     let found = ["python3", "/usr/bin/python3"].into_iter().find(has);
     if found.is_none() {
-        println!("skipped: no Python with NumPy here (Debian: python3-numpy)");
+        println!("skipped: no Python with {library} here (Debian: python3-{library})");
     }
     found
 }

@@ -1,7 +1,7 @@
 function [sine, cosine] = sinCos(x)
 % Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > @limit@ are the ones of the library.
 %
-% @sines@
+% @sines_of_arrays@
     n = (x .* @two_over_pi@ + @round@) - @round@;
     first = x - n .* @first@;
     step = n .* @second@;
@@ -15,19 +15,14 @@ function [sine, cosine] = sinCos(x)
     half = 0.5 .* z;
     top = 1.0 - half;
     c = top + (((1.0 - top) - half) + (zz .* q + r .* e));
-    h = (n .* 0.5 + @round@) - @round@;
-    odd = n - 2.0 .* h;
-    two = h - 2.0 .* ((h .* 0.5 + @round@) - @round@);
-    flip = 1.0 - (two + two) .* two;
-    k = odd ~= 0.0;
-    flip(k) = odd(k);
-    sine = s;
-    sine(k) = c(k);
-    sine = sine .* flip;
-    cosine = c;
-    cosine(k) = -s(k);
-    cosine = cosine .* flip;
-    k = ~(x .* x <= @square@);
-    sine(k) = sin(x(k));
-    cosine(k) = cos(x(k));
+    b = 4.0 .* ((n .* 0.25 + @round@) - @round@) - n;
+    a = 1.0 - abs(b);
+    b = b .* (1.0 + a);
+    sine = s .* a - c .* b;
+    cosine = c .* a + s .* b;
+    if max(abs(x(:))) > @limit@.0
+        k = abs(x) > @limit@.0;
+        sine(k) = sin(x(k));
+        cosine(k) = cos(x(k));
+    end
 end

@@ -1,6 +1,14 @@
+def _all(xp: Any, truths: Any) -> bool:
+    # Whether all are true, where it can be asked: of what is recorded or mapped over there are no values.
+    try:
+        return bool(_at_once(xp, truths) and xp.all(truths))
+    except RuntimeError:
+        return False
+
+
 def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
     # Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > @limit@ are the library's.
-    # @sines@
+    # @sines_of_arrays@
     x = xp.stack(angles)
     n = xp.round(x * @two_over_pi@) + 0.0
     first = x - n * @first@
@@ -15,13 +23,12 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
     half = 0.5 * z
     top = 1.0 - half
     c = top + (((1.0 - top) - half) + (zz * q + r * e))
-    h = xp.round(n * 0.5) + 0.0
-    odd = n - 2.0 * h
-    two = h - 2.0 * (xp.round(h * 0.5) + 0.0)
-    flip = xp.where(odd != 0.0, odd, 1.0 - (two + two) * two)
-    sine = xp.where(odd != 0.0, c, s) * flip
-    cosine = xp.where(odd != 0.0, -s, c) * flip
+    b = 4.0 * (xp.round(n * 0.25) + 0.0) - n
+    a = 1.0 - xp.abs(b)
+    b = b * (1.0 + a)
+    sine = s * a - c * b
+    cosine = c * a + s * b
     inside = x * x <= @square@
-    if xp.__name__ == "numpy" and xp.all(inside):
+    if _all(xp, inside):
         return sine, cosine
     return xp.where(inside, sine, xp.sin(x)), xp.where(inside, cosine, xp.cos(x))

@@ -4,8 +4,8 @@ function [sine, cosine] = sinCos(x)
 % n is the integer nearest to 2x/pi: adding 3/2 2^52 rounds.
 % x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 37 bits. Their products
 % with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on
-% |r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is
-% the sine, and the signs.
+% |r| <= pi/4 (Remez). b is at first -n modulo 4, from -2 to 2, then minus the sine of n pi/2, of which a is the cosine: the theorems of addition
+% are exact, as a product with 1 and a sum with 0 are, and s is 0 for x = 0 alone.
     n = (x .* 0.6366197723675814 + 6755399441055744.0) - 6755399441055744.0;
     first = x - n .* 1.5707963267923333;
     step = n .* 2.5633441515839558e-12;
@@ -19,19 +19,14 @@ function [sine, cosine] = sinCos(x)
     half = 0.5 .* z;
     top = 1.0 - half;
     c = top + (((1.0 - top) - half) + (zz .* q + r .* e));
-    h = (n .* 0.5 + 6755399441055744.0) - 6755399441055744.0;
-    odd = n - 2.0 .* h;
-    two = h - 2.0 .* ((h .* 0.5 + 6755399441055744.0) - 6755399441055744.0);
-    flip = 1.0 - (two + two) .* two;
-    k = odd ~= 0.0;
-    flip(k) = odd(k);
-    sine = s;
-    sine(k) = c(k);
-    sine = sine .* flip;
-    cosine = c;
-    cosine(k) = -s(k);
-    cosine = cosine .* flip;
-    k = ~(x .* x <= 4294967296.0);
-    sine(k) = sin(x(k));
-    cosine(k) = cos(x(k));
+    b = 4.0 .* ((n .* 0.25 + 6755399441055744.0) - 6755399441055744.0) - n;
+    a = 1.0 - abs(b);
+    b = b .* (1.0 + a);
+    sine = s .* a - c .* b;
+    cosine = c .* a + s .* b;
+    if max(abs(x(:))) > 65536.0
+        k = abs(x) > 65536.0;
+        sine(k) = sin(x(k));
+        cosine(k) = cos(x(k));
+    end
 end

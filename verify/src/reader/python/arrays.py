@@ -55,12 +55,22 @@ def _leave(xp: Any, like: Any, shape: tuple[int, ...], lengths: tuple[int, ...],
     return xp.moveaxis(result, tuple(range(len(lengths))), tuple(range(-len(lengths), 0))) if lengths and shape else result
 
 
-def _many(xp: Any, shape: tuple[int, ...]) -> bool:
-    # Whether there are more states than NumPy should pass over at each operation. Others may trace, and compile what they traced.
+def _at_once(xp: Any, array: Any) -> bool:
+    # Whether this processor does an operation when it is called: others record it, or hand it to another device.
+    if xp.__name__ != "torch":
+        return bool(xp.__name__ == "numpy")
+    compiling = getattr(getattr(xp, "compiler", None), "is_compiling", None)
+    recorded = xp.jit.is_tracing() or (compiling is not None and compiling())
+    return bool(not recorded and type(array) is xp.Tensor and array.device.type == "cpu")
+
+
+def _many(xp: Any, shape: tuple[int, ...], arguments: tuple[Any, ...]) -> bool:
+    # Whether there are more states than an operation should pass over. For derivatives torch wants them whole.
     count = 1
     for length in shape:
         count *= length
-    return bool(xp.__name__ == "numpy") and count > _BLOCK
+    recorded = any(getattr(argument, "requires_grad", False) for argument in arguments)
+    return count > _BLOCK and not recorded and all(_at_once(xp, argument) for argument in arguments)
 
 
 def _in_blocks(xp: Any, shape: tuple[int, ...], function: Callable[..., _Result], arguments: tuple[Any, ...]) -> _Result:
@@ -70,7 +80,9 @@ def _in_blocks(xp: Any, shape: tuple[int, ...], function: Callable[..., _Result]
         return xp.reshape(xp.broadcast_to(state, shape + state.shape[-1:]), (-1, state.shape[-1]))
 
     def joined(parts: tuple[Any, ...]) -> Any:
-        whole = xp.concatenate([xp.moveaxis(part, 0, -1) for part in parts], axis=-1)
+        # The name of the array API, and that of a NumPy before it.
+        concat = getattr(xp, "concat", None) or xp.concatenate
+        whole = concat([xp.moveaxis(part, 0, -1) for part in parts], -1)
         return xp.reshape(xp.moveaxis(whole, -1, 0), shape + whole.shape[:-1])
 
     states = [flat(argument) for argument in arguments]
