@@ -20,21 +20,77 @@ const LARGE_ANGLES: &str = include_str!("solver/large_angles.h");
 /// Functions of one scalar.
 struct Library {
     opening: &'static str,
-    atan2: &'static str,
     sin_cos: &'static str,
 }
 
 const DOUBLE: Library = Library {
     opening: "typedef double robot_real;\ntypedef uint64_t robot_word;\n#define ROBOT_FABS fabs\n#define ROBOT_SQRT sqrt\n#define ROBOT_FLOOR floor\n",
-    atan2: include_str!("solver/atan2_f64.h"),
     sin_cos: include_str!("solver/sin_cos_f64.h"),
 };
 
 const SINGLE: Library = Library {
     opening: "typedef float robot_real;\ntypedef uint32_t robot_word;\n#define ROBOT_FABS fabsf\n#define ROBOT_SQRT sqrtf\n#define ROBOT_FLOOR floorf\n",
-    atan2: include_str!("solver/atan2_f32.h"),
     sin_cos: include_str!("solver/sin_cos_f32.h"),
 };
+
+/// The arctangent: what differs between the scalars stands in it as `@NAME@`.
+const ATAN2: &str = include_str!("solver/atan2.h");
+
+/// What stands in the arctangent of doubles, and of floats.
+const IN_ATAN2: [(&str, [&str; 2]); 22] = [
+    ("real", ["double", "float"]),
+    ("f", ["", "f"]),
+    (
+        "method",
+        [
+            "(Sun Microsystems 1993): |x| is brought
+ * to [0, 7/16] by the tangents of 0, atan 1/2, pi/4, atan 3/2 and pi/2, whose angles are in two parts.",
+            "(Sun Microsystems 1993; in single
+ * precision by Ian Lance Taylor): |x| is brought to [0, 7/16] by the tangents of 0, atan 1/2, pi/4, atan 3/2 and pi/2, whose angles are in
+ * two parts.",
+        ],
+    ),
+    (
+        "angles",
+        [
+            "4.63647609000806093515e-01, 7.85398163397448278999e-01, 9.82793723247329054082e-01, 1.57079632679489655800e+00",
+            "4.6364760399e-01f, 7.8539812565e-01f, 9.8279368877e-01f, 1.5707962513e+00f",
+        ],
+    ),
+    (
+        "rests",
+        [
+            "2.26987774529616870924e-17, 3.06161699786838301793e-17, 1.39033110312309984516e-17, 6.12323399573676603587e-17",
+            "5.0121582440e-09f, 3.7748947079e-08f, 3.4473217170e-08f, 7.5497894159e-08f",
+        ],
+    ),
+    ("count", ["11", "5"]),
+    (
+        "coefficients",
+        [
+            "
+        3.33333333333329318027e-01, -1.99999999998764832476e-01, 1.42857142725034663711e-01, -1.11111104054623557880e-01,
+        9.09088713343650656196e-02, -7.69187620504482999495e-02, 6.66107313738753120669e-02, -5.83357013379057348645e-02,
+        4.97687799461593236017e-02, -3.65315727442169155270e-02, 1.62858201153657823623e-02",
+            "3.3333328366e-01f, -1.9999158382e-01f, 1.4253635705e-01f, -1.0648017377e-01f, 6.1687607318e-02f",
+        ],
+    ),
+    ("large", ["73786976294838206464.0", "67108864.0f"]),
+    ("large_power", ["2^66", "2^26"]),
+    ("small", ["7.450580596923828125e-9", "0.000244140625f"]),
+    ("small_power", ["2^-27", "2^-12"]),
+    ("odd", ["(a[4] + w * (a[6] + w * (a[8] + w * a[10])))", "a[4]"]),
+    ("even", ["(a[3] + w * (a[5] + w * (a[7] + w * a[9])))", "a[3]"]),
+    ("turned", ["t * (odd + even) - rest[part]", "(t * (odd + even) - rest[part])"]),
+    ("pi", ["3.1415926535897931160e+00", "3.1415927410e+00f"]),
+    ("pi_rest", ["1.2246467991473531772e-16", "-8.7422776573e-08f"]),
+    ("infinite", ["0x7ff00000u", "0x7f800000u"]),
+    ("far_apart", ["64u << 20", "26u << 23"]),
+    ("left", ["(uint32_t)(robot_bits(x) >> 63)", "robot_bits(x) >> 31"]),
+    ("below", ["(uint32_t)(robot_bits(y) >> 63)", "robot_bits(y) >> 31"]),
+    ("high_x", ["(uint32_t)(robot_bits(x) >> 32)", "robot_bits(x)"]),
+    ("high_y", ["(uint32_t)(robot_bits(y) >> 32)", "robot_bits(y)"]),
+];
 
 /// The header; where the arm has no construction, a comment that says why. An error is one of this program: a block says what the
 /// translation does not know.
@@ -75,7 +131,9 @@ pub fn print(
     text += &own(library.opening);
     text += &own(NUMBERS);
     if bodies.contains("_libm_atan2(") {
-        text += &own(library.atan2);
+        let place = usize::from(scalar == Scalar::F32);
+        let filled = |text: String, (name, values): &(&str, [&str; 2])| text.replace(&format!("@{name}@"), values[place]);
+        text += &own(&IN_ATAN2.iter().fold(ATAN2.to_owned(), filled));
     }
     if bodies.contains("_libm_sin_cos(") {
         text += &own(LARGE_ANGLES);
