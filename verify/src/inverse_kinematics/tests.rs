@@ -310,6 +310,57 @@ fn modules_in_c_are_verified() {
     assert!(report.passed() && report.absent, "{report}");
 }
 
+/// Changes of a character of code or of a whole line in C, each of which is refused.
+#[test]
+fn changes_of_modules_in_c_are_refused() {
+    let (mut changed, mut stream) = (0, Stream::new(4711));
+    for name in ["puma560", "scara4"] {
+        let (source, _) = robot(name);
+        let (manipulator, _) = validate::read_for(&source, Scalar::F64).0.expect("a valid robot");
+        let options = Options { functions: Selection::named(["direct_kinematics"]).expect("a function"), ..Options::default() };
+        let generated = armgen_codegen::generate(&source, &options).0.expect("a valid robot");
+        let text = generated.inverse_kinematics_in_c().expect("a construction");
+        let found = generator::of(&manipulator);
+        assert_eq!(difference(&manipulator, &found, &source, &text), None);
+        let lines: Vec<&str> = text.lines().collect();
+        let before = changed;
+        while changed < before + 100 {
+            // Of the first line the file's name can be another.
+            let at = 1 + stream.below(lines.len() as u64 - 1) as usize;
+            let places: Vec<usize> = lines[at].char_indices().filter(|(_, c)| c.is_ascii_graphic()).map(|(at, _)| at).collect();
+            let Some(&place) = places.get(stream.below(places.len().max(1) as u64) as usize) else { continue };
+            let old = lines[at].as_bytes()[place];
+            let others: &[u8] = match old {
+                b'0'..=b'9' => b"0123456789",
+                b'+' | b'-' | b'*' | b'/' => b"+-*/",
+                b'<' | b'>' | b'=' | b'!' => b"<>=!",
+                b'a'..=b'z' => b"abcdeijknqrstxyz",
+                _ => b"()[]{},;",
+            };
+            let new = others[stream.below(others.len() as u64) as usize];
+            let mut spoilt = lines.clone();
+            let line = format!("{}{}{}", &lines[at][..place], new as char, &lines[at][place + 1..]);
+            match stream.below(4) {
+                0 => drop(spoilt.remove(at)),
+                1 => spoilt.insert(at, lines[at]),
+                _ if new == old => continue,
+                _ => spoilt[at] = &line,
+            }
+            let spoilt = spoilt.join("\n") + "\n";
+            assert!(
+                difference(&manipulator, &found, &source, &spoilt).is_some(),
+                "{name}: `{}` for `{}`",
+                line.trim(),
+                lines[at].trim()
+            );
+            // What is refused alone is refused with all the rest.
+            assert!(changed % 50 != 0 || !verify(&source, &spoilt, 0).passed(), "{name}: {line}");
+            changed += 1;
+        }
+    }
+    assert_eq!(changed, 200);
+}
+
 type Fault<'a> = &'a dyn Fn() -> Option<String>;
 
 /// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.
