@@ -3,7 +3,8 @@
 //! - `ROBOT.cost`: operations of every emitted function, and the derivation that was chosen: the *cost*;
 //! - `ROBOT.meaning`: fingerprints of all entries of every quantity, which no rearrangement changes: the *meaning*;
 //! - `ROBOT.forms`, of `robots/`: what `show` prints of the quantities that have a closed form: the *form* for people;
-//! - `ROBOT.module`, of `robots/`: the emitted module: the *form* for machines.
+//! - `ROBOT.module`, of `robots/`: the emitted module: the *form* for machines;
+//! - `scara.LANGUAGE`: the module of the SCARA in that language.
 //!
 //! A change that is meant is accepted by `INSTA_UPDATE=always cargo test -p armgen-tests --test snapshots` and goes with its cause.
 
@@ -11,7 +12,9 @@ use std::fmt::Write;
 
 use armgen_codegen::catalogue;
 use armgen_codegen::derive::parameters::View;
-use armgen_codegen::program::Cost;
+use armgen_codegen::emit::Language;
+use armgen_codegen::generate;
+use armgen_codegen::program::{Cost, Trig};
 use armgen_codegen::ring::field::Element;
 use armgen_codegen::schedule::{module, Options};
 use armgen_codegen::show::{Form, Item, Reading, Sheet, Style};
@@ -112,5 +115,15 @@ fn closed_forms() {
 fn modules() {
     for robot in users_robots() {
         snapshot(robot, "module", robot.text);
+    }
+}
+
+#[test]
+fn modules_in_other_languages() {
+    let scara = users_robots().find(|robot| robot.module == "scara").expect("a robot of the repository");
+    let source = Source::new("scara.yaml", scara.description());
+    let generated = generate(&source, &Options { trig: Trig::Fast, ..Options::default() }).0.expect("a valid robot");
+    for language in Language::ALL.into_iter().filter(|language| *language != Language::Rust) {
+        snapshot(scara, &language.title().to_lowercase(), &generated.in_language(language));
     }
 }
