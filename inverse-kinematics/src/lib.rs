@@ -89,6 +89,8 @@ macro_rules! blocks {
         include!("blocks/three_prismatic.rs");
         include!("blocks/closure.rs");
         include!("blocks/samples.rs");
+        include!("blocks/spread.rs");
+        include!("blocks/eliminants.rs");
         include!("blocks/determinant.rs");
         include!("blocks/two_slides.rs");
         include!("blocks/arrangement.rs");

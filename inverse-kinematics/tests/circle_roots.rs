@@ -152,6 +152,59 @@ in_both_scalars! {
     }
 
     /// A minimum 10^-2k above 0: not a root, unless rounding cannot tell.
+    /// What halving leaves beside two roots that it has told apart is no minimum of its own.
+    #[test]
+    fn nothing_is_shallow_beside_a_pair() {
+        let random = &mut Random(33);
+        for _ in 0..300 {
+            let start = random.angle();
+            let apart = SHALLOW as f64 * random.between(0.5, 4.0);
+            let product = Product { roots: vec![start, start + apart], positive: (0..7).map(|_| (random.angle(), 0.1)).collect() };
+            let found = product.find::<9>();
+            if found.all[..found.count].iter().all(|root| !root.double) {
+                assert_eq!((found.count, found.shallow_count), (2, 0), "{product:?}: {found:?}");
+            }
+        }
+    }
+
+    /// n^8 f(q(t)) has degree 8 in t, and crowded roots lie about the whole circle of t.
+    #[test]
+    fn crowded_roots_are_taken_apart() {
+        let random = &mut Random(34);
+        let points: [[Real; 2]; 24] = std::array::from_fn(|j| {
+            let (s, c) = (j as f64 * TAU / 24.0).sin_cos();
+            [c as Real, s as Real]
+        });
+        for _ in 0..100 {
+            let centre = random.angle();
+            let product = Product { roots: (0..16).map(|_| centre + random.between(-0.8, 0.8)).collect(), positive: vec![] };
+            let at = |spread: &Spread| {
+                points.map(|point| {
+                    let ([c, s], factor) = spread.at(point);
+                    product.at((s as f64).atan2(c as f64)) * factor as f64
+                })
+            };
+            let before = at(&Spread::NONE);
+            let spread = Spread::of_roots(&before.map(|x| (x / 1e-3) as Real));
+            let [c, s] = spread.centre;
+            assert!(distance((s as f64).atan2(c as f64), centre) < 0.6, "{spread:?} about {centre}");
+            let after = at(&spread);
+            let weak = |values: &[f64; 24]| {
+                let largest = values.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+                values.iter().filter(|x| x.abs() < 1e-8 * largest).count()
+            };
+            assert!(weak(&before) >= 5 && weak(&after) <= 2, "{} of 24, {} of 24", weak(&before), weak(&after));
+            let largest = after.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            for k in 9..=12 {
+                let (x, y) = after.iter().enumerate().fold((0.0, 0.0), |(x, y), (j, value)| {
+                    let angle = (j * k) as f64 * TAU / 24.0;
+                    (x + value * angle.cos(), y + value * angle.sin())
+                });
+                assert!(x.hypot(y) < 1000.0 * UNIT_ROUNDOFF as f64 * largest, "order {k}: {:e}", x.hypot(y) / largest);
+            }
+        }
+    }
+
     #[test]
     fn near_contacts() {
         let random = &mut Random(5);

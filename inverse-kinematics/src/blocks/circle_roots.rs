@@ -317,6 +317,25 @@ impl<const M: usize> CircleRoots<M> {
     }
 }
 
+impl<const M: usize> CircleRoots<M> {
+    /// Short arcs beside two roots that nearly meet look like shallow minima: they are where the halving that told the two apart has ended.
+    fn drop_shallow_beside_roots(&mut self) {
+        let near = |x: &CircleRoot, y: &CircleRoot| (x.c - y.c).abs() + (x.s - y.s).abs() <= 8.0 * SHALLOW;
+        let mut kept = 0;
+        for place in 0..self.shallow_count {
+            let Some(minimum) = self.shallow.get(place).copied() else { break };
+            let roots = self.all.iter().take(self.count);
+            if roots.filter(|root| !root.double && near(root, &minimum)).count() < 2 {
+                if let Some(slot) = self.shallow.get_mut(kept) {
+                    *slot = minimum;
+                    kept += 1;
+                }
+            }
+        }
+        self.shallow_count = kept;
+    }
+}
+
 /// Block R: all real roots of f(t) = a_0 + sum over k < N of a_k cos kt + b_k sin kt, on the circle (c, s) = (cos t, sin t).
 ///
 /// 4 (N - 1) equal arcs, each a Taylor polynomial of degree 8 with remainder <= sum_k (|a_k| + |b_k|) (kh)^9/9! (above). The ends of an arc
@@ -455,6 +474,7 @@ pub fn circle_roots<const N: usize, const M: usize>(
             open += 2;
         }
     }
+    found.drop_shallow_beside_roots();
     // They are even in number, each double one counted twice.
     found.near |= found.count % 2 == 1;
     found
