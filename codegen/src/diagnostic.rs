@@ -240,6 +240,8 @@ codes! {
         ImplausibleCom Warning "implausible-com",
         /// A radius of gyration beyond what the link spans.
         ImplausibleInertia Warning "implausible-inertia",
+        /// A radius of gyration beyond what the link spans, of a tensor as templates have it.
+        PlaceholderInertia Warning "placeholder-inertia",
         /// An inertia smaller than that of any solid of the mass.
         ImplausibleDensity Warning "implausible-density",
         /// A heavy link without an inertia.

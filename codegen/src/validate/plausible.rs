@@ -9,6 +9,7 @@
 //! | `outlying-mass` | a link of five times the mass of all others together, unless its inertia is that of a body of such a mass: that of a ball less dense than light alloy | the heaviest links of arms have about half of the whole; a torso below a head has more, but its inertia says so, too, and a slip of ten in a mass makes the ball 316 times as dense |
 //! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link |
 //! | `implausible-inertia` | a radius of gyration above what the link spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
+//! | `placeholder-inertia` | the same: a tensor of which xx, yy and zz are one number that is a power of ten or that another link has, too | no two links of an arm are balls of one inertia; templates say 1 1 1 or 0.001 three times |
 //! | `implausible-density` | an inertia below half of that of a lead ball of the link's mass | of all bodies of one mass and density a ball has the least |
 //! | both, of all links together | a median density of their boxes below that of rigid foam, or above that of lead: all tensors ten times too large or too small, which each of them alone may be | of 46 files that are much in use 42 have 320 to 5600 kg/m³, and the others values that nobody measured |
 //! | `missing-inertia` | no inertia on a link of a twentieth of the arm's mass | a point mass has none, and no link is one |
@@ -322,22 +323,21 @@ impl Arm<'_> {
                 short(gyration),
                 short(span)
             );
-            // 1 1 1 of templates, and 0.001 three times.
-            let placeholder = is_power_of_ten(largest) && moments(link, context).iter().all(|moment| *moment == largest);
-            let (label, help) = if placeholder {
+            let (code, label, help) = if self.has_placeholder(link, context) {
                 let most = short(mass * span * span / 4.0);
                 let help =
                     format!("write what the data sheet says: no body of {} kg in that span has more than {most}", short(mass));
-                ("a placeholder?".to_owned(), help)
+                (Code::PlaceholderInertia, "a placeholder?".to_owned(), help)
             } else {
                 let slips = likely_units(|factor| gyration / factor.sqrt(), 0.2 * span);
                 let words: Vec<&str> = slips.iter().map(|(_, slip)| *slip).collect();
                 let meant =
                     slips.iter().map(|(factor, slip)| format!("if this is {slip}, {} would be meant", short(largest / factor)));
                 let meant = meant.collect::<Vec<_>>().join("; ");
-                (format!("{}?", words.join(" or ")), format!("inertias are in kg m², about the centre of mass; {meant}"))
+                let help = format!("inertias are in kg m², about the centre of mass; {meant}");
+                (Code::ImplausibleInertia, format!("{}?", words.join(" or ")), help)
             };
-            context.report(Code::ImplausibleInertia, inertia.key, message, label, help);
+            context.report(code, inertia.key, message, label, help);
         }
         // 2/5 m r² of the ball, r = (3 m / (4 pi rho))^(1/3).
         let radius = (3.0 * mass / (4.0 * std::f64::consts::PI * LEAD)).cbrt();
@@ -356,6 +356,15 @@ impl Arm<'_> {
             context.report(Code::ImplausibleDensity, inertia.key, message, "too small", help);
         }
         gyration > span || too_small
+    }
+
+    /// Whether the tensor of a link is one that templates have: three equal moments, a power of ten or those of another link.
+    fn has_placeholder(&self, link: &BodyDescription, context: &mut Context<'_>) -> bool {
+        let [xx, yy, zz] = moments(link, context);
+        let links = self.joints.iter().filter_map(|joint| joint.link.as_ref());
+        xx > 0.0 && xx == yy && yy == zz && {
+            is_power_of_ten(xx) || links.filter(|other| moments(other, context) == [xx; 3]).count() > 1
+        }
     }
 
     /// What the link of joint `i` can span, m: from the joint before it to the one after it, and about its centre of mass.

@@ -30,6 +30,14 @@ impl Arm<'_> {
         densities.sort_by(|a, b| a.0.total_cmp(&b.0));
         let median = densities[densities.len() / 2].0;
         // Inertia grows as the density to the power -2/3.
+        let links: Vec<&BodyDescription> = self.joints.iter().filter_map(|joint| joint.link.as_ref()).collect();
+        let placeholders = links.iter().filter(|link| self.has_placeholder(link, context)).count();
+        if median < FOAM && 2 * placeholders > links.len() {
+            let message = "half of the links have an inertia as templates have it, and are lighter than foam with it";
+            let help = "write what the data sheet says, or leave `inertia` out where it is not known";
+            context.report(Code::PlaceholderInertia, place, message, "this one and others", help);
+            return;
+        }
         let factor = |ratio: f64| short(ratio.powf(2.0 / 3.0).round());
         let (code, words, slip) = match median {
             _ if median < FOAM => {

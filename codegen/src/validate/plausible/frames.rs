@@ -68,7 +68,7 @@ impl Arm<'_> {
         let (moments, products) = ([0, 2, 5], [1, 3, 4]);
         let largest_product = products.map(|k| steiner[k].abs()).into_iter().fold(0.0, f64::max);
         let largest_moment = moments.map(|k| given[k]).into_iter().fold(0.0, f64::max);
-        let alone = products.iter().filter(|&&k| steiner[k] != 0.0).count() == 1;
+        let alone = products.iter().filter(|&&k| steiner[k].abs() > NEARLY * largest_product).count() == 1;
         let nearly = if alone { NEARLY_ALONE } else { NEARLY };
         let matches = products.iter().all(|&k| (given[k] - steiner[k]).abs() <= nearly * largest_product);
         let own = moments.map(|k| given[k] - steiner[k]);
@@ -78,7 +78,7 @@ impl Arm<'_> {
         }
         let message = format!("the inertia of the link of joint {called} has the products -m c_i c_j of its own centre of mass: it seems to be about the origin of the frame");
         let [xx, yy, zz] = own.map(short);
-        let help = format!("give it about the centre of mass: about {{xx: {xx}, yy: {yy}, zz: {zz}}}");
+        let help = format!("give it about the centre of mass: about {{xx: {xx}, yy: {yy}, zz: {zz}}}, its products nearly 0");
         context.report(Code::InertiaAboutFrame, inertia.key, message, "about the frame's origin?", help);
     }
 }

@@ -41,9 +41,10 @@ impl Solid {
         Some(Solid { mass, com, inertia: inertia.sum() })
     }
 
-    /// The principal moments, each at the axis of the frame that its own axis is next to, and by how many degrees these are apart at most. An axis
-    /// between two equal moments can be drawn anywhere: it is not turned.
-    fn moments(&self) -> ([f64; 3], f64) {
+    /// The principal moments, each at the axis of the frame that its own axis is next to, and the turn from an axis of the frame to the principal
+    /// axis next to it that is the largest: a vector along the axis of the turn, as long as its angle in degrees. An axis between two equal moments
+    /// can be drawn anywhere: it is not turned.
+    fn moments(&self) -> ([f64; 3], Vector3<f64>) {
         let principal = SymmetricEigen::new(self.inertia);
         let along = |k: usize, axis: usize| principal.eigenvectors[(axis, k)].abs();
         const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 2, 1]];
@@ -55,13 +56,32 @@ impl Solid {
         let moments = order.map(|k| principal.eigenvalues[k]).map(|moment| if moment.abs() <= rounding { 0.0 } else { moment });
         let is_apart = |a: usize, b: usize| (moments[a] - moments[b]).abs() > EQUAL * largest;
         let distinct = |axis: usize| is_apart(axis, (axis + 1) % 3) && is_apart(axis, (axis + 2) % 3);
-        let turn = |axis: usize| along(order[axis], axis).min(1.0).acos().to_degrees();
-        (moments, (0..3).filter(|&axis| distinct(axis)).map(turn).fold(0.0, f64::max))
+        let turn = |axis: usize| {
+            let (from, to) = (Vector3::ith(axis, 1.0), principal.eigenvectors.column(order[axis]));
+            let across = from.cross(&to) * to[axis].signum();
+            across.try_normalize(0.0).map_or(across, |about| about * along(order[axis], axis).min(1.0).acos().to_degrees())
+        };
+        let turns = (0..3).filter(|&axis| distinct(axis)).map(turn);
+        (moments, turns.reduce(|most, turn| if turn.norm() > most.norm() + 1e-6 { turn } else { most }).unwrap_or_default())
     }
 }
 
 /// Moments that are nearer to each other than this part of the largest one are equal: the axis between them says nothing.
 const EQUAL: f64 = 0.02;
+
+/// Degrees: a smaller turn of a tensor is not said.
+const LEAST_TURN: f64 = 1.0;
+
+/// The angle of a turn and its axis, by name where it is nearly one of the frame.
+fn turn(turn: &Vector3<f64>) -> String {
+    let about = turn.normalize();
+    let k = about.iamax();
+    let about = match (about[k].abs() > 0.95, about[k] < 0.0) {
+        (true, negative) => format!("{}{}", if negative { "-" } else { "" }, ["x", "y", "z"][k]),
+        _ => format!("({:.1}, {:.1}, {:.1})", about.x, about.y, about.z),
+    };
+    format!("{:.0} deg about {about}", turn.norm())
+}
 
 /// A length beside others of size `scale`, where what is less than its rounding is 0.
 fn small(value: f64, scale: f64) -> String {
@@ -111,7 +131,7 @@ pub(super) fn tables(manipulator: &Manipulator, distances: Vec<[Option<f64>; 2]>
         let (moments, turned) = solid.moments();
         let [xx, yy, zz] = moments.map(digits);
         let largest = moments.iter().copied().fold(0.0, f64::max);
-        let turned = if turned < 1.0 { none() } else { format!("{turned:.0} deg") };
+        let turned = if turned.norm() < LEAST_TURN { none() } else { turn(&turned) };
         let [a, b, c] = sides(solid.mass, &moments);
         let density = density(solid.mass, &moments).map_or_else(none, |density| rounded(density).to_string());
         inertias.row([name, xx, yy, zz, turned, short((largest / solid.mass).sqrt()), a, b, c, density]);
@@ -130,7 +150,7 @@ const OF_MASSES: &str = "  com: in the link's own frame, that of the payload in 
 /// What the columns of the inertias are.
 const OF_INERTIAS: &str =
     "  principal moments about the centre of mass, each at the axis of the link's frame that it is nearest to;
-  turned: by how much they are apart; radius of gyration: sqrt(I/m) of the largest moment
+  turned: from an axis of the frame to that of the moment next to it, at most; radius of gyration: sqrt(I/m) of the largest moment
   box: the cuboid of even density that has these moments; metal has up to 8000 kg/m³
 ";
 
@@ -244,10 +264,17 @@ mod tests {
         let turn = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), 20f64.to_radians());
         let (moments, turned) = solid(turn * box_ * turn.inverse()).moments();
         assert!((moments[0] - 1.0).abs() < 1e-9 && (moments[2] - 5.5).abs() < 1e-9, "{moments:?}");
-        assert!((turned - 20.0).abs() < 1e-6, "{turned}");
-        assert_eq!(solid(Matrix3::from_diagonal(&Vector3::new(5.0, 1.0, 5.5))).moments(), ([5.0, 1.0, 5.5], 0.0));
+        assert!((turned - Vector3::new(0.0, 0.0, 20.0)).norm() < 1e-6, "{turned}");
+        assert_eq!(super::turn(&turned), "20 deg about z");
+        // Its product of inertia with the other sign: it is turned the other way.
+        let mut other = turn * box_ * turn.inverse();
+        other[(0, 1)] = -other[(0, 1)];
+        other[(1, 0)] = -other[(1, 0)];
+        assert_eq!(super::turn(&solid(other).moments().1), "20 deg about -z");
+        assert_eq!(super::turn(&Vector3::new(3.0, 3.0, 0.0)), "4 deg about (0.7, 0.7, 0.0)");
+        assert_eq!(solid(Matrix3::from_diagonal(&Vector3::new(5.0, 1.0, 5.5))).moments(), ([5.0, 1.0, 5.5], Vector3::zeros()));
         let disc = Matrix3::new(1.0, 1e-6, 0.0, 1e-6, 1.0, 0.0, 0.0, 0.0, 2.0);
-        assert_eq!(solid(disc).moments().1, 0.0);
+        assert_eq!(solid(disc).moments().1, Vector3::zeros());
     }
 
     /// Two halves of a rod are the rod: 1/12 m l² about its middle.

@@ -183,6 +183,7 @@ pub(super) fn tables(manipulator: &Manipulator) -> String {
         ("its x axis", Left),
         ("its z axis", Left),
     ]);
+    let mut weak = Vec::new();
     let mut row = |name: String, axis: String, frame: &Isometry3<f64>| {
         let along = |axis: Unit<Vector3<f64>>| direction(&(frame * axis));
         frames.row([name, axis, point(&frame.translation.vector), along(Vector3::x_axis()), along(Vector3::z_axis())]);
@@ -197,6 +198,9 @@ pub(super) fn tables(manipulator: &Manipulator) -> String {
         let held = posture.gravity(manipulator, i);
         // As small as what sums of such numbers round by.
         let held = if held.abs() < ROUNDING { 0.0 } else { held };
+        if let Some(effort) = joint.limits.effort.as_ref().map(Number::to_f64).filter(|effort| held.abs() > *effort) {
+            weak.push(format!("{} ({} {unit})", joint.name, short(effort)));
+        }
         carried.row([
             name,
             posture.of_link(manipulator, i).map_or(String::new(), |(_, com)| point(&com.coords)),
@@ -204,9 +208,13 @@ pub(super) fn tables(manipulator: &Manipulator) -> String {
         ]);
     }
     row("end effector".into(), String::new(), &posture.flange);
+    let weak = match weak.is_empty() {
+        true => String::new(),
+        false => format!("  that is more than the effort limit of {}\n", weak.join(", ")),
+    };
     let held =
         "  held against gravity: along the joint's axis, as the joint gives it to stand still, without what springs hold\n";
-    let carried = if manipulator.is_massless() { String::new() } else { format!("\n{}{held}", carried.text()) };
+    let carried = if manipulator.is_massless() { String::new() } else { format!("\n{}{held}{weak}", carried.text()) };
     frames.text() + &outside(manipulator) + &carried
 }
 
@@ -259,6 +267,17 @@ mod tests {
         let text = tables(&manipulator);
         assert!(text.contains("2 h") && text.contains("-y0") && text.contains("10 N m"), "{text}");
         assert!(text.contains("end effector") && text.contains("(1, 0, 0.25)"), "{text}");
+    }
+
+    /// 10 m/s² at 1 kg, 1 m beside the axis: 10 N m.
+    #[test]
+    fn an_effort_limit_below_what_is_held_is_said() {
+        let of = |effort: &str| {
+            let link = "link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}";
+            tables(&arm(&format!("name: a\nconvention: standard\ngravity: [0, -10, 0]\njoints:\n  - {{name: elbow, type: revolute, a: 1, alpha: 0, d: 0, theta: 0, {link}, limits: {{effort: {effort}}}}}\n")))
+        };
+        assert!(of("9").ends_with("\n  that is more than the effort limit of elbow (9 N m)\n"), "{}", of("9"));
+        assert!(!of("11").contains("effort"));
     }
 
     #[test]
