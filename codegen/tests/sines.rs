@@ -46,9 +46,10 @@ fn sines_in_f32_are_within_an_ulp() {
 fn an_angle_has_the_same_sine_beside_any_others() {
     let angles = [0.3, -2.0, 1e9, 7.0, -0.0, f64::NAN, 65536.0, 12.5];
     let singles = angles.map(|x| x as f32);
-    let (double, single) = (emitted::f64::eight(angles), emitted::f32::eight(singles));
+    let (double, single) = (emitted::f64::eight(8, angles), emitted::f32::eight(singles));
     let [a, b, c, d, ..] = angles;
-    let (double_of_four, single_of_four) = (emitted::f64::four([a, b, c, d]), emitted::f32::four([a, b, c, d].map(|x| x as f32)));
+    let (double_of_four, single_of_four) =
+        (emitted::f64::four(4, [a, b, c, d]), emitted::f32::four([a, b, c, d].map(|x| x as f32)));
     for i in 0..angles.len() {
         let (sine, cosine) = emitted::f64::one(angles[i]);
         let (sine_single, cosine_single) = emitted::f32::one(singles[i]);
@@ -60,6 +61,29 @@ fn an_angle_has_the_same_sine_beside_any_others() {
                 (single_of_four.0[i].to_bits(), single_of_four.1[i].to_bits()),
                 (sine_single.to_bits(), cosine_single.to_bits())
             );
+        }
+    }
+}
+
+/// Of fewer angles than lanes all have theirs, whether the last pairs of lanes are left out or not, and one is beyond the range or none.
+#[test]
+fn fewer_angles_than_lanes_have_their_sines() {
+    for third in [0.7, 1e9] {
+        let angles = [0.3, -2.0, third, 7.0, -0.0, 3.5, 65536.0, 12.5];
+        let check = |count: usize, (sines, cosines): (&[f64], &[f64])| {
+            for (i, angle) in angles.iter().enumerate().take(count) {
+                let (sine, cosine) = emitted::f64::one(*angle);
+                assert_eq!((sines[i].to_bits(), cosines[i].to_bits()), (sine.to_bits(), cosine.to_bits()), "{count} {i}");
+            }
+        };
+        for count in 1..=8 {
+            let (sines, cosines) = emitted::f64::eight(count, angles);
+            check(count, (&sines, &cosines));
+        }
+        let [a, b, c, d, ..] = angles;
+        for count in 1..=4 {
+            let (sines, cosines) = emitted::f64::four(count, [a, b, c, d]);
+            check(count, (&sines, &cosines));
         }
     }
 }

@@ -10,13 +10,13 @@ pub(crate) mod f64 {
     }
 
     #[allow(dead_code)] // The table of errors does without.
-    pub(crate) fn four([a, b, c, d]: [f64; 4]) -> ([f64; 4], [f64; 4]) {
-        sin_cos_four(4, a, b, c, d)
+    pub(crate) fn four(count: usize, [a, b, c, d]: [f64; 4]) -> ([f64; 4], [f64; 4]) {
+        sin_cos_four(count, a, b, c, d)
     }
 
     #[allow(dead_code)] // The table of errors does without.
-    pub(crate) fn eight([a, b, c, d, e, f, g, h]: [f64; 8]) -> ([f64; 8], [f64; 8]) {
-        sin_cos_eight(8, a, b, c, d, e, f, g, h)
+    pub(crate) fn eight(count: usize, [a, b, c, d, e, f, g, h]: [f64; 8]) -> ([f64; 8], [f64; 8]) {
+        sin_cos_eight(count, a, b, c, d, e, f, g, h)
     }
 }
 

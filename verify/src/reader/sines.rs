@@ -24,7 +24,7 @@ const FAST_F64: &str = include_str!("sines/fast_f64.rs");
 const FAST_F32: &str = include_str!("sines/fast_f32.rs");
 
 /// All names.
-pub(super) const NAMES: [&str; 12] = [
+pub(super) const NAMES: [&str; 13] = [
     "sign",
     "stribeck",
     "sin_cos",
@@ -33,6 +33,7 @@ pub(super) const NAMES: [&str; 12] = [
     "sin_cos_beyond",
     "sin_cos_reduced",
     "SIN_COS_VECTORS",
+    "SIN_COS_PAIRS",
     "sin_cos_four",
     "sin_cos_each_of_four",
     "sin_cos_eight",
@@ -97,6 +98,7 @@ pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>,
     for (lanes, each) in [("sin_cos_four", "sin_cos_each_of_four"), ("sin_cos_eight", "sin_cos_each_of_eight")] {
         if calls.contains(lanes) {
             needed.extend([each, "SIN_COS_VECTORS"]);
+            needed.extend((real == Float::F64).then_some("SIN_COS_PAIRS"));
         }
     }
     if let Some(name) = needed.iter().find(|name| !private.contains_key(*name) && Check::PrivateThere.is_made()) {

@@ -88,24 +88,24 @@ pub(super) fn lines(module: &Module, function: &Function) -> Vec<TokenStream> {
             };
             asked.iter().map(line).collect()
         }
-        Trig::Fast => together(&asked),
+        Trig::Fast => together(&asked, module.scalar),
     }
 }
 
 /// `let ([s1, s2, s3, _], [c1, c2, c3, _]) = sin_cos_four(3, q[0], q[1], q[2], q[2]);` and so on: the lanes that are left repeat the last angle, or the
-/// first joint variable of the last sum.
-fn together(asked: &[Asked]) -> Vec<TokenStream> {
+/// first joint variable of the last sum. Two angles are a vector of f64, and in f32 less than one.
+fn together(asked: &[Asked], scalar: Scalar) -> Vec<TokenStream> {
     let mut lines = Vec::new();
     for group in asked.chunks(8) {
-        let (lanes, function) = match group.len() {
-            1 | 2 => {
+        let (lanes, function) = match (group.len(), scalar) {
+            (1, _) | (2, Scalar::F32) => {
                 lines.extend(group.iter().map(|asked| {
                     let (angle, sine, cosine) = (asked.text(), &asked.sine, &asked.cosine);
                     quote!(let (#sine, #cosine) = sin_cos_one(#angle);)
                 }));
                 continue;
             }
-            3 | 4 => (4, "sin_cos_four"),
+            (2..=4, _) => (4, "sin_cos_four"),
             _ => (8, "sin_cos_eight"),
         };
         let (function, count) = (format_ident!("{function}"), usize_literal(group.len()));
@@ -211,11 +211,11 @@ fn fast(scalar: Scalar, functions: &[Vec<Symbol>]) -> TokenStream {
     let mut file =
         syn::parse_file(if scalar == Scalar::F64 { FAST_F64 } else { FAST_F32 }).expect("the text to take in is a Rust file");
     let calls: String =
-        functions.iter().flat_map(|symbols| together(&asked(symbols, None))).map(|line| line.to_string()).collect();
+        functions.iter().flat_map(|symbols| together(&asked(symbols, None), scalar)).map(|line| line.to_string()).collect();
     let unused: Vec<&str> = ["four", "eight"].into_iter().filter(|lanes| !calls.contains(&format!("sin_cos_{lanes}"))).collect();
     file.items.retain(|item| match item {
         Item::Fn(function) => !unused.iter().any(|lanes| function.sig.ident.to_string().ends_with(lanes)),
-        Item::Const(constant) => constant.ident != "SIN_COS_VECTORS" || unused.len() < 2,
+        Item::Const(constant) => constant.ident == "SIN_COS_RANGE" || unused.len() < 2,
         _ => true,
     });
     file.into_token_stream()
@@ -228,7 +228,12 @@ mod tests {
 
     #[track_caller]
     fn check(symbols: &[Symbol], expected: &[&str]) {
-        let lines = together(&asked(symbols, Some(&quote!(-0.5))));
+        check_in(Scalar::F64, symbols, expected);
+    }
+
+    #[track_caller]
+    fn check_in(scalar: Scalar, symbols: &[Symbol], expected: &[&str]) {
+        let lines = together(&asked(symbols, Some(&quote!(-0.5))), scalar);
         let lines: Vec<String> = lines.iter().map(|line| line.to_string().replace(' ', "")).collect();
         let expected: Vec<String> = expected.iter().map(|line| line.replace(' ', "")).collect();
         assert_eq!(lines, expected);
@@ -240,9 +245,11 @@ mod tests {
     }
 
     #[test]
-    fn one_or_two_angles_are_asked_for_alone() {
+    fn one_angle_is_asked_for_alone_and_in_single_precision_two_are() {
+        check(&[Symbol::Sine(1)], &["let (s2, _) = sin_cos_one(q[1]);"]);
         let two = [Symbol::Sine(1), Symbol::Cosine(3), Symbol::Sine(3)];
-        check(&two, &["let (s2, _) = sin_cos_one(q[1]);", "let (s4, c4) = sin_cos_one(q[3]);"]);
+        check(&two, &["let ([s2, s4, _, _], [_, c4, _, _]) = sin_cos_four(2, q[1], q[3], q[3], q[3]);"]);
+        check_in(Scalar::F32, &two, &["let (s2, _) = sin_cos_one(q[1]);", "let (s4, c4) = sin_cos_one(q[3]);"]);
     }
 
     #[test]
@@ -269,7 +276,7 @@ mod tests {
         let less = AngleSum { plus: 0b1, minus: 0b1000, turned: false };
         check(
             &[Symbol::SineOf(sum), Symbol::Cosine(4)],
-            &["let (s2_3, _) = sin_cos_one(q[1] + q[2]);", "let (_, c5) = sin_cos_one(q[4]);"],
+            &["let ([s2_3, _, _, _], [_, c5, _, _]) = sin_cos_four(2, q[1] + q[2], q[4], q[4], q[4]);"],
         );
         let three = AngleSum { plus: 0b111, minus: 0, turned: false };
         check(
@@ -290,7 +297,7 @@ mod tests {
     #[test]
     fn only_what_is_called_is_taken_in() {
         let texts = |count: u8| fast(Scalar::F64, &[(0..count).map(|i| Symbol::Sine(i.into())).collect()]).to_string();
-        for (count, four, eight) in [(2, false, false), (3, true, false), (8, false, true), (11, true, true)] {
+        for (count, four, eight) in [(1, false, false), (2, true, false), (8, false, true), (11, true, true)] {
             let text = texts(count);
             assert_eq!(
                 (text.contains("_four"), text.contains("_eight"), text.contains("VECTORS")),

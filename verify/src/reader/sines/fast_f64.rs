@@ -70,16 +70,26 @@ const SIN_COS_VECTORS: bool = cfg!(
     any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128")
 );
 
+/// Whether the processor has vectors of two floats and none of four: those without an angle of their own are then left out.
+const SIN_COS_PAIRS: bool = SIN_COS_VECTORS && !cfg!(target_feature = "avx");
+
 /// Sines and cosines of the first `count` of four angles, rad, all in one loop, which becomes vector instructions.
 #[allow(clippy::all)]
 #[inline(never)]
 fn sin_cos_four(count: usize, a: f64, b: f64, c: f64, d: f64) -> ([f64; 4], [f64; 4]) {
     let (x, mut sines, mut cosines) = ([a, b, c, d], [0.0; 4], [0.0; 4]);
     let mut inside = true;
-    let lanes = if SIN_COS_VECTORS { 4 } else { count.min(4) };
-    for i in 0..lanes {
-        (sines[i], cosines[i]) = sin_cos(x[i]);
-        inside &= x[i].abs() <= SIN_COS_RANGE;
+    if SIN_COS_PAIRS && count <= 2 {
+        for i in 0..2 {
+            (sines[i], cosines[i]) = sin_cos(x[i]);
+            inside &= x[i].abs() <= SIN_COS_RANGE;
+        }
+    } else {
+        let lanes = if SIN_COS_VECTORS { 4 } else { count.min(4) };
+        for i in 0..lanes {
+            (sines[i], cosines[i]) = sin_cos(x[i]);
+            inside &= x[i].abs() <= SIN_COS_RANGE;
+        }
     }
     if inside { (sines, cosines) } else { sin_cos_each_of_four(a, b, c, d) }
 }
@@ -109,10 +119,17 @@ fn sin_cos_eight(
 ) -> ([f64; 8], [f64; 8]) {
     let (x, mut sines, mut cosines) = ([a, b, c, d, e, f, g, h], [0.0; 8], [0.0; 8]);
     let mut inside = true;
-    let lanes = if SIN_COS_VECTORS { 8 } else { count.min(8) };
-    for i in 0..lanes {
-        (sines[i], cosines[i]) = sin_cos(x[i]);
-        inside &= x[i].abs() <= SIN_COS_RANGE;
+    if SIN_COS_PAIRS && count <= 6 {
+        for i in 0..6 {
+            (sines[i], cosines[i]) = sin_cos(x[i]);
+            inside &= x[i].abs() <= SIN_COS_RANGE;
+        }
+    } else {
+        let lanes = if SIN_COS_VECTORS { 8 } else { count.min(8) };
+        for i in 0..lanes {
+            (sines[i], cosines[i]) = sin_cos(x[i]);
+            inside &= x[i].abs() <= SIN_COS_RANGE;
+        }
     }
     if inside { (sines, cosines) } else { sin_cos_each_of_eight(a, b, c, d, e, f, g, h) }
 }
