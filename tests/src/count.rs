@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use syn::visit::{self, Visit};
 
+use crate::signatures::INTO;
+
 /// Operations in the body of a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Operations {
@@ -39,9 +41,6 @@ pub fn count(text: &str) -> BTreeMap<String, Operations> {
     }
     counted
 }
-
-/// How the name of a function ends that writes the result of another.
-const INTO: &str = "_into";
 
 /// The function that a private function holds a part of.
 fn part_of(name: &str) -> Option<&str> {

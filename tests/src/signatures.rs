@@ -3,6 +3,9 @@
 /// A function: its name and the names of its arguments, `&self` left out.
 pub type Signature = (String, Vec<String>);
 
+/// What the name of a function ends in that writes its result where the caller says.
+pub const INTO: &str = "_into";
+
 /// The functions behind each `start`, which ends where the name begins.
 pub fn signatures(text: &str, start: &str) -> Vec<Signature> {
     let signature = |rest: &str| {
@@ -18,7 +21,7 @@ pub fn signatures(text: &str, start: &str) -> Vec<Signature> {
 pub fn of_module(text: &str) -> Vec<Signature> {
     // Those for many states are indented.
     let mut all = signatures(text, "\npub fn ");
-    all.retain(|(name, _)| !name.ends_with("_into"));
+    all.retain(|(name, _)| !name.ends_with(INTO));
     all
 }
 
