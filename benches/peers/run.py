@@ -195,14 +195,19 @@ def casadi_libraries(source, cpu):
     return libraries
 
 
-def emit(armgen, robots, functions):
-    """The emitted modules of all arms and their faces for C, as the source of one library; its folder."""
-    crate = BUILD / "emitted"
-    (crate / "src").mkdir(parents=True, exist_ok=True)
+def generate(armgen, robot, functions, out, *options):
+    """Writes a module of an arm."""
     program = [armgen.absolute()] if armgen else ["cargo", "run", "--release", "--quiet", "--"]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    run([*program, "generate", description(robot), "--trig", "fast", "--functions", ",".join(functions), "--out", out, *options],
+        cwd=PROJECT, stdout=subprocess.DEVNULL)
+
+
+def emit(armgen, robots, functions, name="emitted", options=()):
+    """The emitted modules of all arms and their faces for C, as the source of one library; its folder."""
+    crate = BUILD / name
     for robot in robots:
-        run([*program, "generate", description(robot), "--trig", "fast", "--c-abi", "--functions", ",".join(functions),
-             "--out", crate / "src" / f"{robot}.rs"], cwd=PROJECT, stdout=subprocess.DEVNULL)
+        generate(armgen, robot, functions, crate / "src" / f"{robot}.rs", "--c-abi", *options)
     (crate / "Cargo.toml").write_text(CARGO_TOML)
     (crate / "src" / "lib.rs").write_text("".join(MODULE.format(name=robot) for robot in robots))
     return crate
@@ -288,18 +293,21 @@ def version(command):
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[0]
 
 
-def machine():
-    import casadi
-    import pinocchio
-
+def processor_and_compilers():
     try:
         lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
         processor = next(line.split(":")[1].strip() for line in lines if line.startswith("model name"))
     except (OSError, StopIteration):
         processor = platform.machine()
     compilers = [command for command in (os.environ.get(*C), os.environ.get("CLANG", "clang")) if shutil.which(command)]
-    tools = [version([command, "--version"]) for command in (*compilers, "rustc")]
-    return ", ".join([processor, *tools, f"Pinocchio {pinocchio.__version__}", f"CasADi {casadi.__version__}"])
+    return ", ".join([processor, *(version([command, "--version"]) for command in (*compilers, "rustc"))])
+
+
+def machine():
+    import casadi
+    import pinocchio
+
+    return f"{processor_and_compilers()}, Pinocchio {pinocchio.__version__}, CasADi {casadi.__version__}"
 
 
 def markdown(cases, rounds):

@@ -209,6 +209,12 @@ fn count_as_json_keeps_its_schema() {
     assert!(work("inertia_matrix") <= 4 && work("coriolis_matrix") <= 5 && work("gravity") == 0);
     assert_eq!(functions["equations_of_motion"]["sincos"], 1);
     assert_eq!(functions["friction"]["exp"], 0);
+    let fused = json(&["count", &file("robots/scara.yaml"), "--fma", "--format", "json"]);
+    for (name, cost) in fused["functions"].as_object().expect("an object") {
+        let fused = cost["fused"].as_u64().expect("a count");
+        assert!(fused <= functions[name]["mul"].as_u64().expect("a count") && cost["mul"] == functions[name]["mul"], "{name}");
+    }
+    assert!(fused["functions"]["inverse_dynamics"]["fused"].as_u64() > Some(0));
     let fading = json(&["count", &file("tests/robots/dry_friction.yaml"), "--functions", "friction", "--format", "json"]);
     assert_eq!(fading["functions"]["friction"]["exp"], 3);
 }

@@ -95,6 +95,12 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
         (vec!["--language", "c", "--out", "robot.m"], "robot.m is a file of MATLAB, and the module is in C"),
         (vec!["--language", "python", "--out", "robot.mjs"], "write `--language javascript` or `--out robot.py`"),
         (vec!["--language", "c", "--trig", "libm"], "take `--trig fast` or `--trig std`"),
+        (
+            vec!["--language", "javascript", "--fma"],
+            "--fma does not go with `--language javascript`: a fused operation is written in Rust and C",
+        ),
+        (vec!["--language", "python", "--fma"], "--fma does not go with `--language python`"),
+        (vec!["--language", "matlab", "--fma", "--out", "+robot"], "--fma does not go with `--language matlab`"),
         (vec!["--language", "javascript", "--batch", "8"], "--batch does not go with `--language javascript`"),
         (vec!["--language", "c", "--native", "--out", "robot.h"], "--native goes with `--language python`"),
         (vec!["--language", "python", "--native"], "say where that goes, with `--out robot.py`"),

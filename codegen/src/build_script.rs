@@ -129,6 +129,14 @@ impl Robot {
         self
     }
 
+    /// Fuses a multiplication with the addition that alone takes its product, as `Real::mul_add`, which rounds once: the module then needs `std`,
+    /// and a processor that has the operation (`-C target-feature=+fma`, `-C target-cpu=native`), or each becomes a call many times as slow.
+    #[must_use]
+    pub fn fused_multiply_add(mut self) -> Robot {
+        self.options.fuse = true;
+        self
+    }
+
     /// The functions of the module by their names, `["gravity", "inertia_matrix_with"]`, say; all unless some are chosen. A name that no
     /// function has ends the build. The traits of the runtime are implemented only if all functions that they need are there.
     #[must_use]

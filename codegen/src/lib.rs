@@ -108,17 +108,17 @@ impl Generated {
 
     /// The declarations of the module in JavaScript, for TypeScript.
     pub fn declarations(&self) -> String {
-        emit::javascript::declarations(&self.program, &self.origin, &self.notes)
+        emit::javascript::declarations(&self.program.unfused(), &self.origin, &self.notes)
     }
 
     /// The files of the package in MATLAB.
     pub fn package(&self) -> Vec<emit::matlab::File> {
-        emit::matlab::print(&self.program, &self.origin, &self.notes)
+        emit::matlab::print(&self.program.unfused(), &self.origin, &self.notes)
     }
 
     /// The functions for many states as a library of C, and the module in Python that compiles and calls it.
     pub fn native(&self) -> emit::python::Native {
-        emit::python::native(&self.program, &self.origin)
+        emit::python::native(&self.program.unfused(), &self.origin)
     }
 
     /// The module in another language, with the same notes; the files of a package as one text.
@@ -126,8 +126,8 @@ impl Generated {
         match language {
             Language::Rust => self.module.clone(),
             Language::C => emit::c::standalone(&self.program, &self.origin, &self.notes),
-            Language::JavaScript => emit::javascript::print(&self.program, &self.origin, &self.notes),
-            Language::Python => emit::python::print(&self.program, &self.origin, &self.notes),
+            Language::JavaScript => emit::javascript::print(&self.program.unfused(), &self.origin, &self.notes),
+            Language::Python => emit::python::print(&self.program.unfused(), &self.origin, &self.notes),
             Language::Matlab => emit::matlab::joined(&self.package()),
         }
     }

@@ -97,12 +97,45 @@ pub struct Function {
     pub method: &'static str,
     /// The Stribeck velocities of the joints whose Stribeck friction it uses.
     pub stribeck: BTreeMap<u16, Number>,
+    /// Whether sums take products without rounding them: [`Function::products_in_sums`].
+    pub fuse: bool,
 }
 
 impl Function {
     /// Its name in the emitted module.
     pub fn name(&self) -> String {
         self.quantity.function_name(self.with_parameters)
+    }
+
+    /// How often each step is used.
+    pub fn uses(&self) -> Vec<usize> {
+        let mut uses = vec![0; self.steps.len()];
+        let operands = self.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(self.outputs.iter().map(|o| &o.operand));
+        for operand in operands {
+            if let Operand::Step(i) = operand {
+                uses[*i as usize] += 1;
+            }
+        }
+        uses
+    }
+
+    /// Which steps are products that a sum or a difference takes in one fused operation, which rounds once: those that nothing else uses, and of
+    /// two such the left one.
+    pub fn products_in_sums(&self) -> Vec<bool> {
+        let mut fused = vec![false; self.steps.len()];
+        if !self.fuse {
+            return fused;
+        }
+        let uses = self.uses();
+        let is_product = |i: usize| self.steps[i].operation == Operation::Multiply && uses[i] == 1;
+        for step in self.steps.iter().filter(|step| matches!(step.operation, Operation::Add | Operation::Subtract)) {
+            let products = [&step.left, &step.right].into_iter().filter_map(|operand| match operand {
+                Operand::Step(i) => Some(*i as usize).filter(|&i| is_product(i)),
+                Operand::Input(_) | Operand::Constant(_) => None,
+            });
+            products.take(1).for_each(|i| fused[i] = true);
+        }
+        fused
     }
 
     /// The name of the form that writes its result where the caller says.
@@ -166,6 +199,17 @@ pub struct Module {
 }
 
 impl Module {
+    /// The same without fused operations, for languages that have none.
+    pub fn unfused(&self) -> Module {
+        let functions = self.functions.iter().map(|function| Function { fuse: false, ..function.clone() }).collect();
+        Module { functions, ..self.clone() }
+    }
+
+    /// Whether a function has a fused operation.
+    pub fn is_fused(&self) -> bool {
+        self.functions.iter().any(|function| function.products_in_sums().contains(&true))
+    }
+
     /// What the dimensions of its functions are.
     pub fn sizes(&self) -> Sizes {
         Sizes {

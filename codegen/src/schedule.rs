@@ -31,6 +31,8 @@ pub struct Options {
     pub batch: Option<usize>,
     /// Functions that are emitted.
     pub functions: Selection,
+    /// Whether a multiplication is fused with the addition that alone takes its product, where the language has such an operation: Rust and C.
+    pub fuse: bool,
 }
 
 /// A closed form with so many times the operations of the recursion is not looked at further.
@@ -104,6 +106,7 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
             lower(&model.manipulator, quantity, with_parameters, &Derivation { pool, entries, ..derivation })
         })
         .min_by_key(|function| Cost::of(function).weight())
+        .map(|function| Function { fuse: options.fuse, ..function })
         .expect("there is at least the recursion")
 }
 
@@ -113,8 +116,9 @@ fn lower(manipulator: &Manipulator, quantity: &'static Quantity, with_parameters
     if with_parameters {
         arguments.insert(0, Argument::Pi);
     }
+    let method = derivation.method;
     let mut function =
-        Function { quantity, with_parameters, arguments, steps, outputs, method: derivation.method, stribeck: BTreeMap::new() };
+        Function { quantity, with_parameters, arguments, steps, outputs, method, stribeck: BTreeMap::new(), fuse: false };
     let velocity = |symbol| match symbol {
         Symbol::Stribeck(i) => Some((i, manipulator.joints[usize::from(i)].stribeck.as_ref()?.velocity.clone())),
         _ => None,

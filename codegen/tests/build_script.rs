@@ -34,7 +34,7 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
     let names = ["gravity", "inertia_matrix_with"];
     let build =
         Robot::new(&scara).scalar(Scalar::F32).trig(Trig::Fast).without(Pass::Grouping).without(Pass::OriginAlongAxis).batch(4);
-    let build = build.functions(names).c_abi().file_stem("chosen");
+    let build = build.fused_multiply_add().functions(names).c_abi().file_stem("chosen");
     let written: Vec<(String, String)> =
         build.try_generate().expect("a valid description").iter().map(|file| read(file)).collect();
     let files: Vec<&str> = written.iter().map(|(name, _)| name.as_str()).collect();
@@ -46,6 +46,7 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
         without: [Pass::Grouping, Pass::OriginAlongAxis].into_iter().collect(),
         batch: Some(4),
         functions: Selection::named(names.map(String::from)).expect("names of functions"),
+        fuse: true,
     };
     let (generated, _) = armgen_codegen::generate(&source, &options);
     let generated = generated.expect("a valid description");
@@ -58,6 +59,7 @@ fn a_build_script_gets_what_it_asks_for_or_the_reason() {
         public.iter().all(|name| names.contains(name))
             && module.contains("pub type Real = f32;")
             && module.contains("pub mod batch")
+            && module.contains("Real::mul_add(")
     );
 
     // Nothing chosen: named after its description, without the face for C.

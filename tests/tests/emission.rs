@@ -24,7 +24,9 @@ fn the_text_costs_what_the_program_says() {
         let counted = count(robot.text);
         let program = Interpreted::new(&robot.description()).expect(robot.module);
         for function in &program.module.functions {
-            let Cost { mul, add, div, neg, sincos, exp } = Cost::of(function);
+            let Cost { mul, add, fused: 0, div, neg, sincos, exp } = Cost::of(function) else {
+                panic!("nothing is fused unasked")
+            };
             let found = counted[&function.name()];
             // The sign of a product that starts with a number is printed as the number's own.
             assert!(found.neg <= neg, "{} {}: {} sign changes, not {neg}", robot.module, function.name(), found.neg);

@@ -520,7 +520,9 @@ impl Checker {
 fn zero_operand(program: &Program) -> Option<Verdict> {
     let is_zero = |step: usize| matches!(program.steps[step], Step::Literal(k) if program.literals[k].value == 0.0);
     let with_zero = program.steps.iter().any(|step| match step {
-        Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => is_zero(*a) || is_zero(*b),
+        Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) | Step::Divide(a, b) => {
+            is_zero(*a) || is_zero(*b)
+        }
         _ => false,
     });
     (with_zero && Check::Zeros.is_made()).then(|| Verdict::Refused("it calculates with the number 0".into()))

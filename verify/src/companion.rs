@@ -5,6 +5,7 @@
 //! ```text
 //! sum, difference   e_z = e_x + e_y + u |z|
 //! product           e_z = |x| e_y + |y| e_x + e_x e_y + u |z|
+//! fused x y + w     e_z = |x| e_y + |y| e_x + e_x e_y + e_w + u |z|: one rounding
 //! quotient          e_z = (e_x + |x/y| e_y) / (|y| - e_y) + u |z|
 //! sine, cosine      e = 2 u |s|: one unit in the last place; of a sum of k angles besides k u (|q_1| + ... + |q_k|),
 //!                   a constant angle among them, with what its literal is off by
@@ -23,7 +24,7 @@ use crate::claims::Claims;
 use crate::contract::{Promise, Sizes};
 use crate::enclosure::Float;
 use crate::float::{Arguments, LANES};
-use crate::marked::{marked, LOAD, STRIBECK};
+use crate::marked::{marked, FUSED, LOAD, STRIBECK};
 use crate::program::{Angle, Argument, Program, Step};
 use crate::ranges::{is_power_of_two, literal_errors};
 use crate::reader::{Constant, Module};
@@ -110,6 +111,7 @@ macro_rules! face {
                     Row::Sub(a, b) => Step::Sub(a, b),
                     Row::Mul(a, b) => Step::Mul(a, b),
                     Row::Scale(a, b) => Step::Scale(a, b),
+                    Row::Fma(a, b, c) => Step::Fma(a, b, c),
                     Row::Div(a, b) => Step::Div(a, b),
                 }
             }
@@ -135,6 +137,7 @@ enum Row {
     Sub(u32, u32),
     Mul(u32, u32),
     Scale(u32, u32),
+    Fma(u32, u32, u32),
     Div(u32, u32),
 }
 
@@ -189,10 +192,14 @@ impl Table {
                 Step::Stribeck(joint, velocity) => Row::Stribeck(*joint as u32, program.literals[*velocity].value),
                 Step::SignOf(a) => Row::SignOf(number(a)),
                 Step::Negate(a) => Row::Neg(number(a)),
-                Step::Add(a, b) => Row::Add(number(a), number(b)),
+                Step::Add(a, b) => match program.factors(*a) {
+                    Some((x, y)) => Row::Fma(number(&x), number(&y), number(b)),
+                    None => Row::Add(number(a), number(b)),
+                },
                 Step::Subtract(a, b) => Row::Sub(number(a), number(b)),
                 Step::Multiply(a, b) if exact_power(*a) || exact_power(*b) => Row::Scale(number(a), number(b)),
-                Step::Multiply(a, b) => Row::Mul(number(a), number(b)),
+                // Of a product in a fused sum nothing but its place is of use: the sum takes its factors.
+                Step::Multiply(a, b) | Step::Product(a, b) => Row::Mul(number(a), number(b)),
                 Step::Divide(a, b) => Row::Div(number(a), number(b)),
             })
         };
@@ -309,6 +316,7 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
         write!(text, "/// Sine and cosine of an angle in rad.\nfn sin_cos(x: Real) -> (Real, Real) {{\n    {sincos}(x)\n}}\n\n");
     let has = |wanted: fn(&Step) -> bool| module.programs().any(|(_, program)| program.steps.iter().any(wanted));
     let (fades, loaded) = (has(|step| matches!(step, Step::Stribeck(..))), has(|step| matches!(step, Step::SignOf(_))));
+    let fused = has(|step| matches!(step, Step::Product(..)));
     let parts = [
         (include_str!("reader/sines/stribeck.rs"), fades),
         (include_str!("companion/stribeck.rs"), fades),
@@ -316,7 +324,7 @@ pub fn companion(module: &Module, claims: &Claims, import: &str) -> Result<Strin
     ];
     parts.iter().filter(|(_, wanted)| *wanted).for_each(|(part, _)| text += &format!("{part}\n"));
     let template = include_str!("companion/template.rs").split_once("// BEGIN\n").map_or("", |(_, rest)| rest);
-    text += &marked(template, "//", &[(STRIBECK, fades), (LOAD, loaded)]);
+    text += &marked(template, "//", &[(STRIBECK, fades), (LOAD, loaded), (FUSED, fused)]);
     Ok(text)
 }
 

@@ -10,6 +10,10 @@ pub trait Element: Clone + PartialEq + Debug {
     fn minus(&self, other: &Self) -> Self;
     /// a b.
     fn times(&self, other: &Self) -> Self;
+    /// a b + c, in floats with one rounding.
+    fn times_plus(&self, factor: &Self, other: &Self) -> Self {
+        self.times(factor).plus(other)
+    }
     /// -a.
     fn negated(&self) -> Self;
     /// 1/a, if there is one.
@@ -38,6 +42,9 @@ impl Element for f64 {
     }
     fn times(&self, other: &f64) -> f64 {
         self * other
+    }
+    fn times_plus(&self, factor: &f64, other: &f64) -> f64 {
+        self.mul_add(*factor, *other)
     }
     fn negated(&self) -> f64 {
         -self
@@ -71,6 +78,9 @@ impl Element for f32 {
     }
     fn times(&self, other: &f32) -> f32 {
         self * other
+    }
+    fn times_plus(&self, factor: &f32, other: &f32) -> f32 {
+        self.mul_add(*factor, *other)
     }
     fn negated(&self) -> f32 {
         -self

@@ -36,7 +36,7 @@ pub fn idle_steps(program: &Program, point: &mut Point<Prime>, literals: &[Formu
                 add(*a, own);
                 add(*b, own.negated());
             }
-            Step::Multiply(a, b) => {
+            Step::Multiply(a, b) | Step::Product(a, b) => {
                 add(*a, own.times(&values[*b]));
                 add(*b, own.times(&values[*a]));
             }
@@ -47,6 +47,6 @@ pub fn idle_steps(program: &Program, point: &mut Point<Prime>, literals: &[Formu
             }
         }
     }
-    let is_operation = |step: &Step| matches!(step, Step::Add(..) | Step::Subtract(..) | Step::Multiply(..) | Step::Divide(..));
+    let is_operation = |step: &Step| step.operands()[1].is_some();
     Some((0..values.len()).filter(|&i| is_operation(&program.steps[i]) && adjoint[i].is_zero()).collect())
 }

@@ -5,6 +5,9 @@ pub(crate) const STRIBECK: &str = "with Stribeck friction";
 /// Lines that only robots need whose friction grows with the load.
 pub(crate) const LOAD: &str = "with load friction";
 
+/// Lines that only modules with fused operations need.
+pub(crate) const FUSED: &str = "with fused operations";
+
 /// The text with those marked lines, without their marks, of which the mark is wanted; `sign`: how a comment begins.
 pub(crate) fn marked(text: &str, sign: &str, wanted: &[(&str, bool)]) -> String {
     let kept = |line: &str| {

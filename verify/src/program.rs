@@ -82,6 +82,8 @@ pub enum Step {
     Subtract(usize, usize),
     /// a b
     Multiply(usize, usize),
+    /// a b, not rounded: the step that takes it is an addition, the only one, and rounds once
+    Product(usize, usize),
     /// a / b
     Divide(usize, usize),
 }
@@ -91,7 +93,9 @@ impl Step {
     pub fn operands(&self) -> [Option<usize>; 2] {
         match self {
             Step::Negate(a) | Step::SignOf(a) => [Some(*a), None],
-            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => [Some(*a), Some(*b)],
+            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) | Step::Divide(a, b) => {
+                [Some(*a), Some(*b)]
+            }
             Step::Input(..) | Step::Literal(_) | Step::Sine(_) | Step::Cosine(_) | Step::Sign(_) | Step::Stribeck(..) => {
                 [None, None]
             }
@@ -222,6 +226,14 @@ impl Program {
         values.iter().cloned().chain(circles).collect()
     }
 
+    /// The factors of a step that is a product without a rounding.
+    pub fn factors(&self, step: usize) -> Option<(usize, usize)> {
+        match self.steps[step] {
+            Step::Product(a, b) => Some((a, b)),
+            _ => None,
+        }
+    }
+
     /// The part of the program that some steps need: these are its results.
     pub fn part(&self, results: &[usize]) -> Program {
         let needed = self.needed(results);
@@ -235,6 +247,7 @@ impl Program {
                 Step::Add(a, b) => Step::Add(number[*a], number[*b]),
                 Step::Subtract(a, b) => Step::Subtract(number[*a], number[*b]),
                 Step::Multiply(a, b) => Step::Multiply(number[*a], number[*b]),
+                Step::Product(a, b) => Step::Product(number[*a], number[*b]),
                 Step::Divide(a, b) => Step::Divide(number[*a], number[*b]),
                 leaf => leaf.clone(),
             });
@@ -292,9 +305,12 @@ impl Program {
                 Step::Stribeck(joint, velocity) => Some(inputs.stribeck(*joint, &literals[*velocity])),
                 Step::SignOf(a) => of(a).map(Element::sign),
                 Step::Negate(a) => of(a).map(Element::negated),
-                Step::Add(a, b) => both(a, b).map(|(a, b)| a.plus(b)),
+                Step::Add(a, b) => match self.factors(*a).and_then(|(x, y)| both(&x, &y)) {
+                    Some((x, y)) => of(b).map(|b| x.times_plus(y, b)),
+                    None => both(a, b).map(|(a, b)| a.plus(b)),
+                },
                 Step::Subtract(a, b) => both(a, b).map(|(a, b)| a.minus(b)),
-                Step::Multiply(a, b) => both(a, b).map(|(a, b)| a.times(b)),
+                Step::Multiply(a, b) | Step::Product(a, b) => both(a, b).map(|(a, b)| a.times(b)),
                 Step::Divide(a, b) => both(a, b).and_then(|(a, b)| a.over(b)),
             };
             let own = value.as_ref().map_or(0, Element::bits);
@@ -328,7 +344,9 @@ impl Program {
             touched[i] = match step {
                 Step::Literal(index) | Step::Stribeck(_, index) => *index == literal,
                 Step::Negate(a) | Step::SignOf(a) => touched[*a],
-                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Divide(a, b) => touched[*a] || touched[*b],
+                Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) | Step::Divide(a, b) => {
+                    touched[*a] || touched[*b]
+                }
                 Step::Sine(angle) | Step::Cosine(angle) => angle.turn.is_some_and(|(k, _)| self.turns[k] == literal),
                 Step::Input(..) | Step::Sign(_) => false,
             };

@@ -203,15 +203,21 @@ impl Evaluation<'_> {
                 let a = of(a);
                 Range { low: -a.high, high: -a.low, ..a }
             }
-            Step::Add(a, b) => {
-                let (a, b) = (of(a), of(b));
-                self.rounded(&[a.low + b.low, a.high + b.high], a.error + b.error)
+            Step::Add(x, y) => {
+                let (a, b) = (of(x), of(y));
+                // A fused product may be below the normal numbers, where a sum of floats would be exact.
+                let lost = if self.program.factors(*x).is_some() { self.real.smallest_normal() } else { 0.0 };
+                self.rounded(&[a.low + b.low, a.high + b.high], a.error + b.error + lost)
             }
             Step::Subtract(a, b) => {
                 let (a, b) = (of(a), of(b));
                 self.rounded(&[a.low - b.high, a.high - b.low], a.error + b.error)
             }
             Step::Multiply(x, y) => self.product((*x, of(x)), (*y, of(y))),
+            Step::Product(x, y) => {
+                let (ends, carried) = products((*x, of(x)), (*y, of(y)));
+                Range::of(&ends, carried)
+            }
             Step::Divide(x, y) => self.quotient(of(x), of(y)),
         }
     }
@@ -222,11 +228,7 @@ impl Evaluation<'_> {
 
     /// Of two steps by their numbers and ranges.
     fn product(&self, (x, a): (usize, Range), (y, b): (usize, Range)) -> Range {
-        let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
-        let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
-        if x == y && a.low < 0.0 && a.high > 0.0 {
-            ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
-        }
+        let (ends, carried) = products((x, a), (y, b));
         if self.is_power_of_two(x) || self.is_power_of_two(y) {
             // A product with ½ or less of what is hardly normal loses digits.
             let factor = if self.is_power_of_two(x) { a.size() } else { b.size() };
@@ -252,6 +254,16 @@ impl Evaluation<'_> {
             Range::ANYTHING
         }
     }
+}
+
+/// The products of the ends of two steps, and what their errors bring in.
+fn products((x, a): (usize, Range), (y, b): (usize, Range)) -> ([f64; 4], f64) {
+    let carried = a.size() * b.error + b.size() * a.error + a.error * b.error;
+    let mut ends = [a.low * b.low, a.low * b.high, a.high * b.low, a.high * b.high];
+    if x == y && a.low < 0.0 && a.high > 0.0 {
+        ends = [0.0, ends[0].max(ends[3]), 0.0, 0.0];
+    }
+    (ends, carried)
 }
 
 fn largest(ends: &[f64]) -> f64 {

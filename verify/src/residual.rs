@@ -14,6 +14,8 @@
 //! left is the error of the entries of B and r, and intervals bound it. **The accelerations are those at torques off by at most
 //! max e + max|x̂| max_i Σ_j |E_ij|**; divided by the smallest eigenvalue of B this is their own error.
 //!
+//! A product that is fused with an addition has one rounding less than is counted here.
+//!
 //! That the text has this form is not taken on trust: every step from the reciprocals on is told by its value at a random state, to 40 digits, and
 //! every sum and every product must be one of the above. If one is not there is no such bound.
 
@@ -229,7 +231,7 @@ impl Reading<'_> {
 
     /// Row and column of a product l_ik s_jk, and its factors.
     fn product(&self, step: usize) -> Option<((usize, usize), [(usize, Quantity); 2])> {
-        let Step::Multiply(a, b) = self.program.steps[step] else { return None };
+        let (Step::Multiply(a, b) | Step::Product(a, b)) = self.program.steps[step] else { return None };
         let told = |a: usize, b: usize| {
             let ratio = |&(known, _): &(Quantity, Wide)| match known {
                 Ratio(i, k) if self.is(a, known) => Some((i, k)),
@@ -341,7 +343,7 @@ fn sum(reading: &Reading<'_>, step: usize, quantity: Quantity, open: &mut Vec<(u
             plain.push(leaf);
             continue;
         }
-        let Step::Multiply(a, b) = reading.program.steps[leaf.step] else { return None };
+        let (Step::Multiply(a, b) | Step::Product(a, b)) = reading.program.steps[leaf.step] else { return None };
         let fits = |(x, y): &(Quantity, Quantity)| {
             let both = |a, b| reading.is(a, *x) && reading.is(b, *y);
             both(a, b).then_some([(a, *x), (b, *y)]).or_else(|| both(b, a).then_some([(b, *x), (a, *y)]))
@@ -389,8 +391,8 @@ pub fn residual(
         divided.push(match step {
             Step::Divide(..) => true,
             Step::Negate(a) | Step::SignOf(a) => divided[*a],
-            Step::Multiply(a, b) if constant(*a, *b) || constant(*b, *a) => true,
-            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) => divided[*a] || divided[*b],
+            Step::Multiply(a, b) | Step::Product(a, b) if constant(*a, *b) || constant(*b, *a) => true,
+            Step::Add(a, b) | Step::Subtract(a, b) | Step::Multiply(a, b) | Step::Product(a, b) => divided[*a] || divided[*b],
             _ => false,
         });
     }

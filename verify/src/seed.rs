@@ -136,6 +136,7 @@ fn of_program(program: &Program, resolved: &Resolved) -> Hash {
             Step::Add(a, b) => either("add", a, b),
             Step::Subtract(a, b) => two("subtract", &steps[*a], &steps[*b]),
             Step::Multiply(a, b) => either("multiply", a, b),
+            Step::Product(a, b) => either("product", a, b),
             Step::Divide(a, b) => two("divide", &steps[*a], &steps[*b]),
         };
         steps.push(hash);

@@ -258,8 +258,12 @@ fn sentence(function: &Function, prefix: &str, expected: Option<&str>) -> Result
 /// The operations of a function in words.
 fn operations(program: &Program) -> String {
     let count = |counted: fn(&Step) -> bool| program.steps.iter().filter(|step| counted(step)).count();
+    let fused = match count(|step| matches!(step, Step::Product(..))) {
+        0 => String::new(),
+        fused => format!(" ({fused} fused with an addition)"),
+    };
     let parts: Vec<String> = [
-        (count(|step| matches!(step, Step::Multiply(..))), "multiplication"),
+        (count(|step| matches!(step, Step::Multiply(..) | Step::Product(..))), "multiplication"),
         (count(|step| matches!(step, Step::Add(..) | Step::Subtract(..))), "addition"),
         (count(|step| matches!(step, Step::Divide(..))), "division"),
         (count(|step| matches!(step, Step::Sine(_))), "sine and cosine pair"),
@@ -267,7 +271,10 @@ fn operations(program: &Program) -> String {
     ]
     .into_iter()
     .filter(|(count, _)| *count > 0)
-    .map(|(count, what)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
+    .map(|(count, what)| {
+        let fused = if what == "multiplication" { fused.as_str() } else { "" };
+        format!("{count} {what}{}{fused}", if count == 1 { "" } else { "s" })
+    })
     .collect();
     if parts.is_empty() {
         "none, the result is constant".to_string()

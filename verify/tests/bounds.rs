@@ -7,6 +7,7 @@ use std::process::Command;
 
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::Wide;
 use armgen_verify::bounds::{domain_of, draw, notes, of, of_function, two_digits};
@@ -22,8 +23,12 @@ use armgen_verify::stream::Stream;
 
 /// A robot of the project: its text, module, claims and description.
 fn robot(name: &str, scalar: Scalar) -> (String, Module, Claims, Manipulator) {
-    let source = common::source(name);
-    let generated = common::generate(&source, scalar);
+    robot_with(name, &Options { scalar, ..Options::default() })
+}
+
+fn robot_with(name: &str, options: &Options) -> (String, Module, Claims, Manipulator) {
+    let (source, scalar) = (common::source(name), options.scalar);
+    let generated = common::generate_with(&source, options);
     let module = Module::read(&generated.module).expect("a module");
     let (manipulator, _) = validate::read_for(&source, scalar).0.expect("a valid description");
     (generated.module, module, Claims::from_numbers(&generated.constants), manipulator)
@@ -36,8 +41,9 @@ fn measure(manipulator: &Manipulator, module: &Module, subjects: Vec<Subject>, b
 }
 
 #[track_caller]
-fn check(name: &str, scalar: Scalar, states: u64) {
-    let (_, module, claims, manipulator) = robot(name, scalar);
+fn check(name: &str, options: &Options, states: u64) {
+    let scalar = options.scalar;
+    let (_, module, claims, manipulator) = robot_with(name, options);
     let subjects = Subject::all(&manipulator, &module, &claims).expect("functions");
     for seen in measure(&manipulator, &module, subjects, states.div_ceil(LANES as u64), 11) {
         assert_eq!((seen.beyond_running, seen.beyond_a_priori), (0, 0), "{name} {scalar:?}: {seen:?}");
@@ -53,11 +59,40 @@ fn check(name: &str, scalar: Scalar, states: u64) {
 #[test]
 fn bounds_hold_and_are_near() {
     for name in ["scara", "everything", "modified_prismatic", "base_set", "panda7"] {
-        check(name, Scalar::F64, 40);
+        check(name, &Options::default(), 40);
     }
     for name in ["scara4", "single_joint", "general_angles"] {
-        check(name, Scalar::F32, 40);
+        check(name, &Options { scalar: Scalar::F32, ..Options::default() }, 40);
     }
+}
+
+#[test]
+fn bounds_hold_and_are_near_with_fused_operations() {
+    for name in ["scara", "everything", "modified_prismatic", "base_set", "panda7"] {
+        check(name, &Options { fuse: true, ..Options::default() }, 40);
+    }
+    for name in ["scara4", "single_joint", "general_angles"] {
+        check(name, &Options { scalar: Scalar::F32, fuse: true, ..Options::default() }, 40);
+    }
+}
+
+/// Over the box and at a state, the bounds of a function with fused operations are below those of the same steps, each rounded.
+#[test]
+fn a_fused_operation_rounds_once() {
+    let bounds = |fuse: bool| {
+        let (_, module, claims, manipulator) = robot_with("panda7", &Options { fuse, ..Options::default() });
+        let domain = domain_of(&manipulator, &module);
+        let program = module.program("inverse_dynamics").expect("a function");
+        let values = claims.resolve("inverse_dynamics", &program.literals, module.real).values;
+        let table = Table::of(program, &literal_errors(program, &values, module.real), module.real).expect("a table");
+        let at_a_state = table.run(&draw(&domain, &mut Stream::new(5), module.real)).into_iter().map(|(_, bound)| bound);
+        [of_function(program, &values, &domain, &module, &claims).largest(), at_a_state.fold(0.0, f64::max)]
+    };
+    let ([fused, fused_at_a_state], [plain, plain_at_a_state]) = (bounds(true), bounds(false));
+    assert!(
+        fused < 0.9 * plain && fused_at_a_state < 0.9 * plain_at_a_state,
+        "{fused} {plain} {fused_at_a_state} {plain_at_a_state}"
+    );
 }
 
 /// A function whose numbers are wrong by some units in the last place exceeds the bounds of the right one.
@@ -110,8 +145,15 @@ fn bounds_are_rounded_up_and_stand_in_the_documentation() {
 /// The companion, compiled beside its module, returns what the checker computes with.
 #[test]
 fn the_companion_returns_the_same_bounds() {
-    for (name, scalar) in [("everything", Scalar::F64), ("scara", Scalar::F32), ("panda7", Scalar::F32)] {
-        let (text, module, claims, manipulator) = robot(name, scalar);
+    let cases = [
+        ("everything", Scalar::F64, false),
+        ("scara", Scalar::F32, false),
+        ("panda7", Scalar::F32, false),
+        ("load_friction", Scalar::F64, true),
+        ("scara4", Scalar::F32, true),
+    ];
+    for (name, scalar, fuse) in cases {
+        let (text, module, claims, manipulator) = robot_with(name, &Options { scalar, fuse, ..Options::default() });
         let companion = companion(&module, &claims, "use super::robot::*;").expect("a companion");
         let arguments = draw(&domain_of(&manipulator, &module), &mut Stream::new(5), module.real);
         let mut calls = String::new();

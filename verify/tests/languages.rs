@@ -44,8 +44,13 @@ fn check_read(name: &str, scalar: Scalar) {
 
 #[track_caller]
 fn check_same(name: &str, generated: &Generated, scalar: Scalar) {
+    check_same_in(others(), name, generated, scalar);
+}
+
+#[track_caller]
+fn check_same_in(languages: impl Iterator<Item = Language>, name: &str, generated: &Generated, scalar: Scalar) {
     let rust = Module::read(&generated.module).expect("the module in Rust");
-    for language in others().filter(|language| language.scalars().contains(&scalar)) {
+    for language in languages.filter(|language| language.scalars().contains(&scalar)) {
         let text = generated.in_language(language);
         let read = Module::read(ModuleText { language, text: &text });
         let read = read.unwrap_or_else(|fault| panic!("{name} in {}: {fault}", language.title()));
@@ -68,6 +73,26 @@ fn other_languages_do_the_operations_of_rust_in_its_order() {
         check_read(name, Scalar::F64);
     }
     check_read("base_set", Scalar::F32);
+}
+
+fn fused(name: &str, scalar: Scalar) -> Generated {
+    common::generate_with(&common::source(name), &Options { scalar, trig: Trig::Fast, fuse: true, ..Options::default() })
+}
+
+/// C has the fused operations of Rust, and what has none is written without.
+#[test]
+fn fused_operations_are_those_of_rust() {
+    for scalar in [Scalar::F64, Scalar::F32] {
+        let fused = fused("scara4", scalar);
+        check_same_in([Language::C].into_iter(), "scara4", &fused, scalar);
+        let report = armgen_verify::certify_in(&common::source("scara4"), &fused, Language::C);
+        assert_eq!(report.first_fault(), None);
+        let plain = generated(&common::source("scara4"), scalar, Trig::Fast);
+        for language in others().filter(|language| *language != Language::C && language.scalars().contains(&scalar)) {
+            assert_eq!(fused.in_language(language), plain.in_language(language));
+        }
+        assert_eq!([fused.native().c, fused.native().python], [plain.native().c, plain.native().python]);
+    }
 }
 
 /// A chain of so many revolute joints.
@@ -114,8 +139,9 @@ fn a_module_in_another_language_is_certified() {
 #[test]
 fn changes_are_found_in_every_language() {
     for language in others() {
-        mutation::check("scara", language, 200);
+        mutation::check("scara", language, false, 200);
     }
+    mutation::check("scara", Language::C, true, 200);
 }
 
 /// Each comment of a small arm's module with a word changed, with a line less, and with one more.
@@ -160,6 +186,14 @@ fn all_languages_have_the_bits_of_rust() {
     }
     for name in ["scara4", "dry_friction", "load_friction"] {
         run::check(name, Scalar::F32, 500, run::Effort::Short);
+    }
+}
+
+#[test]
+fn fused_operations_have_the_bits_of_rust() {
+    for (name, scalar) in [("scara4", Scalar::F64), ("load_friction", Scalar::F64), ("scara4", Scalar::F32)] {
+        let options = Options { scalar, trig: Trig::Fast, fuse: true, ..Options::default() };
+        run::check_with(&format!("fused_{name}"), &common::source(name), &options, 500, run::Effort::Short);
     }
 }
 

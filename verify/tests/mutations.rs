@@ -12,6 +12,7 @@ mod mutation;
 use std::collections::BTreeMap;
 
 use armgen_codegen::kinds::Scalar;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::validate;
 use armgen_verify::arithmetic::wide::{Wide, WideArguments};
 use armgen_verify::checker::Effort;
@@ -80,10 +81,10 @@ fn different_entries(a: &Program, b: &Program, states: &[Arguments<f64>]) -> Vec
 
 /// Makes changes until `wanted` of them count; each must be found.
 /// The number of kinds of changes that were made and found.
-fn check(name: &str, scalar: Scalar, wanted: usize) -> usize {
+fn check(name: &str, options: &Options, wanted: usize) -> usize {
     let start = std::time::Instant::now();
-    let source = common::source(name);
-    let generated = common::generate(&source, scalar);
+    let (source, scalar) = (common::source(name), options.scalar);
+    let generated = common::generate_with(&source, options);
     let (read, _) = validate::read_for(&source, scalar);
     let (manipulator, _) = read.expect("a valid description");
     let claims = Claims::from_numbers(&generated.constants);
@@ -170,9 +171,10 @@ fn check(name: &str, scalar: Scalar, wanted: usize) -> usize {
 #[test]
 fn some_changes_are_found() {
     for name in ["scara4", "scara", "modified_prismatic", "load_friction"] {
-        assert_eq!(check(name, Scalar::F64, 120), 5, "{name}: every kind of change occurs");
+        assert_eq!(check(name, &Options::default(), 120), 5, "{name}: every kind of change occurs");
     }
-    assert_eq!(check("base_set", Scalar::F32, 120), 5);
+    assert_eq!(check("base_set", &Options { scalar: Scalar::F32, ..Options::default() }, 120), 5);
+    assert_eq!(check("scara4", &Options { fuse: true, ..Options::default() }, 120), 5);
 }
 
 /// What is no size of the gravity torque of its joint is none of the equations.
@@ -204,7 +206,10 @@ fn all_changes_are_found() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
         // A module of one joint has no two operands to swap.
         for scalar in [Scalar::F64, Scalar::F32] {
-            assert!(check(&name, scalar, 200) >= 4, "{name}: nearly every kind of change occurs");
+            assert!(
+                check(&name, &Options { scalar, ..Options::default() }, 200) >= 4,
+                "{name}: nearly every kind of change occurs"
+            );
         }
     }
 }

@@ -12,11 +12,11 @@ use armgen_verify::claims::Claims;
 use armgen_verify::{certify, verify, verify_with};
 
 /// Prints the report of each with `--nocapture`.
-fn check(scalar: Scalar) {
+fn check(options: &Options) {
     for path in common::paths() {
         let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
         let source = common::source(&name);
-        let generated = common::generate(&source, scalar);
+        let generated = common::generate_with(&source, options);
         let start = std::time::Instant::now();
         let report = certify(&source, &generated);
         println!("{:?}\n{report}\n", start.elapsed());
@@ -29,12 +29,17 @@ fn check(scalar: Scalar) {
 
 #[test]
 fn all_robots_are_verified_in_f64() {
-    check(Scalar::F64);
+    check(&Options::default());
 }
 
 #[test]
 fn all_robots_are_verified_in_f32() {
-    check(Scalar::F32);
+    check(&Options { scalar: Scalar::F32, ..Options::default() });
+}
+
+#[test]
+fn all_robots_are_verified_with_fused_operations() {
+    check(&Options { fuse: true, ..Options::default() });
 }
 
 /// In `light` torques that may be given are a thousand times those that the arm asks for; in `lift` the rate of the shoulder, as the links

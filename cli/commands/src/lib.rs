@@ -254,6 +254,9 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
         /// Passes to leave out, of those that make the functions cheaper (docs/passes.md), separated by commas
         #[arg(long, value_name = "PASSES", value_delimiter = ',', value_parser = pass_parser())]
         without: Vec<Pass>,
+        /// Count multiplications that are fused with an addition, too, as `armgen generate --fma` prints them
+        #[arg(long)]
+        fma: bool,
     },
     /// Write the page of an arm: one HTML file to look at, without network or server
     #[command(after_help = "Examples:
@@ -385,7 +388,7 @@ pub fn run(built: &dyn Arm, description: &str) -> ExitCode {
         Command::Convert { file, convention, out } => convert::run(&file, convention, out.as_ref()),
         Command::Export { file, format, out } => export::run(&file, format, out.as_ref()),
         Command::Verify { description, module, language } => commands::verify::run(&description, &module, language),
-        Command::Count { file, format, functions, without } => commands::count::run(&file, format, &functions, without),
+        Command::Count { file, format, functions, without, fma } => commands::count::run(&file, format, &functions, without, fma),
         Command::Page { file, out, logs } => commands::page::run(&file, &out, &logs),
         Command::Run { files, out } => commands::run::run(&files, &out, built, &Source::new("robot.yaml", description)),
         Command::Completions { shell } => commands::completions::run(shell),

@@ -20,14 +20,14 @@ pub(crate) struct Table {
 
 impl Table {
     /// A table with these columns.
-    pub(crate) fn new<const N: usize>(columns: [(&str, Align); N]) -> Table {
-        Table { columns: columns.map(|(name, align)| (name.to_string(), align)).into(), rows: Vec::new() }
+    pub(crate) fn new<'a>(columns: impl IntoIterator<Item = (&'a str, Align)>) -> Table {
+        Table { columns: columns.into_iter().map(|(name, align)| (name.to_string(), align)).collect(), rows: Vec::new() }
     }
 
     /// Adds a row.
-    pub(crate) fn row<const N: usize>(&mut self, cells: [String; N]) {
-        debug_assert_eq!(N, self.columns.len());
-        self.rows.push(cells.into());
+    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+        debug_assert_eq!(self.rows.last().map(Vec::len), Some(self.columns.len()));
     }
 
     /// Whether a cell beyond the first of its row holds something.

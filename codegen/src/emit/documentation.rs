@@ -300,8 +300,12 @@ fn cost(cost: &Cost) -> String {
         1 => Some(format!("1 {one}")),
         n => Some(format!("{n} {many}")),
     };
+    let fused = match cost.fused {
+        0 => String::new(),
+        n => format!(" ({n} fused with an addition)"),
+    };
     let parts: Vec<String> = [
-        count(cost.mul, "multiplication", "multiplications"),
+        count(cost.mul, "multiplication", "multiplications").map(|text| text + &fused),
         count(cost.add, "addition", "additions"),
         count(cost.div, "division", "divisions"),
         count(cost.sincos, "sine and cosine pair", "sine and cosine pairs"),

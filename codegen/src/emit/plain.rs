@@ -20,6 +20,11 @@ pub(super) trait Syntax {
     /// What is left of Stribeck friction at an entry, at a velocity.
     fn stribeck(&self, entry: &str, velocity: &str) -> String;
 
+    /// The product of the first two and the third, in one operation that rounds once; only programs of languages that have one hold it.
+    fn fused(&self, _parts: [String; 3]) -> String {
+        unreachable!("this language is given programs without fused operations")
+    }
+
     /// An entry of an argument, counted from 0.
     fn entry(&self, argument: Argument, index: usize) -> String {
         format!("{}[{index}]", argument.name())
@@ -49,6 +54,7 @@ pub(super) fn expression(of: &Expression, syntax: &dyn Syntax) -> String {
         Expression::Operation(operation, left, right) => {
             format!("{} {} {}", expression(left, syntax), syntax.operator(*operation), expression(right, syntax))
         }
+        Expression::Fused(parts) => syntax.fused(parts.each_ref().map(|part| expression(part, syntax))),
         Expression::Sign(inner) => syntax.sign(&expression(inner, syntax)),
         Expression::Negation(inner) => format!("-{}", expression(inner, syntax)),
         Expression::Brackets(inner) => format!("({})", expression(inner, syntax)),
@@ -73,6 +79,7 @@ pub(super) fn reads_an_argument(of: &Expression) -> bool {
         Expression::Stribeck(..) => true,
         Expression::Constant(_) | Expression::Step(_) => false,
         Expression::Operation(_, left, right) => reads_an_argument(left) || reads_an_argument(right),
+        Expression::Fused(parts) => parts.iter().any(reads_an_argument),
         Expression::Sign(inner) | Expression::Negation(inner) | Expression::Brackets(inner) => reads_an_argument(inner),
     }
 }

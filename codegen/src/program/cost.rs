@@ -12,6 +12,8 @@ pub struct Cost {
     pub mul: usize,
     /// Additions and subtractions.
     pub add: usize,
+    /// Multiplications among them that are one operation with an addition.
+    pub fused: usize,
     /// Divisions.
     pub div: usize,
     /// Sign changes.
@@ -41,6 +43,7 @@ impl Cost {
                 angles.extend(symbol.angle());
             }
         }
+        cost.fused = function.products_in_sums().into_iter().filter(|&fused| fused).count();
         cost.sincos = angles.len();
         cost.exp = function.stribeck.len();
         cost.add += angles.iter().map(|angle| angle.additions()).sum::<usize>();

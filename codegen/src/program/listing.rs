@@ -48,6 +48,8 @@ pub enum Expression {
     Step(usize),
     /// An operation.
     Operation(Operation, Box<Expression>, Box<Expression>),
+    /// The product of the first two and the third, added to it in one operation that rounds once.
+    Fused(Box<[Expression; 3]>),
     /// The sign of what is inside.
     Sign(Box<Expression>),
     /// What is inside, negated.
@@ -260,6 +262,7 @@ impl Expression {
             Expression::Input(_)
             | Expression::Stribeck(..)
             | Expression::Step(_)
+            | Expression::Fused(_)
             | Expression::Sign(_)
             | Expression::Brackets(_) => false,
         }
@@ -271,6 +274,20 @@ impl Expression {
         Expression::Negation(Box::new(if bare { self } else { Expression::Brackets(Box::new(self)) }))
     }
 
+    /// A product and what is added to it, or taken away, as one operation; `self` is the product.
+    fn fused(self, operation: Operation, product_is_left: bool, mut other: Expression) -> Expression {
+        let Expression::Operation(_, left, right) = self else { unreachable!("a product that a sum takes is an operation") };
+        let [mut left, right] = [left, right].map(|factor| match *factor {
+            Expression::Brackets(inner) => *inner,
+            factor => factor,
+        });
+        if operation == Operation::Subtract {
+            let negated = if product_is_left { &mut other } else { &mut left };
+            *negated = std::mem::replace(negated, Expression::Step(0)).negated();
+        }
+        Expression::Fused(Box::new([left, right, other]))
+    }
+
     fn collect_constants<'a>(&'a self, constants: &mut Vec<&'a Number>) {
         match self {
             Expression::Constant(value) | Expression::Stribeck(_, value) => constants.push(value),
@@ -279,6 +296,7 @@ impl Expression {
                 left.collect_constants(constants);
                 right.collect_constants(constants);
             }
+            Expression::Fused(parts) => parts.iter().for_each(|part| part.collect_constants(constants)),
             Expression::Sign(inner) | Expression::Negation(inner) | Expression::Brackets(inner) => {
                 inner.collect_constants(constants)
             }
@@ -301,6 +319,7 @@ impl Expression {
                 left.collect_names(names);
                 right.collect_names(names);
             }
+            Expression::Fused(parts) => parts.iter().for_each(|part| part.collect_names(names)),
             Expression::Sign(inner) | Expression::Negation(inner) | Expression::Brackets(inner) => inner.collect_names(names),
         }
     }
@@ -322,13 +341,7 @@ struct Made {
 impl Listing {
     /// The lines of a function.
     pub fn of(function: &Function) -> Listing {
-        let mut uses = vec![0usize; function.steps.len()];
-        let operands = function.steps.iter().flat_map(|s| [&s.left, &s.right]).chain(function.outputs.iter().map(|o| &o.operand));
-        for operand in operands {
-            if let Operand::Step(i) = operand {
-                uses[*i as usize] += 1;
-            }
-        }
+        let (uses, fused) = (function.uses(), function.products_in_sums());
         // An exponential is taken once, in a line of its own.
         let mut lines: Vec<Line> = function
             .stribeck
@@ -344,7 +357,9 @@ impl Listing {
             Operand::Input(symbol) => Made { expression: Expression::Input(*symbol), operands: 1 },
             Operand::Constant(value) => Made { expression: Expression::Constant(value.clone()), operands: 1 },
         };
-        for (Step { operation, left, right }, uses) in function.steps.iter().zip(uses) {
+        for (i, (Step { operation, left, right }, uses)) in function.steps.iter().zip(uses).enumerate() {
+            let is_fused = |operand: &Operand| matches!(operand, Operand::Step(i) if fused[*i as usize]);
+            let takes = [is_fused(left), is_fused(right)];
             let (left, right) = (operand(&made, left), operand(&made, right));
             if let Operation::Sign | Operation::OppositeSign = operation {
                 let of = if *operation == Operation::Sign { left.expression } else { left.expression.negated() };
@@ -359,9 +374,15 @@ impl Listing {
                 continue;
             }
             let operands = left.operands + right.operands;
-            let (left, right) = (left.expression.inside(*operation, false), right.expression.inside(*operation, true));
-            let expression = Expression::Operation(*operation, Box::new(left), Box::new(right));
-            made.push(if uses == 1 && operands <= OPERANDS_IN_A_LINE {
+            let expression = match takes {
+                [true, _] => left.expression.fused(*operation, true, right.expression),
+                [_, true] => right.expression.fused(*operation, false, left.expression),
+                [false, false] => {
+                    let (left, right) = (left.expression.inside(*operation, false), right.expression.inside(*operation, true));
+                    Expression::Operation(*operation, Box::new(left), Box::new(right))
+                }
+            };
+            made.push(if fused[i] || uses == 1 && operands <= OPERANDS_IN_A_LINE {
                 Made { expression, operands }
             } else {
                 let name = lines.len() + 1;
@@ -443,6 +464,7 @@ mod tests {
                 };
                 format!("{} {sign} {}", text(left), text(right))
             }
+            Expression::Fused(parts) => format!("fma({}, {}, {})", text(&parts[0]), text(&parts[1]), text(&parts[2])),
             Expression::Sign(inner) => format!("sign({})", text(inner)),
             Expression::Negation(inner) => format!("-{}", text(inner)),
             Expression::Brackets(inner) => format!("({})", text(inner)),
@@ -456,6 +478,23 @@ mod tests {
     /// The lines and entries of steps and outputs.
     #[track_caller]
     fn check(steps: &[(Operand, Operation, Operand)], outputs: &[(Operand, bool)], lines: &[&str], entries: &[&str]) {
+        check_either(false, steps, outputs, lines, entries);
+    }
+
+    /// The same with fused operations.
+    #[track_caller]
+    fn check_fused(steps: &[(Operand, Operation, Operand)], outputs: &[(Operand, bool)], lines: &[&str], entries: &[&str]) {
+        check_either(true, steps, outputs, lines, entries);
+    }
+
+    #[track_caller]
+    fn check_either(
+        fuse: bool,
+        steps: &[(Operand, Operation, Operand)],
+        outputs: &[(Operand, bool)],
+        lines: &[&str],
+        entries: &[&str],
+    ) {
         let step = |(left, operation, right): &(Operand, Operation, Operand)| Step {
             operation: *operation,
             left: left.clone(),
@@ -469,6 +508,7 @@ mod tests {
             outputs: outputs.iter().map(|(operand, negated)| Output { operand: operand.clone(), negated: *negated }).collect(),
             method: "hand",
             stribeck: BTreeMap::new(),
+            fuse,
         };
         let listing = Listing::of(&function);
         let found: Vec<String> = listing.lines.iter().map(|line| format!("t{} = {}", line.name, text(&line.value))).collect();
@@ -518,6 +558,38 @@ mod tests {
     }
 
     #[test]
+    fn a_product_that_a_sum_alone_takes_is_fused_with_it() {
+        use Operation::{Add, Multiply, Subtract};
+        let product = (rate(0), Multiply, rate(1));
+        let of_sum = [(rate(0), Add, rate(1)), (Operand::Step(0), Multiply, rate(2))];
+        let end = [(Operand::Step(1), false)];
+        for (operation, right, fused) in [
+            (Add, false, "fma(dq1, dq2, dq3)"),
+            (Add, true, "fma(dq1, dq2, dq3)"),
+            (Subtract, false, "fma(dq1, dq2, -dq3)"),
+            (Subtract, true, "fma(-dq1, dq2, dq3)"),
+        ] {
+            let (left, right) = if right { (rate(2), Operand::Step(0)) } else { (Operand::Step(0), rate(2)) };
+            check_fused(&[product.clone(), (left, operation, right)], &end, &[], &[fused]);
+        }
+        // No brackets around a factor, and of two products the left one.
+        let sum = [&of_sum[..], &[(rate(0), Subtract, Operand::Step(1))]].concat();
+        check_fused(&sum, &[(Operand::Step(2), true)], &[], &["-fma(-(dq1 + dq2), dq3, dq1)"]);
+        let other = [product.clone(), (rate(2), Multiply, rate(3)), (Operand::Step(0), Subtract, Operand::Step(1))];
+        check_fused(&other, &[(Operand::Step(2), false)], &[], &["fma(dq1, dq2, -dq3 * dq4)"]);
+        // A product that is used twice, and one that is a result, are rounded.
+        let twice = [product.clone(), (Operand::Step(0), Add, rate(2)), (Operand::Step(0), Add, rate(3))];
+        let outputs = [(Operand::Step(1), false), (Operand::Step(2), false)];
+        check_fused(&twice, &outputs, &["t1 = dq1 * dq2"], &["t1 + dq3", "t1 + dq4"]);
+        check_fused(
+            &twice[..2],
+            &[(Operand::Step(1), false), (Operand::Step(0), false)],
+            &["t1 = dq1 * dq2"],
+            &["t1 + dq3", "t1"],
+        );
+    }
+
+    #[test]
     fn a_long_body_hands_on_what_later_parts_need() {
         use Operation::Add;
         // Each step is used twice, and the first by the result.
@@ -540,6 +612,7 @@ mod tests {
             outputs: outputs.to_vec(),
             method: "hand",
             stribeck: BTreeMap::new(),
+            fuse: false,
         };
         let listing = Listing::of(&function);
         let parts = listing.parts();

@@ -302,7 +302,7 @@ pub fn values(program: &Program, literals: &[Pair], arguments: &TwofoldArguments
                 let (a, b) = both(*a, *b);
                 a.minus(b)
             }
-            Step::Multiply(a, b) => {
+            Step::Multiply(a, b) | Step::Product(a, b) => {
                 let (a, b) = both(*a, *b);
                 a.times(b)
             }

@@ -238,6 +238,10 @@ fn unreadable(tally: &mut Tally, scara: &Given) {
     tally.unreadable(scara, B, T1, &format!("{T1}    {impl_drop}\n"), "`impl` is not a value that is given before");
     let part = "only part `inertia_matrix_part_1` can be called";
     tally.unreadable(scara, B, T1, "    let [t1, _] = help(c2);\n", part);
+    let two = "`Real::mul_add` takes two factors and what is added to their product";
+    tally.unreadable(scara, B, T1, "    let t1 = Real::mul_add(5.0, c2);\n", two);
+    let other = "`exp` where an emitted module has `mul_add` in `Real::mul_add(`";
+    tally.unreadable(scara, B, T1, "    let t1 = Real::exp(c2);\n", other);
     let returning = item(&scara.module, "\npub fn base_regressor(");
     let alone = scara.module.replace(returning, "");
     let fault = || verify_with(&scara.source, &alone, scara.claims.clone(), Effort::default()).first_fault();
@@ -266,6 +270,19 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     let fast = given("scara", &Options { trig: Trig::Fast, ..Options::default() });
     let lanes = "let ([_, _, _, _], [c2, c9, _, _]) = sin_cos_four(1, q[1], q[1], q[1], q[1]);";
     tally.module(&fast, B, "let (_, c2) = sin_cos_one(q[1]);", lanes, &[(Lanes, "none of the first 1 angles")]);
+    let fused = given("scara", &Options { fuse: true, ..Options::default() });
+    let b11 = "Real::mul_add(10.0, c2, 21.526)";
+    let other = [
+        (Modular, "inertia_matrix[0][0]: differs from the equations at point 1 modulo"),
+        (Rational, "inertia_matrix[0][0]: differs from the equations at rational point 1"),
+        (Identities, "does not hold"),
+    ];
+    tally.module(&fused, B, b11, "Real::mul_add(-10.0, c2, 21.526)", &other);
+    let deep = format!("let t9 = {}c2{};", "Real::mul_add(2.0, ".repeat(17), ", 1.0)".repeat(17));
+    line(tally, &deep, &[(Brackets, "brackets in more than 16 others"), cost, prose]);
+    // That a product is rounded all the same is seen in the bound alone.
+    let rounded = [cost, (Rounding, "the documentation says `Rounding error: "), prose];
+    tally.module(&fused, B, b11, "10.0 * c2 + 21.526", &rounded);
     let dry = given("dry_friction", &Options::default());
     let known = "pub fn known_torque(";
     let of_rates = [(Signs, "Stribeck friction of something that is not a joint rate")];

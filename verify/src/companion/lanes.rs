@@ -111,6 +111,10 @@ impl Lanes {
                     let (a, b) = both(a, b);
                     Many::of(|lane| scaled(a.at(lane), b.at(lane)))
                 }
+                Step::Fma(a, b, c) => {
+                    let ((a, b), c) = (both(a, b), &values[c as usize]);
+                    Many::of(|lane| fused(a.at(lane), b.at(lane), c.at(lane)))
+                }
                 Step::Div(a, b) => {
                     let (a, b) = both(a, b);
                     Many::of(|lane| over(a.at(lane), b.at(lane)))
@@ -163,6 +167,7 @@ fn cone_of(steps: &[Step], entry: u32) -> Vec<u32> {
                 inside[a as usize] = true;
                 inside[b as usize] = true;
             }
+            Step::Fma(a, b, c) => [a, b, c].iter().for_each(|&k| inside[k as usize] = true),
         }
     }
     (0..=entry).rev().filter(|&i| inside[i as usize]).collect()
@@ -203,6 +208,12 @@ fn backward_in_lanes(
                 let (x, y) = (&values[a as usize], &values[b as usize]);
                 add(&mut sensitivities[a as usize], &active, |lane| times(own.at(lane), y.at(lane)));
                 add(&mut sensitivities[b as usize], &active, |lane| times(own.at(lane), x.at(lane)));
+            }
+            Step::Fma(a, b, c) => {
+                let (x, y) = (&values[a as usize], &values[b as usize]);
+                add(&mut sensitivities[a as usize], &active, |lane| times(own.at(lane), y.at(lane)));
+                add(&mut sensitivities[b as usize], &active, |lane| times(own.at(lane), x.at(lane)));
+                add(&mut sensitivities[c as usize], &active, |lane| own.at(lane));
             }
             Step::Div(a, b) => {
                 let (divisor, quotient) = (&values[b as usize], &values[i]);

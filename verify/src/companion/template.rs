@@ -28,6 +28,8 @@ enum Step {
     Mul(u32, u32),
     /// a b where a or b is an exact power of two: no rounding
     Scale(u32, u32),
+    /// a b + c, rounded once // with fused operations
+    Fma(u32, u32, u32), // with fused operations
     /// a / b
     Div(u32, u32),
 }
@@ -105,6 +107,12 @@ fn scaled(a: Bounded, b: Bounded) -> Bounded {
     Bounded { error: product.error + lost, ..product }
 }
 
+/// A product and a sum with one rounding. // with fused operations
+fn fused(a: Bounded, b: Bounded, c: Bounded) -> Bounded { // with fused operations
+    let value = Real::mul_add(a.value, b.value, c.value); // with fused operations
+    Bounded { value, error: scale(a, b).error + c.error + (UNIT * value.abs() + TINY) } // with fused operations
+} // with fused operations
+ // with fused operations
 fn over(a: Bounded, b: Bounded) -> Bounded {
     let value = a.value / b.value;
     // A hundredth more than the error, for the roundings of the error itself.
@@ -187,6 +195,7 @@ fn forward(steps: &[Step], angles: &[Angle<'_>], given: &Given<'_>, values: &mut
             Step::Sub(a, b) => plus(of(a), negated(of(b))),
             Step::Mul(a, b) => times(of(a), of(b)),
             Step::Scale(a, b) => scaled(of(a), of(b)),
+            Step::Fma(a, b, c) => fused(of(a), of(b), of(c)), // with fused operations
             Step::Div(a, b) => over(of(a), of(b)),
         };
     }
@@ -203,6 +212,7 @@ fn rounding(step: &Step, value: &Bounded) -> Real {
         Step::SignOf(_) => value.error, // with load friction
         Step::Add(..) | Step::Sub(..) => UNIT * value.value.abs(),
         Step::Mul(..) => UNIT * value.value.abs() + TINY,
+        Step::Fma(..) => UNIT * value.value.abs() + TINY, // with fused operations
         Step::Div(..) => 2.0 * UNIT * value.value.abs() + TINY,
     }
 }
@@ -244,6 +254,11 @@ fn backward(steps: &[Step], values: &[Bounded], sensitivities: &mut [Bounded], e
                 add(a, times(own, values[b as usize]));
                 add(b, times(own, values[a as usize]));
             }
+            Step::Fma(a, b, c) => { // with fused operations
+                add(a, times(own, values[b as usize])); // with fused operations
+                add(b, times(own, values[a as usize])); // with fused operations
+                add(c, own); // with fused operations
+            } // with fused operations
             Step::Div(a, b) => {
                 let part = over(own, values[b as usize]);
                 add(a, part);

@@ -10,7 +10,7 @@
 //!        | let [names] = part(arguments, [names]) ;                 each part once, in order
 //! result = sum | [ result, ... ] | ([ ... ], [ ... ]) | EquationsOfMotion { inertia: ..., coriolis: ..., gravity: ... }
 //! sum    = product { (+ | -) product }      product = factor { (* | /) factor }      factor = [-] primary
-//! primary = number | name | entry | sign(dq[index]) | ( sum )
+//! primary = number | name | entry | sign(dq[index]) | Real::mul_add(sum, sum, sum) | ( sum )
 //! angle  = entry { (+ | -) entry } [ (+ | -) number ]               added joints first, each kind in their order, each joint once
 //! ```
 //!
@@ -332,6 +332,25 @@ impl<'a> Compiler<'a, '_, '_> {
         }
     }
 
+    /// `Real::mul_add(a, b, c)`: a product that is not rounded, and its sum with a third.
+    fn fused(&mut self, brackets: usize) -> Result<usize, Fault> {
+        let place = self.parser.peek();
+        if brackets == MOST_BRACKETS && Check::Brackets.is_made() {
+            return Err(place.fault(format!("brackets in more than {MOST_BRACKETS} others")));
+        }
+        self.parser.expect("Real::mul_add(")?;
+        let mut operands = Vec::new();
+        self.list(")", |own| {
+            operands.push(own.sum(brackets + 1)?);
+            Ok(())
+        })?;
+        let &[a, b, c] = operands.as_slice() else {
+            return Err(place.fault("`Real::mul_add` takes two factors and what is added to their product"));
+        };
+        let product = self.push(Step::Product(a, b))?;
+        self.push(Step::Add(product, c))
+    }
+
     fn factor(&mut self, brackets: usize) -> Result<usize, Fault> {
         let negative = self.parser.eat("-")?;
         let token = self.parser.peek();
@@ -361,6 +380,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.shared.calls.insert("stribeck");
                 self.push(Step::Stribeck(joint, velocity))?
             }
+            Kind::Word if token.is("Real") => self.fused(brackets)?,
             Kind::Word if Argument::named(token.text).is_some() => self.entry()?.2,
             Kind::Word => {
                 self.parser.take()?;

@@ -1,7 +1,7 @@
 //! Reads a module in C: the header that holds the functions.
 //!
 //! ```text
-//! header   = guard [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } epilogue
+//! header   = guard [ fused ] [ library ] prologue constants [ sines ] [ sign ] [ stribeck ] { { part } function } epilogue
 //! function = static inline TYPE ROBOT_NAME( ARGUMENTS ) { ROBOT_UNFUSED { (void)ARGUMENT; } [ angles ] { line } { call { line } } result }
 //! angles   = const ROBOT_real angle[N] = {ANGLES};  ROBOT_real sine[N], cosine[N];  ROBOT_sin_cos(USED, angle, sine, cosine);
 //!            { const ROBOT_real NAME = sine[I]; | const ROBOT_real NAME = cosine[I]; }
@@ -37,6 +37,8 @@ pub(super) const FIXED: [&str; 8] = [PROLOGUE, EPILOGUE, SIGN, STRIBECK, STD, FA
 
 /// The sines of the C library; of angles beyond the range of the module's own ones, where it has some.
 const LIBRARY: &str = "#include <math.h>\n#define ROBOT_SIN(x) sin(x)\n#define ROBOT_COS(x) cos(x)\n";
+/// The fused operation.
+const FUSED: &str = "#define ROBOT_FMA(x, y, z) fma(x, y, z)\n#include <math.h>\n";
 const NONE: &str = "#ifdef ROBOT_NO_MATH_H\n#define ROBOT_SIN(x) (((x) - (x)) / ((x) - (x)))\n\
     #define ROBOT_COS(x) (((x) - (x)) / ((x) - (x)))\n#else\n";
 
@@ -118,6 +120,10 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         Some("float") => (Float::F32, "float", "f"),
         _ => return Err(lines.fault("the module has no type of its numbers")),
     };
+    let fused = lines.peek().starts_with(&format!("#define {upper}_FMA("));
+    if fused {
+        fixed(&mut lines, &FUSED.replace("fma(", &format!("fma{suffix}(")))?;
+    }
     let library = LIBRARY.replace("sin(", &format!("sin{suffix}(")).replace("cos(", &format!("cos{suffix}("));
     let trig = if lines.is(&format!("#ifdef {upper}_NO_MATH_H")) {
         fixed(&mut lines, &format!("{NONE}{library}#endif\n"))?;
@@ -155,6 +161,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix,
         sign: format!("{}_sign(", robot.name),
         stribeck: format!("{}_stribeck(", robot.name),
+        fused: fused.then(|| format!("{upper}_FMA(")),
         define: [format!("    const {}_real ", robot.name), " = ".into(), ";".into()],
         list: ("[", "]"),
         angles: ", ",

@@ -85,6 +85,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix: "",
         sign: "sign(".into(),
         stribeck: "stribeck(".into(),
+        fused: None,
         define: ["    const ".into(), " = ".into(), ";".into()],
         list: ("[", "]"),
         angles: ", ",

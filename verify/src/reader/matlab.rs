@@ -114,6 +114,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix: "",
         sign: "signOf(".into(),
         stribeck: "stribeck(".into(),
+        fused: None,
         define: ["    ".into(), " = ".into(), ";".into()],
         list: ("{", "}"),
         angles: ", ",

@@ -119,6 +119,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         suffix: "",
         sign: "_sign(xp, ".into(),
         stribeck: "_stribeck(xp, ".into(),
+        fused: None,
         define: ["    ".into(), " = ".into(), String::new()],
         list: ("[", "]"),
         angles: ", ",

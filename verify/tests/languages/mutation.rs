@@ -3,6 +3,7 @@
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::validate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
@@ -34,6 +35,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
                 Step::Add(a, b) => format!("{} + {}", numbers[*a], numbers[*b]),
                 Step::Subtract(a, b) => format!("{} - {}", numbers[*a], numbers[*b]),
                 Step::Multiply(a, b) => format!("{} * {}", numbers[*a], numbers[*b]),
+                Step::Product(a, b) => format!("{} * {} not rounded", numbers[*a], numbers[*b]),
                 Step::Divide(a, b) => format!("{} / {}", numbers[*a], numbers[*b]),
             };
             let next = known.len();
@@ -67,6 +69,7 @@ pub(crate) fn same_operations(a: &Program, b: &Program) -> bool {
         Step::Add(a, b) => Step::Add(a + offset, b + offset),
         Step::Subtract(a, b) => Step::Subtract(a + offset, b + offset),
         Step::Multiply(a, b) => Step::Multiply(a + offset, b + offset),
+        Step::Product(a, b) => Step::Product(a + offset, b + offset),
         Step::Divide(a, b) => Step::Divide(a + offset, b + offset),
         leaf => leaf,
     }));
@@ -127,9 +130,9 @@ fn larger_change(line: &str, stream: &mut Stream) -> Option<String> {
 }
 
 /// Makes so many changes of code, each of which must be found: the text is refused, or another function than that of the equations is read.
-pub(crate) fn check(name: &str, language: Language, wanted: usize) {
+pub(crate) fn check(name: &str, language: Language, fuse: bool, wanted: usize) {
     let source = common::source(name);
-    let generated = crate::generated(&source, Scalar::F64, Trig::Fast);
+    let generated = common::generate_with(&source, &Options { trig: Trig::Fast, fuse, ..Options::default() });
     let text = generated.in_language(language);
     let claims = Claims::from_numbers(&generated.constants);
     let effort = Effort { points: 2, exact_points: 0, seed: 7 };

@@ -37,6 +37,10 @@ pub(crate) struct Choices {
     /// or --bounds, which are of functions for one state
     #[arg(long, value_name = "LANES", value_parser = clap::value_parser!(u16).range(1..=1024))]
     batch: Option<u16>,
+    /// Fuse a multiplication with the addition that alone takes its product, which then rounds once: for processors that have
+    /// the operation, in Rust and C (docs/fused.md)
+    #[arg(long)]
+    fma: bool,
     /// Functions of the module, separated by commas; all if none is named (`armgen count FILE` lists them); not with --verify
     /// or --tests, which are of the whole module
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -123,7 +127,8 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         Err(code) => return code,
     };
     let without = choices.without.iter().copied().collect();
-    let options = Options { scalar, trig, without, batch: choices.batch.map(usize::from), functions: functions.clone() };
+    let batch = choices.batch.map(usize::from);
+    let options = Options { scalar, trig, without, batch, functions: functions.clone(), fuse: choices.fma };
     let (generated, diagnostics) = armgen_codegen::generate(&source, &options);
     let mut generated = match input::report_or_exit_code(&source, generated, &diagnostics, input::Warnings::Counted) {
         Ok(generated) => generated,
@@ -247,6 +252,7 @@ fn unfit(
             "--batch",
             "functions for many states are written for Rust and C; JavaScript calls one after the other, the others take arrays of states",
         ),
+        (choices.fma && language != Language::C, "--fma", "a fused operation is written in Rust and C"),
         (trig == Trig::Libm, "--trig libm", "the crate libm is Rust's: take `--trig fast` or `--trig std`"),
     ];
     if let Some((_, flag, why)) = only_rust.iter().find(|(asked, ..)| *asked) {

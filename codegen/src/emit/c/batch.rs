@@ -29,6 +29,10 @@ impl Syntax for Lanes<'_> {
         self.0.stribeck(entry, velocity)
     }
 
+    fn fused(&self, parts: [String; 3]) -> String {
+        self.0.fused(parts)
+    }
+
     fn entry(&self, argument: Argument, index: usize) -> String {
         format!("lanes_{}[{index}][lane]", argument.name())
     }

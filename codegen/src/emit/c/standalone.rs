@@ -39,6 +39,7 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     if module.batch.is_some() {
         text += "#include <stddef.h>\n\n";
     }
+    text += &of_robot(&fused(module), &c.name, &c.upper);
     text += &of_robot(&sine_of_library(module), &c.name, &c.upper);
     text += &of_robot(PROLOGUE, &c.name, &c.upper);
     text += &of_robot(VECTORS, &c.name, &c.upper);
@@ -87,6 +88,21 @@ pub(super) fn library(module: &Module, origin: &Origin, lanes: usize) -> String 
         let _ = writeln!(text, "\nEXPORTED {exported};\n{exported}\n{{\n    {}_batch_{own}({});\n}}", c.name, names.join(", "));
     }
     text
+}
+
+/// The fused operation, if any is needed.
+fn fused(module: &Module) -> String {
+    if !module.is_fused() {
+        return String::new();
+    }
+    let suffix = match module.scalar {
+        Scalar::F64 => "",
+        Scalar::F32 => "f",
+    };
+    format!(
+        "/* x y + z, rounded once: an instruction where the compiler is told of a processor that has it (-mfma, -march=native), else a call. */\n\
+         #define ROBOT_FMA(x, y, z) fma{suffix}(x, y, z)\n#include <math.h>\n\n"
+    )
 }
 
 /// Where the sines of the C library come from, if any are needed.

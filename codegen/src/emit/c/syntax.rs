@@ -27,4 +27,8 @@ impl Syntax for C<'_> {
     fn stribeck(&self, entry: &str, velocity: &str) -> String {
         format!("{}_stribeck({entry}, {velocity})", self.name)
     }
+
+    fn fused(&self, [a, b, c]: [String; 3]) -> String {
+        format!("{}_FMA({a}, {b}, {c})", self.upper)
+    }
 }

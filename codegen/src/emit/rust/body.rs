@@ -95,6 +95,10 @@ fn expression(of: &Expression, scalar: Scalar) -> TokenStream {
                 Operation::Sign | Operation::OppositeSign => unreachable!("a listing writes the sign of one operand"),
             }
         }
+        Expression::Fused(parts) => {
+            let [a, b, c] = parts.each_ref().map(|part| expression(part, scalar));
+            quote!(Real::mul_add(#a, #b, #c))
+        }
         Expression::Sign(inner) => {
             let inner = expression(inner, scalar);
             quote!(sign(#inner))

@@ -39,6 +39,8 @@ pub(in crate::reader) struct Syntax {
     pub(in crate::reader) sign: String,
     /// In front of the entry that what is left of Stribeck friction is of.
     pub(in crate::reader) stribeck: String,
+    /// In front of two factors and what is added to their product with one rounding, where the language has that.
+    pub(in crate::reader) fused: Option<String>,
     /// Around the value of a name: `const double `, ` = `, `;`.
     pub(in crate::reader) define: [String; 3],
     /// Around the index of a value in a list.
@@ -302,6 +304,18 @@ impl<'a, 's> Body<'a, 's> {
             place.expect(")")?;
             self.asks[2] = true;
             self.push(Step::Stribeck(joint, velocity), place)?
+        } else if self.syntax.fused.as_ref().is_some_and(|fused| place.eat(fused)) {
+            if brackets == MOST_BRACKETS {
+                return Err(place.fault(&format!("brackets are in more than {MOST_BRACKETS} others")));
+            }
+            let a = self.sum(place, brackets + 1)?;
+            place.expect(", ")?;
+            let b = self.sum(place, brackets + 1)?;
+            place.expect(", ")?;
+            let c = self.sum(place, brackets + 1)?;
+            place.expect(")")?;
+            let product = self.push(Step::Product(a, b), place)?;
+            self.push(Step::Add(product, c), place)?
         } else {
             let mut after = *place;
             let word = after.word();
