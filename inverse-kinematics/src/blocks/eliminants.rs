@@ -352,8 +352,11 @@ fn kernel(m: &[[[Real; 1]; 6]; 6]) -> ([[Real; 6]; 2], usize) {
                 continue;
             }
             let mut sum = 0.0;
-            for j in k + 1..6 {
-                sum -= m[k][j] * x[j];
+            // The bounds of j do not depend on k, so that the optimiser sees that no index is out of range.
+            for j in 1..6 {
+                if j > k {
+                    sum -= m[k][j] * x[j];
+                }
             }
             x[k] = if m[k][k] != 0.0 { sum / m[k][k] } else { 0.0 };
         }
