@@ -272,7 +272,9 @@ function list(host, all, options) {
     let next = 0;
     const table = html("div", { class: "lines scroll", tabindex: 0, role: "region", "aria-label": "Formulas" });
     const more = html("button", { type: "button" });
-    host.replaceChildren(table, more);
+    // On paper there is no button.
+    const left = html("p", { class: "print-only" });
+    host.replaceChildren(table, more, left);
     const slice = (until) => {
         const end = Math.min(until, options.count + SLICE);
         while (next < all.length && options.count < end) {
@@ -285,7 +287,8 @@ function list(host, all, options) {
         const busy = host.firstChild === table && next < all.length && options.count < until;
         table.setAttribute("aria-busy", String(busy));
         more.hidden = busy || next === all.length;
-        more.textContent = `show ${Math.min(all.length - next, next)} more of ${all.length - next} lines`;
+        more.textContent = `show ${Math.min(all.length - next, next)} more of ${all.length} lines`;
+        left.textContent = next === all.length ? "" : `${all.length - next} of ${all.length} lines are not printed: open them on the page first.`;
         if (busy) requestAnimationFrame(() => setTimeout(() => slice(until)));
     };
     more.addEventListener("click", () => {
