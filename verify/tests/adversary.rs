@@ -247,7 +247,7 @@ fn steps_that_no_emitted_body_has_are_refused() {
         ("sin_cos(q[0])", "`sin_cos` is not a value"),
         ("t2", "`t2` is not a value that is given before"),
         ("Real::INFINITY", "`INFINITY` where an emitted module has `mul_add`"),
-        ("Real::mul_add(5.0, c2)", "`)` where an emitted module has `,`"),
+        ("Real::mul_add(5.0, c2)", "`Real::mul_add` takes two factors and what is added to their product"),
         ("c2 as f32 as f64", "`as` where"),
         ("c2 > 5.0", "`>` where"),
         ("return 5.0", "`return` is not a value"),
