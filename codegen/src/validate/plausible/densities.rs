@@ -29,15 +29,13 @@ impl Arm<'_> {
         let place = densities[0].1;
         densities.sort_by(|a, b| a.0.total_cmp(&b.0));
         let median = densities[densities.len() / 2].0;
-        // Inertia grows as the density to the power -2/3.
-        let links: Vec<&BodyDescription> = self.joints.iter().filter_map(|joint| joint.link.as_ref()).collect();
-        let placeholders = links.iter().filter(|link| self.has_placeholder(link, context)).count();
-        if median < FOAM && 2 * placeholders > links.len() {
+        if median < FOAM && self.has_mostly_placeholders(context) {
             let message = "half of the links have an inertia as templates have it, and are lighter than foam with it";
             let help = "write what the data sheet says, or leave `inertia` out where it is not known";
             context.report(Code::PlaceholderInertia, place, message, "this one and others", help);
             return;
         }
+        // Inertia grows as the density to the power -2/3.
         let factor = |ratio: f64| short(ratio.powf(2.0 / 3.0).round());
         let (code, words, slip) = match median {
             _ if median < FOAM => {
@@ -54,6 +52,13 @@ impl Arm<'_> {
         );
         let help = format!("inertias are in kg m², about the centre of mass; about the density of water is usual, so all may be too {slip} or so");
         context.report(code, place, message, "this one and others", help);
+    }
+
+    /// Whether more than half of the links have a tensor of a template.
+    fn has_mostly_placeholders(&self, context: &mut Context<'_>) -> bool {
+        let links = self.joints.iter().filter_map(|joint| joint.link.as_ref());
+        let all = links.clone().count();
+        2 * links.filter(|link| self.has_placeholder(link, context)).count() > all
     }
 }
 
