@@ -152,7 +152,7 @@ The page says how far its own arm is from each pose, and which single mistake in
 <ol id="suspects"></ol>
 "#;
 
-const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above.</p>
+const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above. Six digits are shown, and 0 where rounding alone has left something; copies have all digits of what was computed, such as −5.6e−17.</p>
 <div id=\"quantities\"></div>
 ";
 

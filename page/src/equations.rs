@@ -68,7 +68,7 @@ impl Equations {
         let mut text = String::from(CHOICES);
         for quantity in &self.quantities {
             let (name, symbol, size) = (escape(&quantity.name), typeset(&quantity.symbol), &quantity.size);
-            let words = name.replace('_', " ").replace("center", "centre");
+            let words = in_words(&name);
             let about = words::about(&quantity.name).map_or(String::new(), |text| format!(" title=\"{}\"", escape(text)));
             let _ = match &quantity.text {
                 Some(_) => writeln!(
@@ -87,6 +87,15 @@ impl Equations {
         }
         text
     }
+}
+
+/// The name of a function as a heading has it.
+fn in_words(name: &str) -> String {
+    let words =
+        name.replace('_', " ").replace("center", "centre").replace("coriolis", "Coriolis").replace("jacobian", "Jacobian");
+    [(" by ddq", " by q̈"), (" by dq", " by q̇"), (" by tau", " by τ")]
+        .iter()
+        .fold(words, |text, (from, to)| text.replace(from, to))
 }
 
 const CHOICES: &str = "<div class=\"controls\"><fieldset><legend>Parameters</legend>\
@@ -167,7 +176,7 @@ fn quantity(robot: &str, nominal: &Shown, symbolic: Option<&Shown>) -> Quantity 
 
 #[cfg(test)]
 mod tests {
-    use super::typeset;
+    use super::{in_words, typeset};
 
     #[test]
     fn symbols_are_typeset() {
@@ -179,5 +188,6 @@ mod tests {
         check("dtau/dq", "∂τ/∂q");
         check("dJ/dt(q, dq)", "dJ/dt(q, q̇)");
         check("<b>", "&lt;b&gt;");
+        assert_eq!(in_words("forward_dynamics_derivatives_by_dq"), "forward dynamics derivatives by q̇");
     }
 }

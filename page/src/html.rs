@@ -42,7 +42,14 @@ pub(crate) fn decimal(value: f64) -> String {
         let text = format!("{value:.5e}");
         let (digits, exponent) = text.split_once('e').expect("the exponent was asked for");
         let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
-        return format!("{digits}e{exponent}");
+        let raised = |c| match c {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            c => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
+        };
+        return format!("{digits}·10{}", exponent.chars().map(raised).collect::<String>());
     }
     let decimals = (5 - value.abs().log10().floor() as i32).max(0) as usize;
     let text = format!("{value:.decimals$}");
@@ -83,8 +90,8 @@ mod tests {
         check(0.0, "0");
         check(-9.81, "-9.81");
         check(1.0 / 3.0, "0.333333");
-        check(5e-5, "5e-5");
-        check(123_456_789.0, "1.23457e8");
+        check(5e-5, "5·10⁻⁵");
+        check(-123_456_789.0, "-1.23457·10⁸");
     }
 
     #[test]

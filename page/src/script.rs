@@ -18,10 +18,12 @@ const FILES: &[(&str, &str)] = &[
     ("formula", include_str!("../web/formula.mjs")),
     ("mathml", include_str!("../web/mathml.mjs")),
     ("pack", include_str!("../web/pack.mjs")),
-    ("equations", include_str!("../web/equations.mjs")),
     ("linear", include_str!("../web/linear.mjs")),
+    ("noise", include_str!("../web/noise.mjs")),
+    ("equations", include_str!("../web/equations.mjs")),
     ("kinematics", include_str!("../web/kinematics.mjs")),
     ("view", include_str!("../web/view.mjs")),
+    ("labels", include_str!("../web/labels.mjs")),
     ("solids", include_str!("../web/solids.mjs")),
     ("bodies", include_str!("../web/bodies.mjs")),
     ("scene", include_str!("../web/scene.mjs")),
@@ -30,6 +32,7 @@ const FILES: &[(&str, &str)] = &[
     ("sliders", include_str!("../web/sliders.mjs")),
     ("picture", include_str!("../web/picture.mjs")),
     ("sheet", include_str!("../web/sheet.mjs")),
+    ("why", include_str!("../web/why.mjs")),
     ("lost", include_str!("../web/lost.mjs")),
     ("numbers", include_str!("../web/numbers.mjs")),
     ("suspects", include_str!("../web/suspects.mjs")),
@@ -42,6 +45,9 @@ const FILES: &[(&str, &str)] = &[
     ("settings", include_str!("../web/settings.mjs")),
     ("main", include_str!("../web/main.mjs")),
 ];
+
+/// What stands for the file that plays logs in pages without any.
+const WITHOUT_LOGS: &str = "export function logs() {}\n";
 
 /// What draws curves, with its licence: only in pages with logs.
 const PLOTS: &str = include_str!("../vendor/uPlot-1.6.32/uPlot.iife.min.js");
@@ -56,6 +62,7 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
     text += "globalThis.robot = ";
     text += &closed(module);
     for (name, file) in FILES {
+        let file = if *name == "logs" && !with_plots { WITHOUT_LOGS } else { file };
         let _ = write!(text, "const {} = ", variable(name));
         text += &closed(&brief(file));
     }

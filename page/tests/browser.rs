@@ -281,7 +281,7 @@ fn tables_say_units_and_doubts() {
     let bodies = tab.run("[...document.querySelectorAll('.bodies tbody tr')].map((row) => row.innerText)");
     let bodies: Vec<&str> = bodies.as_array().expect("rows").iter().filter_map(Value::as_str).collect();
     let [large, doubt, massless, said, planar] = bodies[..] else { panic!("{bodies:?}") };
-    assert!(large.contains("xx 1") && large.contains("6.804e−12") && large.ends_with("doubtful: lighter than foam"), "{large}");
+    assert!(large.contains("xx 1") && large.contains("6.804·10⁻¹²") && large.ends_with("doubtful: lighter than foam"), "{large}");
     assert!(doubt.contains("radius of gyration of 100 m"), "{doubt}");
     assert!(massless.contains("zz 2") && massless.ends_with("no mass"), "{massless}");
     assert!(said.contains("one moment of inertia alone belongs to no solid body"), "{said}");
@@ -326,6 +326,81 @@ fn equations_are_set_when_they_are_opened() {
     }
 }
 
+/// Nothing stands behind a sine that could be taken for a part of its angle, a small constant has a power of ten, and rates, torques and
+/// derivatives have their symbols; what rounding leaves is shown as 0, and the number stays what was computed.
+#[test]
+fn formulas_and_numbers_cannot_be_misread() {
+    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
+    let seen = tab.run(
+        "(async () => { const seen = []; const text = (name, entry) => document.querySelector(`[data-equation=${name}] [data-entry=\"${entry}\"]`).textContent; \
+         for (const name of ['coriolis_matrix', 'friction', 'inverse_dynamics', 'known_torque', 'geometric_jacobian_dot']) { \
+             const details = document.querySelector(`details[data-equation=${name}]`); details.open = true; \
+             while (!details.querySelector('.copies')) await new Promise((done) => setTimeout(done, 5)); } \
+         const entries = [['coriolis_matrix', '1,1'], ['coriolis_matrix', '1,2'], ['friction', '1,1'], ['inverse_dynamics', '4,1'], ['geometric_jacobian_dot', '1,2']]; \
+         for (const [name, entry] of entries) seen.push(text(name, entry)); \
+         seen.push(document.querySelector('[data-equation=known_torque] math').textContent, document.querySelectorAll('[data-equation=friction] msup').length, \
+             document.querySelector('[data-equation=inverse_dynamics_derivatives_by_dq] summary').textContent); \
+         document.querySelector('input[value=symbolic]').click(); await new Promise((done) => setTimeout(done, 200)); \
+         const index = [...document.querySelectorAll('[data-equation=inverse_dynamics] msub')].find((one) => one.textContent === 'Il1'); \
+         seen.push([...index.lastChild.children].map((part) => part.localName + part.textContent)); return seen; })()",
+    );
+    let expected = serde_json::json!([
+        "−5q.2sinq2",
+        "−5(q.1+q.2)sinq2",
+        "5·10−5q.1",
+        "τ4=2q.4 −1.02q¨1 −1.02q¨2 +1.4q¨4 = 0",
+        "(dJ/dt)12=−0.5(q.1+q.2)cos(q1+q2) ",
+        "τknown(q,q.,q.r,q¨r)=",
+        2,
+        "∂τ/∂q̇ inverse dynamics derivatives by q̇, 4 × 4",
+        ["mil", "mn1"]
+    ]);
+    assert_eq!(seen, expected);
+    tab.close();
+    let Some(mut tab) = opened(&robot("puma560"), 1600, "light") else { return };
+    let noise = tab.run(&format!(
+        "(() => {{ {MOVE}(1); for (const q of document.querySelectorAll('.exact input')) {{ q.value = 'pi/2'; q.dispatchEvent(new Event('input')); }} \
+         const entries = [...document.querySelectorAll('td[data-quantity]')]; \
+         const small = entries.filter((entry) => Math.abs(Number(entry.dataset.value)) < 1e-15 && Number(entry.dataset.value) !== 0); \
+         const minus = entries.filter((entry) => entry.textContent === '−0' || entry.textContent === '-0'); \
+         return [small.length > 2, small.every((entry) => entry.textContent === '0'), minus.length, \
+                 entries.filter((entry) => entry.textContent === '0').length < entries.length / 2]; }})()"
+    ));
+    assert_eq!(noise, serde_json::json!([true, true, 0, true]));
+    tab.close();
+}
+
+/// A singular posture says what the axes do that makes it one, in the plural where several factors are zero; the line of the lost motion and
+/// its words are in the picture in every view, and cover no name of a frame and not the badge.
+#[test]
+fn a_singular_posture_says_why() {
+    for (name, why) in [
+        ("scara", "Why: the axes of q₁, q₂ and q₄ are parallel and lie in one plane: the arm is stretched or folded."),
+        ("ur5", "Why: the axes of q₂, q₃ and q₄ are parallel and lie in one plane: the arm is stretched or folded."),
+        ("panda7", "Why: the axes of q₁, q₃ and q₅ lie on one line."),
+        ("puma560", "Why: the axes of q₄ and q₆ lie on one line."),
+    ] {
+        let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
+        let seen = tab.run(
+            "(() => { const box = (element) => element.getBoundingClientRect(); \
+             const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top; const faults = []; \
+             for (const view of ['oblique', 'front', 'side', 'top']) { document.querySelector(`button[data-view=${view}]`).click(); \
+                 const arm = box(document.getElementById('arm')); const words = box(document.querySelector('#arm .lost text')); \
+                 const line = box(document.querySelector('#arm .lost path')); \
+                 const within = (one) => one.left >= arm.left && one.right <= arm.right && one.top >= arm.top && one.bottom <= arm.bottom; \
+                 const others = [...document.querySelectorAll('#arm .frame-name, #arm .gravity text, #singular-posture a')].map(box); \
+                 if (!within(line) || !within(words) || others.some((other) => !apart(words, other))) faults.push(view); } \
+             const texts = [...document.querySelectorAll('#singular a')].map((link) => document.querySelector(link.hash) !== null); \
+             return [document.getElementById('singular-why').textContent, faults, texts.every((there) => there), document.getElementById('singular-posture').textContent]; })()",
+        );
+        assert_eq!((&seen[0], &seen[1], &seen[2]), (&why.into(), &serde_json::json!([]), &true.into()), "{name}: {seen}");
+        if name == "ur5" {
+            assert_eq!(seen[3], "⚠ singular posture: factor 1, sin(q₃), and factor 2, sin(q₅), of det J are zero");
+        }
+        tab.close();
+    }
+}
+
 /// An entry of an open section has its number beside it, that of the table at every posture; a singular posture is told at the picture, and
 /// the buttons beside the factors lead to it.
 #[test]
@@ -342,7 +417,7 @@ fn entries_have_numbers_and_singular_postures_a_badge() {
          const q2 = document.getElementById('q2-value'); \
          const turn = (to) => { q2.value = to; q2.dispatchEvent(new Event('input', { bubbles: true })); }; \
          const seen = [[...b12(), factor(), badge()]]; turn('1'); seen.push([...b12(), badge()]); \
-         const set = [...document.querySelectorAll('#singular button')].find((button) => button.textContent === 'set q2 = 0'); \
+         const set = [...document.querySelectorAll('#singular button')].find((button) => button.textContent === 'set q₂ = 0'); \
          set.click(); seen.push([q2.value, badge() !== '']); turn('3'); set.click(); seen.push([q2.value, badge() !== '']); \
          const link = document.querySelector('#singular-posture a').hash; \
          const there = document.querySelector(`[data-equation=inertia_matrix] a[href=\"#number-inertia_matrix\"]`) !== null; \
@@ -350,7 +425,7 @@ fn entries_have_numbers_and_singular_postures_a_badge() {
          const lost = () => [document.getElementById('lost-motion').textContent, document.querySelector('#arm .lost text')?.textContent ?? '']; \
          seen.push(lost()); turn('0.01'); seen.push([lost()[0].split(',')[0], lost()[1], badge().split(':')[0]]); turn('1'); seen.push(lost()); return seen; })()",
     );
-    let told = "⚠ singular posture: factor 1, 1/4 sin(q2), of det J is zero";
+    let told = "⚠ singular posture: factor 1, 1/4 sin(q₂), of det J is zero";
     let expected = serde_json::json!([
         ["= 13.766", true, "0", told],
         ["= 11.4675", true, ""],

@@ -18,6 +18,12 @@ fn the_same_text_gives_the_same_bytes_wherever_it_lies() {
     assert_eq!(page("a/arm.yaml", ARM), page("/b/c/arm.yaml", ARM));
 }
 
+/// What plays logs and draws curves is a fifth of a small page.
+#[test]
+fn a_page_without_logs_has_nothing_that_plays_them() {
+    assert!(!page("arm.yaml", ARM).contains("uPlot"));
+}
+
 #[test]
 fn a_faulty_description_gives_its_diagnostics_and_no_page() {
     let (page, diagnostics) =

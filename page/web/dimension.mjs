@@ -5,9 +5,9 @@
 
 import { set, svg } from "./dom.mjs";
 import { withUnit } from "./format.mjs";
+import { settle } from "./labels.mjs";
 import { motion, order, PLACES } from "./kinematics.mjs";
 import { along, column, compose, cross, direct, norm, origin, rotation, subtract } from "./vector.mjs";
-import { WIDTH } from "./view.mjs";
 
 const TITLES = { a: "a", alpha: "α", d: "d", theta: "θ" };
 
@@ -29,17 +29,14 @@ function label(view, at, content) {
     return svg("text", { x: x.toFixed(1), y: (y - 5).toFixed(1), class: "dimension-text" }, content);
 }
 
-/** Lays texts inside of the picture, each below those that it would cover. @param {Element[]} elements @param {number} pixel how much larger texts are than 14 units */
-function lay(elements, pixel) {
-    const taken = [];
+/** Lays texts inside of the picture, each below those that it would cover. @param {Element[]} elements @param {number} pixel how much larger texts are than 13 units @param {import("./labels.mjs").Box[]} taken */
+function lay(elements, pixel, taken) {
     for (const text of elements.filter((element) => element.tagName === "text")) {
-        const width = 8.9 * pixel * (text.textContent ?? "").length;
         const at = (name) => Number(text.getAttribute(name));
-        const x = Math.max(4, Math.min(WIDTH - width - 4, at("x")));
-        let y = at("y");
-        while (taken.some((other) => Math.abs(other.y - y) < 16 * pixel && x < other.x + other.width && other.x < x + width)) y += 4;
-        taken.push({ x, y, width });
-        set(text, { x: x.toFixed(1), y: y.toFixed(1) });
+        const below = Array.from({ length: 12 }, (_, k) => ({ x: at("x"), y: at("y") + 6 * k * pixel, end: false }));
+        const { box, at: place } = settle(text.textContent ?? "", below, 1.08 * pixel, taken);
+        taken.push(box);
+        set(text, place);
     }
     return elements;
 }
@@ -83,8 +80,9 @@ function arc(view, centre, axis, from, angle, radius, content) {
  * @param {number[][]} start
  * @param {number} q
  * @param {number} size of the arm
+ * @param {import("./labels.mjs").Box[]} taken by other texts
  */
-export function dimensions(view, data, i, start, q, size) {
+export function dimensions(view, data, i, start, q, size, taken) {
     const row = data.rows[i];
     const radius = 0.09 * size;
     const elements = [];
@@ -104,7 +102,7 @@ export function dimensions(view, data, i, start, q, size) {
             }
             frame = next;
         }
-        return lay(elements, view.pixel);
+        return lay(elements, view.pixel, taken);
     }
     let frame = start;
     for (const before of row.before) {
@@ -128,5 +126,5 @@ export function dimensions(view, data, i, start, q, size) {
         elements.push(...length(view, along(origin(frame), -2 * radius, axis), along(origin(frame), 2 * radius, axis), "axis"));
         elements.push(...arc(view, origin(frame), axis, unit, q, radius, `q = ${withUnit(q, "rad")}`));
     }
-    return lay(elements, view.pixel);
+    return lay(elements, view.pixel, taken);
 }

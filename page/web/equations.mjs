@@ -4,9 +4,10 @@
  */
 
 import { copy, html, math } from "./dom.mjs";
-import { exact, short } from "./format.mjs";
+import { exact, inWords, short } from "./format.mjs";
 import { parse } from "./formula.mjs";
-import { mathml, nameElement, termsOf } from "./mathml.mjs";
+import { mathml, nameElement, symbolElement, termsOf } from "./mathml.mjs";
+import { withoutNoise } from "./noise.mjs";
 import { unpack } from "./pack.mjs";
 
 /** Nodes that are set until somebody asks for more, and those of them that are set before the browser lays out what there is. */
@@ -37,15 +38,17 @@ export function equations(data, state, shown) {
     };
     /** Writes the numbers at the posture beside the entries of an open section. @param {HTMLDetailsElement} details */
     const evaluate = (details) => {
-        const own = quantityOf(details)?.of();
+        const quantity = quantityOf(details);
+        const own = quantity?.of();
         for (const element of details.querySelectorAll("[data-number]")) {
             const place = element.getAttribute("data-number") ?? "";
             const [i, j] = place.split(",").map((index) => Number(index) - 1);
-            const value = quantities.get(place)?.of() ?? (Array.isArray(own) ? [own[i]].flat()[j] : own);
+            const factor = quantities.get(place);
+            const value = factor?.of() ?? (Array.isArray(own) ? [own[i]].flat()[j] : own);
             const digits = exact(value);
             if (element.getAttribute("data-value") === digits) continue;
             element.setAttribute("data-value", digits);
-            element.textContent = `= ${short(value)}`;
+            element.textContent = `= ${short(factor ? value : withoutNoise(quantity, value, i, j))}`;
         }
     };
     const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`)?.getAttribute("value");
@@ -132,7 +135,7 @@ function written(equation, form, exact, numbered, evaluate) {
         host.append(html("p", {}, head));
         const items = factors.map((factor, k) => {
             const zero = form.singular?.[k];
-            const words = zero === null || zero === undefined ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}` : zero;
+            const words = zero === null || zero === undefined ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${inWords(zero)}` : zero;
             const number = form.factors ? [html("span", { class: "at", "data-number": `factor_${k + 1}` })] : [];
             return html("li", {}, math("math", {}, mathml(parse(factor), options)), " ", ...number, `, ${words}`);
         });
@@ -171,17 +174,6 @@ function note(form) {
     return notes.length > 0 ? ` (${notes.join(", ")})` : "";
 }
 
-/** B(q) with its letters. @param {string} symbol @param {any} options */
-function symbolElement(symbol, options) {
-    const match = /^(.*?)(\(.*\))?$/.exec(symbol);
-    const letters = (match?.[1] ?? symbol).split("_");
-    const base = math("mi", {}, letters[0].replaceAll("tau", "τ").replaceAll("pi", "π"));
-    const named = letters.length > 1 ? math("msub", {}, base, math("mtext", {}, letters.slice(1).join(" "))) : base;
-    options.count += 4;
-    const argument = (match?.[2] ?? "").replaceAll("ddq", "q̈").replaceAll("dq", "q̇").replaceAll("tau", "τ").replaceAll("pi", "π");
-    return math("mrow", {}, named, math("mtext", {}, argument));
-}
-
 /** @param {Equation} equation @param {Form} form @param {any} options */
 function matrix(equation, form, options) {
     const cell = (entry, i, j) => {
@@ -206,12 +198,14 @@ function matrix(equation, form, options) {
 /** The name of an entry: b₁₂, g₃, y with the name of its column. @param {Equation} equation @param {Form} form @param {number} i @param {number} j @param {any} options */
 function entryName(equation, form, i, j, options) {
     if (form.rows === 1 && form.columns === 1) return symbolElement(form.symbol, options);
-    const letter = equation.letter.split("_");
-    const own = letter.length > 1 ? `${letter[1]},` : "";
-    const below = math("mrow", {}, math("mn", {}, own + entryIndex(equation, form, i, j)));
-    if (equation.columnNames) below.append(nameElement(equation.columnNames[j], options));
+    const index = math("mn", {}, entryIndex(equation, form, i, j));
+    const [letter, own] = equation.letter.split("_");
+    // An entry of what has no letter of its own is one of the whole: (∂τ/∂q)₁₂.
+    const whole = /^d(?!dq$)./.test(letter) && symbolElement(form.symbol.replace(/\(q[^)]*\)$/, ""), options);
+    const base = whole ? math("mrow", {}, math("mo", { stretchy: "false", rspace: "0" }, "("), whole, math("mo", { stretchy: "false", lspace: "0" }, ")")) : nameElement(letter, options);
+    const names = equation.columnNames ? [nameElement(equation.columnNames[j], options)] : [];
     options.count += 4;
-    return math("msub", {}, math("mi", {}, letter[0]), below);
+    return math("msub", {}, base, math("mrow", {}, ...(own ? [math("mtext", {}, `${own},`)] : []), index, ...names));
 }
 
 /** Its numbers: 12, 3, or that of the row before the name of the column. @param {Equation} equation @param {Form} form @param {number} i @param {number} j */
@@ -222,7 +216,8 @@ function entryIndex(equation, form, i, j) {
 
 /** The same in plain text: b12, g3. @param {Equation} equation @param {Form} form @param {number} i @param {number} j */
 function entryLabel(equation, form, i, j) {
-    return `${equation.letter} ${entryIndex(equation, form, i, j)} ${equation.columnNames?.[j] ?? ""}`.trim().replace(/^(\w) (\d)/, "$1$2");
+    const letter = /^d(?!dq$)./.test(equation.letter) ? "" : equation.letter.replace("tau", "τ").replace("ddq", "q̈").replace("_", " ");
+    return `${letter} ${entryIndex(equation, form, i, j)} ${equation.columnNames?.[j] ?? ""}`.trim().replace(/^([a-zτ]̈?) (\d)/u, "$1$2");
 }
 
 /** A choice of one entry, which is then shown with the steps that it needs alone; nothing where there are no steps. @param {any[]} all @param {(chosen: any[]) => void} show */

@@ -8,11 +8,27 @@ export function short(value) {
     let text;
     if (size < 1e-4 || size >= 1e6) {
         const [digits, exponent] = value.toExponential(5).split("e");
-        text = `${trimmed(digits)}e${Number(exponent)}`;
+        text = `${trimmed(digits)}·10${raised(Number(exponent))}`;
     } else {
         text = trimmed(value.toFixed(Math.max(0, 5 - Math.floor(Math.log10(size)))));
     }
     return text.replaceAll("-", "−");
+}
+
+/** An exponent. @param {number} exponent */
+function raised(exponent) {
+    return String(exponent).replace(/./g, (digit) => (digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(digit)]));
+}
+
+/** The variable of joint k from 1, as it stands in a text. @param {number | string} k @param {string} [letter] */
+export function variable(k, letter = "q") {
+    return letter + String(k).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[Number(digit)]);
+}
+
+/** A formula of the description's notation in a text: q₂ for q2, 2 sin(q₂) for 2*sin(q2). @param {string} formula */
+export function inWords(formula) {
+    const variables = formula.replace(/\bq(\d+)/g, (_, k) => variable(k));
+    return variables.replaceAll("*", " ").replaceAll("+-", "±").replaceAll("-", "−").replace(/\bpi\b/g, "π");
 }
 
 /** Without what rounding left instead of 0, and without the sign of 0. @param {number} value */

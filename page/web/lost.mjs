@@ -7,9 +7,11 @@
 
 import { byId, svg } from "./dom.mjs";
 import { short } from "./format.mjs";
+import { settle } from "./labels.mjs";
 import { lost } from "./linear.mjs";
 import { add, along, cross, dot, norm, origin, scale } from "./vector.mjs";
 import { HEIGHT, WIDTH } from "./view.mjs";
+import { atLine, axes, needless } from "./why.mjs";
 
 export const VELOCITY = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
 
@@ -23,36 +25,73 @@ export function combination(of, names) {
 export function line(wrench, tip, hardly) {
     const [f, m] = [wrench.slice(0, 3), wrench.slice(3)];
     const no = hardly ? "hardly any" : "no";
-    if (norm(f) === 0) return { at: tip, direction: scale(m, 1 / norm(m)), text: `${no} turn about this line` };
+    if (norm(f) === 0) return { at: tip, direction: scale(m, 1 / norm(m)), kind: "turn", text: `${no} turn about this line` };
     const pitch = dot(f, m) / dot(f, f);
     const rest = Math.abs(pitch) < 1e-6 * Math.max(norm(m) / norm(f), 1e-3);
     const text = rest ? `${no} motion along this line` : `v ${pitch < 0 ? "−" : "+"} ${short(Number(Math.abs(pitch).toPrecision(4)))} ω along this line ${hardly ? "hardly moves" : "stays 0"}`;
-    return { at: add(tip, scale(cross(f, m), 1 / dot(f, f))), direction: scale(f, 1 / norm(f)), text };
+    return { at: add(tip, scale(cross(f, m), 1 / dot(f, f))), direction: scale(f, 1 / norm(f)), kind: rest ? "move" : "screw", text };
+}
+
+/** The stretch of a line that is drawn, in the picture: about its middle if that is to be seen, else where the line is; none where it is nowhere. @param {number[]} middle on the screen @param {number[]} by half of the stretch */
+export function stretch(middle, by) {
+    let [first, last] = [-Infinity, Infinity];
+    [WIDTH, HEIGHT].forEach((size, k) => {
+        const ends = [12, size - 12].map((edge) => (edge - middle[k]) / by[k]).sort((a, b) => a - b);
+        // A line along an edge is within it all the way, or nowhere.
+        if (Math.abs(by[k]) < 1e-9) ends.splice(0, 2, ...(middle[k] > 12 && middle[k] < size - 12 ? [-Infinity, Infinity] : [Infinity, -Infinity]));
+        [first, last] = [Math.max(first, ends[0]), Math.min(last, ends[1])];
+    });
+    if (first >= last) return null;
+    const low = Math.max(first, Math.min(-1, last - 2));
+    return [low, Math.min(last, low + 2)].map((s) => middle.map((c, k) => c + s * by[k]));
+}
+
+/** The elements of a line and of its words, and where these are. @param {{at: number[], direction: number[], text: string}} line @param {import("./picture.mjs").Picture} picture @param {import("./labels.mjs").Box[]} taken */
+function drawn({ at, direction, text }, picture, taken) {
+    const { view, arm } = picture;
+    const middle = view.project(at);
+    const by = view.projectDirection(scale(direction, 0.35 * arm.size));
+    const links = arm.points.map((point) => view.project(point)).flatMap((to, k, all) => [0, 0.25, 0.5, 0.75].map((s) => to.map((c, i) => c + s * ((all[k - 1] ?? to)[i] - c))));
+    const place = (places, words, points) => {
+        const { box, at } = settle(words, places, view.pixel, taken, points);
+        taken.push(box);
+        return svg("text", at, words);
+    };
+    /** @param {number[]} end @param {boolean} right */
+    const around = ([x, y], right) => [-8, 16 * view.pixel + 2, -24, 34 * view.pixel].map((off) => ({ x: x + (right ? -4 : 4), y: y + off, end: right }));
+    if (Math.hypot(...by) < 8) {
+        // A line towards the reader.
+        const [x, y] = middle;
+        if (x < 0 || x > WIDTH || y < 0 || y > HEIGHT) return [];
+        const mark = svg("path", { d: `M${x - 8} ${y}a8 8 0 1 0 16 0a8 8 0 1 0 -16 0M${x - 1} ${y}h2` });
+        const beside = [-10, 22, -30, 42, -50, 62, -70].flatMap((off) => [14, -14].map((by) => ({ x: x + by, y: y + off * view.pixel, end: by < 0 })));
+        return [mark, place(beside, `${text}, seen along it`, links)];
+    }
+    const ends = stretch(middle, by);
+    if (!ends) return [];
+    const [[x, y], [u, v]] = ends;
+    const points = [...links, ...Array.from({ length: 41 }, (_, k) => [x + ((u - x) * k) / 40, y + ((v - y) * k) / 40])];
+    const places = [[u, v], [x, y]].flatMap((end) => [...around(end, end[0] > WIDTH / 2), ...around(end, end[0] <= WIDTH / 2)]);
+    return [svg("path", { d: `M${[x, y, u, v].map((c) => c.toFixed(1)).join(" ").replace(/^(\S+ \S+) /, "$1L")}` }), place([...places, ...around([(x + u) / 2, (y + v) / 2], false)], text, points)];
 }
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
 export function lostMotion(data, state, picture) {
-    const said = byId("lost-motion");
+    const [said, because] = [byId("lost-motion"), byId("singular-why")];
+    const slides = data.rows.map((row) => row.type === "prismatic");
     const layer = picture.layers.lost;
-    /** @type {{at: number[], direction: number[], text: string}[]} */
+    /** @type {{at: number[], direction: number[], kind: string, text: string}[]} */
     let lines = [];
     const draw = () => {
-        const size = picture.arm.size;
-        const shown = byId("show-lost").checked ? lines.filter(({ at }) => norm(at) < 3 * size) : [];
+        const shown = byId("show-lost").checked ? lines.filter(({ at }) => norm(at) < 3 * picture.arm.size) : [];
         if (shown.length === 0 && !layer.firstChild) return;
-        const elements = shown.flatMap(({ at: middle, direction, text }, k) => {
-            const [[x, y], [u, v]] = [-0.35, 0.35].map((s) => picture.view.project(along(middle, s * size, direction)).map((c) => Math.round(c * 10) / 10));
-            const left = u > WIDTH / 2;
-            // At the end of the line, or where it leaves the picture.
-            const inside = (c, high) => Math.max(20, Math.min(high - 12, c));
-            const at = { x: inside(u, WIDTH), y: inside(v - 8 - 16 * k, HEIGHT), "text-anchor": left ? "end" : "start" };
-            return [svg("path", { d: `M${x} ${y}L${u} ${v}` }), svg("text", at, text)];
-        });
-        layer.replaceChildren(...elements);
+        const taken = picture.texts();
+        layer.replaceChildren(...shown.flatMap((line) => drawn(line, picture, taken)));
     };
+    const write = (element, text) => element.textContent !== text && (element.textContent = text);
     state.on("singular", () => {
         lines = [];
-        let text = "";
+        let [text, why] = ["", ""];
         if (state.singular > 0 && data.task.length <= data.rows.length) {
             const jacobian = robot.geometricJacobian(state.q);
             const { most, of } = lost(data.task.map((row) => jacobian[row]));
@@ -61,10 +100,19 @@ export function lostMotion(data, state, picture) {
             text = most === 0 ? `Lost: whatever the rates, ${all.map((one) => `${one} = 0`).join(", and ")}.` : `Nearly lost: ${all[0]}, at most ${short(Number(most.toPrecision(3)))} for rates of norm 1.`;
             const tip = origin(robot.directKinematics(state.q));
             lines = of.map((one) => line(VELOCITY.map((_, row) => (data.task.includes(row) ? one[data.task.indexOf(row)] : 0)), tip, most > 0));
+            if (state.singular === 2) why = reason(axes(jacobian, slides, tip), data.task, lines, picture.arm.size, tip);
         }
-        if (said.textContent !== text) said.textContent = text;
+        write(said, text);
+        write(because, why);
         draw();
     });
     picture.extras.push(draw);
     byId("show-lost").addEventListener("input", draw);
+}
+
+/** Why, in a sentence; empty where it is nothing that is looked for. @param {import("./why.mjs").Axis[]} all @param {number[]} task @param {{at: number[], direction: number[], kind: string}[]} lines @param {number} size @param {number[]} tip */
+function reason(all, task, lines, size, tip) {
+    const straight = lines.find(({ kind }) => kind !== "screw");
+    const words = needless(all, task.length, size, task.every((row) => row < 3) ? tip : null) || (straight ? atLine(all, straight, size) : "");
+    return words && `Why: ${words}.`;
 }

@@ -22,7 +22,7 @@ sliders(data, state);
 player(data, state);
 const picture = new Picture(data, state);
 sheet(data, state, picture);
-equations(data, state, numbers(data, state));
+equations(data, state, numbers(data, state, picture.arm));
 lostMotion(data, state, picture);
 cost();
 check(data, state, picture);

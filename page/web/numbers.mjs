@@ -3,11 +3,13 @@
  * `data-value` and are copied.
  */
 
-import { byId, copy, html } from "./dom.mjs";
-import { exact, short } from "./format.mjs";
+import { byId, copy, html, math } from "./dom.mjs";
+import { exact, inWords, short, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
 import { condition, determinant, manipulability, ROUNDING } from "./linear.mjs";
 import { VELOCITY } from "./lost.mjs";
+import { mathml } from "./mathml.mjs";
+import { sizes, withoutNoise } from "./noise.mjs";
 import { range } from "./state.mjs";
 
 /** A factor is near zero below this part of what it can be, and zero below that which rounding of it and of q makes. */
@@ -19,17 +21,17 @@ const SINGULAR = 1000;
 
 /**
  * @typedef {{name: string, symbol: string, title: string, unit: string, rows: number, columns: number, of: () => any,
- *     unitOf?: (row: number, column: number) => string, rowNames?: string[], columnNames?: string[], singular?: boolean, near?: () => number, words?: string[], formula?: string,
+ *     unitOf?: (row: number, column: number) => string, size?: (row: number, column: number) => number, rowNames?: string[], columnNames?: string[], more?: (Node | string)[], singular?: boolean, near?: () => number, words?: string[], formula?: string,
  *     buttons?: HTMLElement[]}} Quantity
  */
 
 /** @param {any} data @param {import("./state.mjs").State} state */
-export function numbers(data, state) {
+export function numbers(data, state, arm) {
     const host = byId("quantities");
-    const shown = quantities(data, state).map((quantity) => table(quantity));
+    const shown = quantities(data, state, arm).map((quantity) => table(quantity));
     const title = html("h3", { id: "singular-title" }, "Singular postures");
-    const lost = html("p", { id: "lost-motion", class: "near" });
-    const singular = html("section", { id: "singular", "aria-labelledby": "singular-title" }, title, lost);
+    const [lost, why] = ["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" }));
+    const singular = html("section", { id: "singular", "aria-labelledby": "singular-title" }, title, lost, why);
     for (const { element, quantity } of shown) {
         if (quantity.singular) singular.append(element);
         host.append(quantity.singular ? singular : element);
@@ -44,8 +46,8 @@ export function numbers(data, state) {
         state.singular = Math.max(0, ...shown.map((one) => one.level));
         const near = shown.filter((one) => one.level === state.singular).map(({ quantity }) => quantity);
         const factors = near.filter(({ symbol }) => symbol !== "w").map(({ symbol, formula }) => (formula ? `${symbol}, ${formula},` : symbol));
-        const why = factors.length > 0 ? `: ${factors.join(" and ")} of det J is ${["", "near ", ""][state.singular]}zero` : "";
-        const text = ["", `⚠ nearly singular posture${why}`, `⚠ singular posture${why}`][state.singular];
+        const which = factors.length > 0 ? `: ${factors.join(" and ")} of det J ${factors.length > 1 ? "are" : "is"} ${["", "near ", ""][state.singular]}zero` : "";
+        const text = ["", `⚠ nearly singular posture${which}`, `⚠ singular posture${which}`][state.singular];
         if (badge.textContent !== text) badge.replaceChildren(...(text ? [html("a", { href: "#singular" }, text)] : []));
         state.changed("singular");
     };
@@ -54,8 +56,9 @@ export function numbers(data, state) {
     return shown;
 }
 
-/** @param {any} data @param {import("./state.mjs").State} state @returns {Quantity[]} */
-function quantities(data, state) {
+/** @param {any} data @param {import("./state.mjs").State} state @param {{size: number}} arm @returns {Quantity[]} */
+function quantities(data, state, arm) {
+    const size = sizes(data, state, arm.size);
     const n = data.rows.length;
     const has = (name) => data.functions.includes(name);
     const joints = data.rows.map((row) => row.name);
@@ -71,9 +74,9 @@ function quantities(data, state) {
     };
     /** @type {Quantity[]} */
     const list = [
-        { ...matrix("direct_kinematics", "Tₑ", "Pose of the end effector in the base frame: its axes and its origin, m", "", 4, 4, () => robot.directKinematics(state.q)), rowNames: ["x", "y", "z", ""], columnNames: ["x axis", "y axis", "z axis", "origin"] },
-        vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]),
-        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for a rate of 1 rad/s, or of 1 m/s", "", 6, n, () => robot.geometricJacobian(state.q)), rowNames: VELOCITY, columnNames: joints },
+        { ...matrix("direct_kinematics", "Tₑ", "Pose of the end effector in the base frame: its axes and its origin, m", "", 4, 4, () => robot.directKinematics(state.q)), size: size.pose, rowNames: ["x", "y", "z", ""], columnNames: ["x axis", "y axis", "z axis", "origin"] },
+        { ...vector("roll_pitch_yaw", "roll, pitch, yaw", "Orientation of the end effector: Rz(yaw) Ry(pitch) Rx(roll)", "rad", 3, () => rollPitchYaw(robot.directKinematics(state.q)), ["roll", "pitch", "yaw"]), size: () => 1 },
+        { ...matrix("geometric_jacobian", "J", "Geometric Jacobian: velocity v, m/s, and angular velocity ω, rad/s, of the end effector in the base frame for a rate of 1 rad/s, or of 1 m/s", "", 6, n, () => robot.geometricJacobian(state.q)), size: size.jacobian, rowNames: VELOCITY, columnNames: joints },
     ];
     const rows = data.task.map((row) => VELOCITY[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
@@ -82,13 +85,14 @@ function quantities(data, state) {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
         const zero = data.determinant.singular[k];
-        const where = zero?.startsWith("q") ? `zero at ${zero.replaceAll("pi", "π")}${rounded(zero)}` : (zero ?? "zero where several joints together make it so");
+        const where = zero?.startsWith("q") ? `zero at ${inWords(zero)}${rounded(zero)}` : (zero ?? "zero where several joints together make it so");
         const part = () => Math.abs(evaluate(factor, lookup)) / bound(factor, lookup);
         const of = () => (part() < ZERO ? 0 : evaluate(factor, lookup));
         const near = () => Number(part() < NEAR) + Number(part() < ZERO);
         const words = ["", "⚠ near zero: nearly singular", "⚠ zero: singular"];
-        const formula = text.length < 60 ? text.replaceAll("*", " ").replaceAll("-", "−") : "";
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, `of det J, ${formula || "see the equations"}; ${where}`, "", of), formula, singular: true, near, words, buttons: zeroButtons(zero, data, state) });
+        const formula = text.length < 60 ? inWords(text) : "";
+        const set = text.length < 60 ? [", ", html("span", {}, math("math", {}, mathml(factor, { exact: false, count: 0, steps: "" })))] : [];
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, "of det J", "", of), more: [...set, `; ${where} `], formula, singular: true, near, words, buttons: zeroButtons(zero, data, state) });
     });
     // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
@@ -96,17 +100,17 @@ function quantities(data, state) {
     const singular = () => (told ? 0 : Number(condition(task()) >= SINGULAR) + Number(condition(task()) === Infinity));
     list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), singular: true, near: singular, words });
     list.push({ ...scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())), singular: true });
-    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), rowNames: joints, columnNames: joints });
+    if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), size: size.inertia, rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
-        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), ...inertia("/s"), rowNames: joints, columnNames: joints });
+        list.push({ ...matrix("coriolis_matrix", "C", "Coriolis and centrifugal matrix, by Christoffel symbols", "", n, n, () => robot.coriolisMatrix(state.q, state.dq)), ...inertia("/s"), size: size.coriolis, rowNames: joints, columnNames: joints });
         list.push(scalar("skew_symmetry", "sym(Ḃ − 2C)", "Largest entry of the symmetric part, sym(A) = (A + Aᵀ)/2, which is 0: what is left comes of Ḃ as a quotient of differences", "", () => skewSymmetry(state)));
     }
-    if (has("gravity")) list.push({ ...vector("gravity", "g", "Gravity term", "", n, () => robot.gravity(state.q), joints), ...forces });
+    if (has("gravity")) list.push({ ...vector("gravity", "g", "Gravity term", "", n, () => robot.gravity(state.q), joints), ...forces, size: size.gravity });
     if (has("friction")) list.push({ ...vector("friction", "F", "Friction", "", n, () => robot.friction(state.dq), joints), ...forces });
     if (has("load_friction")) list.push({ ...vector("load_friction", "Fₗ", "Friction that grows with the load, Fₗ |g| sign(q̇)", "", n, () => robot.loadFriction(state.q, state.dq), joints), ...forces });
-    if (has("inverse_dynamics")) list.push({ ...vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints), ...forces });
+    if (has("inverse_dynamics")) list.push({ ...vector("inverse_dynamics", "τ", "Torques of the motion, B q̈ + C q̇ + F + g", "", n, () => robot.inverseDynamics(state.q, state.dq, state.ddq), joints), ...forces, size: size.torque });
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
-    if (has("potential_energy")) list.push(scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)));
+    if (has("potential_energy")) list.push({ ...scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)), size: size.energy });
     return list;
 }
 
@@ -122,7 +126,7 @@ function zeroButtons(text, data, state) {
     if (!zero) return [];
     const [low, high] = range(data.rows[zero.joint - 1]);
     return zero.values.map(({ value, text }) => {
-        const button = html("button", { type: "button" }, `set q${zero.joint} = ${text.replaceAll("pi", "π")}`);
+        const button = html("button", { type: "button" }, `set ${variable(zero.joint)} = ${inWords(text)}`);
         button.addEventListener("click", () => {
             const q = state.q.slice();
             q[zero.joint - 1] = nearest(value, zero.period, q[zero.joint - 1], low, high);
@@ -195,7 +199,7 @@ function table(quantity) {
     const element = html(whole, { id: `number-${name}`, open: rows > 0 || undefined, class: "quantity", "data-of": name }, head);
     if (rows === 0) {
         // The number before the words: after them its unit would look like a symbol that it is the value of.
-        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title} `), ...(quantity.buttons ?? []));
+        head.append(" = ", cell(0, 0), unit ? ` ${unit}` : "", said, html("span", { class: "small" }, `  ${title}`, ...(quantity.more ?? [" "])), ...(quantity.buttons ?? []), ...equationLink(name.startsWith("factor_") ? "determinant" : name));
     } else {
         head.append(` ${title}${unit ? `, ${unit}` : ""}`);
         const rowName = (i) => `${i} ${quantity.rowNames?.[i - 1] ?? ""}`;
@@ -222,7 +226,7 @@ function table(quantity) {
             const value = flat[k];
             if (Object.is(cell.value, value)) return;
             cell.value = value;
-            cell.td.textContent = short(value);
+            cell.td.textContent = short(withoutNoise(quantity, value, Math.floor(k / Math.max(1, columns)), k % Math.max(1, columns)));
             cell.td.setAttribute("data-value", exact(value));
         });
         one.level = quantity.near?.() ?? 0;
@@ -261,7 +265,9 @@ function lightEquation(table, name) {
 
 /** The table as a text of another program, all digits. @param {any} value @param {string} form */
 export function tableText(value, form) {
-    const rows = value.map((row) => (Array.isArray(row) ? row.map(exact) : [exact(row)]));
+    // The sign of a zero is nobody's.
+    const digits = (x) => exact(x === 0 ? 0 : x);
+    const rows = value.map((row) => (Array.isArray(row) ? row.map(digits) : [digits(row)]));
     switch (form) {
         case "MATLAB":
             return `[${rows.map((row) => row.join(", ")).join("; ")}]`;
@@ -281,7 +287,11 @@ function copyButtons(quantity) {
         button.addEventListener("click", () => copy(tableText(quantity.of(), form), `${quantity.symbol} as ${form}`));
         return button;
     });
-    const equation = document.getElementById(`equation-${quantity.name}`);
-    const link = equation ? [" ", html("a", { href: `#${equation.id}` }, "its equation")] : [];
-    return html("div", { class: "controls copies" }, "copy as ", ...buttons, ...link);
+    return html("div", { class: "controls copies" }, "copy all digits as ", ...buttons, ...equationLink(quantity.name));
+}
+
+/** The way to the equation of a quantity, where the page has it. @param {string} name */
+function equationLink(name) {
+    const equation = document.getElementById(`equation-${name === "det" ? "determinant" : name}`);
+    return equation ? [" ", html("a", { href: `#${equation.id}`, class: "small" }, "its equation")] : [];
 }

@@ -4,6 +4,7 @@ import { cuboid } from "./bodies.mjs";
 import { dimensions } from "./dimension.mjs";
 import { byId, set, svg } from "./dom.mjs";
 import { exact, short, withUnit } from "./format.mjs";
+import { box } from "./labels.mjs";
 import { Arm, step, unit } from "./scene.mjs";
 import { Ball, Box, drawSolids } from "./solids.mjs";
 import { along, column, compose, identity, norm, origin, place } from "./vector.mjs";
@@ -38,6 +39,10 @@ export class Picture {
         this.extras = [];
         /** Whether the reader chose the scale. */
         this.zoomed = false;
+        /** The boxes of the names of the frames. @type {import("./labels.mjs").Box[]} */
+        this.names = [];
+        /** A pixel of the window in units of the drawing. */
+        this.unit = 1;
         /** Points that were laid into the picture since a view was chosen. @type {number[][]} */
         this.seen = [];
         this.listen();
@@ -107,7 +112,8 @@ export class Picture {
 
     drawFrames(frames) {
         const length = 0.11 * this.arm.size;
-        const taken = [];
+        const { pixel } = this.view;
+        this.names = [];
         frames.forEach((frame, k) => {
             const { element, axes, text } = this.frames[k];
             const at = origin(frame);
@@ -118,10 +124,11 @@ export class Picture {
                 set(axis, { x1: x.toFixed(1), y1: y.toFixed(1), x2: u.toFixed(1), y2: v.toFixed(1) });
             });
             // Frames at one place get their names beside each other.
-            let shift = 0;
-            while (taken.some(([a, b]) => Math.abs(a - x - shift) < 13 && Math.abs(b - y) < 13)) shift += 14;
-            taken.push([x + shift, y]);
-            set(text, { x: (x + shift + 5).toFixed(1), y: (y + 15).toFixed(1) });
+            const own = { x: x + 5, y: y + 3, width: (4 + 8 * this.frames[k].name.length) * pixel, height: 13 * pixel };
+            const next = () => this.names.find((other) => Math.abs(other.y - own.y) < own.height && own.x < other.x + other.width && other.x < own.x + own.width);
+            for (let other = next(); other; other = next()) own.x = other.x + other.width + 0.1;
+            this.names.push(own);
+            set(text, { x: own.x.toFixed(1), y: (own.y + 11 * pixel).toFixed(1) });
         });
     }
 
@@ -167,6 +174,17 @@ export class Picture {
         /** @type {Element} */ (this.layers.grid.firstChild).setAttribute("d", d);
     }
 
+    /** The places of the texts that are always there: frames, gravity, and the badge over the picture. @returns {import("./labels.mjs").Box[]} */
+    texts() {
+        const { pixel } = this.view;
+        const frames = byId("show-frames").checked ? this.names : [];
+        const badge = byId("singular-posture").textContent;
+        const wide = badge.length * 7.4 * this.unit + 24;
+        const lines = Math.ceil(wide / (WIDTH - 16));
+        const badges = badge ? [{ x: 0, y: 0, width: Math.min(wide, WIDTH), height: (14 + 20 * lines) * this.unit }] : [];
+        return [...frames, box("gravity 9.81 m/s²", { x: 12, y: HEIGHT - 8, end: false }, pixel), { x: 20, y: HEIGHT - 104, width: 52, height: 84 }, ...badges];
+    }
+
     /** An arrow in the corner, as long as it is seen. */
     drawGravity() {
         const { gravity } = this.data;
@@ -192,7 +210,7 @@ export class Picture {
             return;
         }
         const i = this.row;
-        const elements = dimensions(this.view, this.data, i, this.start(i), this.state.q[i], this.arm.size);
+        const elements = dimensions(this.view, this.data, i, this.start(i), this.state.q[i], this.arm.size, this.texts());
         this.layers.dimensions.replaceChildren(svg("g", { "data-dimension": i + 1 }, ...elements));
     }
 
@@ -277,6 +295,7 @@ export class Picture {
         });
         // Texts keep their size where the picture is narrow.
         new ResizeObserver(() => {
+            this.unit = WIDTH / this.svg.clientWidth;
             this.view.pixel = Math.max(1, Math.min(2, WIDTH / this.svg.clientWidth));
             this.svg.style.setProperty("--pixel", String(this.view.pixel));
         }).observe(this.svg);
@@ -298,7 +317,7 @@ function frameElements(name) {
     const axes = ["x", "y", "z"].map((axis) => svg("line", { class: `axis-${axis}` }));
     const text = svg("text", { class: "frame-name" }, name);
     const element = svg("g", { "data-frame": name }, ...axes, text);
-    return { element, axes, text };
+    return { name, element, axes, text };
 }
 
 /** What is drawn of a body; nothing of one without mass. */

@@ -3,7 +3,8 @@ import test from "node:test";
 
 import { cuboid } from "../bodies.mjs";
 import { condition, determinant, eigen, lost, manipulability, outline } from "../linear.mjs";
-import { combination, line } from "../lost.mjs";
+import { combination, line, stretch } from "../lost.mjs";
+import { atLine, needless } from "../why.mjs";
 
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12 * Math.max(1, Math.abs(b)), `${a} is not ${b}`);
 
@@ -58,6 +59,24 @@ test("what is lost is in echelon form, and what rounding leaves is 0", () => {
     assert.equal(condition([[1, 1], [1, 1 + 1e-16]]), Infinity);
 });
 
+test("what the axes do says why", () => {
+    const turn = (k, direction, at) => ({ k, slides: false, direction, at });
+    const slide = (k, direction) => ({ k, slides: true, direction, at: [0, 0, 0] });
+    const [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    const others = [turn(4, x, [0, 3, 1]), turn(5, y, [2, 0, 4])];
+    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, y, [1, 1, 0]), turn(3, z, [0, 0, 2]), ...others], 5, 1, null), "the axes of q₁ and q₃ lie on one line");
+    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, x, [0, 0, 0]), turn(3, [0.6, 0, 0.8], [0, 0, 0])], 3, 1, null), "the axes of q₁, q₂ and q₃ lie in one plane and go through one point");
+    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, x, [0, 0, 0]), turn(3, y, [0, 0, 0]), turn(4, [0.6, 0.48, 0.64], [0, 0, 0])], 4, 1, null), "the axes of q₁, q₂, q₃ and q₄ go through one point");
+    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, z, [1, 0, 0])], 2, 1, [2, 0, 5]), "the axes of q₁ and q₂ lie in one plane with the tip: the arm is stretched or folded");
+    assert.equal(needless([slide(1, x), slide(2, x), slide(3, y)], 3, 1, null), "q₁ and q₂ slide along one direction");
+    // Three joints of which no two or three do the same, for a task of three rows; two on one line that the task has to spare.
+    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, z, [1, 0, 0]), turn(3, z, [0, 1, 0])], 3, 1, null), "");
+    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, z, [0, 0, 1]), turn(3, z, [0, 1, 0]), turn(4, x, [0, 1, 7])], 3, 1, null), "");
+    const line = { at: [0, 0, 1], direction: x, kind: "move" };
+    assert.equal(atLine([turn(1, z, [0, 0, 0]), turn(2, x, [0, 5, 0]), slide(3, y)], line, 1), "no joint can move anything along the line that is drawn: the axis of q₁ meets it; the axis of q₂ is parallel to it; q₃ slides across it");
+    assert.equal(atLine([turn(1, z, [0, 1, 0])], line, 1), "");
+});
+
 test("the line of a wrench is where it has no moment across it", () => {
     const straight = line([1, 0, 0, 0, 0, 0], [1, 2, 3], false);
     assert.deepEqual([straight.at, straight.direction, straight.text], [[1, 2, 3], [1, 0, 0], "no motion along this line"]);
@@ -65,5 +84,9 @@ test("the line of a wrench is where it has no moment across it", () => {
     // A force along x whose line lies 0.5 above the tip turns about y at the tip: m = (at - tip) x f.
     assert.deepEqual(line([1, 0, 0, 0, 0.5, 0], [0, 0, 0], false).at, [0, 0, 0.5]);
     assert.equal(line([1, 0, 0, 0.2, 0, 0], [0, 0, 0], false).text, "v + 0.2 ω along this line stays 0");
+    // In the picture as far as it goes, about its middle where that is to be seen; nothing of one that is nowhere.
+    assert.deepEqual(stretch([300, 240], [100, 0]), [[200, 240], [400, 240]]);
+    assert.deepEqual(stretch([-500, 240], [100, 0]), [[12, 240], [212, 240]]);
+    assert.equal(stretch([300, -40], [100, 0]), null);
     assert.equal(combination([-1, 0, 0.5], ["vx", "vy", "ωz"]), "−vx + 0.5 ωz");
 });
