@@ -51,12 +51,8 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
         env!("CARGO_PKG_VERSION"),
     );
     text += &header(parts);
-    text += "<main>\n";
-    text += ARM;
-    text += &sliders(parts.rows);
-    text += "</section>\n<div id=\"content\">\n";
     let sections = sections(parts);
-    text += "<nav aria-label=\"Sections\">";
+    text += "<main>\n<nav aria-label=\"Sections\">";
     for (id, title, _) in &sections {
         // The contents stand on one line.
         let brief = title.split(" against").next().unwrap_or(title);
@@ -66,6 +62,9 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
         }
     }
     text += "</nav>\n";
+    text += ARM;
+    text += &sliders(parts.rows);
+    text += "</section>\n<div id=\"content\">\n";
     for (id, title, content) in &sections {
         let _ = write!(
             text,
@@ -152,7 +151,7 @@ The page says how far its own arm is from each pose, and which single mistake in
 <ol id="suspects"></ol>
 "#;
 
-const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above. Six digits are shown, and 0 where rounding alone has left something; copies have all digits of what was computed, such as −5.6e−17.</p>
+const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above. Six digits are shown, and 0 where rounding alone has left something<span class=\"keys\">; copies have all digits of what was computed, such as −5.6e−17</span>.</p>
 <div id=\"quantities\"></div>
 ";
 
@@ -168,7 +167,7 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 
 fn sliders(rows: &[Row]) -> String {
     let mut text = String::from(
-        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
+        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always, when Enter is pressed or the field is left; a list of numbers pasted into one sets all joints. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
     );
     for (i, row) in rows.iter().enumerate() {
         let k = i + 1;

@@ -11,6 +11,7 @@ use armgen_codegen::manipulator::{Joint, Manipulator};
 use armgen_codegen::source::{Source, Span};
 
 use crate::html::{decimal, escape};
+use crate::warnings::sentence;
 
 /// A value of a joint: as it is written, and its number.
 struct Cell {
@@ -90,13 +91,33 @@ fn columns(source: &Source, manipulator: &Manipulator, joints: &[(&Joint, &Joint
     all.into_iter().filter(|column| column.cells.iter().any(Option::is_some)).collect()
 }
 
+/// What stands in the columns that are there.
+fn title(columns: &[Column]) -> String {
+    let kind = |title: &str| match title {
+        "viscous at the rotor" => "friction",
+        "highest rate" | "highest effort" => "limits of rates and efforts",
+        title if title.ends_with("of the spring") => "springs",
+        title if title.ends_with("rotor") || title.ends_with("motor") || title == "armature" => "motors",
+        _ => "friction",
+    };
+    let mut kinds: Vec<&str> = Vec::new();
+    for column in columns {
+        if !kinds.contains(&kind(column.title)) {
+            kinds.push(kind(column.title));
+        }
+    }
+    let (last, others) = kinds.split_last().map_or(("", &[][..]), |(last, others)| (*last, others));
+    let text = if others.is_empty() { last.to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    sentence(&text)
+}
+
 /// Motors, friction, springs and the limits of rates and efforts, a joint a row; nothing where no joint has any.
 fn drives(joints: &[(&Joint, &JointDescription)], columns: Vec<Column>) -> String {
     if columns.is_empty() {
         return String::new();
     }
     let heads: String = columns.iter().map(|column| format!("<th scope=\"col\">{}</th>", column.title)).collect();
-    let mut text = start("Motors, friction and limits", "drives", &format!("<th scope=\"col\">joint</th>{heads}"));
+    let mut text = start(&title(&columns), "drives", &format!("<th scope=\"col\">joint</th>{heads}"));
     for (i, (joint, _)) in joints.iter().enumerate() {
         let _ = write!(text, "<tr><th scope=\"row\">{} {}</th>", i + 1, escape(&joint.name));
         let kind = usize::from(joint.kind == JointKind::Prismatic);

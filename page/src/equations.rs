@@ -104,6 +104,7 @@ const CHOICES: &str = "<div class=\"controls\"><fieldset><legend>Parameters</leg
 <fieldset><legend>Constants</legend>\
 <label><input type=\"radio\" name=\"digits\" value=\"decimal\" checked> six digits</label> \
 <label><input type=\"radio\" name=\"digits\" value=\"exact\"> exact</label></fieldset></div>
+<p id=\"names\" class=\"small\" hidden></p>
 ";
 
 /// A symbol as it is printed: letters of Greek, dots, indices, and d of partial derivatives.

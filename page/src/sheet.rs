@@ -21,7 +21,7 @@ pub(crate) fn table(rows: &[Row], convention: Convention, warnings: &Warnings<'_
     };
     let _ = writeln!(
         text,
-        ". A row in focus or under the pointer is drawn on the arm. Lines are those of {}.</caption>",
+        ".<span class=\"keys\"> A row in focus or under the pointer is drawn on the arm.</span> Lines are those of {}.</caption>",
         escape(warnings.file())
     );
     text += "<thead><tr><th scope=\"col\">joint</th><th scope=\"col\">type</th>";

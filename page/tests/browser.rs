@@ -245,6 +245,91 @@ fn fields_take_expressions() {
     tab.close();
 }
 
+/// A click takes all of a field, what is typed counts when it is finished, Escape brings the number back, and a list that is pasted into one
+/// field is a posture, in the units of the fields.
+#[test]
+fn typing_counts_when_it_is_finished() {
+    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
+    let held = "[document.getElementById('q1').valueAsNumber, document.getElementById('q1-value').value]";
+    tab.run(
+        "(() => { const q = document.getElementById('q1-value'); q.value = '-0.7'; q.dispatchEvent(new Event('input')); })()",
+    );
+    tab.click("#q1-value");
+    tab.type_text("1.5");
+    assert_eq!(tab.run(held), serde_json::json!([-0.7, "1.5"]), "the arm waits for the whole number");
+    tab.press("Enter");
+    assert_eq!(tab.run(held), serde_json::json!([1.5, "1.5"]));
+    tab.type_text("2");
+    tab.press("Escape");
+    assert_eq!(tab.run(held), serde_json::json!([1.5, "1.5"]));
+    tab.click("#dq1");
+    tab.type_text("3");
+    tab.click("#q2-value");
+    assert_eq!(
+        tab.run(
+            "[document.getElementById('dq1').value, document.querySelector('[data-quantity=kinetic_energy]').dataset.value > 0]"
+        ),
+        serde_json::json!(["3", true])
+    );
+    let pasted = tab.run(
+        "(() => { const field = document.getElementById('q2-value'), seen = []; \
+         const paste = (text) => { const clipboardData = new DataTransfer(); clipboardData.setData('text/plain', text); \
+             const event = new ClipboardEvent('paste', { clipboardData, cancelable: true, bubbles: true }); field.dispatchEvent(event); \
+             const fault = document.getElementById('q2-fault'); \
+             seen.push([event.defaultPrevented, [1, 2, 3, 4].map((k) => document.getElementById(`q${k}-value`).value), fault.hidden ? '' : fault.textContent]); }; \
+         paste('[0.1, -pi/4, 0.3, -0]'); paste('array([0.1, 0.2])'); paste('2*(pi - 1)/3'); paste('1;2\\n3\\t4'); \
+         document.getElementById('angle-unit').click(); paste('90 pi/4 0.5 0'); return seen; })()",
+    );
+    let first = ["0.1", "-0.7853981633974483", "0.3", "0"];
+    let expected = serde_json::json!([
+        [true, first, ""],
+        [true, first, "2 numbers were pasted; a posture of this arm has 4"],
+        [false, first, "2 numbers were pasted; a posture of this arm has 4"],
+        [true, ["1", "2", "3", "4"], ""],
+        [true, ["90", "45", "0.5", "0"], ""]
+    ]);
+    assert_eq!(pasted, expected);
+    tab.close();
+}
+
+/// What was taken for joints without limits is said; an arm that has become small fills its picture again; names have a key, and the choice of
+/// names stays where it is; more lines can be folded back; functions have whole words as names; what is folded in is said on paper.
+#[test]
+fn what_is_left_open_is_said() {
+    let Some(mut tab) = opened(&robot("scara"), 360, "light") else { return };
+    let seen = tab.run(
+        "(async () => { const seen = []; const put = (id, value) => { const field = document.getElementById(id); field.value = value; field.dispatchEvent(new Event('input')); }; \
+         const reach = document.getElementById('reach'); reach.open = true; await new Promise((done) => setTimeout(done, 100)); \
+         seen.push(reach.querySelector('p').textContent.split('. ').at(-1)); \
+         const width = () => document.querySelector('#arm .base').getBoundingClientRect().width; const before = width(); \
+         put('q3-value', '50'); const far = width(); put('q3-value', '0'); seen.push([far < before / 5, width() > 0.5 * before]); \
+         for (const details of document.querySelectorAll('details[data-equation=inertia_matrix], details[data-equation=regressor], details[data-equation=coriolis_matrix]')) details.open = true; \
+         await new Promise((done) => setTimeout(done, 300)); const names = document.querySelector('input[value=symbolic]'); names.scrollIntoView({ block: 'center' }); \
+         const top = names.getBoundingClientRect().top; names.click(); await new Promise((done) => setTimeout(done, 300)); \
+         seen.push(Math.abs(names.getBoundingClientRect().top - top - document.getElementById('names').hidden) < 2, document.getElementById('names').textContent.includes('ml1 = 20')); \
+         seen.push([...document.querySelectorAll('.costs tbody th')].every((th) => th.getClientRects().length === 1 && th.scrollWidth <= th.clientWidth)); \
+         const weights = () => [...document.querySelectorAll('.costs td.weight')].map((td) => Number(td.dataset.value)); \
+         document.querySelector('.costs thead th:last-child button').click(); seen.push(weights().every((weight, k, all) => k === 0 || weight <= all[k - 1])); \
+         const nav = document.querySelector('nav'); scrollTo(0, 5000); seen.push(nav.getBoundingClientRect().top === 0); \
+         dispatchEvent(new Event('beforeprint')); seen.push(document.querySelector('#content > .print-only').textContent.startsWith('Not printed, since it was folded in: Data sheet (Motors and friction; Parameters)')); \
+         return seen; })()",
+    );
+    let assumed = "q₁, q₂, q₄ have no limits: a whole turn was taken; q₃ has no limits: −1 m to 1 m was assumed.";
+    assert_eq!(seen, serde_json::json!([assumed, [true, true], true, true, true, true, true, true]));
+    tab.close();
+    let Some(mut tab) = opened(&robot("everything"), 1600, "light") else { return };
+    let folded = tab.run(
+        "(async () => { const details = document.querySelector('details[data-equation=inverse_dynamics]'); details.open = true; \
+         const ready = async () => { do await new Promise((done) => setTimeout(done, 30)); while (!details.querySelector('.copies') || details.querySelector('[aria-busy=true]')); \
+             return details.querySelectorAll('.lines > div').length; }; \
+         const button = (word) => [...details.querySelectorAll('button')].find((one) => one.textContent.startsWith(word)); \
+         const first = await ready(); if (!button('show').textContent.includes('more')) return 'all at once'; button('show').click(); const more = await ready(); \
+         button('show fewer').click(); return [more > first, (await ready()) === first]; })()",
+    );
+    assert_eq!(folded, serde_json::json!([true, true]));
+    tab.close();
+}
+
 /// Entries say their units where some joints turn and some slide; bodies their tensors and what the linter says of them; a tick in the list of
 /// layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
 #[test]
@@ -486,6 +571,7 @@ fn a_planted_mistake_is_the_first_suspect() {
     assert!(first[4].as_str().is_some_and(|text| text.starts_with(words)), "{first}");
     let marks = serde_json::json!(["measured, pose 1", "the arm with this mistake mended"]);
     assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true, first[4], true, marks]));
+    assert_eq!(tab.run("document.getElementById('measured-said').lastChild.textContent"), "This one explains them:");
     // Of one position without orientation several mistakes come equally near, and it is said what would tell them apart.
     let alone = tab.run(
         "(() => { const field = document.getElementById('measured'); \
@@ -498,13 +584,15 @@ fn a_planted_mistake_is_the_first_suspect() {
     // With the wrist stretched the arm is singular whatever the other joints do, and the map says so instead of drawing noise.
     let drawn = tab.run(
         "(async () => { document.getElementById('zero').click(); const map = document.getElementById('w-map'), said = () => document.getElementById('w-said').textContent; \
-         map.open = true; await new Promise((done) => setTimeout(done, 100)); const stretched = said().includes('singular whatever'); map.open = false; \
+         map.open = true; await new Promise((done) => setTimeout(done, 100)); const named = said().startsWith('Across: q3') && !map.querySelector('.map').hidden; \
+         const across = document.getElementById('w-first'); across.value = '1'; document.getElementById('w-second').value = '2'; across.dispatchEvent(new Event('input')); \
+         const stretched = named && said().includes('singular whatever') && map.querySelector('.map').hidden; map.open = false; \
          const q5 = document.getElementById('q5'); q5.value = '1'; q5.dispatchEvent(new Event('input', { bubbles: true })); \
          for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
          for (const id of ['reach', 'w-map']) document.getElementById(id).open = true; await new Promise((done) => setTimeout(done, 300)); \
          return [document.querySelectorAll('#arm .ellipsoids ellipse').length, document.querySelectorAll('#reach svg').length, \
                  said().includes('a factor of det J changes its sign'), stretched, document.getElementById('w-across').textContent, \
-                 document.querySelector('#reach text').textContent.startsWith('distance, ')]; })()",
+                 document.querySelector('#reach text').textContent.startsWith('distance: to ')]; })()",
     );
     assert_eq!(drawn, serde_json::json!([2, 2, true, true, "−3.14159q2 joint2, rad3.14159", true]));
     tab.close();

@@ -51,7 +51,7 @@ export function check(data, state, picture) {
         ghost = chosen ? { arm: suspect.arm, solids: new Arm({ ...data, ...suspect.arm }, "ghost suspect"), measured } : null;
         // It stands before the arm of the page.
         picture.layers.links[ghost ? "after" : "before"](picture.layers.ghosts);
-        if (!ghost) return picture.redraw();
+        if (!ghost) return picture.show([]);
         state.move(measured.q);
         place();
         picture.show([...ghost.solids.points, measured.position]);
@@ -80,8 +80,11 @@ export function check(data, state, picture) {
         }
         const near = suspects.filter((suspect) => suspect.equal);
         const equal = near.length;
-        const partly = suspects[0].difference > 0.05 * before ? "No single mistake explains them fully. " : "";
-        said.append(html("p", {}, partly + (equal === 1 ? "This one comes nearest:" : `${equal} mistakes come equally near:`)));
+        const partly = suspects[0].difference > 0.05 * before && suspects[0].difference >= 1e-3 * picture.arm.size ? "No single mistake explains them fully. " : "";
+        const whole = suspects[0].difference < 1e-3 * picture.arm.size;
+        const one = whole ? "This one explains them:" : "This one comes nearest:";
+        const several = whole ? `${equal} mistakes explain them equally well:` : `${equal} mistakes come equally near:`;
+        said.append(html("p", {}, partly + (equal === 1 ? one : several)));
         if (equal > 1 && measured.every(({ frame }) => !frame) && differInOrientation(near, measured)) {
             said.append(html("p", {}, "Positions alone cannot tell these apart; roll, pitch and yaw at the ends of the lines would."));
         }

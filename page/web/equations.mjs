@@ -3,7 +3,7 @@
  * they are long; others as numbered steps. Never more nodes at once than a browser lays out in a moment.
  */
 
-import { copy, html, math } from "./dom.mjs";
+import { byId, copy, html, math } from "./dom.mjs";
 import { exact, inWords, short } from "./format.mjs";
 import { parse } from "./formula.mjs";
 import { mathml, nameElement, symbolElement, termsOf } from "./mathml.mjs";
@@ -82,12 +82,21 @@ export function equations(data, state, shown) {
         });
         markUses(section.details);
     }
+    const key = byId("names");
+    const parameters = document.getElementById("parameters");
+    key.append(parameters ? "Names are those of the description's parameters; what has none, such as a length, is a number. " : "The description names no parameters, so all are numbers.");
+    for (const [k, row] of [...(parameters?.querySelectorAll("tbody tr") ?? [])].entries()) {
+        const [name, value] = [...row.children].map((cell) => cell.querySelector(".number")?.textContent || cell.textContent || "");
+        key.append(k > 0 ? "; " : "", html("span", {}, math("math", {}, nameElement(name, { exact: false, count: 0, steps: "" })), ` = ${value}`));
+    }
     for (const input of document.querySelectorAll('input[name="form"], input[name="digits"]')) {
-        input.addEventListener("input", () => {
-            for (const section of sections) {
-                if (section.details.open) set(section);
-                else section.details.querySelector("div")?.replaceChildren();
-            }
+        input.addEventListener("input", async () => {
+            key.hidden = chosen("form") !== "symbolic";
+            // What is set anew has another height: what was switched stays where it is.
+            const top = () => input.getBoundingClientRect().top;
+            const before = top();
+            await Promise.all(sections.map((section) => (section.details.open ? set(section) : section.details.querySelector("div")?.replaceChildren())));
+            scrollBy({ top: top() - before, behavior: "instant" });
         });
     }
     state.on("motion", () => {
@@ -267,9 +276,10 @@ function list(host, all, options) {
     let next = 0;
     const table = html("div", { class: "lines scroll", tabindex: 0, role: "region", "aria-label": "Formulas" });
     const more = html("button", { type: "button" });
+    const fewer = html("button", { type: "button", hidden: true }, "show fewer");
     // On paper there is no button.
     const left = html("p", { class: "print-only" });
-    host.replaceChildren(table, more, left);
+    host.replaceChildren(table, html("div", { class: "controls" }, more, fewer), left);
     const slice = (until) => {
         const end = Math.min(until, options.count + SLICE);
         while (next < all.length && options.count < end) {
@@ -288,7 +298,12 @@ function list(host, all, options) {
     };
     more.addEventListener("click", () => {
         options.count = 0;
+        fewer.hidden = false;
         slice(NODES);
+    });
+    fewer.addEventListener("click", () => {
+        list(host, all, { ...options, count: 0 });
+        host.closest("details")?.scrollIntoView({ block: "nearest" });
     });
     slice(options.count + NODES);
 }

@@ -39,6 +39,8 @@ export class Picture {
         this.extras = [];
         /** Whether the reader chose the scale. */
         this.zoomed = false;
+        /** Points beside the arm that stay in the picture. @type {number[][]} */
+        this.beside = [];
         /** The boxes of the names of the frames. @type {import("./labels.mjs").Box[]} */
         this.names = [];
         /** A pixel of the window in units of the drawing. */
@@ -58,10 +60,15 @@ export class Picture {
 
     /** Lays the arm into the picture. */
     fit() {
-        const { size } = this.arm;
-        const around = this.arm.points.flatMap((p) => [-1, 1].flatMap((s) => [0, 1, 2].map((k) => p.map((x, i) => (i === k ? x + s * 0.12 * size : x)))));
-        this.seen = [...this.seen, ...around, [0, 0, 0]];
+        this.seen = [...this.seen, ...this.around()];
         this.view.fit(this.seen);
+    }
+
+    /** What a picture of the posture has to show. */
+    around() {
+        const by = 0.12 * this.arm.size;
+        const around = this.arm.points.flatMap((p) => [-1, 1].flatMap((s) => [0, 1, 2].map((k) => p.map((x, i) => (i === k ? x + s * by : x)))));
+        return [...this.beside, ...around, [0, 0, 0]];
     }
 
     /** Whether a part of the arm is outside of the picture. */
@@ -72,9 +79,10 @@ export class Picture {
         });
     }
 
-    /** Lays points into the picture beside the arm. @param {number[][]} points */
+    /** Lays points into the picture beside the arm, and keeps them there. @param {number[][]} points */
     show(points) {
-        this.seen = points;
+        this.beside = points;
+        this.seen = [];
         this.fit();
         this.redraw();
     }
@@ -85,6 +93,8 @@ export class Picture {
         this.links = links;
         this.end = end;
         this.arm.place(this.state.q, links, end);
+        // An arm that has become small in its picture is laid into it anew.
+        if (!this.zoomed && this.view.scaleFor(this.around()) > 2.5 * this.view.scale) this.seen = [];
         if (this.seen.length === 0 || (!this.zoomed && this.isOutside())) this.fit();
         this.redraw();
         const at = ["x", "y", "z"].map((name, i) => `${name} = ${withUnit(end[i][3], "m")}`).join(", ");
@@ -298,6 +308,8 @@ export class Picture {
             this.unit = WIDTH / this.svg.clientWidth;
             this.view.pixel = Math.max(1, Math.min(2, WIDTH / this.svg.clientWidth));
             this.svg.style.setProperty("--pixel", String(this.view.pixel));
+            // Texts make room for each other by their size.
+            if (this.links) this.redraw();
         }).observe(this.svg);
         this.mark();
     }

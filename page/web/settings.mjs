@@ -37,9 +37,25 @@ export function settings(state) {
     // Sliders are not printed: the posture that the numbers hold for is said in words.
     const posture = html("p", { class: "print-only" });
     byId("arm-pane").append(posture);
+    const folded = html("p", { class: "print-only" });
+    byId("content").append(folded);
     addEventListener("beforeprint", () => {
+        folded.textContent = leftOut();
         const list = (name, values) => `${name} = (${values.map((x) => short(x)).join(", ")})`;
         const { q, dq, ddq } = state;
-        posture.textContent = `Posture: ${list("q", q)}, rates ${list("dq", dq)}, accelerations ${list("ddq", ddq)}, in rad, m and s.`;
+        posture.textContent = `Posture: ${list("q", q)}, rates ${list("q̇", dq)}, accelerations ${list("q̈", ddq)}, in rad, m and s.`;
     });
+}
+
+/** What is folded in, and so is not printed, in words. */
+function leftOut() {
+    const parts = [...document.querySelectorAll("#content > section")].flatMap((section) => {
+        const all = [...section.querySelectorAll("details")];
+        const closed = all.filter((details) => !details.open && !details.parentElement?.closest("details:not([open])"));
+        const title = section.querySelector("h2")?.textContent ?? "";
+        const names = closed.map((details) => (details.querySelector("summary b") ?? details.querySelector("summary"))?.textContent ?? "");
+        if (closed.length === 0) return [];
+        return [`${title} (${closed.length === all.length && all.length > 3 ? "all" : names.join("; ")})`];
+    });
+    return parts.length === 0 ? "" : `Not printed, since it was folded in: ${parts.join(", ")}.`;
 }

@@ -137,7 +137,7 @@ function bodyTable(data) {
         const words = said.map((message) => html("p", { class: "warning" }, html("strong", {}, "Warning"), `: ${message}`));
         return [row, html("tr", { class: "said" }, html("td", { colspan: columns.length }, ...words))];
     });
-    const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia; tick “bodies” to see them on the arm");
+    const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia", html("span", { class: "keys" }, "; tick “bodies” to see them on the arm"));
     const table = html("table", { class: "bodies" }, caption, html("thead", {}, head), html("tbody", {}, ...rows));
     return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Bodies" }, table);
 }

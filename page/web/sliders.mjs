@@ -1,6 +1,7 @@
 /**
  * Sliders, and fields for exact numbers, or expressions such as -pi/4. A range holds fifteen digits only, so the field beside it rules where
- * it was typed. A field holds all digits; the six of them that it has room for are shown while nobody types.
+ * it was typed. A field holds all digits; the six of them that it has room for are shown while nobody types. What is being typed counts once
+ * it is finished, by Enter or when the field is left: half of a number is another number.
  */
 
 import { byId, copy } from "./dom.mjs";
@@ -10,6 +11,9 @@ import { range } from "./state.mjs";
 
 /** Fields with a text that is no number, and what the number was: the text stays until that is another one. @type {Map<any, number>} */
 const refused = new Map();
+
+/** Fields into which somebody types. @type {Set<any>} */
+const typing = new Set();
 
 /** @param {any} data @param {import("./state.mjs").State} state */
 export function sliders(data, state) {
@@ -29,11 +33,12 @@ export function sliders(data, state) {
     parts.forEach((part, i) => {
         [part.range.min, part.range.max] = range(data.rows[i]).map(String);
         part.range.addEventListener("input", () => {
-            state.q[i] = part.range.valueAsNumber;
+            state.q[i] = part.range.valueAsNumber + 0;
             state.changed("motion");
         });
         const listen = (field, values, unit) => {
-            field.addEventListener("input", () => {
+            const take = () => {
+                typing.delete(field);
                 const value = meant(field.value, unit);
                 const wrong = !Number.isFinite(value);
                 field.setAttribute("aria-invalid", String(wrong));
@@ -42,29 +47,52 @@ export function sliders(data, state) {
                     return;
                 }
                 refused.delete(field);
-                values()[i] = value;
+                // A zero has no sign.
+                values()[i] = value + 0;
                 state.changed("motion");
+            };
+            field.addEventListener("input", (event) => {
+                if (event instanceof InputEvent && event.inputType !== "") typing.add(field);
+                else take();
             });
-            // What is being typed is no number yet; what is left standing is said to be none.
+            // What is left standing and is no number is said to be none.
             field.addEventListener("change", () => {
+                if (typing.has(field)) take();
                 const { badInput } = field.validity;
                 const wrong = badInput || (field.value.trim() !== "" && !Number.isFinite(typed(field.value)));
                 part.fault.hidden = !wrong;
-                const expected = field.value.includes(",") ? "a decimal point is a point" : `digits in ${unitName(unit)}, pi in ${unit}, + − * / and parentheses are`;
-                part.fault.textContent = badInput ? "this field takes digits alone" : `“${field.value}” is no number: ${expected}`;
+                part.fault.textContent = badInput ? "this field takes digits alone" : fault(field.value, unit);
                 if (wrong) return;
                 refused.delete(field);
                 field.value = exact(inUnit(values()[i], unit));
                 field.removeAttribute("aria-invalid");
+                if (document.activeElement === field) field.select();
             });
+            field.addEventListener("keydown", (event) => {
+                if (event.key !== "Escape" || !typing.delete(field)) return;
+                field.value = exact(inUnit(values()[i], unit));
+                field.select();
+            });
+            selectWhenEntered(field);
         };
         listen(part.field, () => state.q, part.unit);
+        part.field.addEventListener("paste", (event) => {
+            const words = listed(event.clipboardData?.getData("text") ?? "");
+            if (words.length < 2) return;
+            event.preventDefault();
+            typing.delete(part.field);
+            const fits = words.length === parts.length;
+            part.fault.hidden = fits;
+            if (fits) return state.move(words.map((word, k) => meant(word, parts[k].unit) + 0));
+            part.fault.textContent = `${words.length} numbers were pasted; a posture of this arm has ${parts.length}`;
+        });
         listen(part.rate, () => state.dq, part.unit);
         listen(part.acceleration, () => state.ddq, part.unit);
         part.field.addEventListener("keydown", (event) => {
             const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
             if (!sign || event.ctrlKey || event.metaKey || event.altKey) return;
             event.preventDefault();
+            if (typing.has(part.field)) part.field.dispatchEvent(new Event("change"));
             const step = unitName(part.unit) === part.unit ? 0.01 : 1;
             state.q[i] = fromUnit(inUnit(state.q[i], part.unit) + sign * step, part.unit);
             state.changed("motion");
@@ -98,7 +126,38 @@ export function sliders(data, state) {
         state.ddq.fill(0);
         state.move(state.q.map(() => 0));
     });
-    byId("copy-q").addEventListener("click", () => copy(`[${state.q.map(exact).join(", ")}]`, "q"));
+    // In the units of the fields, so that it can be pasted into one of them.
+    byId("copy-q").addEventListener("click", () => {
+        const used = [...new Set(parts.map(({ unit }) => unitName(unit)))].join(" and ");
+        copy(`[${state.q.map((x, i) => exact(inUnit(x, parts[i].unit))).join(", ")}]`, `q in ${used}`);
+    });
+}
+
+/** A field that is entered has all of its text selected: what is typed then takes its place. @param {any} field */
+function selectWhenEntered(field) {
+    let entered = false;
+    field.addEventListener("pointerdown", () => (entered = document.activeElement !== field));
+    field.addEventListener("focus", () => field.select());
+    // The button that goes up puts the caret where it is; who has marked a part keeps that.
+    field.addEventListener("click", () => {
+        if (entered && field.selectionStart === field.selectionEnd) field.select();
+        entered = false;
+    });
+}
+
+/** The numbers of a list, as other programs write one: [0.1, -pi/4, 0], or one a line; none of what is no list. @param {string} text */
+export function listed(text) {
+    const inside = /^[^[({]*[[({]+([^\])}]*)[\])}]+[\s;]*$/.exec(text)?.[1] ?? text;
+    const words = inside.split(/[\s,;]+/).filter((word) => word !== "");
+    return words.every((word) => Number.isFinite(typed(word))) ? words : [];
+}
+
+/** Why a text is no number. @param {string} text @param {string} unit */
+function fault(text, unit) {
+    const several = listed(text);
+    if (/^\s*[-+−]?\d+,\d+\s*$/.test(text)) return `“${text}” is no number: a decimal point is a point, ${text.trim().replace(",", ".")}`;
+    if (several.length > 1) return `“${text}” are ${several.length} numbers: a posture is pasted as a whole, not typed`;
+    return `“${text}” is no number: digits in ${unitName(unit)}, pi in ${unit}, + − * / and parentheses are`;
 }
 
 /** What was typed, in rad or m: an expression with pi is in rad whatever the fields are in. @param {string} text @param {string} unit */
@@ -108,7 +167,7 @@ function meant(text, unit) {
 
 /** Leaves a field alone that holds the number already, while somebody types into it, and one whose text is said to be no number. @param {any} field @param {number} value @param {string} unit */
 function write(field, value, unit) {
-    if (meant(field.value, unit) === value || refused.get(field) === value) return false;
+    if (typing.has(field) || meant(field.value, unit) === value || refused.get(field) === value) return false;
     refused.delete(field);
     field.value = exact(inUnit(value, unit));
     field.removeAttribute("aria-invalid");

@@ -58,6 +58,15 @@ export class View {
         this.turn();
     }
 
+    /** The scale at which points fill the picture. @param {number[][]} points */
+    scaleFor(points) {
+        const [width, height] = [this.right, this.up].map((direction) => {
+            const all = points.map((point) => dot(point, direction));
+            return Math.max(...all) - Math.min(...all) || 1e-9;
+        });
+        return Math.min((0.8 * WIDTH) / width, (0.8 * HEIGHT) / height);
+    }
+
     /** Lays points into the picture, with a margin. @param {number[][]} points */
     fit(points) {
         const low = [Infinity, Infinity, Infinity];
@@ -72,7 +81,7 @@ export class View {
         }
         const middle = low.map((x, i) => (x + high[i]) / 2);
         this.centre = [0, 1, 2].map((i) => directions.reduce((sum, direction, k) => sum + middle[k] * direction[i], 0));
-        this.scale = Math.min((0.8 * WIDTH) / (high[0] - low[0] || 1e-9), (0.8 * HEIGHT) / (high[1] - low[1] || 1e-9));
+        this.scale = this.scaleFor(points);
     }
 
     /** A point on the screen: x to the right, y down. @param {number[]} point */

@@ -3,8 +3,8 @@
  */
 
 import { byId, html, svg } from "./dom.mjs";
-import { inUnit, short, unitName, withUnit } from "./format.mjs";
-import { evaluate, parse } from "./formula.mjs";
+import { inUnit, short, unitName, variable, withUnit } from "./format.mjs";
+import { evaluate, parse, zeros } from "./formula.mjs";
 import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
 import { sequence } from "./search.mjs";
 import { range } from "./state.mjs";
@@ -43,15 +43,22 @@ export function workspace(data, state, picture) {
     for (const name of ["points", "velocity", "force"]) byId(`show-${name}`).addEventListener("input", () => picture.redraw());
     const details = byId("reach");
     const draw = () => {
-        if (details.open) details.querySelector("div")?.replaceChildren(...views(reach()));
+        if (details.open) details.querySelector("div")?.replaceChildren(...views(reach(), assumed(data.rows)));
     };
     details.addEventListener("toggle", draw);
     state.on("units", draw);
     map(data, state, picture);
 }
 
-/** The points from the side and from above. @param {number[][]} points */
-function views(points) {
+/** The ranges of the joints that have no limits, in words. @param {any[]} rows */
+export function assumed(rows) {
+    const free = (type) => rows.flatMap((row, i) => (row.limits || row.type !== type ? [] : [variable(i + 1)]));
+    const said = (names, range) => (names.length === 0 ? [] : [`${names.join(", ")} ${names.length === 1 ? "has" : "have"} no limits: ${range}`]);
+    return [...said(free("revolute"), "a whole turn was taken"), ...said(free("prismatic"), `−${withUnit(1, "m")} to ${withUnit(1, "m")} was assumed`)].join("; ");
+}
+
+/** The points from the side and from above. @param {number[][]} points @param {string} ranges that were assumed */
+function views(points, ranges) {
     const away = points.map(([x, y]) => Math.hypot(x, y));
     const size = Math.max(...points.flat().map(Math.abs), ...away) || 1;
     const picture = (title, [across, up], all) => {
@@ -61,8 +68,8 @@ function views(points) {
         // Both axes end at the same length, whose tick is at 110.
         const ticks = svg("path", { class: "axes", d: "M110 -3V3M-3 -110H3" });
         const end = withUnit(Number(size.toPrecision(3)), "m");
-        const names = [svg("text", { x: 118, y: 12, "text-anchor": "end" }, `${across}, ${end}`), svg("text", { x: 6, y: -107 }, `${up}, ${end}`)];
-        return html("figure", {}, svg("svg", { viewBox: "-120 -120 240 240", class: "reach", role: "img", "aria-label": title }, axes, ticks, svg("path", { d }), ...names), html("figcaption", {}, title));
+        const names = [svg("text", { x: 118, y: 132, "text-anchor": "end" }, `${across}: to ${end}`), svg("text", { x: 0, y: -124, "text-anchor": "middle" }, `${up}: to ${end}`)];
+        return html("figure", {}, svg("svg", { viewBox: "-120 -136 240 274", class: "reach", role: "img", "aria-label": title }, axes, ticks, svg("path", { d }), ...names), html("figcaption", {}, title));
     };
     // Points are samples: more digits would be none of the arm's.
     const about = (x) => withUnit(Math.abs(x) < 0.005 * size ? 0 : Number(x.toPrecision(3)), "m");
@@ -72,7 +79,7 @@ function views(points) {
     return [
         picture(`side: distance from the z axis ${extent(away)}, z ${extent(heights)}`, ["distance", "z"], points.map((point, i) => [away[i], point[2]])),
         picture(`top: x ${extent(points.map((p) => p[0]))}, y ${extent(points.map((p) => p[1]))}`, ["x", "y"], points),
-        html("p", {}, `Reach: about ${about(farthest)} from the origin of the base, the farthest of ${points.length} postures within the limits.`),
+        html("p", {}, `Reach: about ${about(farthest)} from the origin of the base, the farthest of ${points.length} postures within the limits${ranges && `. ${ranges}`}.`),
     ];
 }
 
@@ -121,7 +128,11 @@ function map(data, state, picture) {
     data.rows.forEach((row, i) => {
         for (const select of [first, second]) select.append(html("option", { value: i }, `q${i + 1} ${row.name}`));
     });
-    [first.value, second.value] = [data.rows.length > 2 ? "1" : "0", data.rows.length > 2 ? "2" : "1"];
+    // The joints at which a factor of the determinant is zero, before others: w is 0 whatever joints do that change none.
+    const [inner, outer] = data.rows.length > 2 ? [1, 2] : [0, 1];
+    const named = (data.determinant?.singular ?? []).flatMap((text) => zeros(text ?? "")?.joint ?? []).map((joint) => joint - 1);
+    const two = [...new Set([...named, inner, outer])].slice(0, 2).sort((a, b) => a - b);
+    [first.value, second.value] = two.map(String);
     const canvas = /** @type {HTMLCanvasElement} */ (byId("w-canvas"));
     const square = data.task.length === data.rows.length;
     const factors = (data.determinant?.factors ?? []).map(parse);
@@ -154,8 +165,9 @@ function map(data, state, picture) {
             const name = `q${k + 1} ${data.rows[k].name}, ${unitName(unit(k))}`;
             byId(id).replaceChildren(...[short(inUnit(low, unit(k))), name, short(inUnit(high, unit(k)))].map((text) => html("span", {}, text)));
         }
-        if (i === j || !(largest > 1e-12 * scale)) {
-            canvas.getContext("2d")?.clearRect(0, 0, SIDE, SIDE);
+        const nothing = i === j || !(largest > 1e-12 * scale);
+        canvas.parentElement?.toggleAttribute("hidden", nothing);
+        if (nothing) {
             byId("w-said").textContent = i === j ? "Choose two different joints." : "w is 0 at all of these postures: the arm is singular whatever these two joints do. Move another joint.";
             return;
         }

@@ -181,6 +181,34 @@ impl Tab {
         }
     }
 
+    /// Clicks into the middle of an element.
+    pub(crate) fn click(&mut self, selector: &str) {
+        let at = self.run(&format!(
+            "(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{ block: 'center' }}); const box = e.getBoundingClientRect(); \
+             return [box.x + box.width / 2, box.y + box.height / 2]; }})()"
+        ));
+        for kind in ["mousePressed", "mouseReleased"] {
+            let event = json!({"type": kind, "x": at[0], "y": at[1], "button": "left", "clickCount": 1});
+            self.call("Input.dispatchMouseEvent", event);
+        }
+    }
+
+    /// Types a text, a key after the other, where the focus is.
+    pub(crate) fn type_text(&mut self, text: &str) {
+        for key in text.chars().map(String::from) {
+            self.call("Input.dispatchKeyEvent", json!({"type": "keyDown", "key": key, "text": key}));
+            self.call("Input.dispatchKeyEvent", json!({"type": "keyUp", "key": key}));
+        }
+    }
+
+    /// Presses Enter or Escape.
+    pub(crate) fn press(&mut self, key: &str) {
+        let (code, text) = if key == "Enter" { (13, "\r") } else { (27, "") };
+        let down = json!({"type": "keyDown", "key": key, "code": key, "windowsVirtualKeyCode": code, "text": text});
+        self.call("Input.dispatchKeyEvent", down);
+        self.call("Input.dispatchKeyEvent", json!({"type": "keyUp", "key": key, "code": key, "windowsVirtualKeyCode": code}));
+    }
+
     /// The page as it is printed.
     pub(crate) fn print(&mut self) -> usize {
         self.call("Page.printToPDF", json!({}))["data"].as_str().map_or(0, str::len)
