@@ -184,7 +184,7 @@ in_both_scalars! {
                     product.at((s as f64).atan2(c as f64)) * factor as f64
                 })
             };
-            let before = at(&Spread::NONE);
+            let before = at(&Spread::none());
             let spread = Spread::of_roots(&before.map(|x| (x / 1e-3) as Real));
             let [c, s] = spread.centre;
             assert!(distance((s as f64).atan2(c as f64), centre) < 0.6, "{spread:?} about {centre}");

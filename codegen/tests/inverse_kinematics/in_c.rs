@@ -126,6 +126,13 @@ fn compare(folder: &Path, arms: &[Arm], compilers: &[(&str, &[&str])], poses: us
     }
 }
 
+/// Every class has its module in C, whether or not the next test compiles it.
+#[test]
+fn every_class_is_translated() {
+    let names: std::collections::BTreeSet<String> = arms(|_| true).into_iter().map(|arm| arm.name).collect();
+    assert!(made_up().iter().all(|(name, ..)| names.contains(*name)), "{names:?}");
+}
+
 /// Three classes and a joint that is given, by one compiler. Some 20 s of a processor.
 #[test]
 fn modules_in_c_have_the_bits_of_rust() {

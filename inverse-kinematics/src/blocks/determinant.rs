@@ -146,7 +146,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
         row[3] *= over;
     }
     let eliminants = Eliminants::new(&unit, &prismatic, 1.0);
-    let mut spread = Spread::NONE;
+    let mut spread = Spread::none();
     let (mut samples, mut largest) = sampled(&eliminants, &spread);
     let mut result = Arranged { found: Branches::new(), roots: 0, noise: 1.0, complete: false, free: false };
     // Each of 12 pivots of equations of norm 1 is at most that; below u^3 nothing is left.

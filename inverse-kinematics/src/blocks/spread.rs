@@ -15,7 +15,10 @@ pub struct Spread {
 
 impl Spread {
     /// q = t.
-    pub const NONE: Spread = Spread { centre: [1.0, 0.0], p: 0.0 };
+    #[inline]
+    pub fn none() -> Self {
+        Spread { centre: [1.0, 0.0], p: 0.0 }
+    }
 
     /// The map that takes the mean of the 16 roots, as points, complex ones further inside the circle, to about its middle: they are those of a
     /// polynomial of degree 8 with these values at equal angles.
@@ -32,7 +35,7 @@ impl Spread {
         }
         let size = sqrt(x * x + y * y);
         if !(size > 0.0) {
-            return Spread::NONE;
+            return Spread::none();
         }
         // 2/24 of a Fourier coefficient, 1/16 of a mean.
         let p = size * (LOG_2 / 192.0);
