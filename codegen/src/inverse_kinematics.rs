@@ -97,7 +97,7 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
         return Err(NOTHING_TOO_MANY.into());
     }
     let target = target(manipulator, &chain)?;
-    classes::classify(&completed(chain, target), target, length)
+    classes::classify(&completed(chain, target)?, target, length)
 }
 
 const NOTHING_TOO_MANY: &str = "`given` is for arms with one joint more than the target asks for";
@@ -178,6 +178,12 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
         Some(Target::Pose) => (linear, angular) = ([true; 3], [true; 3]),
         Some(Target::Position) => angular = [false; 3],
         Some(Target::Planar) | None => {}
+        Some(Target::Pointing) => {
+            return match chain.joints.len() {
+                5 => Ok(Target::Pointing),
+                _ => Err("a pointing target asks for five joints".into()),
+            }
+        }
     }
     let count = |rows: [bool; 3]| rows.into_iter().filter(|row| *row).count();
     let axis = angular.iter().position(|row| *row);
@@ -199,17 +205,18 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
     }
 }
 
-/// With the virtual joint that a target in a plane leaves open: a slide along the last axis.
-fn completed(mut chain: Chain, target: Target) -> Chain {
+/// With the virtual joint for what a target leaves open: in a plane, a slide along the last axis; of a direction, a turn about it.
+fn completed(mut chain: Chain, target: Target) -> Result<Chain, String> {
     let wanted = match target {
-        Target::Pose => return chain,
+        Target::Pose => return Ok(chain),
+        Target::Pointing => return chain.turn_at_the_end().map(|()| chain),
         Target::Planar => 4,
         Target::Position => 3,
     };
     if chain.joints.len() < wanted && chain.joints.last().is_some_and(|joint| !joint.prismatic) {
         chain.slide_at_the_end();
     }
-    chain
+    Ok(chain)
 }
 
 /// The largest length of an arm; 1 m where all are 0.

@@ -31,6 +31,19 @@ pub enum Target {
     Planar,
     /// Its position.
     Position,
+    /// Its position and the direction of its z axis.
+    Pointing,
+}
+
+impl Target {
+    /// The first column of T that it fixes, with those behind it.
+    pub fn first_column(self) -> usize {
+        match self {
+            Target::Pose | Target::Planar => 0,
+            Target::Pointing => 2,
+            Target::Position => 3,
+        }
+    }
 }
 
 /// A row of the operational space: rows of the geometric Jacobian in the base frame.

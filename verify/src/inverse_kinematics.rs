@@ -283,7 +283,8 @@ fn fill(
     }
     // Arrangements that the module does not use.
     let given = module.given.as_ref().map(|given| given.joint);
-    let joints = module.dof - usize::from(given.is_some());
+    let pointing = chain::is_pointing(manipulator);
+    let joints = module.dof - usize::from(given.is_some()) + usize::from(pointing);
     let point = !module.rotation;
     let mut ways = Way::all(joints, point);
     if module.construction == Construction::General {
@@ -337,7 +338,12 @@ fn fill(
             }
         });
         let outcome = run::run(&module, &rounded, redundancy).ok_or("the function cannot be run")?;
-        judge(report, count, &outcome, &misses(&arm, &outcome, &rounded, module.rotation, manipulator))
+        let first = match module.rotation {
+            true if pointing => 2,
+            true => 0,
+            false => 3,
+        };
+        judge(report, count, &outcome, &misses(&arm, &outcome, &rounded, first, manipulator))
             .map_err(|fault| format!("inverse_kinematics: at rational pose {} {fault}", number + 1))?;
     }
     Ok(())
@@ -501,8 +507,8 @@ fn sound(
     Ok(Some(sound.into_iter().filter(|sound| *sound).count()))
 }
 
-/// How far each solution is from the pose.
-fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], rotation: bool, manipulator: &Manipulator) -> Vec<f64> {
+/// How far each solution is from the pose, in the columns from `first` on, which the target fixes.
+fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], first: usize, manipulator: &Manipulator) -> Vec<f64> {
     use armgen_codegen::kinds::TaskRow;
     let rows = [TaskRow::X, TaskRow::Y, TaskRow::Z].map(|row| manipulator.task.contains(&row));
     let miss = |joints: &Vec<[f64; 2]>| {
@@ -521,7 +527,7 @@ fn misses(arm: &Arm<f64>, outcome: &run::Outcome, pose: &[[f64; 4]; 3], rotation
         let mut most = 0.0f64;
         for i in 0..3 {
             for j in 0..4 {
-                let (found, counts) = if j == 3 { (tool.origin[i], rows[i]) } else { (tool.rotation[i][j], rotation) };
+                let (found, counts) = if j == 3 { (tool.origin[i], rows[i]) } else { (tool.rotation[i][j], j >= first) };
                 if counts {
                     most = most.max(found.minus(&pose[i][j]).abs());
                 }

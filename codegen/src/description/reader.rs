@@ -331,8 +331,10 @@ impl Reader<'_> {
 
     fn inverse_kinematics(&mut self, node: &Node, key: Span) -> Option<PosturesDescription> {
         let fields = self.mapping(node, "`inverse_kinematics`", key, INVERSE_KINEMATICS)?;
-        let words = [("pose", Target::Pose), ("position", Target::Position), ("planar", Target::Planar)];
-        let help = "`pose`: of the end effector; `position`: of its origin; `planar`: the rows of `task`, one of them angular";
+        let words =
+            [("pose", Target::Pose), ("position", Target::Position), ("planar", Target::Planar), ("pointing", Target::Pointing)];
+        let help = "`pose`: of the end effector; `position`: of its origin; `planar`: the rows of `task`, one of them angular; \
+                    `pointing`: its position and the direction of its z axis";
         let target =
             fields.get("target").and_then(|(key, node)| self.choice(node, key, "target", &words, Code::UnknownTarget, help));
         let given = fields.get("given").and_then(|(key, node)| self.word(node, key, "given"));

@@ -5,7 +5,10 @@
 //! the pose exchanged for its inverse. Constant turns of revolute and slides of prismatic joints are offsets of their variables; what is
 //! left of a joint's constants goes into the link behind it.
 
-use super::frame::{compose, half_turn_about_x, identity, inverse, is_zero, slide_along_z, turn_about_z, Frame};
+use super::frame::{
+    between_axes, compose, half_turn_about_x, identity, inverse, is_parallel, is_zero, slide_along_z, sum_of_angles,
+    turn_about_z, Frame,
+};
 use super::is_prismatic;
 use crate::derive::parameters::nominal;
 use crate::exact::Number;
@@ -151,6 +154,26 @@ impl Chain {
     pub(super) fn slide_at_the_end(&mut self) {
         self.normals.push(Normal { a: Number::zero(), alpha: no_turn() });
         self.joints.push(Joint { prismatic: true, theta: no_turn(), d: Number::zero() });
+    }
+
+    /// A revolute joint beyond the last, about the z axis of the end effector; or why there is none.
+    pub(super) fn turn_at_the_end(&mut self) -> Result<(), String> {
+        let (Some(between), Some(last)) = (between_axes(&self.tool), self.joints.last_mut()) else {
+            return Err("the last axis and the z axis of the end effector have no common normal in numbers".into());
+        };
+        if !last.prismatic && is_parallel(&self.tool) && is_zero(&between.normal.0) {
+            return Err(
+                "the last joint turns about the z axis of the end effector, which position and direction leave open".into()
+            );
+        }
+        let (turn, d) = between.before;
+        (last.theta, last.d) = (sum_of_angles(&last.theta, &turn), &last.d + &d);
+        let (a, alpha) = between.normal;
+        self.normals.push(Normal { a, alpha });
+        let (theta, d) = between.after;
+        self.joints.push(Joint { prismatic: false, theta, d });
+        self.tool = identity();
+        Ok(())
     }
 
     /// Every length in it, with signs.

@@ -1,7 +1,7 @@
 //! Which class an arm is of: the cheapest whose exact tests it passes; of equals the lowest start of the loop, forwards before backwards.
 
 use super::chain::{Arrangement, Chain};
-use super::frame::{compose, is_parallel, is_right, is_zero, turn_about_z, Frame};
+use super::frame::{compose, is_parallel, is_right, is_zero, sum_of_angles, turn_about_z, turns_beside_x, Frame};
 use super::general;
 use super::{Choice, Construction, InverseKinematics, Redundancy, Target};
 use crate::exact::Number;
@@ -232,6 +232,7 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
         let word = match target {
             Target::Pose => "a pose",
             Target::Planar => "a planar target",
+            Target::Pointing => "a position and a direction",
             Target::Position => "a position",
         };
         let slides = if slides > 0 { format!(", {slides} of them prismatic,") } else { String::new() };
@@ -424,26 +425,12 @@ fn turn_about_x(way: &mut Arrangement, from: usize, to: usize) -> bool {
     if is_parallel(&between) {
         return false;
     }
-    let r = |i: usize, j: usize| between[i][j].clone();
-    let none = || [Number::one(), Number::zero()];
-    let (first, second) = if is_zero(&r(2, 0)) {
-        ([r(0, 0), r(1, 0)], none())
-    } else if is_zero(&r(0, 2)) {
-        (none(), [r(0, 0), -&r(0, 1)])
-    } else {
-        let sine = (&(&r(0, 2) * &r(0, 2)) + &(&r(1, 2) * &r(1, 2))).sqrt();
-        let over = |x: &Number| sine.as_ref().and_then(|sine| x.checked_div(sine));
-        match (over(&-&r(1, 2)), over(&r(0, 2)), over(&r(2, 1)), over(&r(2, 0))) {
-            (Some(c1), Some(s1), Some(c2), Some(s2)) => ([c1, s1], [c2, s2]),
-            _ => return false,
-        }
-    };
+    let Some([first, second]) = turns_beside_x(&between) else { return false };
     let back = |[c, s]: &[Number; 2]| turn_about_z(&[c.clone(), -s]);
     way.links[from] = compose(&back(&first), &way.links[from]);
     way.links[to - 1] = compose(&way.links[to - 1], &back(&second));
-    let sum = |[c, s]: &[Number; 2], [x, y]: &[Number; 2]| [&(c * x) - &(s * y), &(s * x) + &(c * y)];
-    way.offsets[from] = sum(&way.offsets[from], &first);
-    way.offsets[to] = sum(&way.offsets[to], &second);
+    way.offsets[from] = sum_of_angles(&way.offsets[from], &first);
+    way.offsets[to] = sum_of_angles(&way.offsets[to], &second);
     true
 }
 

@@ -11,6 +11,9 @@ impl InverseKinematics {
             Target::Pose => "given T = (R p; 0 1)",
             Target::Planar => "given the position and the turn about the parallel axes, of T = (R p; 0 1)",
             Target::Position => "given the position p",
+            Target::Pointing => {
+                "given position and z axis of the end effector, of T = (R p; 0 1); axis 6 is that z axis, and q6 is dropped"
+            }
         };
         let target = match &self.redundancy {
             None => target.to_owned(),

@@ -1,11 +1,17 @@
 //! An arm as links between joints, over a prime: T = L0 J1 L1 ... Jn Ln.
 
+use armgen_codegen::kinds::Target;
 use armgen_codegen::manipulator::Manipulator;
 
 use super::modular::{Frame, Modulus};
 use crate::arithmetic::prime::{Prime, Residue};
 use crate::arithmetic::Arithmetic;
 use crate::equations::arm::{self, Arm};
+
+/// Whether the target is a position and a direction.
+pub(super) fn is_pointing(manipulator: &Manipulator) -> bool {
+    manipulator.inverse_kinematics.target == Some(Target::Pointing)
+}
 
 /// The joints that move the end effector, from the base on.
 #[derive(Clone, Debug)]
@@ -19,7 +25,8 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// The arm of a description with its nominal lengths.
+    /// The arm of a description with its nominal lengths; where the target is a position and a direction, with a turn about the z axis of the end
+    /// effector behind it, which does not change them.
     pub(super) fn of(manipulator: &Manipulator, field: &Prime) -> Option<Chain> {
         let arm = Arm::nominal(field, manipulator).and_then(|nominal| Arm::new(field, manipulator, &nominal))?;
         let modulus = Modulus::new(field.prime());
@@ -42,6 +49,11 @@ impl Chain {
             link = joint.after.clone();
         }
         links.push(frame(&link.then(&arm.tool)));
+        if is_pointing(manipulator) {
+            slides.push(false);
+            axes.push([0, 0, modulus.one]);
+            links.push(modulus.identity());
+        }
         Some(Chain { modulus, slides, axes, links })
     }
 

@@ -9,7 +9,7 @@ use super::standalone::{EPILOGUE, PROLOGUE};
 use crate::emit::origin::Origin;
 use crate::emit::plain::of_robot;
 use crate::emit::rust;
-use crate::inverse_kinematics::{InverseKinematics, Target};
+use crate::inverse_kinematics::InverseKinematics;
 use crate::kinds::Scalar;
 use crate::manipulator::Manipulator;
 use crate::program::Module;
@@ -188,8 +188,8 @@ pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&
         None => String::new(),
         Some(_) => format!("{}_inverse_kinematics_redundancy(q), ", names.robot),
     };
-    let column = if found.target == Target::Position { "3" } else { "0" };
+    let column = found.target.first_column().to_string();
     let text = include_str!("solver/test.c.txt").replace("@module", file).replace("@solver", solver);
-    let text = text.replace("@redundancy", &redundancy).replace("@column", column).replace("@near", near).replace("@far", far);
+    let text = text.replace("@redundancy", &redundancy).replace("@column", &column).replace("@near", near).replace("@far", far);
     text.replace("@lost", lost).replace("@robot", &names.robot).replace("@ROBOT", &names.upper)
 }

@@ -116,7 +116,7 @@ pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKine
         Scalar::F64 => ("1e-9", "1e-5"),
         Scalar::F32 => ("2e-3", "0.1"),
     };
-    let columns = if found.target == Target::Position { "3.." } else { "0.." };
+    let columns = format!("{}..", found.target.first_column());
     let (uses, at_posture) = match found.redundancy {
         None => ("", ""),
         Some(_) => ("inverse_kinematics_redundancy, ", ", inverse_kinematics_redundancy(&q)"),
@@ -127,7 +127,7 @@ pub fn print_inverse_kinematics_test(module: &Module, found: &Result<InverseKine
         .replace("{at_posture}", at_posture)
         .replace("{near}", near)
         .replace("{far}", far)
-        .replace("{columns}", columns)
+        .replace("{columns}", &columns)
 }
 
 /// What stands before the module of the blocks.
@@ -439,6 +439,7 @@ fn function(found: &InverseKinematics) -> TokenStream {
     let target = match found.target {
         Target::Pose => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.",
         Target::Position => " `t`: a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it.",
+        Target::Pointing => " `t`: a pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m, of which position and z axis are to be reached; the last row is not read.",
         Target::Planar => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the task leaves out.",
     };
     let (given, invalid) = match found.target {
@@ -471,7 +472,7 @@ fn function(found: &InverseKinematics) -> TokenStream {
             };
             (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6, or the redundancy is not finite.")
         }
-        Target::Pose | Target::Planar => {
+        Target::Pose | Target::Planar | Target::Pointing => {
             let given = quote! {
                 if !is_pose(t) {
                     return Solutions::none(Verdict::Invalid);
