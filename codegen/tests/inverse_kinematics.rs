@@ -4,14 +4,14 @@
 mod arms;
 #[path = "inverse_kinematics/in_c.rs"]
 mod in_c;
-
-use std::path::Path;
-use std::process::Command;
+#[path = "inverse_kinematics/project.rs"]
+mod project;
 
 use armgen_codegen::inverse_kinematics::InverseKinematics;
 use armgen_codegen::source::Source;
 use armgen_codegen::{validate, Scalar};
-use arms::{description, generated, made_up, robots, workspace, P, R};
+use arms::{description, made_up, robots, P, R};
+use project::Project;
 
 fn classified(name: &str, text: &str) -> Result<InverseKinematics, String> {
     let (valid, diagnostics) = validate::read(&Source::new(name, text));
@@ -87,56 +87,35 @@ fn nearly_zero_is_not_zero() {
 /// Compiles what is emitted and runs the judge: it asks every module for the postures of thousands of poses.
 #[test]
 fn emitted_modules_find_every_posture() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inverse_kinematics");
-    let write = |path: &str, text: &str| {
-        let path = folder.join(path);
-        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder can be made");
-        std::fs::write(&path, text).expect("a file can be written");
-    };
-    write("Cargo.lock", &std::fs::read_to_string(workspace().join("Cargo.lock")).expect("the lock file"));
-    write(
-        "Cargo.toml",
-        "[package]\nname = \"judge\"\nversion = \"1.0.0\"\nedition = \"2021\"\n\n[dependencies]\nlibm = \"0.2\"\n\n[workspace]\n\n\
-         [profile.dev]\nopt-level = 1\ndebug = false\nincremental = false\n",
-    );
-    let mut main = include_str!("inverse_kinematics/judge.rs").to_owned();
-    let mut checks = String::new();
+    let mut project = Project::new("inverse_kinematics");
     let mut all = robots();
     all.extend(made_up().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
     for (name, text) in all {
-        let narrow = ["puma560", "scara4", "parallel", "general"].contains(&name.as_str());
-        for (scalar, suffix) in [(Scalar::F64, ""), (Scalar::F32, "_f32")].into_iter().take(1 + usize::from(narrow)) {
-            let generated = generated(&name, &text, scalar);
-            let ik = generated.inverse_kinematics();
-            if !ik.contains("pub fn inverse_kinematics") {
-                assert!(ik.contains("// There is no `inverse_kinematics`: "), "{name}");
-                continue;
-            }
-            let module = format!("{name}{suffix}");
-            write(&format!("src/{module}.rs"), &generated.module);
-            write(&format!("src/{module}_ik.rs"), &ik);
-            main += &format!("#[allow(dead_code)]\nmod {module};\nmod {module}_ik;\n");
-            let columns = if ik.contains("the position alone is read") { "3.." } else { "0.." };
-            let solve = if ik.contains("redundancy: Real") {
-                format!("|t: &_, q| {module}_ik::inverse_kinematics(t, q)")
-            } else {
-                format!("|t: &_, _| {module}_ik::inverse_kinematics(t)")
-            };
-            checks += &format!("    check!({module}, {module}_ik, {columns}, {solve});\n");
-            let file = workspace().join(format!("inverse-kinematics/tests/data/{name}.txt"));
-            if suffix.is_empty() && file.exists() {
-                checks += &format!("    reference!({module}, {module}_ik, {:?}, {solve});\n", file.display().to_string());
-            }
+        project.add(&name, &text, Scalar::F64);
+        if ["puma560", "scara4", "parallel", "general"].contains(&name.as_str()) {
+            project.add(&name, &text, Scalar::F32);
         }
     }
-    main += &format!("\nfn main() {{\n{checks}}}\n");
-    write("src/main.rs", &main);
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(cargo);
-    command.args(["run", "--quiet", "--offline"]).current_dir(&folder).env("CARGO_TARGET_DIR", folder.join("target"));
-    let output = command.env("RUSTFLAGS", "-D warnings").output().expect("cargo starts");
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    println!("{}", text(&output.stdout));
-    assert!(output.status.success(), "{}{}", text(&output.stdout), text(&output.stderr));
-    assert_eq!(text(&output.stdout).matches("reference poses").count(), 5, "{}", text(&output.stdout));
+    assert_eq!(project.run().matches("reference poses").count(), 8);
+}
+
+/// Errors in the blocks for slides: a branch that is lost, a sign, a degenerate case that is dropped.
+#[test]
+fn planted_errors_are_seen() {
+    let errors = [
+        ("gantry", ["turns.turns.iter().enumerate().take(turns.count)", "turns.turns.iter().enumerate().take(1)"]),
+        ("gantry", ["[-chain[0][3], -chain[1][3], -chain[2][3]]", "[chain[0][3], -chain[1][3], -chain[2][3]]"]),
+        ("gantry", ["if turns.free { 1 << r1 | 1 << r3 } else { 0 }", "0"]),
+        ("table", ["for (w, f) in [(w, plus), (-w, minus)] {", "for (w, f) in [(w, plus)] {"]),
+        ("table", ["a: turned.a + r[3]", "a: turned.a - r[3]"]),
+        ("table", ["take(roots.shallow_count)", "take(0)"]),
+        ("slides_apart", ["self.a * y.a + self.b * y.b * square", "self.a * y.a - self.b * y.b * square"]),
+    ];
+    let arms = made_up();
+    let mut project = Project::new("inverse_kinematics_planted");
+    for (number, (name, error)) in errors.iter().enumerate() {
+        let (_, _, _, text) = arms.iter().find(|(arm, ..)| arm == name).expect("an arm");
+        project.add_spoilt(&format!("{name}_{number}"), text, *error);
+    }
+    assert_eq!(project.run().matches("seen: ").count(), errors.len());
 }

@@ -33,6 +33,8 @@ pub(crate) fn description(name: &str, task: &str, rows: &[(&str, &str, &str, &st
 pub(crate) const R: &str = "revolute";
 pub(crate) const P: &str = "prismatic";
 
+const POINTING: &str = "inverse_kinematics: {target: pointing}";
+
 /// Made-up arms: name, task, class, at most, rows.
 pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
     let arm = |name: &'static str, task: &str, class, most, rows: &[(&str, &str, &str, &str, &str)]| {
@@ -148,6 +150,34 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
                 (R, "0.02", "0", "0.1", "0"),
             ],
         ),
+        // Five joints, position and direction of the z axis.
+        arm(
+            "pointing5r",
+            POINTING,
+            "three parallel axes (joints 2 3 4), axes 5 and 6 intersect or are parallel",
+            8,
+            &[
+                (R, "0.1", quarter, "0.3", "0.1"),
+                (R, elbow, "0", "0.1", "0"),
+                (R, "0.35", "0", "0.05", "0.3"),
+                (R, "0.08", quarter, "0.1", "0"),
+                (R, "0", "1.1", "0.12", "0.2"),
+            ],
+        ),
+        arm(
+            "pointing_general",
+            "tool: {xyz: [0.05, 0.02, 0.1], rpy: [0, 0.4, 0.5]}\n\
+             inverse_kinematics: {target: pointing}",
+            "general",
+            16,
+            &[
+                (R, "0.15", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (R, "0.35", "0.8", "0.05", "0.3"),
+                (R, "0.12", "1.3", "0.1", "0"),
+                (R, "0.07", "0.7", "0.2", "0.2"),
+            ],
+        ),
         arm(
             "general",
             "",
@@ -160,6 +190,78 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
                 (R, "0.12", "1.3", "0.1", "0"),
                 (R, "0.07", "-1.2", "0.2", "0.2"),
                 (R, "0.02", "0.3", "0.1", "0"),
+            ],
+        ),
+        // Arms of industry, the first three with reference poses.
+        arm(
+            "stanford",
+            "",
+            "spherical triple (axes 4 5 6 through one point)",
+            8,
+            &[
+                (R, "0", "-pi/2", "0.412", "0"),
+                (R, "0", quarter, "0.154", "0"),
+                (P, "0", "0", "0.3", "-pi/2"),
+                (R, "0", "-pi/2", "0", "0"),
+                (R, "0", quarter, "0", "0"),
+                (R, "0", "0", "0.263", "0"),
+            ],
+        ),
+        arm(
+            "jaco2",
+            "",
+            "general",
+            16,
+            &[
+                (R, "0", quarter, "0.2755", "0"),
+                (R, "0.41", "pi", "0", "0"),
+                (R, "0", quarter, "-0.0098", "0"),
+                (R, "0", "deg(60)", "-0.2501", "0"),
+                (R, "0", "deg(60)", "-0.0856", "0"),
+                (R, "0", "pi", "-0.2028", "0"),
+            ],
+        ),
+        arm(
+            "general6r",
+            "",
+            "general",
+            16,
+            &[
+                (R, "0.1", "deg(70)", "0.35", "0"),
+                (R, "0.42", "deg(25)", "0.08", "0.3"),
+                (R, "0.11", "deg(-80)", "0.07", "0"),
+                (R, "0.06", "deg(65)", "0.37", "0"),
+                (R, "0.05", "deg(-100)", "0.12", "-0.5"),
+                (R, "0.03", "deg(20)", "0.14", "0"),
+            ],
+        ),
+        arm(
+            "xarm6",
+            "",
+            "general",
+            16,
+            &[
+                (R, "0", "-pi/2", "0.267", "0"),
+                (R, "0.28949", "0", "0", "-1.3849179"),
+                (R, "0.0775", "-pi/2", "0", "1.3849179"),
+                (R, "0", quarter, "0.3425", "0"),
+                (R, "0.076", "-pi/2", "0", "0"),
+                (R, "0", "0", "0.097", "0"),
+            ],
+        ),
+        arm(
+            "iiwa",
+            "",
+            "shoulder, elbow, wrist (axes 1 2 3 through one point, axes 5 6 7 through one point)",
+            8,
+            &[
+                (R, "0", "-pi/2", "0.34", "0"),
+                (R, "0", quarter, "0", "0"),
+                (R, "0", quarter, "0.4", "0"),
+                (R, "0", "-pi/2", "0", "0"),
+                (R, "0", "-pi/2", "0.4", "0"),
+                (R, "0", quarter, "0", "0"),
+                (R, "0", "0", "0.126", "0"),
             ],
         ),
     ]

@@ -45,6 +45,8 @@ fn description(task: &str, rows: &[[&str; 5]]) -> String {
     format!("name: arm\nconvention: standard\ngravity: [0, 0, -9.81]\n{task}\njoints:\n{joints}")
 }
 
+const POINTING: &str = "inverse_kinematics: {target: pointing}";
+
 /// One arm of each class, with constants that are fractions where they can be.
 fn made_up() -> Vec<(&'static str, usize, String)> {
     let (o, q, minus) = ("0", "pi/2", "-pi/2");
@@ -134,6 +136,30 @@ fn made_up() -> Vec<(&'static str, usize, String)> {
                 ["R", "0.1", q, "0.1", o],
                 ["R", "0.05", minus, "0.35", o],
                 ["R", "0.02", o, "0.1", o],
+            ],
+        ),
+        arm(
+            "pointing",
+            8,
+            POINTING,
+            &[
+                ["R", "0.1", q, "0.3", o],
+                ["R", "0.4", o, "0.1", o],
+                ["R", "0.35", o, "0.05", o],
+                ["R", "0.08", q, "0.1", o],
+                ["R", o, q, "0.12", o],
+            ],
+        ),
+        arm(
+            "pointing, general",
+            16,
+            POINTING,
+            &[
+                ["R", "0.15", q, "0.3", o],
+                ["R", "0.4", minus, "0.1", o],
+                ["R", "0.35", q, "0.05", o],
+                ["R", "0.12", minus, "0.1", o],
+                ["R", "0.07", q, "0.2", o],
             ],
         ),
         arm(
@@ -248,6 +274,31 @@ fn other_texts_are_refused() {
     assert!(fault("    if !is_pose(t) {", "    if false {").contains("should stand where"));
     assert!(fault("    backward: false", "    backward: true").contains("not the loop of this arm"));
     assert!(fault("\nmod all_solutions {", "\nmod others {").contains("should stand where"));
+}
+
+/// The same of slides: a lost branch, a sign, a degenerate case, a wrong class.
+#[test]
+fn other_texts_of_slides_are_refused() {
+    let why = "is not the tested one";
+    let places = ("&LOOP.links_at(&t), [", "&LOOP.links_at(&t), [0, ");
+    let errors = [
+        ("gantry", "take(turns.count)", "take(1)", why),
+        ("gantry", "[-chain[0][3], -chain[1][3]", "[chain[0][3], -chain[1][3]", why),
+        ("gantry", "if turns.free { 1 << r1 | 1 << r3 } else { 0 }", "0", why),
+        ("gantry", places.0, places.1, "the joints that turn are others"),
+        ("two slides", "[(w, plus), (-w, minus)]", "[(w, plus)]", why),
+        ("two slides", "a: turned.a + r[3]", "a: turned.a - r[3]", why),
+        ("two slides", "take(roots.shallow_count)", "take(0)", why),
+        ("two slides", places.0, places.1, "the joints that slide are others"),
+    ];
+    let arms = made_up();
+    for (name, old, new, says) in errors {
+        let (_, _, arm) = arms.iter().find(|(arm, ..)| *arm == name).expect("an arm");
+        let (source, text) = module(arm);
+        assert!(text.contains(old), "{old}");
+        let fault = verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default();
+        assert!(fault.contains(says), "{name}, {new}: {fault}");
+    }
 }
 
 /// Code in a text of several lines, in documentation that is run, and what a module says of itself.
