@@ -10,6 +10,8 @@ mod driver;
 mod figures;
 #[path = "browser/pages.rs"]
 mod pages;
+#[path = "browser/reader.rs"]
+mod reader;
 #[path = "browser/rust.rs"]
 mod rust;
 
@@ -245,91 +247,6 @@ fn fields_take_expressions() {
     tab.close();
 }
 
-/// A click takes all of a field, what is typed counts when it is finished, Escape brings the number back, and a list that is pasted into one
-/// field is a posture, in the units of the fields.
-#[test]
-fn typing_counts_when_it_is_finished() {
-    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
-    let held = "[document.getElementById('q1').valueAsNumber, document.getElementById('q1-value').value]";
-    tab.run(
-        "(() => { const q = document.getElementById('q1-value'); q.value = '-0.7'; q.dispatchEvent(new Event('input')); })()",
-    );
-    tab.click("#q1-value");
-    tab.type_text("1.5");
-    assert_eq!(tab.run(held), serde_json::json!([-0.7, "1.5"]), "the arm waits for the whole number");
-    tab.press("Enter");
-    assert_eq!(tab.run(held), serde_json::json!([1.5, "1.5"]));
-    tab.type_text("2");
-    tab.press("Escape");
-    assert_eq!(tab.run(held), serde_json::json!([1.5, "1.5"]));
-    tab.click("#dq1");
-    tab.type_text("3");
-    tab.click("#q2-value");
-    assert_eq!(
-        tab.run(
-            "[document.getElementById('dq1').value, document.querySelector('[data-quantity=kinetic_energy]').dataset.value > 0]"
-        ),
-        serde_json::json!(["3", true])
-    );
-    let pasted = tab.run(
-        "(() => { const field = document.getElementById('q2-value'), seen = []; \
-         const paste = (text) => { const clipboardData = new DataTransfer(); clipboardData.setData('text/plain', text); \
-             const event = new ClipboardEvent('paste', { clipboardData, cancelable: true, bubbles: true }); field.dispatchEvent(event); \
-             const fault = document.getElementById('q2-fault'); \
-             seen.push([event.defaultPrevented, [1, 2, 3, 4].map((k) => document.getElementById(`q${k}-value`).value), fault.hidden ? '' : fault.textContent]); }; \
-         paste('[0.1, -pi/4, 0.3, -0]'); paste('array([0.1, 0.2])'); paste('2*(pi - 1)/3'); paste('1;2\\n3\\t4'); \
-         document.getElementById('angle-unit').click(); paste('90 pi/4 0.5 0'); return seen; })()",
-    );
-    let first = ["0.1", "-0.7853981633974483", "0.3", "0"];
-    let expected = serde_json::json!([
-        [true, first, ""],
-        [true, first, "2 numbers were pasted; a posture of this arm has 4"],
-        [false, first, "2 numbers were pasted; a posture of this arm has 4"],
-        [true, ["1", "2", "3", "4"], ""],
-        [true, ["90", "45", "0.5", "0"], ""]
-    ]);
-    assert_eq!(pasted, expected);
-    tab.close();
-}
-
-/// What was taken for joints without limits is said; an arm that has become small fills its picture again; names have a key, and the choice of
-/// names stays where it is; more lines can be folded back; functions have whole words as names; what is folded in is said on paper.
-#[test]
-fn what_is_left_open_is_said() {
-    let Some(mut tab) = opened(&robot("scara"), 360, "light") else { return };
-    let seen = tab.run(
-        "(async () => { const seen = []; const put = (id, value) => { const field = document.getElementById(id); field.value = value; field.dispatchEvent(new Event('input')); }; \
-         const reach = document.getElementById('reach'); reach.open = true; await new Promise((done) => setTimeout(done, 100)); \
-         seen.push(reach.querySelector('p').textContent.split('. ').at(-1)); \
-         const width = () => document.querySelector('#arm .base').getBoundingClientRect().width; const before = width(); \
-         put('q3-value', '50'); const far = width(); put('q3-value', '0'); seen.push([far < before / 5, width() > 0.5 * before]); \
-         for (const details of document.querySelectorAll('details[data-equation=inertia_matrix], details[data-equation=regressor], details[data-equation=coriolis_matrix]')) details.open = true; \
-         await new Promise((done) => setTimeout(done, 300)); const names = document.querySelector('input[value=symbolic]'); names.scrollIntoView({ block: 'center' }); \
-         const top = names.getBoundingClientRect().top; names.click(); await new Promise((done) => setTimeout(done, 300)); \
-         seen.push(Math.abs(names.getBoundingClientRect().top - top - document.getElementById('names').hidden) < 2, document.getElementById('names').textContent.includes('ml1 = 20')); \
-         seen.push([...document.querySelectorAll('.costs tbody th')].every((th) => th.getClientRects().length === 1 && th.scrollWidth <= th.clientWidth)); \
-         const weights = () => [...document.querySelectorAll('.costs td.weight')].map((td) => Number(td.dataset.value)); \
-         document.querySelector('.costs thead th:last-child button').click(); seen.push(weights().every((weight, k, all) => k === 0 || weight <= all[k - 1])); \
-         const nav = document.querySelector('nav'); scrollTo(0, 5000); seen.push(nav.getBoundingClientRect().top === 0); \
-         dispatchEvent(new Event('beforeprint')); seen.push(document.querySelector('#content > .print-only').textContent.startsWith('Not printed, since it was folded in: Data sheet (Motors and friction; Parameters)')); \
-         return seen; })()",
-    );
-    let assumed = "q₁, q₂, q₄ have no limits: a whole turn was taken; q₃ has no limits: −1 m to 1 m was assumed.";
-    assert_eq!(seen, serde_json::json!([assumed, [true, true], true, true, true, true, true, true]));
-    tab.close();
-    let Some(mut tab) = opened(&robot("everything"), 1600, "light") else { return };
-    let folded = tab.run(
-        "(async () => { const details = document.querySelector('details[data-equation=inverse_dynamics]'); details.open = true; \
-         const ready = async () => { do await new Promise((done) => setTimeout(done, 30)); while (!details.querySelector('.copies') || details.querySelector('[aria-busy=true]')); \
-             return details.querySelectorAll('.lines > div').length; }; \
-         const button = (word) => [...details.querySelectorAll('button')].find((one) => one.textContent.startsWith(word)); \
-         const first = await ready(); if (!button('show').textContent.includes('more')) return 'all at once'; button('show').click(); const more = await ready(); \
-         button('show fewer').click(); return [more > first, (await ready()) === first]; })()",
-    );
-    assert_eq!(folded, serde_json::json!([true, true]));
-    tab.close();
-}
-
 /// Entries say their units where some joints turn and some slide; bodies their tensors and what the linter says of them; a tick in the list of
 /// layers moves no slider, the tables of frames fit, and the wheel scrolls a narrow window.
 #[test]
@@ -406,81 +323,6 @@ fn equations_are_set_when_they_are_opened() {
             // One entry is shown before the steps that it needs, and they are fewer than all; no step that is named is missing.
             let chosen = tab.run(CHOOSE_ENTRY);
             assert_eq!(chosen, serde_json::json!(["1,2", true, [], true, true]));
-        }
-        tab.close();
-    }
-}
-
-/// Nothing stands behind a sine that could be taken for a part of its angle, a small constant has a power of ten, and rates, torques and
-/// derivatives have their symbols; what rounding leaves is shown as 0, and the number stays what was computed.
-#[test]
-fn formulas_and_numbers_cannot_be_misread() {
-    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
-    let seen = tab.run(
-        "(async () => { const seen = []; const text = (name, entry) => document.querySelector(`[data-equation=${name}] [data-entry=\"${entry}\"]`).textContent; \
-         for (const name of ['coriolis_matrix', 'friction', 'inverse_dynamics', 'known_torque', 'geometric_jacobian_dot']) { \
-             const details = document.querySelector(`details[data-equation=${name}]`); details.open = true; \
-             while (!details.querySelector('.copies')) await new Promise((done) => setTimeout(done, 5)); } \
-         const entries = [['coriolis_matrix', '1,1'], ['coriolis_matrix', '1,2'], ['friction', '1,1'], ['inverse_dynamics', '4,1'], ['geometric_jacobian_dot', '1,2']]; \
-         for (const [name, entry] of entries) seen.push(text(name, entry)); \
-         seen.push(document.querySelector('[data-equation=known_torque] math').textContent, document.querySelectorAll('[data-equation=friction] msup').length, \
-             document.querySelector('[data-equation=inverse_dynamics_derivatives_by_dq] summary').textContent); \
-         document.querySelector('input[value=symbolic]').click(); await new Promise((done) => setTimeout(done, 200)); \
-         const index = [...document.querySelectorAll('[data-equation=inverse_dynamics] msub')].find((one) => one.textContent === 'Il1'); \
-         seen.push([...index.lastChild.children].map((part) => part.localName + part.textContent)); return seen; })()",
-    );
-    let expected = serde_json::json!([
-        "−5q.2sinq2",
-        "−5(q.1+q.2)sinq2",
-        "5·10−5q.1",
-        "τ4=2q.4 −1.02q¨1 −1.02q¨2 +1.4q¨4 = 0",
-        "(dJ/dt)12=−0.5(q.1+q.2)cos(q1+q2) ",
-        "τknown(q,q.,q.r,q¨r)=",
-        2,
-        "∂τ/∂q̇ inverse dynamics derivatives by q̇, 4 × 4",
-        ["mil", "mn1"]
-    ]);
-    assert_eq!(seen, expected);
-    tab.close();
-    let Some(mut tab) = opened(&robot("puma560"), 1600, "light") else { return };
-    let noise = tab.run(&format!(
-        "(() => {{ {MOVE}(1); for (const q of document.querySelectorAll('.exact input')) {{ q.value = 'pi/2'; q.dispatchEvent(new Event('input')); }} \
-         const entries = [...document.querySelectorAll('td[data-quantity]')]; \
-         const small = entries.filter((entry) => Math.abs(Number(entry.dataset.value)) < 1e-15 && Number(entry.dataset.value) !== 0); \
-         const minus = entries.filter((entry) => entry.textContent === '−0' || entry.textContent === '-0'); \
-         return [small.length > 2, small.every((entry) => entry.textContent === '0'), minus.length, \
-                 entries.filter((entry) => entry.textContent === '0').length < entries.length / 2]; }})()"
-    ));
-    assert_eq!(noise, serde_json::json!([true, true, 0, true]));
-    tab.close();
-}
-
-/// A singular posture says what the axes do that makes it one, in the plural where several factors are zero; the line of the lost motion and
-/// its words are in the picture in every view, and cover no name of a frame and not the badge.
-#[test]
-fn a_singular_posture_says_why() {
-    for (name, why) in [
-        ("scara", "Why: the axes of q₁, q₂ and q₄ are parallel and lie in one plane: the arm is stretched or folded."),
-        ("ur5", "Why: the axes of q₂, q₃ and q₄ are parallel and lie in one plane: the arm is stretched or folded."),
-        ("panda7", "Why: the axes of q₁, q₃ and q₅ lie on one line."),
-        ("puma560", "Why: the axes of q₄ and q₆ lie on one line."),
-    ] {
-        let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
-        let seen = tab.run(
-            "(() => { const box = (element) => element.getBoundingClientRect(); \
-             const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top; const faults = []; \
-             for (const view of ['oblique', 'front', 'side', 'top']) { document.querySelector(`button[data-view=${view}]`).click(); \
-                 const arm = box(document.getElementById('arm')); const words = box(document.querySelector('#arm .lost text')); \
-                 const line = box(document.querySelector('#arm .lost path')); \
-                 const within = (one) => one.left >= arm.left && one.right <= arm.right && one.top >= arm.top && one.bottom <= arm.bottom; \
-                 const others = [...document.querySelectorAll('#arm .frame-name, #arm .gravity text, #singular-posture a')].map(box); \
-                 if (!within(line) || !within(words) || others.some((other) => !apart(words, other))) faults.push(view); } \
-             const texts = [...document.querySelectorAll('#singular a')].map((link) => document.querySelector(link.hash) !== null); \
-             return [document.getElementById('singular-why').textContent, faults, texts.every((there) => there), document.getElementById('singular-posture').textContent]; })()",
-        );
-        assert_eq!((&seen[0], &seen[1], &seen[2]), (&why.into(), &serde_json::json!([]), &true.into()), "{name}: {seen}");
-        if name == "ur5" {
-            assert_eq!(seen[3], "⚠ singular posture: factor 1, sin(q₃), and factor 2, sin(q₅), of det J are zero");
         }
         tab.close();
     }
