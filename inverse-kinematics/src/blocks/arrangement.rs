@@ -33,7 +33,7 @@ impl<const J: usize> Arrangement<J> {
         let x = if self.backward { *t } else { inverse(t) };
         let mut links = self.links;
         if let Some(open) = links.get_mut(self.open) {
-            *open = compose(&self.before, &compose(&x, &self.after));
+            *open = compose_constant(&self.before, &constant_then(&x, &self.after));
         }
         links
     }
@@ -41,12 +41,14 @@ impl<const J: usize> Arrangement<J> {
     /// A solution of the loop as one of the arm: joint values and the bits of `free` in the arm's order.
     #[inline]
     pub fn of_arm(&self, branch: &Branch<J>) -> Branch<J> {
+        // Most offsets are those of no turn.
+        let turned = |x: Real, y: Real, co: Real, so: Real| plus_product(plus_product(-0.0, co, x), so, y);
         let mut result = *branch;
         result.free = 0;
         for (i, (place, ([c, s], prismatic))) in self.order.iter().zip(branch.joints.iter().zip(self.prismatic)).enumerate() {
             let [co, so] = self.offsets.get(i).copied().unwrap_or([1.0, 0.0]);
             if let Some(value) = result.joints.get_mut(*place) {
-                *value = if prismatic { [c - co, 0.0] } else { [c * co + s * so, s * co - c * so] };
+                *value = if prismatic { [c - co, 0.0] } else { [turned(*c, *s, co, so), turned(*s, *c, co, -so)] };
                 result.free |= (branch.free >> i & 1) << place;
             }
         }

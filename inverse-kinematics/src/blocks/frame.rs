@@ -20,6 +20,23 @@ pub fn dot(u: Vector, v: Vector) -> Real {
     u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 }
 
+/// sum + k x; the sum alone where k is 0. For a constant k of the arm: where it is known at compile time, products with 0 cost nothing, which the
+/// rules of floats forbid a compiler to leave out. Sums begin with -0.0, to which anything can be added as it is.
+#[inline]
+pub fn plus_product(sum: Real, k: Real, x: Real) -> Real {
+    if k == 0.0 {
+        sum
+    } else {
+        sum + k * x
+    }
+}
+
+/// k · v for a constant k of the arm.
+#[inline]
+pub fn dot_constant(k: Vector, v: Vector) -> Real {
+    plus_product(plus_product(plus_product(-0.0, k[0], v[0]), k[1], v[1]), k[2], v[2])
+}
+
 /// u × v.
 #[inline]
 pub fn cross(u: Vector, v: Vector) -> Vector {
@@ -86,6 +103,32 @@ pub fn compose(f: &Frame, g: &Frame) -> Frame {
     [row(&f[0]), row(&f[1]), row(&f[2])]
 }
 
+/// First `g`, then a constant `f` of the arm.
+#[inline]
+pub fn compose_constant(f: &Frame, g: &Frame) -> Frame {
+    let row = |r: &[Real; 4]| {
+        let entry = |j: usize| dot_constant([r[0], r[1], r[2]], column(g, j));
+        [entry(0), entry(1), entry(2), entry(3) + r[3]]
+    };
+    [row(&f[0]), row(&f[1]), row(&f[2])]
+}
+
+/// First a constant `g` of the arm, then `f`.
+#[inline]
+pub fn constant_then(f: &Frame, g: &Frame) -> Frame {
+    let row = |r: &[Real; 4]| {
+        let entry = |j: usize| dot_constant(column(g, j), [r[0], r[1], r[2]]);
+        [entry(0), entry(1), entry(2), entry(3) + r[3]]
+    };
+    [row(&f[0]), row(&f[1]), row(&f[2])]
+}
+
+/// R' v for a constant frame of the arm.
+#[inline]
+pub fn rotate_back_constant(f: &Frame, v: Vector) -> Vector {
+    [dot_constant(column(f, 0), v), dot_constant(column(f, 1), v), dot_constant(column(f, 2), v)]
+}
+
 /// The displacement that undoes `f`, with the transposed rotation.
 #[inline]
 pub fn inverse(f: &Frame) -> Frame {
@@ -136,10 +179,10 @@ pub fn joint_back(prismatic: bool, value: [Real; 2], v: Vector) -> Vector {
     }
 }
 
-/// Directions as seen from behind a joint and a link.
+/// Directions as seen from behind a joint and a constant link.
 #[inline]
 pub fn seen_behind(prismatic: bool, [c, s]: [Real; 2], link: &Frame, [x, y, z]: [Vector; 3]) -> [Vector; 3] {
-    let seen = |v: Vector| rotate_back(link, if prismatic { v } else { turn_vector(c, -s, v) });
+    let seen = |v: Vector| rotate_back_constant(link, if prismatic { v } else { turn_vector(c, -s, v) });
     [seen(x), seen(y), seen(z)]
 }
 

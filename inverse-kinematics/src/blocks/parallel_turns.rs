@@ -23,7 +23,7 @@ pub fn parallel_turns(
     // What a turn about these axes does not change is judged once: where the loop without its turns takes the directions of the last link.
     let behind_2 = compose(l2, l3);
     let behind = [compose(l1, &behind_2), behind_2, *l3];
-    let seen = |v: Vector| rotate_back(&behind[0], v);
+    let seen = |v: Vector| rotate_back_constant(&behind[0], v);
     let (x, y, z) = (seen(column(&back, 0)), seen(column(&back, 1)), seen(column(&back, 2)));
     let tilt = sqrt(x[2] * x[2] + y[2] * y[2] + z[0] * z[0] + z[1] * z[1]);
     let met = tilt <= ROUNDING && z[2] > 0.0;

@@ -128,11 +128,12 @@ pub fn regional_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3,
     let noise = ROUNDING * reach(a, b, w, p);
     let k = column(a, 2);
     let along = b[2][3] + b[2][2] * w[2] + dot(k, column(a, 3)) - k[2] * p[2];
-    let line = line_and_circle(k[0] * p[0] + k[1] * p[1], k[0] * p[1] - k[1] * p[0], along, noise, 0.0);
+    let across = [dot_constant([k[0], k[1], 0.0], p), dot_constant([-k[1], k[0], 0.0], p)];
+    let line = line_and_circle(across[0], across[1], along, noise, 0.0);
     found.missed(line.miss);
     for (sign, q1) in points(&line) {
         let v = minus(turn_vector(q1[0], -q1[1], p), column(a, 3));
-        let (x, y) = (dot(column(a, 0), v), dot(column(a, 1), v));
+        let (x, y) = (dot_constant(column(a, 0), v), dot_constant(column(a, 1), v));
         let mut add = |q2, q3, elbow: u16, double, free| {
             let free = free | u32::from(line.free);
             let (double, error) = (line.double || double, line.error);
