@@ -9,22 +9,29 @@ const STACK: usize = 8 << 20;
 /// What `of` gives for each item, on as many threads as there are processors; the last items, which take longest, first.
 pub fn parallel_map<T: Sync, R: Send + Sync>(items: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let results: Vec<OnceLock<R>> = items.iter().map(|_| OnceLock::new()).collect();
-    let left = AtomicUsize::new(items.len());
+    for_each_index(items.len(), &|i| {
+        results[i].get_or_init(|| of(&items[i]));
+    });
+    results.into_iter().map(|result| result.into_inner().expect("every item is taken")).collect()
+}
+
+/// Compiled once, whatever the items are.
+fn for_each_index(count: usize, of: &(dyn Fn(usize) + Sync)) {
+    let left = AtomicUsize::new(count);
     let work = || {
         let next = || left.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1)).ok();
         while let Some(before) = next() {
-            results[before - 1].get_or_init(|| of(&items[before - 1]));
+            of(before - 1);
         }
     };
     std::thread::scope(|scope| {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        for _ in 1..threads.min(items.len()) {
+        for _ in 1..threads.min(count) {
             // Where there are no more threads, those that there are do the work.
             let _ = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
         }
         work();
     });
-    results.into_iter().map(|result| result.into_inner().expect("every item is taken")).collect()
 }
 
 /// The results of both, found at the same time where there is a second thread.

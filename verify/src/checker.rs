@@ -295,7 +295,9 @@ impl Checker {
             let field = Prime::new(&mut stream, atoms, dependent);
             fields.push(Drawn::Modular(field.ok_or("the constants have too many square roots for a prime field")?));
         }
-        fields.extend((0..effort.exact_points).map_while(|_| Tower::new(&mut stream, atoms, dependent)).map(Drawn::Exact));
+        let joints = manipulator.joints.len();
+        fields
+            .extend((0..effort.exact_points).map_while(|_| Tower::new(&mut stream, atoms, dependent, joints)).map(Drawn::Exact));
         let modular = |mut field: Prime| {
             let wanted = Wanted { base: BaseParameters::Solved, pivots: divides };
             let reference = Reference::new(&mut field, &manipulator, &vector, wanted)?;

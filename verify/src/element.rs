@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 /// An exact number with the operations of a field.
-pub trait Element: Clone + PartialEq + Debug {
+pub trait Element: Clone + PartialEq + Debug + Send + Sync {
     /// a + b.
     fn plus(&self, other: &Self) -> Self;
     /// a - b.

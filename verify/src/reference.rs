@@ -11,8 +11,8 @@ use crate::divisors::{Matrix, Pivots};
 use crate::element::Element;
 use crate::equations::arm::{Arm, Frame};
 use crate::equations::lagrange::{
-    accelerations, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix, load_friction,
-    potential_energy, spring_torques, times_vector, Parts,
+    accelerations, along_joints, coriolis_matrix, friction, gravity, has_load_friction, inertia_derivatives, inertia_matrix,
+    load_friction, potential_energy, spring_torques, times_vector, Parts,
 };
 use crate::equations::newton_euler::{ArmMotion, Motion};
 use crate::equations::parameters::{
@@ -206,12 +206,10 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>, by: By) -> Vec
     let n = arm.dof();
     let moving_arm = arm.map(&|e| Dual::constant(e));
     let still = vec![arm.zero.clone(); n];
-    let column = |k: usize| -> Vec<E> {
-        let mut unit = still.clone();
-        unit[k] = arm.one.clone();
+    let columns: Vec<Vec<E>> = along_joints(arm, &|unit| {
         let state = match by {
-            By::Variables => state.moving(&unit, &still),
-            By::Rates => state.moving(&still, &unit),
+            By::Variables => state.moving(unit, &still),
+            By::Rates => state.moving(&still, unit),
         };
         let pose = Pose::new(&moving_arm, &state);
         let motion = Motion { rates: state.dq.clone(), accelerations: state.ddq.clone(), gravity: moving_arm.gravity.clone() };
@@ -224,8 +222,7 @@ fn torque_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>, by: By) -> Vec
             Some(load) => rates.zip(load).map(|(rate, load)| rate.plus(&load.rate)).collect(),
             None => rates.collect(),
         }
-    };
-    let columns: Vec<Vec<E>> = (0..n).map(column).collect();
+    });
     (0..n).map(|i| columns.iter().map(|column| column[i].clone()).collect()).collect()
 }
 

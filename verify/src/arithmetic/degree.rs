@@ -7,9 +7,8 @@
 //! A polynomial of degree d that is not 0 has a zero at a random point with odds of at most d/p (Schwartz 1980, Zippel 1979), and one whose
 //! coefficients are below 2^h is 0 modulo one of h/62 primes at most.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use dashu_base::{Abs, EstimatedLog2, UnsignedAbs};
 use dashu_int::UBig;
@@ -20,18 +19,24 @@ use crate::formula::definitions::{self, Defined};
 use crate::formula::{Formula, Rational, Root};
 
 /// What all values of a program share.
-#[derive(Debug, Default, PartialEq)]
+#[derive(Debug, Default)]
 struct Table {
     /// log2 L.
     common: f64,
     /// Degree, logarithm of the height and power of 1/L of each D_i.
-    divisors: RefCell<Vec<(f64, f64, f64)>>,
+    divisors: RwLock<Vec<(f64, f64, f64)>>,
+}
+
+impl Table {
+    fn divisor(&self, index: usize) -> (f64, f64, f64) {
+        self.divisors.read().unwrap_or_else(PoisonError::into_inner)[index]
+    }
 }
 
 /// Bounds on a value.
 #[derive(Clone, Debug)]
 pub struct Degree {
-    table: Rc<Table>,
+    table: Arc<Table>,
     /// Degree of N, log2 of its height, k; `None` for 0.
     size: Option<(f64, f64, f64)>,
     divisors: BTreeMap<usize, i64>,
@@ -49,13 +54,19 @@ fn log2_sum(a: f64, b: f64) -> f64 {
 }
 
 impl Degree {
+    /// Which powers of which divisors this value lacks of those given.
+    fn missing<'a>(&'a self, divisors: &'a BTreeMap<usize, i64>) -> impl Iterator<Item = (f64, (f64, f64, f64))> + 'a {
+        divisors.iter().filter_map(|(divisor, power)| {
+            let extra = power.saturating_sub(self.divisors.get(divisor).copied().unwrap_or(0));
+            (extra != 0).then(|| (extra as f64, self.table.divisor(*divisor)))
+        })
+    }
+
     /// Degree and height of this value brought to the denominators given.
     fn raised(&self, divisors: &BTreeMap<usize, i64>, k: f64) -> (f64, f64) {
         let (mut degree, mut height, own) = self.size.unwrap_or((0.0, 0.0, 0.0));
         let mut missing = k - own;
-        for (divisor, power) in divisors {
-            let extra = power.saturating_sub(self.divisors.get(divisor).copied().unwrap_or(0)) as f64;
-            let (d, h, l) = self.table.divisors.borrow()[*divisor];
+        for (extra, (d, h, l)) in self.missing(divisors) {
             degree += extra * d;
             height += extra * h;
             missing -= extra * l;
@@ -85,12 +96,7 @@ impl Element for Degree {
             *entry = (*entry).max(other.divisors.get(divisor).copied().unwrap_or(0));
         }
         // The power of 1/L that both reach once they stand over the common denominators.
-        let power = |value: &Degree, k: f64| {
-            divisors.iter().fold(k, |k, (divisor, power)| {
-                let extra = power.saturating_sub(value.divisors.get(divisor).copied().unwrap_or(0)) as f64;
-                k + extra * value.table.divisors.borrow()[*divisor].2
-            })
-        };
+        let power = |value: &Degree, k: f64| value.missing(&divisors).fold(k, |k, (extra, (.., l))| k + extra * l);
         let k = power(self, a.2).max(power(other, b.2));
         let (x, y) = (self.raised(&divisors, k), other.raised(&divisors, k));
         let size = (x.0.max(y.0), log2_sum(x.1, y.1), k);
@@ -122,7 +128,7 @@ impl Element for Degree {
     fn inverse(&self) -> Option<Self> {
         let size = self.size?;
         let index = {
-            let mut list = self.table.divisors.borrow_mut();
+            let mut list = self.table.divisors.write().unwrap_or_else(PoisonError::into_inner);
             list.push(size);
             list.len() - 1
         };
@@ -145,7 +151,7 @@ impl Element for Degree {
 /// Where bounds come from.
 #[derive(Clone, Debug)]
 pub struct Degrees {
-    table: Rc<Table>,
+    table: Arc<Table>,
     defined: Defined<Degree>,
 }
 
@@ -181,7 +187,7 @@ impl Degrees {
         let constants: Vec<&Formula> = constants.into_iter().collect();
         definitions::of(constants.iter().copied()).iter().for_each(|definition| denominator(definition.formula(), &mut common));
         constants.into_iter().for_each(|formula| denominator(formula, &mut common));
-        Degrees { defined: Defined::default(), table: Rc::new(Table { common: log2(&common), divisors: RefCell::default() }) }
+        Degrees { defined: Defined::default(), table: Arc::new(Table { common: log2(&common), divisors: RwLock::default() }) }
     }
 
     fn with(&self, degree: f64, height: f64, k: f64) -> Degree {

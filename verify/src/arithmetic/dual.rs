@@ -16,6 +16,16 @@ impl<E: Element> Dual<E> {
     pub fn constant(value: &E) -> Dual<E> {
         Dual { rate: value.minus(value), value: value.clone() }
     }
+
+    /// (ab)' = a'b + ab'.
+    pub fn rate_of_product(&self, other: &Self) -> E {
+        match (self.rate.is_zero(), other.rate.is_zero()) {
+            (true, true) => self.rate.clone(),
+            (true, false) => self.value.times(&other.rate),
+            (false, true) => self.rate.times(&other.value),
+            (false, false) => self.value.times(&other.rate).plus(&self.rate.times(&other.value)),
+        }
+    }
 }
 
 impl<E: Element> Element for Dual<E> {
@@ -26,13 +36,7 @@ impl<E: Element> Element for Dual<E> {
         Dual { value: self.value.minus(&other.value), rate: self.rate.minus(&other.rate) }
     }
     fn times(&self, other: &Self) -> Self {
-        let rate = match (self.rate.is_zero(), other.rate.is_zero()) {
-            (true, true) => self.rate.clone(),
-            (true, false) => self.value.times(&other.rate),
-            (false, true) => self.rate.times(&other.value),
-            (false, false) => self.value.times(&other.rate).plus(&self.rate.times(&other.value)),
-        };
-        Dual { value: self.value.times(&other.value), rate }
+        Dual { value: self.value.times(&other.value), rate: self.rate_of_product(other) }
     }
     fn negated(&self) -> Self {
         Dual { value: self.value.negated(), rate: self.rate.negated() }

@@ -31,6 +31,9 @@ pub const MOST_ROOTS: usize = 5;
 /// And 4^k times the angles of constants are at most so many: each makes the fractions longer.
 const MOST_WORK: usize = 4096;
 
+/// Numerator and denominator of the tangents of half the joint angles, of arms of up to eight joints.
+const LONGEST: u64 = 127;
+
 impl Surd {
     /// Coordinates over the products of the adjoined roots: the k-th bit of a place says whether the k-th root is a factor.
     pub fn coordinates(&self) -> &[Rational] {
@@ -143,23 +146,27 @@ pub struct Tower {
     roots: BTreeMap<Root, Surd>,
     angles: BTreeMap<Formula, (Surd, Surd)>,
     defined: Defined<Surd>,
+    longest: u64,
 }
 
 impl Tower {
-    /// The tower in which all roots of `atoms` exist; `None` if too many of them are independent, or there are too many angles beside them.
-    pub fn new(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent) -> Option<Tower> {
+    /// The tower in which all roots of `atoms` exist, for an arm of so many joints; `None` if too many of them are independent, or there are
+    /// too many angles beside them.
+    pub fn new(stream: &mut Stream, atoms: &Atoms, dependent: &Dependent, joints: usize) -> Option<Tower> {
         let levels = atoms.roots.len() - dependent.len();
         let short = levels <= MOST_ROOTS && atoms.angles.len() << (2 * levels) <= MOST_WORK;
-        short.then(|| Tower::with_levels(levels, stream, atoms, dependent)).flatten()
+        // The denominators of all joint angles multiply: numbers stay about as long as those of eight joints.
+        let longest = (LONGEST * 64 / (joints * joints).max(1) as u64).clamp(LONGEST / 8, LONGEST);
+        short.then(|| Tower::with_levels(levels, stream, atoms, dependent, longest)).flatten()
     }
 
     /// The tower of some roots of integers without common factors.
     pub fn of_integers(roots: &[Root]) -> Tower {
         let atoms = Atoms { roots: roots.to_vec(), ..Atoms::default() };
-        Tower::with_levels(roots.len(), &mut Stream::new(0), &atoms, &Dependent::new()).expect("integers have roots")
+        Tower::with_levels(roots.len(), &mut Stream::new(0), &atoms, &Dependent::new(), LONGEST).expect("integers have roots")
     }
 
-    fn with_levels(levels: usize, stream: &mut Stream, atoms: &Atoms, dependent: &Dependent) -> Option<Tower> {
+    fn with_levels(levels: usize, stream: &mut Stream, atoms: &Atoms, dependent: &Dependent, longest: u64) -> Option<Tower> {
         let mut tower = Tower {
             squares: Arc::new(Squares(Vec::new())),
             stream: stream.branch(),
@@ -167,6 +174,7 @@ impl Tower {
             roots: BTreeMap::new(),
             angles: BTreeMap::new(),
             defined: Defined::default(),
+            longest,
         };
         // The squares are found in the full width, the levels above still without a square of their own, and cut to the level below.
         let mut squares: Vec<Vec<Rational>> = (0..levels).map(|level| vec![Rational::ZERO; 1 << level]).collect();
@@ -241,10 +249,11 @@ impl Arithmetic for Tower {
         self.integer(sign * size)
     }
 
-    /// Of a small fraction t, one of some twenty thousand: with t = a/b the denominator is a² + b², shorter than that of an integer as long as both.
+    /// Of a small fraction t, one of some twenty thousand (of 32 joints three hundred): with t = a/b the denominator is a² + b², shorter than
+    /// that of an integer as long as both.
     fn draw_angle(&mut self) -> (Surd, Surd) {
         let sign = if self.stream.below(2) == 0 { 1 } else { -1 };
-        let (a, b) = (sign * (1 + self.stream.below(127) as i64), 1 + self.stream.below(127) as i64);
+        let (a, b) = (sign * (1 + self.stream.below(self.longest) as i64), 1 + self.stream.below(self.longest) as i64);
         let of = |numerator: i64| self.rational(&Rational::from_parts(numerator.into(), (a * a + b * b).unsigned_abs().into()));
         (of(2 * a * b), of(b * b - a * a))
     }
@@ -258,7 +267,7 @@ mod tests {
     fn roots_of_roots_square_to_what_they_are_roots_of() {
         let parse = |text: &str| Formula::parse(text).expect("a formula");
         let formulas: Vec<Formula> = ["sqrt(6)", "sqrt(5 + sqrt(2))", "cos(7/10)", "pi"].iter().map(|t| parse(t)).collect();
-        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas), &Dependent::new()).expect("three roots");
+        let tower = Tower::new(&mut Stream::new(1), &Atoms::of(&formulas), &Dependent::new(), 4).expect("three roots");
         let of = |text: &str| tower.constant(&parse(text)).expect("no division by zero");
         assert_eq!(of("sqrt(6)*sqrt(2)"), of("2*sqrt(3)"));
         assert_eq!(of("sqrt(5 + sqrt(2))^2"), of("5 + sqrt(2)"));

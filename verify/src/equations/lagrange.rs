@@ -3,8 +3,9 @@
 use super::arm::{Arm, Joint};
 use super::pose::Pose;
 use super::state::State;
-use super::vector::{apply, dot, product, scale, solve, transpose, Vector};
+use super::vector::{self, apply, dot, product, scale, solve, transpose, Vector};
 use crate::arithmetic::dual::Dual;
+use crate::check::parallel_map;
 use crate::element::Element;
 
 /// What the equations of motion are made of: B and C row by row, g, F and U.
@@ -49,10 +50,16 @@ fn bodies<E: Element>(arm: &Arm<E>, pose: &Pose<E>) -> Vec<Placed<E>> {
 
 /// B(q), row by row: the book, eq. 7.32; the rotor of joint i turns with its parent link and with k_r about its own axis besides.
 pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>> {
+    inertia_by(arm, state, &E::times)
+}
+
+/// The sum that B(q) is, with what `times` makes of each product of two speeds: the product, or its derivative.
+fn inertia_by<E: Element, R: Element>(arm: &Arm<E>, state: &State<E>, times: &dyn Fn(&E, &E) -> R) -> Vec<Vec<R>> {
     let pose = Pose::new(arm, state);
     let n = arm.dof();
-    let mut b = vec![vec![arm.zero.clone(); n]; n];
-    let mut accumulate = |columns: &[usize], entry: &dyn Fn(usize, usize) -> E| {
+    let dot = |a: &Vector<E>, b: &Vector<E>| times(&a[0], &b[0]).plus(&times(&a[1], &b[1])).plus(&times(&a[2], &b[2]));
+    let mut b = vec![vec![times(&arm.zero, &arm.zero); n]; n];
+    let mut accumulate = |columns: &[usize], entry: &dyn Fn(usize, usize) -> R| {
         for &i in columns {
             for &j in columns.iter().filter(|&&j| j >= i) {
                 b[i][j] = b[i][j].plus(&entry(i, j));
@@ -73,19 +80,19 @@ pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>>
         }
     }
     for (i, joint) in arm.joints.iter().enumerate() {
-        accumulate(&[i], &|_, _| joint.armature.clone());
+        accumulate(&[i], &|_, _| times(&joint.armature, &arm.one));
         let Some(motor) = &joint.motor else { continue };
         let mut rotor_speed = vec![arm.zero.clone(); n];
         let mut columns = vec![i];
         if let Some(parent) = joint.parent {
             let axis = pose.links[parent].direction(&motor.axis);
             for (j, (_, w)) in pose.jacobian(Some(parent), &pose.links[parent].origin).iter().enumerate() {
-                rotor_speed[j] = dot(&axis, w);
+                rotor_speed[j] = vector::dot(&axis, w);
             }
             columns.extend(&pose.ancestors[parent]);
         }
         rotor_speed[i] = rotor_speed[i].plus(&motor.ratio);
-        accumulate(&columns, &|i, j| motor.inertia.times(&rotor_speed[i]).times(&rotor_speed[j]));
+        accumulate(&columns, &|i, j| times(&motor.inertia.times(&rotor_speed[i]), &rotor_speed[j]));
     }
     for i in 0..n {
         for j in 0..i {
@@ -97,16 +104,27 @@ pub fn inertia_matrix<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<E>>
 
 /// ∂B/∂q_k for each k.
 pub fn inertia_derivatives<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<Vec<Vec<E>>> {
-    let zero = &arm.zero;
+    let still = vec![arm.zero.clone(); arm.dof()];
     let moving = arm.map(&|e| Dual::constant(e));
-    (0..arm.dof())
-        .map(|k| {
-            let mut along = vec![zero.clone(); arm.dof()];
-            along[k] = arm.one.clone();
-            let b = inertia_matrix(&moving, &state.moving(&along, &vec![zero.clone(); arm.dof()]));
-            b.into_iter().map(|row| row.into_iter().map(|e| e.rate).collect()).collect()
-        })
-        .collect()
+    along_joints(arm, &|along| inertia_by(&moving, &state.moving(along, &still), &Dual::rate_of_product))
+}
+
+/// From so many joints on, derivatives by the joints are taken side by side: before, threads cost more than they save.
+const LONG: usize = 16;
+
+/// What `derivative` gives along the unit vector of each joint.
+pub fn along_joints<E: Element, R: Send + Sync>(arm: &Arm<E>, derivative: &(dyn Fn(&[E]) -> R + Sync)) -> Vec<R> {
+    let unit = |k: usize| {
+        let mut along = vec![arm.zero.clone(); arm.dof()];
+        along[k] = arm.one.clone();
+        along
+    };
+    let units: Vec<Vec<E>> = (0..arm.dof()).map(unit).collect();
+    if arm.dof() < LONG {
+        units.iter().map(|along| derivative(along)).collect()
+    } else {
+        parallel_map(&units, |along| derivative(along))
+    }
 }
 
 /// C(q, dq), row by row: C_ij = Σ_k ½ (∂B_ij/∂q_k + ∂B_ik/∂q_j - ∂B_jk/∂q_i) dq_k.
@@ -147,15 +165,9 @@ pub fn spring_torques<E: Element>(arm: &Arm<E>, q: &[E]) -> Vec<E> {
 
 /// g(q) = ∂U/∂q.
 pub fn gravity<E: Element>(arm: &Arm<E>, state: &State<E>) -> Vec<E> {
-    let zero = &arm.zero;
+    let still = vec![arm.zero.clone(); arm.dof()];
     let moving = arm.map(&|e| Dual::constant(e));
-    (0..arm.dof())
-        .map(|k| {
-            let mut along = vec![zero.clone(); arm.dof()];
-            along[k] = arm.one.clone();
-            potential_energy(&moving, &state.moving(&along, &vec![zero.clone(); arm.dof()])).rate
-        })
-        .collect()
+    along_joints(arm, &|along| potential_energy(&moving, &state.moving(along, &still)).rate)
 }
 
 /// F_i = (k_r² F_m + F_v + F_3 dq_i²) rate_i + (F_c + F_s exp(-|dq_i| / v)) sign_i + F_0, with what is drawn for signs and exponentials:
