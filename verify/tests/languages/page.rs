@@ -298,11 +298,31 @@ pub(crate) fn check_declarations() {
     }
 }
 
-/// What reorders sums is refused by the header itself, and without `math.h` it needs no header.
+/// Flags that let a compiler reorder sums, of which it says so and of which it does not.
+const PARTS_OF_FAST_MATH: [&[&str]; 4] = [
+    &["-ffast-math", "-fno-finite-math-only"],
+    &["-funsafe-math-optimizations"],
+    &["-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"],
+    &["-freciprocal-math"],
+];
+
+/// What reorders sums is refused by the header itself, or changes nothing where the compiler does not say that it was given; and without
+/// `math.h` it needs no header.
 pub(crate) fn check_fast_math() {
     let (folder, generated) = folder_of("languages_fast_math");
     write(folder.join("scara.h"), generated.in_language(Language::C));
     write(folder.join("twice.c"), "#include \"scara.h\"\n#include \"scara.h\"\n");
+    let caller = [
+        "#include <stdio.h>\n#include \"scara.h\"\nint main(void)\n{",
+        "double q[SCARA_DOF] = {0.1, 0.2, 0.3, 0.4}, tau[SCARA_DOF];",
+        "for (int k = 0; k < 1000; k++) {",
+        "for (int i = 0; i < SCARA_DOF; i++) q[i] = q[i] * 1.25 + 0.375;",
+        "if (k % 32 == 0) for (int i = 0; i < SCARA_DOF; i++) q[i] = 0.1 * i;",
+        "scara_inverse_dynamics(q, q, q, tau);",
+        "for (int i = 0; i < SCARA_DOF; i++) printf(\"%a \", tau[i]);",
+        "}\nreturn 0;\n}\n",
+    ];
+    write(folder.join("caller.c"), caller.join("\n"));
     for compiler in ["gcc", "clang"] {
         if !there(compiler, compiler) {
             continue;
@@ -312,9 +332,26 @@ pub(crate) fn check_fast_math() {
             command.current_dir(&folder).args(["-O2", "-Wall", "-Werror", "-c", "-o", "twice.o", "twice.c"]).args(flags);
             command
         };
-        let output = compile(&["-ffast-math"]).output().expect("it is there");
-        let told = String::from_utf8_lossy(&output.stderr).contains("compile without");
-        assert!(!output.status.success() && told, "{compiler} -ffast-math");
+        let check_refused = |flags: &[&str]| {
+            let output = compile(flags).output().expect("it is there");
+            let told = String::from_utf8_lossy(&output.stderr).contains("compile without");
+            assert!(!output.status.success() && told, "{compiler} {flags:?}");
+        };
+        let run = |flags: &[&str]| {
+            let mut command = Command::new(compiler);
+            succeed(
+                command.current_dir(&folder).args(["-O2", "-ffp-contract=off", "-o", "caller", "caller.c", "-lm"]).args(flags),
+            );
+            Command::new(folder.join("caller")).output().expect("it was compiled").stdout
+        };
+        check_refused(&["-ffast-math"]);
+        let plain = run(&[]);
+        for flags in PARTS_OF_FAST_MATH {
+            match compiler {
+                "gcc" => check_refused(flags),
+                _ => assert_eq!(run(flags), plain, "{compiler} {flags:?}"),
+            }
+        }
         succeed(&mut compile(&[]));
         succeed(&mut compile(&["-DSCARA_NO_MATH_H", "-nostdinc", "-ffreestanding"]));
     }

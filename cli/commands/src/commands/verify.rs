@@ -31,8 +31,10 @@ pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>)
 }
 
 fn verified(description: &Path, module: &Path, language: Option<Language>) -> Result<u8, u8> {
-    let by_extension = || Language::of_extension(module.extension()?.to_str()?);
-    let language = if module.is_dir() { Some(Language::Matlab) } else { language.or_else(by_extension) }.unwrap_or_default();
+    let language = language_of(module, language).map_err(|fault| {
+        terminal::error(&fault);
+        FAULTY
+    })?;
     let source = input::source(description)?;
     let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
     if inverse_kinematics::is_one(text.text()) {
@@ -79,6 +81,36 @@ fn verified(description: &Path, module: &Path, language: Option<Language>) -> Re
     ));
     Err(FAULTY)
 }
+
+/// The language that is asked for, or that of the extension; what neither says is not guessed, and no advice would be right for it.
+fn language_of(module: &Path, asked: Option<Language>) -> Result<Language, String> {
+    if module.is_dir() {
+        return Ok(Language::Matlab);
+    }
+    let name = module.file_name().and_then(OsStr::to_str).unwrap_or_default();
+    for (ending, of) in COMPANIONS {
+        if let Some(stem) = name.strip_suffix(ending) {
+            let of = module.with_file_name(format!("{stem}{of}"));
+            return Err(format!(
+                "{} goes with {}, and is made of the same steps: verify that file",
+                module.display(),
+                of.display()
+            ));
+        }
+    }
+    let by_extension = module.extension().and_then(OsStr::to_str).and_then(Language::of_extension);
+    asked.or(by_extension).ok_or_else(|| {
+        let languages: Vec<&str> = Language::ALL.into_iter().map(Language::name).collect();
+        format!(
+            "{} does not say in its extension what language it is in: write `--language {}`",
+            module.display(),
+            languages.join("|")
+        )
+    })
+}
+
+/// How the names of files end that are written beside a module, and how the name of the module ends then.
+const COMPANIONS: [(&str, &str); 4] = [("_native.py", ".py"), ("_native.c", ".py"), (".d.mts", ".mjs"), (".d.ts", ".js")];
 
 /// A module of inverse kinematics.
 fn postures(source: &Source, module: &Path, text: &str) -> Result<u8, u8> {
