@@ -320,7 +320,7 @@ impl<'ast> Visit<'ast> for File {
     }
 
     fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
-        assert_eq!(self.inline, 0, "an import in a module within a file: the arrows of {item:?} are not followed");
+        assert_eq!(self.inline, 0, "an import in a module within a file: the arrows of its imports are not followed");
         if !is_test(&item.attrs) {
             self.tree(&item.tree, &[]);
         }
