@@ -15,6 +15,7 @@ use armgen_tests::interpreter::Interpreted;
 use armgen_tests::oracle::Description;
 use armgen_tests::precision::{agree, ORACLE};
 use armgen_tests::{random, reference};
+use quote::ToTokens;
 use syn::visit::{self, Visit};
 
 /// What the generator says that a function costs is what stands in the text.
@@ -215,8 +216,8 @@ fn items(text: &str) -> BTreeMap<String, String> {
     file.items
         .iter()
         .filter_map(|item| match item {
-            syn::Item::Fn(f) => Some((f.sig.ident.to_string(), format!("{:?}", f.block))),
-            syn::Item::Const(c) => Some((c.ident.to_string(), format!("{:?}", c.expr))),
+            syn::Item::Fn(f) => Some((f.sig.ident.to_string(), f.block.to_token_stream().to_string())),
+            syn::Item::Const(c) => Some((c.ident.to_string(), c.expr.to_token_stream().to_string())),
             _ => None,
         })
         .map(|(name, tokens)| (name, plain(&tokens)))
