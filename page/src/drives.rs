@@ -10,8 +10,7 @@ use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator};
 use armgen_codegen::source::{Source, Span};
 
-use crate::html::{decimal, escape};
-use crate::warnings::sentence;
+use crate::html::{decimal, escape, sentence};
 
 /// A value of a joint: as it is written, and its number.
 struct Cell {

@@ -6,7 +6,7 @@ use armgen_codegen::description::RobotDescription;
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::Source;
 
-use crate::html::escape;
+use crate::html::{escape, sentence};
 
 /// The warnings by row, and those that are about no row.
 pub(crate) struct Warnings<'d> {
@@ -70,10 +70,4 @@ impl<'d> Warnings<'d> {
 fn with_code(text: &str) -> String {
     let parts = text.split('`').map(escape).enumerate();
     parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
-}
-
-/// With a capital letter.
-pub(crate) fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -1,11 +1,12 @@
 //! B, C, g and the energies after Lagrange: sums over the bodies, derivatives by dual numbers.
 
+use armgen_codegen::parallel::parallel_map;
+
 use super::arm::{Arm, Joint};
 use super::pose::Pose;
 use super::state::State;
 use super::vector::{self, apply, dot, product, scale, solve, transpose, Vector};
 use crate::arithmetic::dual::Dual;
-use crate::check::parallel_map;
 use crate::element::Element;
 
 /// What the equations of motion are made of: B and C row by row, g, F and U.

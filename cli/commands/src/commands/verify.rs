@@ -31,12 +31,12 @@ pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>)
 }
 
 fn verified(description: &Path, module: &Path, language: Option<Language>) -> Result<u8, u8> {
+    let source = input::source(description)?;
+    let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
     let language = language_of(module, language).map_err(|fault| {
         terminal::error(&fault);
         FAULTY
     })?;
-    let source = input::source(description)?;
-    let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
     if inverse_kinematics::is_one(text.text()) {
         return postures(&source, module, text.text());
     }
