@@ -326,6 +326,7 @@ function chart(host, log, plot, name, over) {
         height: HEIGHT,
         scales: { x: { time: false } },
         cursor: { sync: { key: name } },
+        legend: { markers: { dash: (_, k) => (k > 0 && series[k - 1].dash ? "dotted" : "solid") } },
         series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
         axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
     };
