@@ -42,7 +42,7 @@ const CODEGEN: Layers = &[
         "validate",
         &["derive", "description", "diagnostic", "document", "exact", "kinds", "manipulator", "ring", "source", "suggest"],
     ),
-    ("program", &["catalogue", "exact", "kinds", "pass", "ring", "scramble"]),
+    ("program", &["catalogue", "exact", "kinds", "parallel", "pass", "ring", "scramble"]),
     ("schedule", &["catalogue", "derive", "exact", "kinds", "manipulator", "parallel", "pass", "program", "ring", "suggest"]),
     ("emit", &["catalogue", "exact", "inverse_kinematics", "kinds", "manipulator", "parallel", "program", "ring", "source"]),
     ("show", &["catalogue", "derive", "exact", "parallel", "pass", "program", "ring"]),
@@ -203,7 +203,10 @@ const VERIFY: Layers = &[
             "report",
         ],
     ),
-    ("identities", &["arithmetic", "checker", "element", "equations", "formula", "program", "reader", "reference", "report"]),
+    (
+        "identities",
+        &["arithmetic", "check", "checker", "element", "equations", "formula", "program", "reader", "reference", "report"],
+    ),
     (
         "at_state",
         &[

@@ -26,7 +26,7 @@ use crate::claims::Claims;
 use crate::divisors::{divisors, undivided_operands};
 use crate::enclosure::Float;
 use crate::equations::arm::formula;
-use crate::float::Arguments;
+use crate::float::{Arguments, Lanes, LANES};
 use crate::formula::Formula;
 use crate::program::Program;
 use crate::ranges::{literal_errors, ranges, worst, Domain, Range};
@@ -181,12 +181,15 @@ fn smallest_divisor(program: &Program, domain: &Domain, real: Float) -> Option<f
         return None;
     }
     let pivots = program.part(&divisors);
-    let literals: Vec<f64> = pivots.literals.iter().map(|l| l.value).collect();
+    let literals: Vec<Lanes> = pivots.literals.iter().map(|l| Lanes([l.value; LANES])).collect();
     let mut stream = Stream::new(20_240_301);
     let mut smallest = f64::INFINITY;
-    for _ in 0..STATES_FOR_DIVISORS {
-        let values = pivots.run(&draw(domain, &mut stream, real), &literals);
-        smallest = values.into_iter().fold(smallest, |smallest, value| smallest.min(value.map_or(0.0, f64::abs)));
+    for _ in 0..STATES_FOR_DIVISORS / LANES {
+        let states: [Arguments<f64>; LANES] = std::array::from_fn(|_| draw(domain, &mut stream, real));
+        for value in pivots.run(&states, &literals) {
+            let Lanes(sizes) = value.unwrap_or(Lanes([0.0; LANES]));
+            smallest = sizes.iter().fold(smallest, |smallest, size| smallest.min(size.abs()));
+        }
     }
     Some(smallest / 2.0)
 }

@@ -3,10 +3,10 @@
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::Manipulator;
 
-use crate::arithmetic::prime::{Prime, Residue};
+use crate::arithmetic::prime::Residue;
 use crate::base::OwnParameters;
 use crate::check::Check;
-use crate::checker::{Checker, Point};
+use crate::checker::Checker;
 use crate::claims::Claims;
 use crate::element::Element;
 use crate::enclosure::Float;
@@ -134,16 +134,14 @@ fn wrong_name(manipulator: &Manipulator, names: &[String]) -> Option<(usize, Str
 
 /// The first base parameter that is 0, and so has no column, or that is not the standard parameter whose name it has without an R.
 fn wrong_value(checker: &Checker, own: &OwnParameters) -> Option<(usize, String)> {
-    let standard = |point: &Point<Prime>, parameter: Standard| -> Option<Residue> {
-        let names = Arm::nominal(&point.arithmetic, checker.manipulator())?;
-        Some(parameter.value(&Arm::new(&point.arithmetic, checker.manipulator(), &names)?))
-    };
     checker.points().iter().find_map(|point| {
         let values = point.literals(&own.nominal)?;
+        let names = Arm::nominal(&point.arithmetic, checker.manipulator());
+        let arm = names.and_then(|names| Arm::new(&point.arithmetic, checker.manipulator(), &names));
         let wrong = |(k, ((parameter, carries), value)): (usize, (&(Standard, bool), &Residue))| {
             let why = if value.is_zero() {
                 "is 0: what is 0 has no column".to_string()
-            } else if !carries && standard(point, *parameter).as_ref() != Some(value) {
+            } else if !carries && arm.as_ref().map(|arm| parameter.value(arm)).as_ref() != Some(value) {
                 format!("is not the standard parameter `{}`: {}", parameter.name(), own.nominal[k])
             } else {
                 return None;

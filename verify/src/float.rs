@@ -1,5 +1,6 @@
 //! Execution of programs in floats, as the emitted functions execute: the same operations in the same order, sine and cosine of libm.
 
+use crate::element::Element;
 use crate::enclosure::Float;
 use crate::program::{Argument, Inputs, Program, Turn};
 
@@ -144,6 +145,88 @@ macro_rules! inputs {
 
 inputs!(f64, libm::sincos, stribeck_f64::of);
 inputs!(f32, libm::sincosf, stribeck_f32::of);
+
+/// The floats of states side by side, so that a program is walked through once for all of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lanes(pub [f64; LANES]);
+
+impl Lanes {
+    #[inline]
+    fn each(of: impl Fn(usize) -> f64) -> Lanes {
+        Lanes(std::array::from_fn(of))
+    }
+
+    #[inline]
+    fn both(self, other: &Lanes, of: impl Fn(f64, f64) -> f64) -> Lanes {
+        Lanes::each(|lane| of(self.0[lane], other.0[lane]))
+    }
+}
+
+impl Element for Lanes {
+    #[inline]
+    fn plus(&self, other: &Lanes) -> Lanes {
+        self.both(other, |a, b| a + b)
+    }
+    #[inline]
+    fn minus(&self, other: &Lanes) -> Lanes {
+        self.both(other, |a, b| a - b)
+    }
+    #[inline]
+    fn times(&self, other: &Lanes) -> Lanes {
+        self.both(other, |a, b| a * b)
+    }
+    #[inline]
+    fn times_plus(&self, factor: &Lanes, other: &Lanes) -> Lanes {
+        Lanes::each(|lane| self.0[lane].mul_add(factor.0[lane], other.0[lane]))
+    }
+    #[inline]
+    fn negated(&self) -> Lanes {
+        Lanes(self.0.map(|x| -x))
+    }
+    #[inline]
+    fn inverse(&self) -> Option<Lanes> {
+        Some(Lanes(self.0.map(|x| 1.0 / x)))
+    }
+    #[inline]
+    fn is_zero(&self) -> bool {
+        self.0 == [0.0; LANES]
+    }
+    #[inline]
+    fn sign(&self) -> Lanes {
+        Lanes(self.0.map(|x| x.sign()))
+    }
+    #[inline]
+    fn over(&self, other: &Lanes) -> Option<Lanes> {
+        Some(self.both(other, |a, b| a / b))
+    }
+}
+
+impl Inputs<Lanes> for [Arguments<f64>; LANES] {
+    fn entry(&self, argument: Argument, index: usize) -> Lanes {
+        Lanes::each(|lane| self[lane].entry(argument, index))
+    }
+
+    fn sine_cosine(&self, angle: &[(usize, i64)]) -> (Lanes, Lanes) {
+        let all: [(f64, f64); LANES] = std::array::from_fn(|lane| self[lane].sine_cosine(angle));
+        (Lanes(all.map(|(sine, _)| sine)), Lanes(all.map(|(_, cosine)| cosine)))
+    }
+
+    fn turned(&self, angle: &[(usize, i64)], turn: &Turn<'_, Lanes>) -> (Lanes, Lanes) {
+        let all: [(f64, f64); LANES] = std::array::from_fn(|lane| {
+            let turn = Turn { minus: turn.minus, value: &turn.value.0[lane], circle: None };
+            self[lane].turned(angle, &turn)
+        });
+        (Lanes(all.map(|(sine, _)| sine)), Lanes(all.map(|(_, cosine)| cosine)))
+    }
+
+    fn sign(&self, joint: usize) -> Lanes {
+        Lanes::each(|lane| self[lane].sign(joint))
+    }
+
+    fn stribeck(&self, joint: usize, velocity: &Lanes) -> Lanes {
+        Lanes::each(|lane| self[lane].stribeck(joint, &velocity.0[lane]))
+    }
+}
 
 impl Program {
     /// The entries of the result in the module's scalar; the arguments are rounded to it first.

@@ -3,6 +3,7 @@
 
 use crate::arithmetic::dual::Dual;
 use crate::arithmetic::prime::{Prime, Residue};
+use crate::check::parallel_map;
 use crate::checker::{with_parameters, Checker, Point};
 use crate::element::Element;
 use crate::equations::parameters::Vector;
@@ -180,11 +181,9 @@ pub fn check(checker: &Checker, module: &Module, reports: &[FunctionReport], nom
         Ok(true)
     };
     let points = checker.points().len();
-    let mut identities: Vec<IdentityReport> = IDENTITIES
-        .iter()
-        .map(|(name, holds)| IdentityReport { name: (*name).into(), holds: over_points(holds), points })
-        .filter(|identity| identity.holds.as_ref().err().is_none_or(|why| why != ABSENT))
-        .collect();
+    let mut identities =
+        parallel_map(&IDENTITIES, |(name, holds)| IdentityReport { name: (*name).into(), holds: over_points(holds), points });
+    identities.retain(|identity| identity.holds.as_ref().err().is_none_or(|why| why != ABSENT));
     let base = matches!(checker.vector(), Vector::Base(..));
     let at_nominal = |run: &Running<'_>| -> Result<bool, String> {
         let state = with_parameters(run.state(), run.nominal()?);

@@ -20,10 +20,11 @@ mod python;
 mod sines;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::AtomicUsize;
 
 use armgen_codegen::emit::Language;
 
-use crate::check::Check;
+use crate::check::{parallel_map, Check};
 use crate::contract::Sizes;
 use crate::enclosure::Float;
 use crate::program::Program;
@@ -138,30 +139,33 @@ impl Module {
         }
         items.check_companions()?;
         let trig = sines::check(&items.private, real)?;
-        let mut shared = Shared {
+        let shared = Shared {
             real,
             parts: &items.parts,
             written: &items.written,
             together: trig == Some("fast"),
-            calls: BTreeSet::new(),
-            parts_called: BTreeSet::new(),
-            steps: 0,
+            steps: AtomicUsize::new(0),
         };
-        let functions: Vec<(String, Result<Function, String>)> = items
-            .public
-            .iter()
-            .map(|function| {
-                let read = body::compile(function, &mut shared).map(|program| Function {
-                    documentation: function.documentation.iter().map(ToString::to_string).collect(),
-                    program,
-                });
-                (function.name.to_string(), read.map_err(String::from))
-            })
-            .collect();
+        let compiled = parallel_map(&items.public, |function| body::compile(function, &shared));
+        // Which function was too much would depend on the threads.
+        if shared.is_too_long() {
+            return Err(Fault { line: 1, reason: Shared::too_long() });
+        }
+        let (mut calls, mut parts_called) = (BTreeSet::new(), BTreeSet::new());
+        let mut functions: Vec<(String, Result<Function, String>)> = Vec::with_capacity(compiled.len());
+        for (function, compiled) in items.public.iter().zip(compiled) {
+            let read = compiled.map(|compiled| {
+                calls.extend(compiled.calls);
+                parts_called.extend(compiled.parts_called);
+                let documentation = function.documentation.iter().map(ToString::to_string).collect();
+                Function { documentation, program: compiled.program }
+            });
+            functions.push((function.name.to_string(), read.map_err(String::from)));
+        }
         // What the others call is not known.
         if functions.iter().all(|(_, function)| function.is_ok()) {
-            sines::check_calls(&items.private, &shared.calls, real)?;
-            let unneeded = items.parts.iter().find(|(name, _)| !shared.parts_called.contains(*name));
+            sines::check_calls(&items.private, &calls, real)?;
+            let unneeded = items.parts.iter().find(|(name, _)| !parts_called.contains(*name));
             if let Some((name, part)) = unneeded.filter(|_| Check::PartsNeeded.is_made()) {
                 return Err(part.place.peek().fault(format!("`{name}` is needed by no function of the module")));
             }

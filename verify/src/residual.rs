@@ -130,9 +130,9 @@ enum Quantity {
 use Quantity::{Forward, Pivot, Ratio, Reciprocal, Scaled, Schur, Solution};
 
 /// All quantities at a state, those that are 0 left out.
-fn quantities(b: &[Vec<Wide>], right: &[Wide]) -> Option<Vec<(Quantity, Wide)>> {
+fn quantities(b: &[Vec<Wide>], right: &[Wide]) -> Option<BTreeMap<Quantity, Wide>> {
     let n = right.len();
-    let mut found = Vec::new();
+    let mut found = BTreeMap::new();
     let mut l = vec![vec![Wide::from_f64(0.0); n]; n];
     let mut s = l.clone();
     let mut reciprocals = Vec::new();
@@ -141,29 +141,29 @@ fn quantities(b: &[Vec<Wide>], right: &[Wide]) -> Option<Vec<(Quantity, Wide)>> 
             s[i][j] = (0..j).fold(b[i][j], |sum, k| sum.minus(&l[i][k].times(&s[j][k])));
         }
         let reciprocal = s[j][j].inverse()?;
-        found.push((Pivot(j), s[j][j]));
-        found.push((Reciprocal(j), reciprocal));
+        found.insert(Pivot(j), s[j][j]);
+        found.insert(Reciprocal(j), reciprocal);
         for i in j + 1..n {
             l[i][j] = s[i][j].times(&reciprocal);
-            found.push((Schur(i, j), s[i][j]));
-            found.push((Ratio(i, j), l[i][j]));
+            found.insert(Schur(i, j), s[i][j]);
+            found.insert(Ratio(i, j), l[i][j]);
         }
         reciprocals.push(reciprocal);
     }
     let mut y: Vec<Wide> = Vec::new();
     for i in 0..n {
         let value = (0..i).fold(right[i], |sum, k| sum.minus(&l[i][k].times(&y[k])));
-        found.push((Forward(i), value));
-        found.push((Scaled(i), value.times(&reciprocals[i])));
+        found.insert(Forward(i), value);
+        found.insert(Scaled(i), value.times(&reciprocals[i]));
         y.push(value);
     }
     let mut x = vec![Wide::from_f64(0.0); n];
     for i in (0..n).rev() {
         x[i] = (i + 1..n).fold(y[i].times(&reciprocals[i]), |sum, j| sum.minus(&l[j][i].times(&x[j])));
-        found.push((Solution(i), x[i]));
+        found.insert(Solution(i), x[i]);
     }
-    let largest = found.iter().fold(0.0f64, |a, (_, value)| a.max(value.to_f64().abs()));
-    found.retain(|(_, value)| value.to_f64().abs() > 1e-40 * largest);
+    let largest = found.values().fold(0.0f64, |a, value| a.max(value.to_f64().abs()));
+    found.retain(|_, value| value.to_f64().abs() > 1e-40 * largest);
     Some(found)
 }
 
@@ -180,7 +180,7 @@ struct Reading<'a> {
     values: &'a [Wide],
     /// Whether a step depends on a reciprocal.
     divided: Vec<bool>,
-    known: &'a [(Quantity, Wide)],
+    known: &'a BTreeMap<Quantity, Wide>,
 }
 
 impl Reading<'_> {
@@ -190,11 +190,11 @@ impl Reading<'_> {
             let size = right.to_f64().abs() * 1e-40;
             value.minus(right).to_f64().abs() <= size || value.plus(right).to_f64().abs() <= size
         };
-        self.known.iter().any(|(known, right)| *known == quantity && same(right))
+        self.known.get(&quantity).is_some_and(same)
     }
 
     fn is_zero(&self, quantity: Quantity) -> bool {
-        self.known.iter().all(|(known, _)| *known != quantity)
+        !self.known.contains_key(&quantity)
     }
 
     /// Without the minus signs before it, which round nothing.
@@ -232,18 +232,14 @@ impl Reading<'_> {
     /// Row and column of a product l_ik s_jk, and its factors.
     fn product(&self, step: usize) -> Option<((usize, usize), [(usize, Quantity); 2])> {
         let (Step::Multiply(a, b) | Step::Product(a, b)) = self.program.steps[step] else { return None };
+        let n = self.program.outputs.len();
         let told = |a: usize, b: usize| {
-            let ratio = |&(known, _): &(Quantity, Wide)| match known {
-                Ratio(i, k) if self.is(a, known) => Some((i, k)),
-                _ => None,
+            let ratio = |&known: &Quantity| {
+                let Ratio(i, k) = known else { return None };
+                let j = self.is(a, known).then(|| (k + 1..n).find(|&j| self.is(b, Schur(j, k))))??;
+                Some(((i, j), [(a, known), (b, Schur(j, k))]))
             };
-            let (i, k) = self.known.iter().find_map(ratio)?;
-            let schur = |&(known, _): &(Quantity, Wide)| match known {
-                Schur(j, l) if l == k && self.is(b, known) => Some(j),
-                _ => None,
-            };
-            let j = self.known.iter().find_map(schur)?;
-            Some(((i, j), [(a, Ratio(i, k)), (b, Schur(j, k))]))
+            self.known.keys().find_map(ratio)
         };
         told(a, b).or_else(|| told(b, a))
     }
@@ -411,7 +407,7 @@ pub fn residual(
     };
     let most = |j: usize| {
         let Some(sum) = sums.get(&Pivot(j)) else {
-            return known.iter().find(|(quantity, _)| *quantity == Pivot(j)).map_or(f64::INFINITY, |(_, value)| value.to_f64());
+            return known.get(&Pivot(j)).map_or(f64::INFINITY, |value| value.to_f64());
         };
         let high = |leaf: &Leaf| if leaf.negative { -ranges[leaf.step].low } else { ranges[leaf.step].high };
         sum.plain.iter().map(high).sum::<f64>() + plain_error(Pivot(j))

@@ -18,6 +18,7 @@
 //! twice in a function. In place of a name that is not used `_` may stand.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use super::constant::{decimal, integer};
 use super::items::{Part, Public};
@@ -41,23 +42,43 @@ pub(super) struct Shared<'a, 'm> {
     pub(super) written: &'m BTreeMap<&'a str, Parser<'a>>,
     /// Whether there is a block for several angles at once.
     pub(super) together: bool,
-    /// Private items that were called.
+    /// Steps and entries of all functions so far, whichever thread reads them.
+    pub(super) steps: AtomicUsize,
+}
+
+impl Shared<'_, '_> {
+    /// The functions are longer than any robot's, all together.
+    pub(super) fn is_too_long(&self) -> bool {
+        self.steps.load(Relaxed) > MOST_STEPS
+    }
+
+    /// What is said of that.
+    pub(super) fn too_long() -> String {
+        format!("functions of more than {MOST_STEPS} steps and entries in all")
+    }
+}
+
+/// A function as it was read.
+#[derive(Debug)]
+pub(super) struct Compiled<'a> {
+    pub(super) program: Program,
+    /// Private items that it calls.
     pub(super) calls: BTreeSet<&'static str>,
-    /// Parts that were called.
+    /// Parts that it calls.
     pub(super) parts_called: BTreeSet<&'a str>,
-    /// Steps and entries of all functions so far.
-    pub(super) steps: usize,
 }
 
 type Scope<'a> = BTreeMap<&'a str, usize>;
 
 struct Compiler<'a, 'm, 's> {
-    shared: &'s mut Shared<'a, 'm>,
+    shared: &'s Shared<'a, 'm>,
     parser: Parser<'a>,
     /// Those of the function or the part that is read.
     arguments: Vec<Argument>,
     scope: Scope<'a>,
     program: Program,
+    calls: BTreeSet<&'static str>,
+    parts_called: BTreeSet<&'a str>,
     /// Parts called so far.
     parts: usize,
 }
@@ -69,7 +90,7 @@ impl<'a> Reads<'a> for Compiler<'a, '_, '_> {
 }
 
 /// Reads a public function.
-pub(super) fn compile<'a>(function: &Public<'a>, shared: &mut Shared<'a, '_>) -> Result<Program, Fault> {
+pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Result<Compiled<'a>, Fault> {
     let program = Program {
         name: function.name.into(),
         arguments: function.arguments.clone(),
@@ -79,7 +100,16 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &mut Shared<'a, '_>) ->
         outputs: Vec::new(),
     };
     let arguments = function.arguments.clone();
-    let mut compiler = Compiler { shared, parser: function.body, arguments, scope: Scope::new(), program, parts: 0 };
+    let mut compiler = Compiler {
+        shared,
+        parser: function.body,
+        arguments,
+        scope: Scope::new(),
+        program,
+        calls: BTreeSet::new(),
+        parts_called: BTreeSet::new(),
+        parts: 0,
+    };
     let written = compiler.shared.written.get(function.name).copied().zip(function.body_where_written());
     if let Some((body, call)) = &written {
         compiler.parser.expect(call)?;
@@ -95,7 +125,8 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &mut Shared<'a, '_>) ->
         compiler.result(String::new(), 0)?;
     }
     compiler.parser.expect("}")?;
-    Ok(compiler.program)
+    let Compiler { program, calls, parts_called, .. } = compiler;
+    Ok(Compiled { program, calls, parts_called })
 }
 
 /// The name of a value.
@@ -117,9 +148,9 @@ impl<'a> Compiler<'a, '_, '_> {
     }
 
     fn count(&mut self) -> Result<(), Fault> {
-        self.shared.steps += 1;
-        match self.shared.steps > MOST_STEPS {
-            true => Err(self.parser.peek().fault(format!("functions of more than {MOST_STEPS} steps and entries in all"))),
+        self.shared.steps.fetch_add(1, Relaxed);
+        match self.shared.is_too_long() {
+            true => Err(self.parser.peek().fault(Shared::too_long())),
             false => Ok(()),
         }
     }
@@ -213,7 +244,7 @@ impl<'a> Compiler<'a, '_, '_> {
         let Some(&(name, lanes)) = known.iter().find(|(name, _)| function.is(name)) else {
             return Err(function.fault(format!("{} is no function that gives these sines and cosines", function.shown())));
         };
-        self.shared.calls.insert(name);
+        self.calls.insert(name);
         self.parser.expect("(")?;
         let mut count = 1;
         if several {
@@ -360,7 +391,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.parser.expect("sign(")?;
                 let of = self.sum(brackets)?;
                 self.parser.expect(")")?;
-                self.shared.calls.insert("sign");
+                self.calls.insert("sign");
                 self.push(match self.program.steps[of] {
                     Step::Input(Argument::Dq, joint) => Step::Sign(joint),
                     _ => Step::SignOf(of),
@@ -377,7 +408,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 let velocity = self.program.literals.len();
                 self.literal()?;
                 self.parser.expect(")")?;
-                self.shared.calls.insert("stribeck");
+                self.calls.insert("stribeck");
                 self.push(Step::Stribeck(joint, velocity))?
             }
             Kind::Word if token.is("Real") => self.fused(brackets)?,
@@ -420,7 +451,7 @@ impl<'a> Compiler<'a, '_, '_> {
             return Err(name.fault(format!("{} where only part `{expected}` can be called", name.shown())));
         };
         self.parts += 1;
-        self.shared.parts_called.insert(name.text);
+        self.parts_called.insert(name.text);
         self.parser.expect("(")?;
         for wanted in &part.arguments {
             let place = self.parser.peek();
