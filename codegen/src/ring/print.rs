@@ -158,7 +158,19 @@ impl Printer<'_> {
             let text = self.number(&size);
             parts.insert(0, if self.digits.is_none() && size.terms().count() > 1 { format!("({text})") } else { text });
         }
-        sum.push(negative, &parts.join(if self.notation == Notation::Text { "*" } else { "\\," }));
+        sum.push(negative, &self.joined(parts));
+    }
+
+    /// Factors beside each other. Typeset, those that are functions without parentheses stand last: what followed `\sin q_{2}` would be
+    /// taken for a part of the angle.
+    fn joined(&self, mut factors: Vec<String>) -> String {
+        match self.notation {
+            Notation::Text => factors.join("*"),
+            Notation::Latex => {
+                factors.sort_by_key(|factor| ["\\sin", "\\cos", "\\operatorname"].iter().any(|name| factor.starts_with(name)));
+                factors.join("\\,")
+            }
+        }
     }
 
     /// An exact constant.
@@ -280,8 +292,7 @@ impl Printer<'_> {
             let mut parts: Vec<String> = above.into_iter().map(part).collect();
             let below: Vec<String> = below.into_iter().map(part).collect();
             if !below.is_empty() {
-                let numerator = parts.join(if self.notation == Notation::Text { "*" } else { "\\," });
-                let numerator = if parts.is_empty() { "1".into() } else { numerator };
+                let numerator = if parts.is_empty() { "1".into() } else { self.joined(parts) };
                 parts = vec![match self.notation {
                     Notation::Text => format!("{numerator}/{}", below.join("/")),
                     Notation::Latex => format!("\\frac{{{numerator}}}{{{}}}", below.join("\\,")),

@@ -277,6 +277,14 @@ fn minors_of_shoulder_elbow_and_wrist_share_the_sine_of_the_elbow() {
     assert_eq!(json["entries"][5], serde_json::json!(["84*sin(q2)*sin(q4)*sin(q5)*sin(q6)"]));
 }
 
+/// sin q q̇ would be taken for the sine of a product.
+#[test]
+fn typeset_functions_stand_behind_other_factors() {
+    let scara = include_str!("../../../robots/scara.yaml");
+    let latex = sheet(scara, &["coriolis_matrix"], Reading::Nominal).latex();
+    assert!(latex.contains("-5\\,\\dot q_{2}\\,\\sin q_{2} & -5\\,(\\dot q_{1} + \\dot q_{2})\\,\\sin q_{2} &"), "{latex}");
+}
+
 #[test]
 fn equal_minors_are_shown_once_and_what_is_never_zero_is_said() {
     // Two slides about one line, and one across: without the third nothing is left.
