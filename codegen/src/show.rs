@@ -514,24 +514,29 @@ fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
     }
 }
 
+/// Where a reader sees whether a posture is singular if no formula says so.
+pub const ASK_THE_PAGE: &str =
+    "`armgen page ROBOT.yaml --out robot.html` shows w = sqrt(det(J J')) at any posture, 0 where J loses rank";
+
 /// Why there are no minors, and what to do instead.
 fn no_minors(model: &Model, why: &NoMinors) -> String {
     let (rows, joints) = (model.manipulator.task.len(), model.manipulator.dof());
     let number = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
     let (rows, joints) = (number(rows, "row"), number(joints, "joint"));
     let head = format!("the task has {rows} and the arm {joints}: ");
-    const ASK: &str = "`armgen page ROBOT.yaml --out robot.html` shows w = sqrt(det(J J')) at any posture, 0 where J loses rank";
     const FEWER: &str = "name fewer rows under `task`";
     match why {
         NoMinors::NotRedundant | NoMinors::AllZero => format!("{head}its Jacobian never has as many independent rows; {FEWER}"),
-        NoMinors::TooMany => format!("{head}its Jacobian is not square; {ASK}"),
-        NoMinors::TooLong(common) if common.is_empty() => format!("{head}the minors of its Jacobian are too long; {ASK}"),
+        NoMinors::TooMany => format!("{head}its Jacobian is not square; {ASK_THE_PAGE}"),
+        NoMinors::TooLong(common) if common.is_empty() => {
+            format!("{head}the minors of its Jacobian are too long; {ASK_THE_PAGE}")
+        }
         NoMinors::TooLong(common) => {
             let parameters: Vec<String> = model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect();
             let printer = Printer { notation: Notation::Text, parameters: &parameters, velocities: &[], digits: None };
             let factor = |factor: &Factor| format!("{} is {}", printer.form(&factor.form), factor.zeros.sentence());
             let common = common.iter().map(factor).collect::<Vec<_>>().join(", ");
-            format!("{head}its Jacobian loses rank where a factor of all its minors is 0 ({common}); what is left of these is too long; {ASK}")
+            format!("{head}its Jacobian loses rank where a factor of all its minors is 0 ({common}); what is left of these is too long; {ASK_THE_PAGE}")
         }
     }
 }

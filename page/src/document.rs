@@ -35,8 +35,9 @@ pub(crate) struct Parts<'p> {
 
 /// The whole page.
 pub(crate) fn document(parts: &Parts<'_>) -> String {
-    // Indentation is for whoever reads `page/web`.
-    let own: String = STYLE.lines().flat_map(|line| [line.trim_start(), "\n"]).collect();
+    // Indentation and comments, each on a line of its own, are for whoever reads `page/web`.
+    let lines = STYLE.lines().map(str::trim_start).filter(|line| !line.starts_with("/*"));
+    let own: String = lines.flat_map(|line| [line, "\n"]).collect();
     let style = if parts.logs.is_some() { format!("{PLOTS}\n{own}") } else { own };
     let name = escape(&parts.model.manipulator.name);
     let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
@@ -118,9 +119,9 @@ fn header(parts: &Parts<'_>) -> String {
 }
 
 const ARM: &str = r##"<section id="arm-pane" aria-label="The arm">
-<div class="picture"><svg id="arm" viewBox="0 0 600 480" role="img" tabindex="0" aria-labelledby="arm-title arm-description">
+<div id="picture-place"><div class="picture"><svg id="arm" viewBox="0 0 600 480" role="img" tabindex="0" aria-labelledby="arm-title arm-description">
 <title id="arm-title">The arm</title><desc id="arm-description"></desc>
-</svg><p id="singular-posture" role="status"></p></div>
+</svg><p id="singular-posture" role="status"></p></div></div>
 <p id="grid-step" class="small"></p>
 <p class="small">Axes of the frames: x red, solid; y green, dashed; z blue, dotted. <span class="keys">Drag turns, the wheel zooms, in a narrow window with Ctrl or after a click; keys: arrows, + −, 1 2 3 0.</span></p>
 <div class="controls" role="group" aria-label="View">

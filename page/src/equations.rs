@@ -6,11 +6,11 @@ use std::fmt::Write;
 
 use armgen_codegen::catalogue::Absent;
 use armgen_codegen::parallel::parallel_map;
-use armgen_codegen::show::{Form, Item, Sheet, Shown, Style};
+use armgen_codegen::show::{Form, Item, Sheet, Shown, Style, ASK_THE_PAGE};
 use armgen_codegen::Model;
 use serde_json::{json, Map, Value};
 
-use crate::html::{escape, pack};
+use crate::html::{escape, pack, with_code};
 use crate::words;
 
 /// A quantity whose text is longer than this is left out, with the command that prints it.
@@ -83,11 +83,16 @@ impl Equations {
             };
         }
         for Absent { function, reason } in &self.absent {
-            let _ = writeln!(text, "<p class=\"small\">{}: {}.</p>", escape(&function.replace('_', " ")), escape(reason));
+            // Whom `show` sends here is here.
+            let reason = with_code(reason).replace(&with_code(ASK_THE_PAGE), ASKED);
+            let _ = writeln!(text, "<p class=\"small\">{}: {reason}.</p>", escape(&function.replace('_', " ")));
         }
         text
     }
 }
+
+/// Where a page has what [`ASK_THE_PAGE`] asks for.
+const ASKED: &str = "<a href=\"#singular\">w = √det(J Jᵀ) among the numbers</a> is 0 where J loses rank";
 
 /// The name of a function as a heading has it.
 fn in_words(name: &str) -> String {

@@ -23,6 +23,12 @@ pub(crate) fn escape(text: &str) -> String {
     escaped
 }
 
+/// What stands between backticks is code.
+pub(crate) fn with_code(text: &str) -> String {
+    let parts = text.split('`').map(escape).enumerate();
+    parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
+}
+
 /// JSON that can stand in a script element: `<` never stands as itself.
 pub(crate) fn json(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")

@@ -30,6 +30,7 @@ const FILES: &[(&str, &str)] = &[
     ("dimension", include_str!("../web/dimension.mjs")),
     ("state", include_str!("../web/state.mjs")),
     ("sliders", include_str!("../web/sliders.mjs")),
+    ("sight", include_str!("../web/sight.mjs")),
     ("picture", include_str!("../web/picture.mjs")),
     ("sheet", include_str!("../web/sheet.mjs")),
     ("why", include_str!("../web/why.mjs")),

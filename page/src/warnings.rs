@@ -6,29 +6,34 @@ use armgen_codegen::description::RobotDescription;
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::Source;
 
-use crate::html::{escape, sentence};
+use crate::html::{escape, sentence, with_code};
 
 /// The warnings by row, and those that are about no row.
 pub(crate) struct Warnings<'d> {
-    rows: Vec<Vec<&'d Diagnostic>>,
-    others: Vec<&'d Diagnostic>,
+    rows: Vec<Vec<Placed<'d>>>,
+    others: Vec<Placed<'d>>,
     source: &'d Source,
 }
+
+/// A diagnostic, and where it is said.
+type Placed<'d> = (&'d Diagnostic, usize);
 
 impl<'d> Warnings<'d> {
     pub(crate) fn new(source: &'d Source, description: &RobotDescription, diagnostics: &'d Diagnostics) -> Warnings<'d> {
         let joints: Vec<usize> = description.joints.iter().flat_map(|all| &all.value).map(|joint| joint.span.start).collect();
         let mut warnings = Warnings { rows: joints.iter().map(|_| Vec::new()).collect(), others: Vec::new(), source };
-        for diagnostic in diagnostics.iter() {
-            let at = diagnostic.span().start;
+        // What is about several rows stands at each.
+        let places =
+            diagnostics.iter().flat_map(|diagnostic| diagnostic.labels.iter().map(move |label| (diagnostic, label.span.start)));
+        for (diagnostic, at) in places {
             // A key of the file itself ends the rows.
             let after = |start: usize| {
                 let between = source.text().get(start..at).unwrap_or_default();
                 between.lines().skip(1).any(|line| line.starts_with(|c: char| c.is_ascii_alphabetic()))
             };
             match joints.iter().rposition(|&start| start <= at).filter(|&row| !after(joints[row])) {
-                Some(row) => warnings.rows[row].push(diagnostic),
-                None => warnings.others.push(diagnostic),
+                Some(row) => warnings.rows[row].push((diagnostic, at)),
+                None => warnings.others.push((diagnostic, at)),
             }
         }
         warnings
@@ -49,10 +54,10 @@ impl<'d> Warnings<'d> {
         self.list(&self.others)
     }
 
-    fn list(&self, all: &[&Diagnostic]) -> String {
+    fn list(&self, all: &[Placed<'_>]) -> String {
         let mut text = String::new();
-        for diagnostic in all {
-            let line = self.source.place(diagnostic.span().start).line;
+        for &(diagnostic, at) in all {
+            let line = self.source.place(at).line;
             let _ = writeln!(
                 text,
                 "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line} of {}): {}. {}.</p>",
@@ -64,10 +69,4 @@ impl<'d> Warnings<'d> {
         }
         text
     }
-}
-
-/// What stands between backticks is code.
-fn with_code(text: &str) -> String {
-    let parts = text.split('`').map(escape).enumerate();
-    parts.map(|(k, part)| if k % 2 == 1 { format!("<code>{part}</code>") } else { part }).collect()
 }

@@ -2,11 +2,11 @@
 
 import { byId, html, svg } from "./dom.mjs";
 import { exact, fromUnit, inUnit, tidy, units, withUnit } from "./format.mjs";
+import { settle } from "./labels.mjs";
 import { rollPitchYaw } from "./numbers.mjs";
 import { Arm } from "./scene.mjs";
 import { apart, asWritten, differInOrientation, explain, frames, read } from "./suspects.mjs";
 import { origin } from "./vector.mjs";
-import { WIDTH } from "./view.mjs";
 
 /** Suspects that are listed. */
 const LISTED = 8;
@@ -34,23 +34,24 @@ export function check(data, state, picture) {
             if (layer.firstChild) layer.replaceChildren();
             return;
         }
+        const taken = picture.texts();
         const mark = (point, kind, text, below) => {
             const [x, y] = picture.view.project(point).map((c) => Math.round(c * 10) / 10);
             const cross = svg("path", { class: kind, d: `M${x - 8} ${y - 8}l16 16m0 -16l-16 16` });
-            const left = x > WIDTH - 240;
-            const words = svg("text", { x: x + (left ? -12 : 12), y: y + 26 + 18 * below, "text-anchor": left ? "end" : "start", class: kind }, text);
+            const places = [26, 44, -12, 62].flatMap((off) => [{ x: x + 12, y: y + off, end: false }, { x: x - 12, y: y + off, end: true }]);
+            const { box, at } = settle(text, places, picture.view.pixel, taken);
+            taken.push(box);
+            const words = svg("text", { ...at, class: kind }, text);
             return below ? [words] : [cross, words];
         };
-        // Where both are at one place the names stand one below the other.
-        layer.replaceChildren(...mark(ghost.measured.position, "measured", "measured, pose 1", 0), ...mark(place(), "suspect", "the arm with this mistake mended", picture.view.pixel));
+        layer.replaceChildren(...mark(ghost.measured.position, "measured", "measured, pose 1", false), ...mark(place(), "suspect", "the arm with this mistake mended", true));
     });
     const choose = (suspect, button, measured) => {
         const chosen = button && button.getAttribute("aria-pressed") !== "true";
         for (const other of list.querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
         button?.setAttribute("aria-pressed", String(chosen));
         ghost = chosen ? { arm: suspect.arm, solids: new Arm({ ...data, ...suspect.arm }, "ghost suspect"), measured } : null;
-        // It stands before the arm of the page.
-        picture.layers.links[ghost ? "after" : "before"](picture.layers.ghosts);
+        picture.sight.keep("suspect", ghost && byId("check"));
         if (!ghost) return picture.show([]);
         state.move(measured.q);
         place();
@@ -91,9 +92,9 @@ export function check(data, state, picture) {
         for (const suspect of suspects.slice(0, Math.max(LISTED, equal))) {
             const button = html("button", { type: "button", "aria-pressed": "false" }, "show");
             button.addEventListener("click", () => choose(suspect, button, measured[0]));
-            const text = `${suspect.words}; remaining difference ${withUnit(tidy(suspect.difference), "m")} `;
+            const text = `${suspect.words}; remaining difference ${withUnit(tidy(suspect.difference), "m")}`;
             const item = html("li", { "data-row": suspect.row, "data-fault": suspect.fault, "data-difference": exact(suspect.difference) });
-            item.append(suspect.equal ? html("strong", {}, text) : text, button);
+            item.append(button, suspect.equal ? html("strong", {}, text) : text);
             list.append(item);
         }
     };

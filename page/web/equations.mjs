@@ -102,6 +102,9 @@ export function equations(data, state, shown) {
     state.on("motion", () => {
         for (const { details } of sections) if (details.open && quantityOf(details)) evaluate(details);
     });
+    addEventListener("beforeprint", () => {
+        for (const table of document.querySelectorAll("details[open] .lines")) table.dispatchEvent(new Event("print"));
+    });
     // A link to a section opens it.
     const follow = () => {
         const target = location.hash && document.getElementById(decodeURIComponent(location.hash.slice(1)));
@@ -178,9 +181,10 @@ function isSymmetric(form) {
 /** @param {Form} form */
 function note(form) {
     const notes = [];
-    if (isSymmetric(form)) notes.push("symmetric");
-    if (form.entries.flat().includes("0")) notes.push("other entries 0");
-    return notes.length > 0 ? ` (${notes.join(", ")})` : "";
+    const symmetric = isSymmetric(form);
+    if (symmetric) notes.push("symmetric: its upper half is listed");
+    if (form.entries.flat().includes("0")) notes.push(symmetric ? "what is not listed there is 0" : "what is not listed is 0");
+    return notes.length > 0 ? ` (${notes.join("; ")})` : "";
 }
 
 /** @param {Equation} equation @param {Form} form @param {any} options */
@@ -193,7 +197,7 @@ function matrix(equation, form, options) {
     };
     if (form.rows === 1 && form.columns === 1) {
         const entry = mathml(parse(form.entries[0][0]), options);
-        return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Formula" }, math("math", { display: "block" }, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "="), entry, ...(options.numbered ? [math("mtext", { class: "at", "data-number": "1,1" })] : []))));
+        return html("div", { class: "scroll equation", tabindex: 0, role: "region", "aria-label": "Formula" }, math("math", { display: "block" }, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "="), entry, ...(options.numbered ? [math("mtext", { class: "at", "data-number": "1,1" })] : []))));
     }
     const rows = form.entries.map((row, i) => math("mtr", {}, ...row.map((entry, j) => cell(entry, i, j))));
     if (equation.columnNames) {
@@ -277,25 +281,34 @@ function list(host, all, options) {
     const table = html("div", { class: "lines scroll", tabindex: 0, role: "region", "aria-label": "Formulas" });
     const more = html("button", { type: "button" });
     const fewer = html("button", { type: "button", hidden: true }, "show fewer");
-    // On paper there is no button.
-    const left = html("p", { class: "print-only" });
-    host.replaceChildren(table, html("div", { class: "controls" }, more, fewer), left);
-    const slice = (until) => {
-        const end = Math.min(until, options.count + SLICE);
+    host.replaceChildren(table, html("div", { class: "controls" }, more, fewer));
+    const append = (end) => {
         while (next < all.length && options.count < end) {
             const { name, text, entry } = all[next++];
             const number = entry && options.numbered ? [html("span", { class: "at", "data-number": entry })] : [];
             table.append(html("div", { "data-entry": entry || undefined }, ...line(name(options), parse(text), options), ...number));
         }
         if (options.numbered) options.evaluate();
+    };
+    const slice = (until) => {
+        append(Math.min(until, options.count + SLICE));
         // Of lines that others have taken the place of no more are set.
         const busy = host.firstChild === table && next < all.length && options.count < until;
         table.setAttribute("aria-busy", String(busy));
         more.hidden = busy || next === all.length;
         more.textContent = `show ${Math.min(all.length - next, next)} more of ${all.length} lines`;
-        left.textContent = next === all.length ? "" : `${all.length - next} of ${all.length} lines are not printed: open them on the page first.`;
         if (busy) requestAnimationFrame(() => setTimeout(() => slice(until)));
     };
+    // On paper there is no button: all lines are set, and those that were not there taken away afterwards.
+    table.addEventListener("print", () => {
+        const [count, before] = [options.count, next];
+        append(Infinity);
+        const back = () => {
+            while (table.children.length > before) table.lastChild?.remove();
+            [options.count, next] = [count, before];
+        };
+        addEventListener("afterprint", back, { once: true });
+    });
     more.addEventListener("click", () => {
         options.count = 0;
         fewer.hidden = false;

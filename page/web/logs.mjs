@@ -112,6 +112,7 @@ export function logs(data, state, picture) {
         time.max = String(times[times.length - 1] ?? 1);
         const held = run.rates.length > 0 ? "its q and dq; ddq is that of the fields" : "its q; dq and ddq are those of the fields";
         said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take ${held}, and the parameters of the data sheet, whatever the run had.` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
+        picture.sight.keep("run", run.places.length > 0 ? byId("logs") : null);
         show(again ? time.valueAsNumber : Number(times[0] ?? 0), false);
     };
     const layer = picture.layers.trail;
@@ -239,6 +240,7 @@ export function logs(data, state, picture) {
         pause();
         active = null;
         said.textContent = "No run is followed.";
+        picture.sight.keep("run", null);
         picture.redraw();
     };
     // On paper the curves are those of the light theme.

@@ -6,11 +6,15 @@ import { byId, set, svg } from "./dom.mjs";
 import { exact, short, withUnit } from "./format.mjs";
 import { box } from "./labels.mjs";
 import { Arm, step, unit } from "./scene.mjs";
+import { narrow, Sight } from "./sight.mjs";
 import { Ball, Box, drawSolids } from "./solids.mjs";
 import { along, column, compose, identity, norm, origin, place } from "./vector.mjs";
 import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
 
 const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "lost", "dimensions", "marks", "gravity"];
+
+/** The height of the badge with what is around it, in pixels of the window. */
+const BADGE = 45;
 
 export class Picture {
     /** @param {any} data @param {import("./state.mjs").State} state */
@@ -47,6 +51,7 @@ export class Picture {
         this.unit = 1;
         /** Points that were laid into the picture since a view was chosen. @type {number[][]} */
         this.seen = [];
+        this.sight = new Sight();
         this.listen();
         state.on("motion", () => this.draw());
         state.on("units", () => this.draw());
@@ -106,7 +111,12 @@ export class Picture {
     redraw() {
         const { view, links, end } = this;
         drawSolids(this.layers.links, this.arm.solids, view);
-        drawSolids(this.layers.ghosts, this.ghosts.flatMap((of) => of()), view);
+        const ghosts = this.ghosts.flatMap((of) => of());
+        drawSolids(this.layers.ghosts, ghosts, view);
+        // An arm that is held against that of the page stands before it, other postures behind it.
+        const side = ghosts.some(({ element }) => element.matches(".suspect, .other")) ? "after" : "before";
+        if (this.side !== side) this.layers.links[side](this.layers.ghosts);
+        this.side = side;
         this.drawFrames([identity(), ...links, end]);
         this.drawBodies();
         this.drawGrid();
@@ -190,7 +200,7 @@ export class Picture {
         const frames = byId("show-frames").checked ? this.names : [];
         const badge = byId("singular-posture").textContent;
         const wide = badge.length * 7.4 * this.unit + 24;
-        const lines = Math.ceil(wide / (WIDTH - 16));
+        const lines = narrow.matches ? 1 : Math.ceil(wide / (WIDTH - 16));
         const badges = badge ? [{ x: 0, y: 0, width: Math.min(wide, WIDTH), height: (14 + 20 * lines) * this.unit }] : [];
         return [...frames, box("gravity 9.81 m/s²", { x: 12, y: HEIGHT - 8, end: false }, pixel), { x: 20, y: HEIGHT - 104, width: 52, height: 84 }, ...badges];
     }
@@ -272,7 +282,6 @@ export class Picture {
         this.svg.addEventListener("pointermove", (event) => {
             if (this.svg.hasPointerCapture(event.pointerId)) this.orbit(-event.movementX * 0.01, event.movementY * 0.01);
         });
-        const narrow = matchMedia("(max-width: 800px)");
         this.svg.addEventListener(
             "wheel",
             (event) => {
@@ -305,11 +314,15 @@ export class Picture {
         });
         // Texts keep their size where the picture is narrow.
         new ResizeObserver(() => {
-            this.unit = WIDTH / this.svg.clientWidth;
-            this.view.pixel = Math.max(1, Math.min(2, WIDTH / this.svg.clientWidth));
+            this.unit = Math.max(WIDTH / this.svg.clientWidth, HEIGHT / this.svg.clientHeight);
+            this.view.pixel = Math.max(1, Math.min(2, this.unit));
             this.svg.style.setProperty("--pixel", String(this.view.pixel));
+            // The badge of a narrow window would lie over the arm.
+            this.view.above = narrow.matches ? BADGE * this.unit : 0;
+            if (!this.links) return;
+            if (!this.zoomed) this.fit();
             // Texts make room for each other by their size.
-            if (this.links) this.redraw();
+            this.redraw();
         }).observe(this.svg);
         this.mark();
     }

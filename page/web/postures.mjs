@@ -1,7 +1,7 @@
 /** Other postures at the pose that is shown, listed, and drawn as ghosts while the list is open. */
 
 import { byId, html } from "./dom.mjs";
-import { inUnit, short, tidy, unitName } from "./format.mjs";
+import { inUnit, short, tidy, unitName, variable } from "./format.mjs";
 import { Arm } from "./scene.mjs";
 import { alike, MOST, posturesAt } from "./search.mjs";
 
@@ -19,7 +19,7 @@ export function postures(data, state, picture) {
     }
     if (spare === 1) {
         byId("postures-held-label").hidden = false;
-        data.rows.forEach((row, i) => held.append(html("option", { value: i }, `q${i + 1} ${row.name}`)));
+        data.rows.forEach((row, i) => held.append(html("option", { value: i }, `${variable(i + 1)} ${row.name}`)));
         held.value = String(joints - 1);
     }
     const holding = () => (spare === 1 ? Number(held.value) : null);
@@ -47,10 +47,10 @@ export function postures(data, state, picture) {
     const table = () => {
         if (!at) return;
         const unit = (i) => (data.rows[i].type === "revolute" ? "rad" : "m");
-        const columns = ["", ...data.rows.map((row, i) => `q${i + 1} ${row.name}, ${unitName(unit(i))}`), ""];
+        const columns = ["", ...data.rows.map((row, i) => `${variable(i + 1)} ${row.name}, ${unitName(unit(i))}`), ""];
         const head = html("tr", {}, ...columns.map((column) => html(column ? "th" : "td", column ? { scope: "col" } : {}, column)));
         const rows = at.found.map((q, k) => {
-            const outside = data.rows.map((row, i) => (row.limits && (q[i] < row.limits[0] || q[i] > row.limits[1]) ? `q${i + 1}` : "")).filter((name) => name);
+            const outside = data.rows.map((row, i) => (row.limits && (q[i] < row.limits[0] || q[i] > row.limits[1]) ? variable(i + 1) : "")).filter((name) => name);
             const take = html("button", { type: "button", "aria-label": `take posture ${k + 1}` }, "take");
             take.addEventListener("click", () => state.move(q));
             const remark = isShown(q) ? "shown" : outside.length > 0 ? `⚠ outside its limits: ${outside.join(", ")}` : "";
@@ -70,7 +70,7 @@ export function postures(data, state, picture) {
         const found = posturesAt(robot, data.rows, data.task, state.q, holding(), picture.arm.size)?.map((q) => q.map(tidy)) ?? null;
         at = found ? { pose: robot.directKinematics(state.q), found, arms: found.map(() => new Arm(data, "ghost posture")) } : null;
         lit = -1;
-        const beside = spare === 1 ? ` with q${Number(held.value) + 1} held` : "";
+        const beside = spare === 1 ? ` with ${variable(Number(held.value) + 1)} held` : "";
         const searched = "Found by a search, which can miss some; what armgen generate --ik writes says whether all are there.";
         if (!found) {
             said.textContent = `More than ${MOST} postures${beside}: here some joints can move while the end effector stays. Move the arm out of its singular posture.`;
@@ -79,6 +79,7 @@ export function postures(data, state, picture) {
             said.textContent = found.length === 1 ? `No other posture was found${beside}. ${searched}` : `${found.length} postures${beside}, pale in the picture. ${searched}`;
             table();
         }
+        picture.sight.keep("postures", found && found.length > 1 ? details : null);
         picture.redraw();
     };
     let waiting = 0;
@@ -86,6 +87,7 @@ export function postures(data, state, picture) {
         at = null;
         list.replaceChildren();
         said.textContent = "";
+        if (!details.open) picture.sight.keep("postures", null);
         picture.redraw();
     };
     state.on("motion", () => {

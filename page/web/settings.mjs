@@ -36,9 +36,8 @@ export function settings(state) {
     byId("print").addEventListener("click", () => window.print());
     // Sliders are not printed: the posture that the numbers hold for is said in words.
     const posture = html("p", { class: "print-only" });
-    byId("arm-pane").append(posture);
-    const folded = html("p", { class: "print-only" });
-    byId("content").append(folded);
+    const folded = html("p", { class: "print-only small" });
+    byId("arm-pane").append(posture, folded);
     addEventListener("beforeprint", () => {
         folded.textContent = leftOut();
         const list = (name, values) => `${name} = (${values.map((x) => short(x)).join(", ")})`;

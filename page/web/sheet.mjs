@@ -103,21 +103,18 @@ function verdict(body, shape) {
 
 /** @param {any} data */
 function bodyTable(data) {
-    const columns = ["body", "frame", "mass, kg", `centre of mass in that frame, ${units.length}`, "inertia tensor about it, kg m²", `edges of its cuboid, ${units.length}`, "density of the cuboid, kg/m³", "such a body"];
+    const columns = ["body", "frame", "mass, kg", `centre of mass in that frame, ${units.length}`, "inertia tensor about it, kg\u00a0m²", `edges of its cuboid, ${units.length}`, "density of the cuboid, kg/m³", "such a body"];
     const head = html("tr", {}, ...columns.map((column) => html("th", { scope: "col" }, column)));
-    /** A sentence about several bodies is said once. */
-    const told = new Set();
     const rows = data.bodies.flatMap((body) => {
         const shape = cuboid(body);
-        const lengths = (values) => values.map(length).join("  ");
+        const lengths = (values) => values.map(length).join("\n");
         // Moments below each other, beside them the products that are not 0.
         const element = (name, k) => `${name} ${brief(body.inertia[k])}`;
         const product = (name, k) => (body.inertia[k] === 0 ? "" : `  ${element(name, k)}`);
         const tensor = [element("xx", 0) + product("xy", 1), element("yy", 2) + product("xz", 3), element("zz", 5) + product("yz", 4)].join("\n");
         // What the linter says of the tensor, in its own words.
         const impossible = shape !== null && !shape.possible;
-        const said = body.said.length === 0 && impossible ? ["no solid body has these moments"] : body.said.filter((message) => !told.has(message));
-        said.forEach((message) => told.add(message));
+        const said = body.said.length === 0 && impossible ? ["no solid body has these moments"] : body.said;
         const cells = shape
             ? [
                   lengths(body.com),
@@ -134,7 +131,7 @@ function bodyTable(data) {
             ...[String(body.frame), short(body.mass), ...cells].map((text) => html("td", {}, text)),
         );
         if (said.length === 0) return [row];
-        const words = said.map((message) => html("p", { class: "warning" }, html("strong", {}, "Warning"), `: ${message}`));
+        const words = said.map((message) => html("p", { class: "warning" }, html("strong", {}, "Warning"), ": ", ...message.split("\u0060").map((part, k) => (k % 2 ? html("code", {}, part) : part))));
         return [row, html("tr", { class: "said" }, html("td", { colspan: columns.length }, ...words))];
     });
     const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia", html("span", { class: "keys" }, "; tick “bodies” to see them on the arm"));

@@ -27,6 +27,8 @@ export class View {
         this.scale = 100;
         /** A pixel of the window in units of the drawing, where the picture is narrow. */
         this.pixel = 1;
+        /** What stands over the upper edge, in units of the drawing. */
+        this.above = 0;
         /** Directions towards the viewer, and to the right and up on the screen. */
         this.toward = [0, 0, 1];
         this.right = [1, 0, 0];
@@ -64,7 +66,12 @@ export class View {
             const all = points.map((point) => dot(point, direction));
             return Math.max(...all) - Math.min(...all) || 1e-9;
         });
-        return Math.min((0.8 * WIDTH) / width, (0.8 * HEIGHT) / height);
+        return Math.min((0.8 * WIDTH) / width, (0.8 * HEIGHT - this.lower()) / height);
+    }
+
+    /** How much less high the arm is than in an empty picture: a tenth is free at each edge. */
+    lower() {
+        return Math.max(0, this.above - 0.1 * HEIGHT);
     }
 
     /** Lays points into the picture, with a margin. @param {number[][]} points */
@@ -87,7 +94,7 @@ export class View {
     /** A point on the screen: x to the right, y down. @param {number[]} point */
     project(point) {
         const p = subtract(point, this.centre);
-        return [WIDTH / 2 + this.scale * dot(p, this.right), HEIGHT / 2 - this.scale * dot(p, this.up)];
+        return [WIDTH / 2 + this.scale * dot(p, this.right), (HEIGHT + this.lower()) / 2 - this.scale * dot(p, this.up)];
     }
 
     /** A direction on the screen, for a length of 1 m. @param {number[]} direction */

@@ -126,7 +126,7 @@ function map(data, state, picture) {
         return;
     }
     data.rows.forEach((row, i) => {
-        for (const select of [first, second]) select.append(html("option", { value: i }, `q${i + 1} ${row.name}`));
+        for (const select of [first, second]) select.append(html("option", { value: i }, `${variable(i + 1)} ${row.name}`));
     });
     // The joints at which a factor of the determinant is zero, before others: w is 0 whatever joints do that change none.
     const [inner, outer] = data.rows.length > 2 ? [1, 2] : [0, 1];
@@ -162,7 +162,7 @@ function map(data, state, picture) {
         const unit = (k) => (data.rows[k].type === "revolute" ? "rad" : "m");
         // Names and ends of the axes, in the reader's units.
         for (const [k, low, high, id] of [[i, a, b, "w-across"], [j, c, d, "w-up"]]) {
-            const name = `q${k + 1} ${data.rows[k].name}, ${unitName(unit(k))}`;
+            const name = `${variable(k + 1)} ${data.rows[k].name}, ${unitName(unit(k))}`;
             byId(id).replaceChildren(...[short(inUnit(low, unit(k))), name, short(inUnit(high, unit(k)))].map((text) => html("span", {}, text)));
         }
         const nothing = i === j || !(largest > 1e-12 * scale);
@@ -191,7 +191,7 @@ function map(data, state, picture) {
         context.lineWidth = 2;
         context.strokeRect(((state.q[i] - a) / (b - a)) * SIDE - 5, SIDE - ((state.q[j] - c) / (d - c)) * SIDE - 5, 10, 10);
         byId("w-said").textContent =
-            `Across: q${i + 1} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: q${j + 1} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
+            `Across: ${variable(i + 1)} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: ${variable(j + 1)} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
             `w from 0 (dark) to ${short(largest)} (bright)${square ? ", white lines where a factor of det J changes its sign" : ""}; the square is the posture that is shown.`;
     };
     details.addEventListener("toggle", draw);

@@ -69,7 +69,7 @@ fn what_is_left_open_is_said() {
          const weights = () => [...document.querySelectorAll('.costs td.weight')].map((td) => Number(td.dataset.value)); \
          document.querySelector('.costs thead th:last-child button').click(); seen.push(weights().every((weight, k, all) => k === 0 || weight <= all[k - 1])); \
          const nav = document.querySelector('nav'); scrollTo(0, 5000); seen.push(nav.getBoundingClientRect().top === 0); \
-         dispatchEvent(new Event('beforeprint')); seen.push(document.querySelector('#content > .print-only').textContent.startsWith('Not printed, since it was folded in: Data sheet (Motors and friction; Parameters)')); \
+         dispatchEvent(new Event('beforeprint')); seen.push(document.querySelector('#arm-pane > .print-only.small').textContent.startsWith('Not printed, since it was folded in: Data sheet (Motors and friction; Parameters)')); \
          return seen; })()",
     );
     let assumed = "q₁, q₂, q₄ have no limits: a whole turn was taken; q₃ has no limits: −1 m to 1 m was assumed.";
@@ -161,4 +161,42 @@ fn a_singular_posture_says_why() {
         }
         tab.close();
     }
+}
+
+/// The fields of joints take expressions, show six digits of all those that they hold, and say what is no number instead of forgetting it, even
+/// when another joint moves.
+#[test]
+fn fields_take_expressions() {
+    let Some(mut tab) = opened(&robot("scara"), 500, "light") else { return };
+    let seen = tab.run(
+        "(() => { const field = document.getElementById('q1-value'), fault = document.getElementById('q1-fault'), seen = []; \
+         const put = (text) => { field.value = text; for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind, { bubbles: true })); \
+             seen.push([field.value, field.parentElement.dataset.short, document.getElementById('q1').valueAsNumber.toFixed(3), \
+                        fault.hidden, field.getAttribute('aria-invalid') === 'true']); }; \
+         for (const text of ['-pi/4', '2*(pi - 1)/3', '1e-3', 'pie', '0x10', '1.25']) put(text); \
+         document.getElementById('angle-unit').click(); put('-pi/4'); put('-68.754935'); put(''); \
+         field.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' })); seen.push(Number(field.value).toFixed(6)); \
+         put('1.5x'); const slide = (id) => { document.getElementById(id).value = 0.3; \
+             document.getElementById(id).dispatchEvent(new Event('input', { bubbles: true })); seen.push([field.value, fault.hidden]); }; \
+         slide('q2'); slide('q1'); return seen; })()",
+    );
+    let expected = serde_json::json!([
+        ["-0.7853981633974483", "−0.785398", "-0.785", true, false],
+        ["1.4277284357265287", "1.42773", "1.428", true, false],
+        ["0.001", "0.001", "0.001", true, false],
+        ["pie", "0.001", "0.001", false, true],
+        ["0x10", "0.001", "0.001", false, true],
+        ["1.25", "1.25", "1.250", true, false],
+        ["-45", "−45", "-0.785", true, false],
+        ["-68.754935", "−68.7549", "-1.200", true, false],
+        ["-68.754935", "−68.7549", "-1.200", true, false],
+        "-67.754935",
+        ["1.5x", "−67.7549", "-1.183", false, true],
+        ["1.5x", false],
+        ["17.188733853924695", true]
+    ]);
+    assert_eq!(seen, expected);
+    let shown = "[...document.querySelectorAll('#sliders .rate .unit')].every((unit) => unit.checkVisibility())";
+    assert_eq!(tab.run(shown), true, "units of rates are seen in a narrow window");
+    tab.close();
 }

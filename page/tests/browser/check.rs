@@ -1,0 +1,88 @@
+//! The check against the real arm, and the other postures at a pose.
+
+use armgen_codegen::source::Source;
+
+use crate::pages::{opened, robot};
+use crate::MOVE;
+
+/// Poses of the true arm on the page of a description with one wrong value: the first suspect is the row, and a ghost can be drawn of it.
+#[test]
+fn a_planted_mistake_is_the_first_suspect() {
+    let truth = robot("ur5");
+    let Some(mut tab) = opened(&truth, 1600, "light") else { return };
+    let poses = tab.run(&format!(
+        "{MOVE}(1); document.getElementById('measured-add').click(); {MOVE}(2); document.getElementById('measured-add').click(); \
+         document.getElementById('measured').value"
+    ));
+    assert_eq!(tab.run("document.querySelectorAll('#suspects li').length"), 0, "the true arm agrees");
+    tab.close();
+    let wrong = truth.text().replacen("alpha: pi/2", "alpha: -pi/2", 1);
+    assert_ne!(wrong, truth.text());
+    let Some(mut tab) = opened(&Source::new("wrong.yaml", wrong), 1600, "light") else { return };
+    let first = tab.run(&format!(
+        "(() => {{ const field = document.getElementById('measured'); field.value = {poses}; field.dispatchEvent(new Event('input')); \
+         const first = document.querySelector('#suspects li'); first.querySelector('button').click(); \
+         return [first.dataset.row, first.dataset.fault, Number(first.dataset.difference) < 1e-6, \
+                 document.querySelectorAll('#arm .ghosts .solid').length > 10, first.querySelector('strong').textContent, \
+                 document.getElementById('q2-value').value === field.value.split(' ')[1], \
+                 [...document.querySelectorAll('#arm .marks text')].map((text) => text.textContent)]; }})()"
+    ));
+    let words =
+        "row 5 (joint5): alpha is -pi/2, should be pi/2 (the other sign, or 180° more, which is the same); remaining difference ";
+    assert!(first[4].as_str().is_some_and(|text| text.starts_with(words)), "{first}");
+    let marks = serde_json::json!(["measured, pose 1", "the arm with this mistake mended"]);
+    assert_eq!(first, serde_json::json!(["5", "alpha-sign", true, true, first[4], true, marks]));
+    assert_eq!(tab.run("document.getElementById('measured-said').lastChild.textContent"), "This one explains them:");
+    // Of one position without orientation several mistakes come equally near, and it is said what would tell them apart.
+    let alone = tab.run(
+        "(() => { const field = document.getElementById('measured'); \
+         field.value = field.value.split('\\n')[0].split(' ').slice(0, 9).join(' '); field.dispatchEvent(new Event('input')); \
+         return [document.querySelectorAll('#suspects li strong').length > 1, \
+                 document.getElementById('measured-said').textContent.includes('Positions alone'), \
+                 document.querySelectorAll('#arm .marks text').length]; })()",
+    );
+    assert_eq!(alone, serde_json::json!([true, true, 0]));
+    // With the wrist stretched the arm is singular whatever the other joints do, and the map says so instead of drawing noise.
+    let drawn = tab.run(
+        "(async () => { document.getElementById('zero').click(); const map = document.getElementById('w-map'), said = () => document.getElementById('w-said').textContent; \
+         map.open = true; await new Promise((done) => setTimeout(done, 100)); const named = said().startsWith('Across: q₃') && !map.querySelector('.map').hidden; \
+         const across = document.getElementById('w-first'); across.value = '1'; document.getElementById('w-second').value = '2'; across.dispatchEvent(new Event('input')); \
+         const stretched = named && said().includes('singular whatever') && map.querySelector('.map').hidden; map.open = false; \
+         const q5 = document.getElementById('q5'); q5.value = '1'; q5.dispatchEvent(new Event('input', { bubbles: true })); \
+         for (const id of ['show-points', 'show-velocity', 'show-force', 'show-bodies']) document.getElementById(id).click(); \
+         for (const id of ['reach', 'w-map']) document.getElementById(id).open = true; await new Promise((done) => setTimeout(done, 300)); \
+         return [document.querySelectorAll('#arm .ellipsoids ellipse').length, document.querySelectorAll('#reach svg').length, \
+                 said().includes('a factor of det J changes its sign'), stretched, document.getElementById('w-across').textContent, \
+                 document.querySelector('#reach text').textContent.startsWith('distance: to ')]; })()",
+    );
+    assert_eq!(drawn, serde_json::json!([2, 2, true, true, "−3.14159q₂ joint2, rad3.14159", true]));
+    tab.close();
+}
+
+/// The other postures of a pose are listed, drawn as ghosts, and taken by their buttons; the joint of a redundant arm is held.
+#[test]
+fn other_postures_at_a_pose_are_ghosts() {
+    // The number of postures, how many ghosts beside the arm, how far the end effector moves when the second posture is taken, and the joint
+    // that is held then.
+    for (name, postures) in [("scara", 2), ("puma560", 8), ("panda7", 4)] {
+        let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
+        let found = tab.run(&format!(
+            "(async () => {{ {MOVE}(1); const details = document.getElementById('postures'); details.open = true; \
+             while (!document.getElementById('postures-said').textContent) await new Promise((done) => setTimeout(done, 20)); \
+             const arm = document.querySelectorAll('#arm .links .solid').length; \
+             const end = () => document.querySelector('#arm g[data-frame=\"e\"]').dataset.origin.split(' ').map(Number); \
+             const joints = () => Array.from({{ length: robot.DOF }}, (_, i) => Number(document.getElementById(`q${{i + 1}}-value`).value)); \
+             const list = () => [...details.querySelectorAll('tr[data-posture]')]; \
+             const [p, q] = [end(), joints()]; const ghosts = document.querySelectorAll('#arm .ghosts .solid').length / arm; \
+             list()[1].querySelector('button').click(); \
+             const moved = Math.hypot(...end().map((x, i) => x - p[i])); \
+             const turned = joints().filter((x, i) => Math.abs(x - q[i]) > 0.01).length > 1; \
+             return [list().length, ghosts, moved < 1e-9, turned, list()[1].textContent.includes('shown'), \
+                     document.getElementById('postures-held-label').hidden]; }})()"
+        ));
+        let listed = found[0].as_u64().expect("a number");
+        assert!(if name == "panda7" { listed >= postures } else { listed == postures }, "{name}: {found}");
+        assert_eq!(found, serde_json::json!([listed, listed - 1, true, true, true, name != "panda7"]), "{name}");
+        tab.close();
+    }
+}

@@ -1,0 +1,77 @@
+//! Logs: played on the arm, and laid over each other.
+
+use armgen_page::{Log, Run};
+
+use crate::driver::Tab;
+use crate::pages::{robot, written_with};
+
+/// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
+#[test]
+fn a_log_is_played_on_the_arm() {
+    let rows: String = (0..=100)
+        .map(|k| {
+            let t = f64::from(k) / 10.0;
+            format!("{t},{},{},0.1,0,0.01,0,0\n", 0.05 * t, -0.1 * t)
+        })
+        .collect();
+    let csv = format!("t,q_shoulder,q_elbow,q_quill,q_wrist,e_x,e_y,e_z\n{rows}");
+    let log = Log::read(&csv, |name| match name {
+        "t" => "s".into(),
+        name if name.starts_with("q_") => "rad, m".into(),
+        _ => "m".into(),
+    })
+    .expect("a log");
+    let run = Run { name: "small".into(), log: Some(log.clone()), ..Run::default() };
+    let large = Run { name: "large".into(), log: Some(log), ..Run::default() };
+    let file = written_with("logs", &robot("scara"), &[run.clone(), large]);
+    let Some(mut tab) = Tab::open(&file, 1600, "light") else { return };
+    let played = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'); log.open = true; \
+         while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
+         const time = document.getElementById('time'); time.value = '5'; time.dispatchEvent(new Event('input')); \
+         return [document.getElementById('q2-value').value, document.querySelectorAll('#arm .trail path').length, \
+                 [...log.querySelectorAll('.u-title')].map((title) => title.textContent), time.max]; })()",
+    );
+    // Joints that turn and those that slide have axes of their own.
+    let titles = ["joint variables, rad", "joint variables, m", "errors of the end effector, m"];
+    assert_eq!(played, serde_json::json!(["-0.5", 2, titles, "10"]));
+    // The other run lies over it: two curves more in the plot of the joints, and its trail; taken away again, they are gone.
+    let laid = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
+         const seen = () => [log.querySelectorAll('.uplot .u-series').length, document.querySelectorAll('#arm .trail path').length]; \
+         const lay = async (name) => { select.value = name; select.dispatchEvent(new Event('change')); \
+             await new Promise((done) => setTimeout(done, 600)); return seen(); }; \
+         return [seen(), await lay('large'), await lay('')]; })()",
+    );
+    assert_eq!(laid, serde_json::json!([[10, 2], [17, 4], [10, 2]]));
+    // Meanwhile neither the page nor the time moves, and the arm of the other run stands beside as a ghost while it is laid over.
+    let stays = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \
+         select.scrollIntoView({ block: 'center' }); const top = () => select.getBoundingClientRect().top, before = top(); \
+         const ghosts = () => document.querySelectorAll('#arm .ghosts .solid').length > 5; const seen = []; \
+         for (const name of ['large', '']) { select.value = name; select.dispatchEvent(new Event('change')); \
+             await new Promise((done) => setTimeout(done, 600)); \
+             seen.push(document.getElementById('time').value, document.getElementById('q2-value').value, ghosts(), Math.abs(top() - before) < 2); } \
+         return seen; })()",
+    );
+    // Its arm, its trail and that of this run differ in what they are drawn with, and are seen against the picture.
+    let contrast = tab.run(
+        "(async () => { const select = document.querySelector('.lay-over select'), seen = []; select.value = 'large'; \
+         select.dispatchEvent(new Event('change')); await new Promise((done) => setTimeout(done, 600)); \
+         const light = (colour) => colour.match(/[\\d.]+/g).slice(0, 3).map((c) => Number(c) / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4)) \
+             .reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0); \
+         const stroke = (selector) => getComputedStyle(document.querySelector(selector)).stroke; \
+         for (let theme = 0; theme < 2; theme++) { const ground = light(getComputedStyle(document.getElementById('arm')).backgroundColor); \
+             for (const selector of ['#arm .ghost.other.body, #arm .ghost.other > .body', '#arm .trail .other']) { \
+                 const [a, b] = [light(stroke(selector)), ground].sort((a, b) => b - a); \
+                 seen.push((a + 0.05) / (b + 0.05) > 4.5 && stroke(selector) !== stroke('#arm .trail .actual:not(.other)')); } \
+             document.getElementById('theme').click(); } \
+         select.value = ''; select.dispatchEvent(new Event('change')); return seen; })()",
+    );
+    assert_eq!(contrast, serde_json::json!([true, true, true, true]));
+    assert_eq!(stays, serde_json::json!(["5", "-0.5", true, true, "5", "-0.5", false, true]));
+    tab.close();
+    let other = robot("ur5");
+    let misfit = armgen_page::page(&other, &[run]).expect_err("other joints");
+    assert!(misfit.reason.contains("shoulder, elbow") && misfit.reason.contains("the arm's are joint1"), "{misfit:?}");
+}
