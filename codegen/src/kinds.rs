@@ -1,7 +1,10 @@
 //! Small types that all stages share: what a number, a joint and a row of the task can be.
 
+pub use armgen_algebra::exact::ParameterId;
+use armgen_algebra::ring::AngleSum;
+
 /// Equations and emitted code grow with the number of joints; an arm of more than this is a mistake.
-pub const MAX_JOINTS: usize = 32;
+pub const MAX_JOINTS: usize = AngleSum::MOST_JOINTS;
 
 /// The floating-point type of the emitted code; its range bounds the numbers of a description.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,7 +80,3 @@ impl TaskRow {
         ["x", "y", "z", "rx", "ry", "rz"][self.index()]
     }
 }
-
-/// A named quantity of a description by its place in the list of them; the variables of every polynomial.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct ParameterId(pub u32);

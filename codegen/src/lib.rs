@@ -30,8 +30,6 @@ pub mod document;
 #[doc(hidden)]
 pub mod emit;
 #[doc(hidden)]
-pub mod exact;
-#[doc(hidden)]
 pub mod inverse_kinematics;
 #[doc(hidden)]
 pub mod kinds;
@@ -44,16 +42,17 @@ pub mod pass;
 #[doc(hidden)]
 pub mod program;
 #[doc(hidden)]
-pub mod ring;
-#[doc(hidden)]
 pub mod schedule;
-mod scramble;
 #[doc(hidden)]
 pub mod show;
 #[doc(hidden)]
 pub mod suggest;
 #[doc(hidden)]
 pub mod validate;
+
+// The algebra, under the paths of the stages that stand on it.
+#[doc(hidden)]
+pub use armgen_algebra::{exact, ring};
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;

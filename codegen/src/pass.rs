@@ -1,5 +1,7 @@
 //! The names of all that makes the emitted functions cheaper, so that each can be switched off: `docs/passes` tells of every one.
 
+use armgen_algebra::optimise::Rewrite;
+
 /// A named step that makes the emitted functions cheaper and leaves their values as they are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
@@ -95,6 +97,18 @@ impl Passes {
     /// Whether the set holds a pass.
     pub fn contains(self, pass: Pass) -> bool {
         self.0 >> pass as u32 & 1 == 1
+    }
+
+    /// Those of its passes that rewrite finished expressions.
+    pub fn rewrites(self) -> Vec<Rewrite> {
+        let all = [
+            (Pass::AngleSums, Rewrite::AngleSums),
+            (Pass::Cancellation, Rewrite::Cancellation),
+            (Pass::Sharing, Rewrite::Sharing),
+            (Pass::Sums, Rewrite::Sums),
+            (Pass::Resubstitution, Rewrite::Resubstitution),
+        ];
+        all.into_iter().filter(|(pass, _)| self.contains(*pass)).map(|(_, rewrite)| rewrite).collect()
     }
 
     /// Adds a pass.

@@ -1,15 +1,13 @@
 //! Straight-line programs: what a machine does, in order, in no language.
 //!
 //! A function is a list of steps, each an operation on inputs, constants and earlier steps, and a list of outputs.
-//! Absent from a `Function` on: graphs, sharing, mathematics. `optimise` runs before: it works on shared expressions.
+//! Absent from a `Function` on: graphs, sharing, mathematics. The algebra's `optimise` runs before: it works on shared expressions.
 
 mod constants;
 mod cost;
 pub mod listing;
-mod optimise;
 
 pub use cost::Cost;
-pub(crate) use optimise::optimise;
 
 use std::collections::BTreeMap;
 

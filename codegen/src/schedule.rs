@@ -4,6 +4,8 @@ mod selection;
 
 use std::collections::{BTreeMap, HashMap};
 
+use armgen_algebra::optimise::optimise;
+
 use crate::catalogue::{self, Absent, Argument, Length, Quantity};
 use crate::derive::derivation::Derivation;
 use crate::derive::parameters::{nominal, ParameterKind, View};
@@ -12,7 +14,7 @@ use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::{self, Manipulator};
 use crate::parallel::parallel_map;
 pub use crate::pass::{Pass, Passes};
-use crate::program::{optimise, Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
+use crate::program::{Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
 use crate::ring::count::DIVISION_COST;
 use crate::ring::{ExprId, Node, Pool, Symbol};
 use crate::Model;
@@ -102,7 +104,7 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
         .filter(|closed| operations(closed) <= most)
         .chain([recursion])
         .map(|derivation| {
-            let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, without);
+            let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &without.rewrites());
             lower(&model.manipulator, quantity, with_parameters, &Derivation { pool, entries, ..derivation })
         })
         .min_by_key(|function| Cost::of(function).weight())

@@ -32,6 +32,8 @@ mod text;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
+use armgen_algebra::optimise::optimise;
+
 use crate::catalogue::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
 use crate::catalogue::{self, Absent, Length, Quantity, ResultPart, Typeset};
 use crate::derive::arm::Arm;
@@ -46,8 +48,6 @@ use crate::derive::{
 };
 use crate::exact::Number;
 use crate::parallel::parallel_map;
-use crate::pass::Passes;
-use crate::program::optimise;
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
 use crate::ring::{AngleSum, ExprId, Pool, Symbol};
@@ -581,7 +581,7 @@ fn in_form(shown: Shown, closed: Option<Vec<NormalForm>>, derivation: Derivation
         None => None,
     };
     let derivation = without_turn(derivation);
-    let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, Passes::NONE);
+    let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &[]);
     let fewer = Derivation { pool, entries, method: derivation.method, parallel: derivation.parallel.clone() };
     let steps = [derivation, fewer].map(|derivation| Content::Program(Box::new(derivation)));
     shown.with_shortest(closed.into_iter().chain(steps))

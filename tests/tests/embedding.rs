@@ -201,6 +201,7 @@ fn the_robot_follows_its_file_and_nothing_else() {
         .map(|line| match line {
             _ if line.starts_with("members") => "members = [\"generated\"]\n".to_owned(),
             _ if line.starts_with("default-members") => String::new(),
+            _ if line.starts_with("armgen-algebra") => format!("armgen-algebra = {{ {} }}\n", path_of("algebra")),
             _ if line.starts_with("armgen-codegen") => format!("armgen-codegen = {{ {} }}\n", path_of("codegen")),
             _ if line.starts_with("armgen-runtime") => format!("armgen-runtime = {{ {} }}\n", path_of("runtime")),
             _ => format!("{line}\n"),

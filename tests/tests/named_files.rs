@@ -22,8 +22,8 @@ fn pages(root: &Path) -> Vec<PathBuf> {
 
 /// Paths of sources in a text: words that begin with a crate's folder and end with `.rs`.
 fn sources(text: &str) -> impl Iterator<Item = &str> {
-    const FOLDERS: [&str; 7] =
-        ["codegen/src/", "verify/src/", "runtime/src/", "experiments/src/", "cli/", "tests/src/", "tests/tests/"];
+    const FOLDERS: [&str; 8] =
+        ["algebra/src/", "codegen/src/", "verify/src/", "runtime/src/", "experiments/src/", "cli/", "tests/src/", "tests/tests/"];
     text.split(|c: char| !(c.is_ascii_alphanumeric() || "_-./".contains(c)))
         .filter(|word| word.ends_with(".rs") && FOLDERS.iter().any(|folder| word.starts_with(folder)))
 }

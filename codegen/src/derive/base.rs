@@ -18,7 +18,7 @@ use crate::manipulator::Manipulator;
 use crate::ring::field::{Element, Field};
 use crate::ring::matrix::{IDENTITY, ZERO};
 use crate::ring::{ExprId, Node, Pool, Symbol};
-use crate::scramble::scramble;
+use armgen_algebra::scramble::scramble;
 
 /// The columns of a regressor, sorted into those that are independent and the rest.
 #[derive(Clone, Debug)]

@@ -110,8 +110,8 @@ impl Plan {
         self.forks.insert((pass, place), ways);
         #[cfg(test)]
         if let Some(seed) = self.scattered {
-            return crate::scramble::scramble(
-                format!("{pass:?} {place:?}").bytes().fold(seed, |s, b| crate::scramble::scramble(s ^ u64::from(b))),
+            return armgen_algebra::scramble::scramble(
+                format!("{pass:?} {place:?}").bytes().fold(seed, |s, b| armgen_algebra::scramble::scramble(s ^ u64::from(b))),
             ) as usize
                 % ways;
         }

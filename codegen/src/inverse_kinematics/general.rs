@@ -6,7 +6,7 @@ use armgen_inverse_kinematics::f64::{self as block, determinant_on_circle};
 use super::chain::{Arrangement, Chain};
 use super::frame::Frame;
 use crate::exact::Number;
-use crate::scramble::scramble;
+use armgen_algebra::scramble::scramble;
 
 /// So many poses are tried an arrangement.
 const POSES: u64 = 128;

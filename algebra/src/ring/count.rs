@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use super::{AngleSum, ExprId, Node, Pool, Symbol};
 
 /// A division counts like so many additions.
-pub(crate) const DIVISION_COST: usize = 4;
+pub const DIVISION_COST: usize = 4;
 
 /// A sine and cosine pair counts like this many additions.
-pub(crate) const SINE_COSINE_COST: usize = 16;
+pub const SINE_COSINE_COST: usize = 16;
 
 impl Pool {
     /// Operations that the expressions need together, each node once: one for a sum or product, `reciprocal` for a reciprocal.
@@ -47,7 +47,7 @@ impl Pool {
     }
 
     /// Whether a parameter is left as a symbol in expressions.
-    pub(crate) fn has_parameters(&self, exprs: &[ExprId]) -> bool {
+    pub fn has_parameters(&self, exprs: &[ExprId]) -> bool {
         let needed = self.reachable(exprs);
         (0..self.len()).any(|index| needed[index] && matches!(self.nodes[index], Node::Symbol(Symbol::Parameter(_))))
     }

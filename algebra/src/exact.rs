@@ -36,6 +36,10 @@ pub use text::Definitions;
 /// An exact fraction in lowest terms.
 pub type Rational = dashu_ratio::RBig;
 
+/// A named quantity of a description by its place in the list of them; the variables of every polynomial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ParameterId(pub u32);
+
 /// What a [`Number`] is made of, besides fractions.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Atom {
@@ -218,7 +222,7 @@ impl Number {
     }
 
     /// One over the number; `None` exactly where [`Number::sign`] finds a zero.
-    pub(crate) fn inverse(&self) -> Option<Number> {
+    pub fn inverse(&self) -> Option<Number> {
         (self.sign() != Ordering::Equal).then(|| self.inverse_within(RATIONALISING_STEPS))
     }
 

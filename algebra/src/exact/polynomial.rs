@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::Number;
-use crate::kinds::ParameterId;
+use super::ParameterId;
 
 /// Powers of parameters, sorted; empty for the constant term.
 pub(super) type Powers = BTreeMap<ParameterId, u32>;

@@ -28,7 +28,7 @@ pub mod turn;
 
 mod calculus;
 mod constants;
-pub(crate) mod count;
+pub mod count;
 mod evaluate;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -86,10 +86,10 @@ pub struct AngleSum {
     pub turned: bool,
 }
 
-/// An [`AngleSum`] has a bit for every joint.
-const _: () = assert!(crate::kinds::MAX_JOINTS <= u32::BITS as usize);
-
 impl AngleSum {
+    /// As many joints as there are bits for.
+    pub const MOST_JOINTS: usize = u32::BITS as usize;
+
     /// The joints, and whether their variables are taken away; those that are added first.
     pub fn terms(self) -> impl Iterator<Item = (u16, bool)> {
         let of = |set: u32, minus: bool| (0..u32::BITS as u16).filter(move |&i| set >> i & 1 == 1).map(move |i| (i, minus));
@@ -408,7 +408,7 @@ impl Pool {
     }
 
     /// An input, even if another node has its value.
-    pub(crate) fn input(&mut self, symbol: Symbol) -> ExprId {
+    pub fn input(&mut self, symbol: Symbol) -> ExprId {
         let fingerprint = [0, 1].map(|point| self.symbol_value(symbol, point));
         self.push(Node::Symbol(symbol), fingerprint)
     }
