@@ -35,9 +35,9 @@ pub(crate) struct Parts<'p> {
 
 /// The whole page.
 pub(crate) fn document(parts: &Parts<'_>) -> String {
-    // Indentation and comments, each on a line of its own, are for whoever reads `page/web`.
+    // Indentation, comments, each on a line of its own, and ends of lines are for whoever reads `page/web`.
     let lines = STYLE.lines().map(str::trim_start).filter(|line| !line.starts_with("/*"));
-    let own: String = lines.flat_map(|line| [line, "\n"]).collect();
+    let own: String = lines.flat_map(|line| [line, if line.ends_with([',', ';', '{', '}']) { "" } else { "\n" }]).collect();
     let style = if parts.logs.is_some() { format!("{PLOTS}\n{own}") } else { own };
     let name = escape(&parts.model.manipulator.name);
     let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");

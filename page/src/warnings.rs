@@ -58,13 +58,14 @@ impl<'d> Warnings<'d> {
         let mut text = String::new();
         for &(diagnostic, at) in all {
             let line = self.source.place(at).line;
+            // What to do is said at the first place.
+            let help = if at == diagnostic.span().start { with_code(&sentence(&diagnostic.help)) + "." } else { String::new() };
             let _ = writeln!(
                 text,
-                "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line} of {}): {}. {}.</p>",
+                "<p class=\"warning\" data-warning=\"{}\"><strong>Warning</strong> (line {line} of {}): {}. {help}</p>",
                 escape(diagnostic.code.name()),
                 escape(self.file()),
                 with_code(&diagnostic.message),
-                with_code(&sentence(&diagnostic.help)),
             );
         }
         text

@@ -5,7 +5,7 @@
 
 import { byId, copy, html, math } from "./dom.mjs";
 import { exact, inWords, short } from "./format.mjs";
-import { parse } from "./formula.mjs";
+import { folded, parse } from "./formula.mjs";
 import { mathml, nameElement, symbolElement, termsOf } from "./mathml.mjs";
 import { withoutNoise } from "./noise.mjs";
 import { unpack } from "./pack.mjs";
@@ -149,11 +149,16 @@ function written(equation, form, exact, numbered, evaluate) {
             const zero = form.singular?.[k];
             const words = zero === null || zero === undefined ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${inWords(zero)}` : zero;
             const number = form.factors ? [html("span", { class: "at", "data-number": `factor_${k + 1}` })] : [];
-            return html("li", {}, math("math", {}, mathml(parse(factor), options)), " ", ...number, `, ${words}`);
+            return html("li", {}, math("math", {}, mathml(read(factor, options), options)), " ", ...number, `, ${words}`);
         });
         host.append(html("ol", {}, ...items));
     }
     return host;
+}
+
+/** A formula with its constants as they are asked for. @param {string} text @param {{exact: boolean}} options */
+function read(text, { exact }) {
+    return exact ? parse(text) : folded(parse(text));
 }
 
 /** Whether a form is a matrix that fits a line. @param {Form} form */
@@ -190,13 +195,13 @@ function note(form) {
 /** @param {Equation} equation @param {Form} form @param {any} options */
 function matrix(equation, form, options) {
     const cell = (entry, i, j) => {
-        const [place, formula] = [`${i + 1},${j + 1}`, mathml(parse(entry), options)];
+        const [place, formula] = [`${i + 1},${j + 1}`, mathml(read(entry, options), options)];
         // A constant is its number.
         if (!options.numbered || !/[A-Za-z]/.test(entry)) return math("mtd", { "data-entry": place }, formula);
         return math("mtd", {}, math("munder", {}, math("mrow", { "data-entry": place }, formula), math("mtext", { class: "at", "data-number": place })));
     };
     if (form.rows === 1 && form.columns === 1) {
-        const entry = mathml(parse(form.entries[0][0]), options);
+        const entry = mathml(read(form.entries[0][0], options), options);
         return html("div", { class: "scroll equation", tabindex: 0, role: "region", "aria-label": "Formula" }, math("math", { display: "block" }, math("mrow", {}, symbolElement(form.symbol, options), math("mo", {}, "="), entry, ...(options.numbered ? [math("mtext", { class: "at", "data-number": "1,1" })] : []))));
     }
     const rows = form.entries.map((row, i) => math("mtr", {}, ...row.map((entry, j) => cell(entry, i, j))));
@@ -286,7 +291,7 @@ function list(host, all, options) {
         while (next < all.length && options.count < end) {
             const { name, text, entry } = all[next++];
             const number = entry && options.numbered ? [html("span", { class: "at", "data-number": entry })] : [];
-            table.append(html("div", { "data-entry": entry || undefined }, ...line(name(options), parse(text), options), ...number));
+            table.append(html("div", { "data-entry": entry || undefined }, ...line(name(options), read(text, options), options), ...number));
         }
         if (options.numbered) options.evaluate();
     };

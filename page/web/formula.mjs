@@ -15,6 +15,7 @@
  *     | {kind: "number", text: string}
  *     | {kind: "fraction", numerator: string, denominator: string}
  *     | {kind: "approximate", text: string}
+ *     | {kind: "decimal", text: string, value: number}
  *     | {kind: "name", text: string}} Node
  */
 
@@ -126,8 +127,68 @@ export function evaluate(node, lookup) {
             return quotient(node.numerator, node.denominator);
         case "approximate":
             return Number(node.text);
+        case "decimal":
+            return node.value;
         default:
             return node.text === "pi" ? Math.PI : lookup(node.text);
+    }
+}
+
+/** Whether no variable enters, and whether it is more than fractions and pi. @param {Node} node @returns {{constant: boolean, long: boolean}} */
+function kind(node) {
+    const all = (nodes) => nodes.map(kind).reduce((a, b) => ({ constant: a.constant && b.constant, long: a.long || b.long }), { constant: true, long: false });
+    switch (node.kind) {
+        case "sum":
+            return all(node.terms.map((term) => term.node));
+        case "product":
+            return all(node.factors.map((factor) => factor.node));
+        case "power":
+            return kind(node.base);
+        case "call":
+            return { constant: node.name in FUNCTIONS && kind(node.argument).constant, long: true };
+        case "name":
+            return { constant: node.text === "pi", long: false };
+        default:
+            return { constant: true, long: false };
+    }
+}
+
+/** @param {Node} node @returns {Node} */
+function decimal(node) {
+    const value = evaluate(node, () => NaN);
+    const size = /** @type {Node} */ ({ kind: "decimal", value: Math.abs(value), text: value < 0 ? `-(${print(node)})` : print(node) });
+    return value < 0 ? { kind: "sum", terms: [{ negative: true, node: size }] } : size;
+}
+
+/** A formula in which the parts that no variable enters are one decimal each where they have roots or functions: 1.08165 cos(q1) for sqrt(2)*cos(7/10)*cos(q1). @param {Node} node @returns {Node} */
+export function folded(node) {
+    const { constant, long } = kind(node);
+    if (constant) return long ? decimal(node) : node;
+    /** Parts with the constants among them as one, where the first of them was. */
+    const gathered = (parts, whole, one) => {
+        const constants = parts.filter((part) => kind(part.node).constant);
+        const rest = parts.map((part) => (constants.includes(part) ? part : { ...part, node: folded(part.node) }));
+        if (!constants.some((part) => kind(part.node).long)) return rest;
+        return rest.flatMap((part) => (part === constants[0] ? [one(decimal(whole(constants)))] : constants.includes(part) ? [] : [part]));
+    };
+    switch (node.kind) {
+        case "sum": {
+            const terms = gathered(node.terms, (terms) => ({ kind: "sum", terms }), (node) => ({ negative: false, node }));
+            // A sign is that of its term.
+            return { kind: "sum", terms: terms.map((term) => (term.node.kind === "sum" && term.node.terms.length === 1 ? { negative: term.negative !== term.node.terms[0].negative, node: term.node.terms[0].node } : term)) };
+        }
+        case "product": {
+            const factors = gathered(node.factors, (factors) => ({ kind: "product", factors }), (node) => ({ divided: false, node }));
+            const negative = factors.find(({ node }) => node.kind === "sum" && node.terms.length === 1 && node.terms[0].negative && node.terms[0].node.kind === "decimal");
+            const product = /** @type {Node} */ ({ kind: "product", factors: factors.map((factor) => (factor === negative ? { ...factor, node: factor.node.terms[0].node } : factor)) });
+            return negative ? { kind: "sum", terms: [{ negative: true, node: product }] } : product;
+        }
+        case "power":
+            return { ...node, base: folded(node.base) };
+        case "call":
+            return { ...node, argument: folded(node.argument) };
+        default:
+            return node;
     }
 }
 
@@ -192,6 +253,8 @@ export function print(node) {
             return `${node.numerator}/${node.denominator}`;
         case "approximate":
             return `(≈${node.text})`;
+        case "decimal":
+            return `(${node.text})`;
         default:
             return node.text;
     }

@@ -163,6 +163,8 @@ export function mathml(node, options) {
             return constant(`${node.numerator}/${node.denominator}`, quotient(node.numerator, node.denominator), options, () =>
                 make(options, "mfrac", {}, make(options, "mn", {}, node.numerator), make(options, "mn", {}, node.denominator)),
             );
+        case "decimal":
+            return decimalElement(node.value, options, { title: `${node.text} = ${node.value}` });
         case "approximate":
             return decimalElement(Number(node.text), options, { title: `about ${node.text}: the exact constant is too long to be written` }, "≈");
         default:

@@ -40,13 +40,13 @@ export class Sight {
         if (element) this.acting.set(kind, element);
         else this.acting.delete(kind);
         // What was pressed is not to be covered.
-        if (this.update()) document.activeElement?.scrollIntoView({ block: "nearest" });
+        if (this.update(true)) document.activeElement?.scrollIntoView({ block: "nearest" });
     }
 
-    /** Whether it is kept from now on. */
-    update() {
+    /** Whether it is kept from now on; what is `pressed` comes below it. @param {boolean} [pressed] */
+    update(pressed = false) {
         const top = this.contents;
-        const below = top + Math.min(PART * innerHeight, MOST);
+        const below = top + (pressed ? 0 : Math.min(PART * innerHeight, MOST));
         const seen = [...this.acting.values()].some((element) => {
             const box = element.getBoundingClientRect();
             return box.top < innerHeight && box.bottom > below;

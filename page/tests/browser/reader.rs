@@ -75,7 +75,7 @@ fn what_is_left_open_is_said() {
     let assumed = "q₁, q₂, q₄ have no limits: a whole turn was taken; q₃ has no limits: −1 m to 1 m was assumed.";
     assert_eq!(seen, serde_json::json!([assumed, [true, true], true, true, true, true, true, true]));
     tab.close();
-    let Some(mut tab) = opened(&robot("everything"), 1600, "light") else { return };
+    let Some(mut tab) = opened(&robot("panda7"), 1600, "light") else { return };
     let folded = tab.run(
         "(async () => { const details = document.querySelector('details[data-equation=inverse_dynamics]'); details.open = true; \
          const ready = async () => { do await new Promise((done) => setTimeout(done, 30)); while (!details.querySelector('.copies') || details.querySelector('[aria-busy=true]')); \

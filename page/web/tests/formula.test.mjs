@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { bound, evaluate, parse, print, quotient, typed, zeros } from "../formula.mjs";
+import { folded, bound, evaluate, parse, print, quotient, typed, zeros } from "../formula.mjs";
 
 test("formulas are read and printed back", () => {
     for (const text of [
@@ -56,6 +56,20 @@ test("zeros of a factor are read from their words", () => {
     assert.deepEqual(read("q1 = 1 or 3"), [1, 0, 1, 3]);
     assert.deepEqual(read("q1 = -1/5"), [1, 0, -0.2]);
     for (const text of ["never", "q1 = atan2(1, 2) +- acos(1/3) mod 2 pi", "q1 with q1^3 + 1 = 0", ""]) assert.equal(read(text), null, text);
+});
+
+test("constants with roots and functions are one decimal, and the value stays", () => {
+    const shown = (text) => print(folded(parse(text))).replace(/sqrt\(2\)\*cos\(7\/10\)/g, "C");
+    assert.equal(shown("cos(q1)*sqrt(2)*cos(7/10)"), "cos(q1)*(C)");
+    assert.equal(shown("1/2*cos(q1) + 3/4"), "1/2*cos(q1) + 3/4");
+    assert.equal(shown("sin(q1 + pi/2) - (1 - sqrt(2)*cos(7/10))*t1"), "sin(q1 + pi/2) + (-((1 - C)))*t1");
+    const terms = folded(parse("q1 + 1 - sqrt(2) + q2 + 1/4")).terms;
+    assert.deepEqual(terms.map(({ negative, node }) => [negative, node.kind]), [[false, "name"], [true, "decimal"], [false, "name"]].with(1, [1.25 - Math.SQRT2 < 0, "decimal"]));
+    for (const text of ["-sqrt(3)*(cos(2)*q1 - 1/3*sqrt(2)*sin(3)/q2)^2", "q1/sqrt(2)", "cos(4)*cos(q1 + atan(2))", "-(sqrt(2) - 5)"]) {
+        const lookup = (name) => ({ q1: 0.3, q2: 0.7, t1: 2 })[name];
+        const [before, after] = [parse(text), folded(parse(text))].map((node) => evaluate(node, lookup));
+        assert.ok(Math.abs(before - after) < 1e-14 * Math.abs(before), text);
+    }
 });
 
 test("fields take numbers and expressions of pi", () => {
