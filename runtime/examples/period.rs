@@ -10,7 +10,7 @@ use std::time::Duration;
 use armgen_runtime::control::InverseDynamics;
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::reference::State;
-use armgen_runtime::stability::{analyse, Delay, Rehearsal};
+use armgen_runtime::stability::{analyse, Delay, MotionAnalysis};
 use armgen_runtime::trajectory::{JointSegment, JointTrajectory};
 
 #[allow(dead_code, unreachable_pub)]
@@ -34,9 +34,9 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
             joints.iter().step_by(joints.len().div_ceil(8)).map(|reference| reference.q).collect();
 
         let mut report = analyse(&plant, &model, &controller, &postures, period, Delay::NONE)?;
-        let rehearsal =
-            Rehearsal { plant: &plant, joints: &joints, start: State::at_rest(start.into()), period, delay: Delay::NONE };
-        report.motion = Some(rehearsal.of(&model, &controller, &joints)?);
+        let analysis =
+            MotionAnalysis { plant: &plant, joints: &joints, start: State::at_rest(start.into()), period, delay: Delay::NONE };
+        report.motion = Some(analysis.of(&model, &controller, &joints)?);
         println!(
             "K_D = {k_d} 1/s at {period} s: radius {:.4} at rest, holds: {}; {:?}",
             report.radius,

@@ -14,13 +14,13 @@
 //! those combinations are states that are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
 //! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model, and a law with neither
-//! rests off its reference, as far as its error makes up for the model ([`Settle`], [`Rest`]). A start from another estimate is a
+//! rests off its reference, as far as its error makes up for the model ([`LineariseAtRest`], [`Rest`]). A start from another estimate is a
 //! transient, not a verdict ([`analyse_start`]).
 //!
 //! What this proves: that small deviations from rest die away at these postures. It proves nothing of a motion, in which
-//! Y(q, dq, dq_r, ddq_r) excites what rest does not, and nothing of a start far from the truth. That is what a [`Rehearsal`] looks at.
+//! Y(q, dq, dq_r, ddq_r) excites what rest does not, and nothing of a start far from the truth. That is what a [`MotionAnalysis`] looks at.
 //!
-//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`Rehearsal::of`] is the motion. A run says all of it first.
+//! [`SampledLoop`] is one posture; [`analyse`] is a path at rest; [`MotionAnalysis::of`] is the motion. A run says all of it first.
 //!
 //! ```
 //! use armgen_runtime::control::PdGravity;
@@ -51,6 +51,6 @@ mod sampled_loop;
 
 pub use delay::Delay;
 pub use error::StabilityError;
-pub use feedback::{Feedback, Linearise, Rest, Settle};
-pub use motion::{Growth, Motion, ReferenceLost, Rehearsal, Rehearse, Weights};
+pub use feedback::{Feedback, Linearise, LineariseAtRest, Rest};
+pub use motion::{Growth, LineariseInMotion, MotionAnalysis, MotionReport, ReferenceLost, Weights};
 pub use sampled_loop::{analyse, analyse_start, Report, SampledLoop, StablePeriod};

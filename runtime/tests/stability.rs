@@ -6,7 +6,10 @@ use armgen_runtime::{
     control::{Adaptive, BoundaryLayer, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Dynamics,
-    stability::{analyse, analyse_start, Delay, Linearise, Rehearsal, Report, SampledLoop, Settle, StabilityError, StablePeriod},
+    stability::{
+        analyse, analyse_start, Delay, Linearise, LineariseAtRest, MotionAnalysis, Report, SampledLoop, StabilityError,
+        StablePeriod,
+    },
     task::{Row, Task},
 };
 use common::{
@@ -15,14 +18,14 @@ use common::{
 };
 use nalgebra::{vector, SMatrix, SVector, Vector4};
 
-fn report<C: Settle<Scara<f64>, Scara<f64>, 4>>(controller: &C, delay: Delay) -> Report<f64> {
+fn report<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, delay: Delay) -> Report<f64> {
     let report = analyse(&ghost::loaded(), &ghost::nominal(), controller, &ghost::postures(), 1e-3, delay).unwrap();
     println!("{report:?}");
     report
 }
 
 #[track_caller]
-fn check<C: Settle<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64, period: f64, percent: f64) {
+fn check<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64, period: f64, percent: f64) {
     let report = report(controller, Delay::NONE);
     close("radius", report.radius, radius, 1e-4);
     assert!(report.is_stable());
@@ -31,7 +34,7 @@ fn check<C: Settle<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64, peri
 }
 
 #[track_caller]
-fn check_delayed<C: Settle<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64) {
+fn check_delayed<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64) {
     let report = report(controller, Delay::samples(1));
     close("radius with one sample of delay", report.radius, radius, 1e-4);
     assert!(!report.is_stable());
@@ -225,24 +228,24 @@ fn deviations_in_motion_grow_by_the_eigenvalues() {
         })
         .collect();
     let start = State { q: joints[0].q, dq: joints[0].dq };
-    let rehearsal = Rehearsal { plant: &FREE, joints: &joints, start, period: h, delay: Delay::NONE };
+    let analysis = MotionAnalysis { plant: &FREE, joints: &joints, start, period: h, delay: Delay::NONE };
     // |z|^2 = 1 + k_P h^2/2 - k_D h where the eigenvalues are complex.
     for (k_p, k_d) in [(1e4f64, 6.0f64), (1e4, 4.0), (400.0, 0.6)] {
         let controller = InverseDynamics::new([k_p], [k_d]).unwrap();
-        let motion = rehearsal.of(&FREE, &controller, &joints).unwrap();
+        let motion = analysis.of(&FREE, &controller, &joints).unwrap();
         let rate = (1.0 + k_p * h * h / 2.0 - k_d * h).ln() / 2.0 / h;
         println!("{motion:?} {rate}");
         close("rate", motion.growth.rate, rate, 0.05 * rate.abs());
         assert_eq!(motion.diverges(), rate * 4.0 > 10f64.ln(), "{motion:?}");
         assert_eq!(motion.lost, None, "it starts on the reference, and nothing disturbs it");
     }
-    let late = Rehearsal { delay: Delay::samples(3), ..rehearsal.clone() };
+    let late = MotionAnalysis { delay: Delay::samples(3), ..analysis.clone() };
     let controller = InverseDynamics::new([2000.0], [20.0]).unwrap();
-    assert!(!rehearsal.of(&FREE, &controller, &joints).unwrap().diverges());
+    assert!(!analysis.of(&FREE, &controller, &joints).unwrap().diverges());
     assert!(late.of(&FREE, &InverseDynamics::new([1e5], [400.0]).unwrap(), &joints).unwrap().diverges());
-    let nothing = Rehearsal { joints: &[], ..rehearsal.clone() };
+    let nothing = MotionAnalysis { joints: &[], ..analysis.clone() };
     assert_eq!(nothing.of(&FREE, &controller, &[]), Err(StabilityError::NoSample));
-    let never = Rehearsal { period: 0.0, ..rehearsal };
+    let never = MotionAnalysis { period: 0.0, ..analysis };
     assert_eq!(never.of(&FREE, &controller, &joints), Err(StabilityError::Period));
 }
 
@@ -335,15 +338,15 @@ fn a_law_without_an_integral_rests_off_its_reference() {
         let report = of(&Mass { force, stiffness });
         let q = (200.0 * 0.3 - force) / (200.0 + stiffness);
         close("offset", report.offset, f64::abs(0.3 - q), 1e-8);
-        assert!(report.adrift.is_none() && report.is_stable(), "{report:?}");
+        assert!(report.without_rest.is_none() && report.is_stable(), "{report:?}");
     }
     let report = of(&Mass { force: 1.0, stiffness: -300.0 });
-    assert_eq!((report.adrift, report.is_stable()), (Some(0), false));
+    assert_eq!((report.without_rest, report.is_stable()), (Some(0), false));
     // Of two postures it is the second that is not held: this force alone holds the mass at the first.
     let pushed = Mass { force: 90.0, stiffness: -300.0 };
     let law = PdGravity::new([250.0], k_d).unwrap();
     let report = analyse(&pushed, &FREE, &law, &[vector![0.3], vector![0.4]], 1e-3, Delay::NONE).unwrap();
-    assert_eq!(report.adrift, Some(1));
+    assert_eq!(report.without_rest, Some(1));
     close("offset", report.offset, 0.0, 1e-12);
 
     // Beyond its boundary layer the robust law adds rho, whatever the error: 2 (K_P e + rho) = f, and K_P alone is its stiffness.

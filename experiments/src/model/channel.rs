@@ -60,7 +60,7 @@ pub enum Quantity {
     MotionGrowth,
     /// The rate at which it goes on growing.
     MotionRate,
-    /// When the rehearsed motion leaves its reference.
+    /// When the simulated motion leaves its reference.
     MotionLostAt,
     /// When a joint was first off by more than a tenth.
     LostAt,

@@ -14,7 +14,8 @@ use armgen_runtime::simulation::{
     run as simulate, run_continuous, ContinuousOptions, Divergence, Integrator, RunError, RunOptions, Sensor, DIVERGENCE_BOUND,
 };
 use armgen_runtime::stability::{
-    analyse, analyse_start, Delay, Motion, Rehearsal, Rehearse, Report, Settle, StabilityError, StablePeriod,
+    analyse, analyse_start, Delay, LineariseAtRest, LineariseInMotion, MotionAnalysis, MotionReport, Report, StabilityError,
+    StablePeriod,
 };
 
 use super::instance::{sized, Functions};
@@ -28,7 +29,7 @@ use crate::model::{
 const POSTURE_STEP: Duration = Duration::from_millis(250);
 /// Divisors of the period at which an unstable loop is analysed again.
 const SHORTER: [u32; 6] = [2, 5, 10, 20, 50, 100];
-/// Samples of the longest rehearsal at a shorter period.
+/// Samples of the longest simulation at a shorter period.
 const MAX_REHEARSED: u128 = 400_000;
 /// Joint error, rad or m, above which `lost_at` is recorded ([`LARGE_ERROR`]), and above which the run is aborted ([`ABORT_ERROR`]).
 const LARGE_ERROR: f64 = 0.1;
@@ -49,15 +50,15 @@ trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P
     fn watched(&self) -> &[f64];
 
     /// The controller, to be linearised.
-    fn as_settle(&self) -> &dyn Settle<W, R, N>;
+    fn as_linearised_at_rest(&self) -> &dyn LineariseAtRest<W, R, N>;
 
     /// How the motion goes.
-    fn rehearse(
+    fn analyse_motion(
         &self,
-        rehearsal: &Rehearsal<'_, W, f64, N>,
+        analysis: &MotionAnalysis<'_, W, f64, N>,
         model: &R,
         tip: &[OperationalReference<f64>],
-    ) -> Result<Motion<f64>, StabilityError>;
+    ) -> Result<MotionReport<f64>, StabilityError>;
 }
 
 /// References of one of the two kinds.
@@ -88,7 +89,7 @@ impl<R, W, C, F, const N: usize, const P: usize> SampledLaw<R, W, N, P> for Watc
 where
     R: Functions<N, P>,
     W: Functions<N, P>,
-    C: Settle<W, R, N> + Rehearse<W, R, N> + Send,
+    C: LineariseAtRest<W, R, N> + LineariseInMotion<W, R, N> + Send,
     C::Reference: OfKind<N>,
     F: Fn(&C, &C::Reference, &State<f64, N>, &mut Vec<f64>) + Send,
 {
@@ -109,17 +110,17 @@ where
         &self.watched
     }
 
-    fn as_settle(&self) -> &dyn Settle<W, R, N> {
+    fn as_linearised_at_rest(&self) -> &dyn LineariseAtRest<W, R, N> {
         &self.controller
     }
 
-    fn rehearse(
+    fn analyse_motion(
         &self,
-        rehearsal: &Rehearsal<'_, W, f64, N>,
+        analysis: &MotionAnalysis<'_, W, f64, N>,
         model: &R,
         tip: &[OperationalReference<f64>],
-    ) -> Result<Motion<f64>, StabilityError> {
-        rehearsal.of(model, &self.controller, C::Reference::of(rehearsal.joints, tip))
+    ) -> Result<MotionReport<f64>, StabilityError> {
+        analysis.of(model, &self.controller, C::Reference::of(analysis.joints, tip))
     }
 }
 
@@ -179,8 +180,8 @@ where
         };
         let plant = (self.with_parameters)(sized(&run.plant));
         let no_answer = |error: StabilityError| format!("the loop cannot be linearised: {error}");
-        let at_rest: &dyn Settle<W, R, N> = match &drive {
-            Drive::Sampled(law) => law.as_settle(),
+        let at_rest: &dyn LineariseAtRest<W, R, N> = match &drive {
+            Drive::Sampled(law) => law.as_linearised_at_rest(),
             Drive::Continuous(law) => law,
         };
         let rest =
@@ -196,23 +197,23 @@ where
         };
         let mut report = rest(run.delay)?;
         if let Drive::Sampled(law) = &drive {
-            let rehearsal = Self::rehearsal(run, begins, &plant, &joints, period);
+            let analysis = Self::motion_analysis(run, begins, &plant, &joints, period);
             // An analysis in motion that fails is left out; the one at rest is still reported.
-            report.motion = law.rehearse(&rehearsal, &self.nominal, &tip).ok();
+            report.motion = law.analyse_motion(&analysis, &self.nominal, &tip).ok();
         }
         let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, begins, &plant, &postures)) };
         let analysis = Analysis { report, start, holds_at };
         Ok(Box::new(Prepared { arm: self, run, body: &experiment.body, start: begins, drive, joints, tip, analysis, delayed }))
     }
 
-    fn rehearsal<'r>(
+    fn motion_analysis<'r>(
         run: &ControlRun,
         begins: SVector<f64, N>,
         plant: &'r W,
         joints: &'r [JointReference<f64, N>],
         period: f64,
-    ) -> Rehearsal<'r, W, f64, N> {
-        Rehearsal { plant, joints, start: State::at_rest(begins), period, delay: Delay::samples(run.delay) }
+    ) -> MotionAnalysis<'r, W, f64, N> {
+        MotionAnalysis { plant, joints, start: State::at_rest(begins), period, delay: Delay::samples(run.delay) }
     }
 
     /// The largest period of [`SHORTER`] at which the loop holds, s, and the shortest that was tried.
@@ -227,11 +228,11 @@ where
             let delay = Delay::samples(run.delay);
             let holds = || {
                 let law = self.sampled_law(&run.law, shortest).ok()?;
-                let mut report = analyse(plant, &self.nominal, law.as_settle(), postures, shortest, delay).ok()?;
+                let mut report = analyse(plant, &self.nominal, law.as_linearised_at_rest(), postures, shortest, delay).ok()?;
                 if report.is_stable() {
                     let (joints, tip, _) = self.desired(run, begins, period).ok()?;
-                    let rehearsal = Self::rehearsal(run, begins, plant, &joints, shortest);
-                    report.motion = Some(law.rehearse(&rehearsal, &self.nominal, &tip).ok()?);
+                    let analysis = Self::motion_analysis(run, begins, plant, &joints, shortest);
+                    report.motion = Some(law.analyse_motion(&analysis, &self.nominal, &tip).ok()?);
                 }
                 Some(report.holds())
             };
@@ -266,7 +267,7 @@ where
         Ok((joints, tip, postures))
     }
 
-    /// The controller of a law. A new one also needs `LawKind` (model/law.rs), and `Linearise`, `Settle` and `Rehearse` in the runtime.
+    /// The controller of a law. A new one also needs `LawKind` (model/law.rs), and `Linearise`, `LineariseAtRest` and `LineariseInMotion` in the runtime.
     fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, SettingError>
     where
         R: 'a,
@@ -314,7 +315,7 @@ fn unwatched<'a, R, W, C, const N: usize, const P: usize>(controller: C) -> Box<
 where
     R: Functions<N, P>,
     W: Functions<N, P>,
-    C: Settle<W, R, N> + Rehearse<W, R, N> + Send + 'a,
+    C: LineariseAtRest<W, R, N> + LineariseInMotion<W, R, N> + Send + 'a,
     C::Reference: OfKind<N>,
 {
     let nothing = |_: &C, _: &C::Reference, _: &State<f64, N>, _: &mut Vec<f64>| {};
@@ -403,17 +404,17 @@ where
             // Two decimals, more where these would say 1.00.
             let radius = report.radius;
             let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
-            said.push(match report.adrift {
+            said.push(match report.without_rest {
                 Some(_) => "cannot rest on its path: the gains do not hold what the model leaves out".to_owned(),
                 None => format!("unstable at rest: spectral radius {radius}; {holds}"),
             });
         }
         let seconds = |t: f64| number((t * 1e4).round() / 1e4);
-        if let Some(motion) = report.motion.filter(Motion::diverges) {
+        if let Some(motion) = report.motion.filter(MotionReport::diverges) {
             said.push(match motion.lost {
                 Some(lost) => {
                     let joint = &self.arm.robot.joints[lost.joint].name;
-                    format!("diverges in motion: rehearsed, joint `{joint}` is lost at {} s", seconds(lost.at))
+                    format!("diverges in motion: simulated without noise, joint `{joint}` is lost at {} s", seconds(lost.at))
                 }
                 None => format!(
                     "diverges in motion: a small deviation grows by a factor of {:.0e} within {} s",
@@ -459,7 +460,7 @@ where
         let limit = |report: &Report<f64>| match report.period {
             StablePeriod::UpTo(limit) | StablePeriod::AtLeast(limit) | StablePeriod::NotEvenAt(limit) => limit,
         };
-        let motion = |of: fn(Motion<f64>) -> f64| report.motion.map_or(f64::NAN, of);
+        let motion = |of: fn(MotionReport<f64>) -> f64| report.motion.map_or(f64::NAN, of);
         let value = |quantity: Quantity| match quantity {
             Quantity::SpectralRadius => start.radius,
             Quantity::StablePeriod => limit(&start),

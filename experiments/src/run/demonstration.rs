@@ -9,7 +9,7 @@ use armgen_runtime::control::InverseDynamics;
 use armgen_runtime::nalgebra::{SMatrix, SVector};
 use armgen_runtime::reference::{Pose, State};
 use armgen_runtime::simulation::{run as simulate, Integrator, RunOptions};
-use armgen_runtime::stability::{analyse, Delay, Report, Settle, StablePeriod};
+use armgen_runtime::stability::{analyse, Delay, LineariseAtRest, Report, StablePeriod};
 use armgen_runtime::trajectory::{JointSegment, JointTrajectory};
 
 use super::instance::Functions;
@@ -124,7 +124,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     }
 
     /// What the sampled loop is like at these postures; an unstable one is an error, with the period that would hold.
-    fn stability(&self, controller: &dyn Settle<R, R, N>, postures: &[SVector<f64, N>]) -> Result<String, String> {
+    fn stability(&self, controller: &dyn LineariseAtRest<R, R, N>, postures: &[SVector<f64, N>]) -> Result<String, String> {
         let report = analyse(&self.nominal, &self.nominal, controller, postures, PERIOD.as_secs_f64(), Delay::NONE)
             .map_err(|error| format!("the sampled loop has no spectral radius: {error}"))?;
         let Report { radius, period, .. } = report;

@@ -60,7 +60,7 @@ pub trait Linearise<R: Dynamics<N>, const N: usize> {
 ///
 /// Rest asks the torque of the plant's gravity: estimates are then the parameters of the plant (the bound of their projection where that
 /// excludes them; frozen ones stay), integrals are what makes up for the model, and a law with neither rests off its reference.
-pub trait Settle<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>: Linearise<R, N> {
+pub trait LineariseAtRest<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>: Linearise<R, N> {
     /// Its feedback about rest under the reference `q`; `None` where the law is singular.
     fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>>;
 }
@@ -135,7 +135,7 @@ impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for PdGravity<R::Real, N> {
     }
 }
 
-impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for PdGravity<R::Real, N> {
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAtRest<P, R, N> for PdGravity<R::Real, N> {
     fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
         let feedback = self.linearise(model, reference)?;
         let held = |q: &SVector<R::Real, N>| self.k_p.component_mul(&(reference - q));
@@ -157,7 +157,7 @@ impl<T: RealField + Copy, const N: usize> InverseDynamics<T, N> {
     }
 }
 
-impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for InverseDynamics<R::Real, N> {
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAtRest<P, R, N> for InverseDynamics<R::Real, N> {
     fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
         let held = |q: &SVector<R::Real, N>| model.inertia_matrix(q) * self.k_p.component_mul(&(reference - q));
         Some(rest_off(plant, model, reference, held, |q| self.about(model, q, &(reference - q))))
@@ -192,7 +192,7 @@ impl<T: RealField + Copy, const N: usize> Robust<T, N> {
     }
 }
 
-impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> Settle<P, R, N> for Robust<R::Real, N> {
+impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAtRest<P, R, N> for Robust<R::Real, N> {
     fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
         let held = |q: &SVector<R::Real, N>| model.inertia_matrix(q) * self.at_rest(&(reference - q)).0;
         Some(rest_off(plant, model, reference, held, |q| self.about(model, q, &(reference - q))))
@@ -228,7 +228,7 @@ impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Ada
     }
 }
 
-impl<P, R, const N: usize, const K: usize> Settle<P, R, N> for Adaptive<R::Real, N, K>
+impl<P, R, const N: usize, const K: usize> LineariseAtRest<P, R, N> for Adaptive<R::Real, N, K>
 where
     P: Regressor<N, K>,
     R: Regressor<N, K, Real = P::Real>,
@@ -284,7 +284,7 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
 }
 
 /// At rest B^ J^+ K_I int holds the arm, J^+ K_I int = y; it joins the derivative by q. Rows without an integral count as held, too.
-impl<P, R, const N: usize, const M: usize> Settle<P, R, N> for OperationalSpace<R::Real, N, M>
+impl<P, R, const N: usize, const M: usize> LineariseAtRest<P, R, N> for OperationalSpace<R::Real, N, M>
 where
     P: Dynamics<N>,
     R: Dynamics<N, Real = P::Real>,

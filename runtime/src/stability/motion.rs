@@ -1,4 +1,4 @@
-//! The loop in motion: small deviations along the reference, and the run rehearsed.
+//! The loop in motion: small deviations along the reference, and the run simulated.
 //!
 //! At rest only those directions of an estimate count that gravity excites, and C dq is of second order. In motion neither holds. So small
 //! deviations x = (δq, δv, δm) of joint variables, rates and memories are carried along the reference as it will be run, sample by sample:
@@ -12,7 +12,7 @@
 //! the deviation. Torque limits are not at work.
 //!
 //! An estimate that is far from the truth is no small deviation: it changes the gain of the loop, and with it whether the sampling bears it.
-//! So the run itself is rehearsed, too, with its limits, from where it begins: without noise, one Runge-Kutta step a sample.
+//! So the run itself is simulated, too, with its limits, from where it begins: without noise, one Runge-Kutta step a sample.
 //!
 //! What is proved: that the run, without noise, keeps to its reference or leaves it; and by how much the deviations that are carried along
 //! grow on this motion. A deviation that is not carried along may grow more at first; one that grows exponentially takes part in all of
@@ -38,14 +38,14 @@ pub struct Weights<T, const N: usize> {
     pub memory: Vec<T>,
 }
 
-/// A controller whose memory can be read and set: what a rehearsal asks of it.
-pub trait Rehearse<P, R: Dynamics<N>, const N: usize>: Controller<R, N> + Clone {
+/// A controller whose memory can be read and set: what the analysis of a motion asks of it.
+pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N> + Clone {
     /// Weights of deviations about the posture `q`.
     fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N>;
 
     /// The same without torque limits, its estimate at its equilibrium under `plant`, its integral at zero.
     #[must_use]
-    fn settled(&self, plant: &P) -> Self;
+    fn converged(&self, plant: &P) -> Self;
 
     /// The estimate or the integral.
     fn memory(&self) -> Vec<R::Real> {
@@ -59,8 +59,8 @@ pub trait Rehearse<P, R: Dynamics<N>, const N: usize>: Controller<R, N> + Clone 
     }
 }
 
-impl<P, R: Dynamics<N>, const N: usize> Rehearse<P, R, N> for PdGravity<R::Real, N> {
-    fn settled(&self, _: &P) -> Self {
+impl<P, R: Dynamics<N>, const N: usize> LineariseInMotion<P, R, N> for PdGravity<R::Real, N> {
+    fn converged(&self, _: &P) -> Self {
         Self { limits: None, ..*self }
     }
 
@@ -69,8 +69,8 @@ impl<P, R: Dynamics<N>, const N: usize> Rehearse<P, R, N> for PdGravity<R::Real,
     }
 }
 
-impl<P, R: Dynamics<N>, const N: usize> Rehearse<P, R, N> for InverseDynamics<R::Real, N> {
-    fn settled(&self, _: &P) -> Self {
+impl<P, R: Dynamics<N>, const N: usize> LineariseInMotion<P, R, N> for InverseDynamics<R::Real, N> {
+    fn converged(&self, _: &P) -> Self {
         Self { limits: None, ..*self }
     }
 
@@ -79,8 +79,8 @@ impl<P, R: Dynamics<N>, const N: usize> Rehearse<P, R, N> for InverseDynamics<R:
     }
 }
 
-impl<P, R: Dynamics<N>, const N: usize> Rehearse<P, R, N> for Robust<R::Real, N> {
-    fn settled(&self, _: &P) -> Self {
+impl<P, R: Dynamics<N>, const N: usize> LineariseInMotion<P, R, N> for Robust<R::Real, N> {
+    fn converged(&self, _: &P) -> Self {
         Self { limits: None, ..*self }
     }
 
@@ -90,12 +90,12 @@ impl<P, R: Dynamics<N>, const N: usize> Rehearse<P, R, N> for Robust<R::Real, N>
 }
 
 /// With the weights of V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi), which decreases in continuous time.
-impl<P, R, const N: usize, const K: usize> Rehearse<P, R, N> for Adaptive<R::Real, N, K>
+impl<P, R, const N: usize, const K: usize> LineariseInMotion<P, R, N> for Adaptive<R::Real, N, K>
 where
     P: Regressor<N, K>,
     R: Regressor<N, K, Real = P::Real>,
 {
-    fn settled(&self, plant: &P) -> Self {
+    fn converged(&self, plant: &P) -> Self {
         Self { limits: None, ..self.at_rest(&plant.parameters()) }
     }
 
@@ -116,8 +116,8 @@ where
 }
 
 /// The weight of an integral is that of the error that asks as much: K_I int = K_P e.
-impl<P, R: Dynamics<N>, const N: usize, const M: usize> Rehearse<P, R, N> for OperationalSpace<R::Real, N, M> {
-    fn settled(&self, _: &P) -> Self {
+impl<P, R: Dynamics<N>, const N: usize, const M: usize> LineariseInMotion<P, R, N> for OperationalSpace<R::Real, N, M> {
+    fn converged(&self, _: &P) -> Self {
         Self { limits: None, integral: SVector::zeros(), integral_limit: None, ..*self }
     }
 
@@ -153,7 +153,7 @@ pub struct Growth<T> {
     pub unbounded: bool,
 }
 
-/// Where a rehearsal leaves its reference by more than 1 rad or m, or has no torque any more.
+/// Where a simulated run leaves its reference by more than 1 rad or m, or has no torque any more.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceLost<T> {
     /// When, s.
@@ -166,21 +166,21 @@ pub struct ReferenceLost<T> {
 
 /// The loop in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion<T> {
+pub struct MotionReport<T> {
     /// Of small deviations along the reference, as far as the run is not lost.
     pub growth: Growth<T>,
     /// Where the run itself is lost; `None` where it keeps to its reference to the end.
     pub lost: Option<ReferenceLost<T>>,
 }
 
-impl<T: RealField + Copy> Motion<T> {
+impl<T: RealField + Copy> MotionReport<T> {
     /// Whether the loop diverges on this motion.
     pub fn diverges(&self) -> bool {
         self.growth.unbounded || self.lost.is_some()
     }
 }
 
-/// An error of a joint, rad or m, at which a rehearsal is lost.
+/// An error of a joint, rad or m, at which a simulated run is lost.
 const LOST_ERROR: f64 = 1.0;
 /// Growth from which on a loop counts as lost, whatever comes after.
 const LOST_GROWTH: f64 = 1e6;
@@ -193,9 +193,9 @@ const MEMORY: f64 = 1e-6;
 /// In place of a size of zero, where that divides.
 const TINY: f64 = 1e-30;
 
-/// A run that is to be rehearsed.
+/// A run to analyse.
 #[derive(Clone, Debug)]
-pub struct Rehearsal<'a, P, T, const N: usize> {
+pub struct MotionAnalysis<'a, P, T, const N: usize> {
     /// The arm as it is.
     pub plant: &'a P,
     /// What is desired at each sample.
@@ -222,7 +222,7 @@ struct Deviation<T, const N: usize> {
     unseen: VecDeque<State<T, N>>,
 }
 
-impl<P, T, const N: usize> Rehearsal<'_, P, T, N>
+impl<P, T, const N: usize> MotionAnalysis<'_, P, T, N>
 where
     T: RealField + Copy,
     P: Dynamics<N, Real = T>,
@@ -232,10 +232,10 @@ where
     /// # Errors
     /// [`StabilityError::NoSample`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,
     /// [`StabilityError::SingularAtSample`] with the number of the sample at which the law is singular on the reference.
-    pub fn of<R, C>(&self, model: &R, controller: &C, references: &[C::Reference]) -> Result<Motion<T>, StabilityError>
+    pub fn of<R, C>(&self, model: &R, controller: &C, references: &[C::Reference]) -> Result<MotionReport<T>, StabilityError>
     where
         R: Dynamics<N, Real = T>,
-        C: Rehearse<P, R, N>,
+        C: LineariseInMotion<P, R, N>,
     {
         if !(self.period > T::zero() && self.period.is_finite()) {
             return Err(StabilityError::Period);
@@ -247,17 +247,17 @@ where
             Some((torque.tau, controller.memory()))
         };
         let lost = self.run(controller.memory(), &|k, measured, memory| law(controller, k, measured, memory));
-        let settled = controller.settled(self.plant);
+        let converged = controller.converged(self.plant);
         let loop_ = Linear {
-            rehearsal: self,
-            weights: settled.weights(model, &first.q),
+            analysis: self,
+            weights: converged.weights(model, &first.q),
             inertia: self.plant.inertia_matrix(&first.q).diagonal(),
-            memory: settled.memory(),
+            memory: converged.memory(),
         };
         // Where the run is lost, nothing after it counts.
         let samples = lost.map_or(self.joints.len(), |lost| lost.sample + 1);
-        let growth = loop_.growth(samples, &|k, measured, memory| law(&settled, k, measured, memory))?;
-        Ok(Motion { growth, lost })
+        let growth = loop_.growth(samples, &|k, measured, memory| law(&converged, k, measured, memory))?;
+        Ok(MotionReport { growth, lost })
     }
 
     /// The run from its start, without noise.
@@ -291,7 +291,7 @@ where
 
 /// The linear loop along the reference.
 struct Linear<'a, P, T, const N: usize> {
-    rehearsal: &'a Rehearsal<'a, P, T, N>,
+    analysis: &'a MotionAnalysis<'a, P, T, N>,
     weights: Weights<T, N>,
     /// Diagonal of B at the start.
     inertia: SVector<T, N>,
@@ -304,7 +304,7 @@ where
     P: Dynamics<N, Real = T>,
 {
     fn growth(&self, samples: usize, law: &AnyLaw<'_, T, N>) -> Result<Growth<T>, StabilityError> {
-        let period = self.rehearsal.period;
+        let period = self.analysis.period;
         let mut deviations = self.deviations();
         let mut logarithms = vec![T::zero(); deviations.len()];
         let (mut largest, mut at) = (T::zero(), T::zero());
@@ -352,7 +352,7 @@ where
         let moves = m.iter().any(|m| *m != T::zero());
         let all = [(q, zeros(), none.clone()), (zeros(), v, none), (q, -v, m.clone()), (zeros(), zeros(), m)];
         let deviation = |(q, dq, memory)| {
-            let unseen = vec![State::at_rest(zeros()); self.rehearsal.delay.count()].into();
+            let unseen = vec![State::at_rest(zeros()); self.analysis.delay.count()].into();
             let mut deviation = Deviation { state: State { q, dq }, memory, unseen };
             deviation.scale(T::one() / self.size(&deviation));
             deviation
@@ -369,7 +369,7 @@ where
 
     /// Carries a deviation from sample k to the next one; `None` where the law refuses.
     fn carry(&self, k: usize, deviation: &mut Deviation<T, N>, law: &AnyLaw<'_, T, N>) -> Option<()> {
-        let Rehearsal { plant, joints, delay, .. } = *self.rehearsal;
+        let MotionAnalysis { plant, joints, delay, .. } = *self.analysis;
         let half = lit::<T>(0.5);
         deviation.unseen.push_back(deviation.state);
         let seen_deviation = deviation.unseen.pop_front()?;
@@ -402,7 +402,7 @@ where
 
     /// The plant one period on under a held torque: Heun's method, since nothing but the arm's own motion moves within a period.
     fn advance(&self, State { q, dq }: State<T, N>, tau: &SVector<T, N>) -> State<T, N> {
-        let Rehearsal { plant, period: h, .. } = *self.rehearsal;
+        let MotionAnalysis { plant, period: h, .. } = *self.analysis;
         let half = lit::<T>(0.5);
         let a = plant.forward_dynamics(&q, &dq, tau);
         let b = plant.forward_dynamics(&(q + dq * h + a * (half * h * h)), &(dq + a * h), tau);

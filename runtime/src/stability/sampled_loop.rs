@@ -6,8 +6,8 @@ use super::{
     eigenvalues,
     error::StabilityError,
     exponential::exponential,
-    feedback::{viscous, Feedback, Linearise, Settle},
-    motion::Motion,
+    feedback::{viscous, Feedback, Linearise, LineariseAtRest},
+    motion::MotionReport,
 };
 use crate::{linalg::lit, robot::Dynamics};
 use nalgebra::{linalg::balancing::balance_parlett_reinsch, DMatrix, RealField, SMatrix, SVector};
@@ -35,15 +35,15 @@ pub struct Report<T> {
     /// How far from its reference the arm rests, at most over all postures and joints, rad or m.
     pub offset: T,
     /// Index of the first posture near which the arm cannot rest: the gains do not hold what the model leaves out.
-    pub adrift: Option<usize>,
+    pub without_rest: Option<usize>,
     /// The loop in motion, where it was asked for.
-    pub motion: Option<Motion<T>>,
+    pub motion: Option<MotionReport<T>>,
 }
 
 impl<T: RealField + Copy> Report<T> {
     /// Whether the arm can rest at all postures, and the loop is stable there.
     pub fn is_stable(&self) -> bool {
-        self.radius < T::one() && self.adrift.is_none()
+        self.radius < T::one() && self.without_rest.is_none()
     }
 
     /// Whether it is stable at rest and, where that is known, does not diverge in motion.
@@ -77,7 +77,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
     where
         P: Dynamics<N, Real = T>,
         R: Dynamics<N, Real = T>,
-        C: Settle<P, R, N> + ?Sized,
+        C: LineariseAtRest<P, R, N> + ?Sized,
     {
         let rest = controller.settle(plant, model, q).ok_or(StabilityError::Singular { posture: 0 })?;
         let offset = rest.is_held.then(|| (rest.q - q).amax());
@@ -249,7 +249,7 @@ where
     T: RealField + Copy,
     P: Dynamics<N, Real = T>,
     R: Dynamics<N, Real = T>,
-    C: Settle<P, R, N> + ?Sized,
+    C: LineariseAtRest<P, R, N> + ?Sized,
 {
     worst_of(postures, |q| SampledLoop::new(plant, model, controller, q), period, delay)
 }
@@ -282,7 +282,7 @@ fn worst_of<T: RealField + Copy, const N: usize>(
     delay: Delay,
 ) -> Result<Report<T>, StabilityError> {
     let mut worst: Option<(T, usize)> = None;
-    let (mut offset, mut adrift) = (T::zero(), None);
+    let (mut offset, mut without_rest) = (T::zero(), None);
     let mut loops = Vec::with_capacity(postures.len());
     for (posture, q) in postures.iter().enumerate() {
         let sampled = at(q).map_err(|error| match error {
@@ -296,7 +296,7 @@ fn worst_of<T: RealField + Copy, const N: usize>(
         }
         match sampled.offset {
             Some(distance) => offset = offset.max(distance),
-            None => adrift = adrift.or(Some(posture)),
+            None => without_rest = without_rest.or(Some(posture)),
         }
         loops.push(sampled);
     }
@@ -312,5 +312,5 @@ fn worst_of<T: RealField + Copy, const N: usize>(
             limit = sampled.largest_stable_period(bound, delay)?;
         }
     }
-    Ok(Report { radius, posture, period: limit, offset, adrift, motion: None })
+    Ok(Report { radius, posture, period: limit, offset, without_rest, motion: None })
 }

@@ -12,7 +12,7 @@ use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::reference::{JointReference, State};
 use armgen_runtime::robot::Dynamics;
 use armgen_runtime::simulation::{run, Integrator, RunOptions};
-use armgen_runtime::stability::{analyse, Delay, Rehearsal, Rehearse, Settle};
+use armgen_runtime::stability::{analyse, Delay, LineariseAtRest, LineariseInMotion, MotionAnalysis};
 
 /// The Puma 560 with the standard parameters of all links.
 #[allow(missing_docs, unreachable_pub)]
@@ -24,7 +24,7 @@ mod puma560 {
 
 /// An error, rad or m, beyond which a run is lost.
 const LOST: f64 = 1.0;
-/// The time that is rehearsed, s; three times as much is simulated.
+/// The time that is analysed, s; three times as much is simulated.
 const SECONDS: f64 = 4.0;
 
 /// What is said, and what comes out.
@@ -64,14 +64,14 @@ fn judge<P, R, C, const N: usize>(plant: &P, model: &R, controller: C, swing: &S
 where
     P: Dynamics<N, Real = f64>,
     R: Dynamics<N, Real = f64>,
-    C: Settle<P, R, N> + Rehearse<P, R, N> + Controller<R, N, Reference = JointReference<f64, N>>,
+    C: LineariseAtRest<P, R, N> + LineariseInMotion<P, R, N> + Controller<R, N, Reference = JointReference<f64, N>>,
 {
     let postures: Vec<SVector<f64, N>> = (0..16).map(|k| swing.at(0.25 * f64::from(k)).q).collect();
     let mut report = analyse(plant, model, &controller, &postures, period, Delay::NONE).expect("an answer");
     let joints: Vec<_> = (0..(SECONDS / period) as usize).map(|k| swing.at(k as f64 * period)).collect();
     let start = State::at_rest(joints[0].q);
-    let rehearsal = Rehearsal { plant, joints: &joints, start, period, delay: Delay::NONE };
-    report.motion = rehearsal.of(model, &controller, &joints).ok();
+    let analysis = MotionAnalysis { plant, joints: &joints, start, period, delay: Delay::NONE };
+    report.motion = analysis.of(model, &controller, &joints).ok();
 
     let mut law = controller;
     let mut options = RunOptions::new(Duration::from_secs_f64(period), Duration::from_secs_f64(3.0 * SECONDS));

@@ -78,7 +78,7 @@ fn the_reported_adaptive_gains_are_called_unstable_before_anything_moves() {
     assert!(job.record().log().is_empty());
     assert_eq!(
         job.warning().as_deref(),
-        Some("sampled at 1 ms, unstable at rest: spectral radius 9.01; a period up to 0.2 ms would hold; diverges in motion: rehearsed, joint `elbow` is lost at 0.005 s; nor does it hold at 0.1 ms")
+        Some("sampled at 1 ms, unstable at rest: spectral radius 9.01; a period up to 0.2 ms would hold; diverges in motion: simulated without noise, joint `elbow` is lost at 0.005 s; nor does it hold at 0.1 ms")
     );
 }
 

@@ -11,7 +11,7 @@ use armgen_runtime::control::Adaptive;
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::reference::{JointReference, State};
 use armgen_runtime::simulation::{run, Integrator, RunOptions};
-use armgen_runtime::stability::{analyse, Delay, Rehearsal};
+use armgen_runtime::stability::{analyse, Delay, MotionAnalysis};
 use common::{parse, said, text_of};
 
 const K_D: [f64; 6] = [20.0, 20.0, 10.0, 0.5, 0.5, 0.05];
@@ -68,8 +68,8 @@ fn what_diverges_in_motion_is_called_so() {
         let seconds = 4.0;
         let joints: Vec<_> = (0..(seconds / period) as usize).map(|k| reference(k as f64 * period)).collect();
         let start = State::at_rest(joints[0].q);
-        let rehearsal = Rehearsal { plant: &plant, joints: &joints, start, period, delay: Delay::NONE };
-        let motion = rehearsal.of(&ur10::Nominal, &controller(), &joints).unwrap();
+        let analysis = MotionAnalysis { plant: &plant, joints: &joints, start, period, delay: Delay::NONE };
+        let motion = analysis.of(&ur10::Nominal, &controller(), &joints).unwrap();
         println!("{period}: {motion:?}");
         assert_eq!(motion.diverges(), diverges, "{period}: {motion:?}");
         assert!(motion.growth.largest < 2.0, "about the true parameters it is stable: {motion:?}");
