@@ -43,7 +43,7 @@ const CODEGEN: Layers = &[
     ("program", &["catalogue", "kinds", "parallel"]),
     ("schedule", &["catalogue", "derive", "kinds", "manipulator", "parallel", "pass", "program", "suggest"]),
     ("emit", &["catalogue", "inverse_kinematics", "kinds", "manipulator", "parallel", "program", "source"]),
-    ("show", &["catalogue", "derive", "parallel", "program"]),
+    ("show", &["catalogue", "derive", "parallel"]),
     ("build_script", &["catalogue", "diagnostic", "kinds", "pass", "program", "schedule", "source", "validate"]),
 ];
 
