@@ -111,7 +111,7 @@ const VERIFY: Layers = &[
     ("program", &["element", "formula"]),
     ("contract", &["program"]),
     ("divisors", &["element", "program"]),
-    ("float", &["enclosure", "program"]),
+    ("float", &["element", "enclosure", "program"]),
     ("arithmetic", &["element", "enclosure", "float", "formula", "program", "stream"]),
     ("ranges", &["enclosure", "float", "formula", "program"]),
     ("number", &["arithmetic", "element", "formula"]),
