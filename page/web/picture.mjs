@@ -16,6 +16,9 @@ const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipso
 /** The height of the badge with what is around it, in pixels of the window. */
 const BADGE = 45;
 
+/** The narrowest picture that is drawn, px. */
+const LEAST = 100;
+
 export class Picture {
     /** @param {any} data @param {import("./state.mjs").State} state */
     constructor(data, state) {
@@ -314,7 +317,10 @@ export class Picture {
         });
         // Texts keep their size where the picture is narrow.
         new ResizeObserver(() => {
-            this.unit = Math.max(WIDTH / this.svg.clientWidth, HEIGHT / this.svg.clientHeight);
+            const { clientWidth: width, clientHeight: height } = this.svg;
+            // Out of sight, or too small for any arm: lengths would be infinite, or negative.
+            if (Math.min(width, height) < LEAST) return;
+            this.unit = Math.max(WIDTH / width, HEIGHT / height);
             this.view.pixel = Math.max(1, Math.min(2, this.unit));
             this.svg.style.setProperty("--pixel", String(this.view.pixel));
             // The badge of a narrow window would lie over the arm.

@@ -192,7 +192,10 @@ impl Python {
         let waves = waves(module, function, self);
         if !waves.is_empty() {
             let angles: Vec<String> = waves.iter().map(|wave| wave.angle.clone()).collect();
-            let _ = writeln!(text, "    sine, cosine = _sin_cos(xp, {})", tuple(&angles));
+            // What no line takes has no name.
+            let sine = if waves.iter().any(|wave| wave.sine.is_some()) { "sine" } else { "_" };
+            let cosine = if waves.iter().any(|wave| wave.cosine.is_some()) { "cosine" } else { "_" };
+            let _ = writeln!(text, "    {sine}, {cosine} = _sin_cos(xp, {})", tuple(&angles));
         }
         for (i, wave) in waves.iter().enumerate() {
             for (value, from) in [(&wave.sine, "sine"), (&wave.cosine, "cosine")] {

@@ -4,7 +4,7 @@
 //! module   = imports names constants arrays [ sines ] [ sign ] [ stribeck ] { [ class ] { part } function }
 //! function = def NAME(ARGUMENTS) -> TYPE:  xp, shape, (ARGUMENTS,) = _enter(("ARGUMENT", ARGUMENT, LENGTH), ...)
 //!            if _many(xp, shape, (ARGUMENTS,)):  return _in_blocks(xp, shape, NAME, (ARGUMENTS,))  [ waves ] { line } { call { line } } result
-//! waves    = sine, cosine = _sin_cos(xp, (ANGLES,))  { NAME = sine[I] | NAME = cosine[I] }
+//! waves    = sine, cosine = _sin_cos(xp, (ANGLES,))  { NAME = sine[I] | NAME = cosine[I] }     `_` for one that no line takes
 //! line     = NAME = SUM
 //! call     = given_K = _NAME_part_K(xp, ARGUMENTS, (NAMES,))  { NAME = given_K[I] }
 //! result   = return ARRAY | return TYPE( { ARRAY, } )            ARRAY = _leave(xp, ARGUMENT, shape, (LENGTHS,), ( { SUM, } ))
@@ -189,15 +189,23 @@ impl<'a> Functions<'a> for Reader<'a, '_> {
         lines.expect(&format!("    if _many(xp, shape, {}):", tuple(&names)))?;
         lines.expect(&format!("        return _in_blocks(xp, shape, {name}, {})", tuple(&names)))?;
         let mut body = Body::new(name, arguments, self.syntax, self.real, self.steps);
-        if lines.peek().starts_with("    sine, cosine = ") {
+        let forms = [["sine", "cosine"], ["sine", "_"], ["_", "cosine"]];
+        let form = forms.into_iter().find(|[s, c]| lines.peek().starts_with(&format!("    {s}, {c} = ")));
+        if let Some([sines, cosines]) = form {
             let line = lines.number();
-            let angles = lines.between("    sine, cosine = _sin_cos(xp, (", ",))")?;
+            let angles = lines.between(&format!("    {sines}, {cosines} = _sin_cos(xp, ("), ",))")?;
+            let mut taken = [false; 2];
             for (i, (sine, cosine)) in body.angles(angles, line)?.into_iter().enumerate() {
-                let first = body.element(lines, &format!("sine[{i}]"), sine)?;
-                let second = body.element(lines, &format!("cosine[{i}]"), cosine)?;
+                let first = body.element(lines, &format!("{sines}[{i}]"), sine)?;
+                let second = body.element(lines, &format!("{cosines}[{i}]"), cosine)?;
                 if !first && !second {
                     return Err(lines.fault(format!("neither the sine nor the cosine of angle {i} has a name")));
                 }
+                taken = [taken[0] || first, taken[1] || second];
+            }
+            if taken != [sines, cosines].map(|name| name != "_") {
+                let reason = format!("`{sines}, {cosines}` where `_` stands for what no line takes, and for nothing else");
+                return Err(Fault { line, reason });
             }
         }
         body.definitions(lines)?;
