@@ -1,15 +1,15 @@
 //! Fewer operations for finished expressions.
 //!
-//! The shared graph of expressions is taken apart into sums and products of any number of operands ([`circuit`]), each with its
+//! The shared graph of expressions is taken apart into sums and products of any number of operands (`circuit`), each with its
 //! fingerprint. What saves operations is then done as often as it is found, the greatest gain first:
 //!
-//! - sines and cosines of sums of angles about parallel axes become inputs ([`angles`]),
-//! - what cancels in every output is left out ([`cancellation`]),
-//! - x y + x z becomes x (y + z) ([`share`]),
-//! - constants of a sum or a product become one ([`tidy`]),
-//! - a sum is formed from another one and what is missing ([`sums`]),
-//! - a pair of terms that several sums hold, and a pair of factors that several products hold, is computed once ([`share`]),
-//! - a node that is the sum, difference or product of two others that are there anyway is computed from these ([`resubstitute`]).
+//! - sines and cosines of sums of angles about parallel axes become inputs (`angles`),
+//! - what cancels in every output is left out (`cancellation`),
+//! - x y + x z becomes x (y + z) (`share`),
+//! - constants of a sum or a product become one (`tidy`),
+//! - a sum is formed from another one and what is missing (`sums`),
+//! - a pair of terms that several sums hold, and a pair of factors that several products hold, is computed once (`share`),
+//! - a node that is the sum, difference or product of two others that are there anyway is computed from these (`resubstitute`).
 //!
 //! Every step leaves the value of every output as it is: the fingerprints say so.
 
