@@ -4,8 +4,7 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::{Add, Mul, Neg, Sub};
 
-use super::Number;
-use super::ParameterId;
+use super::{Number, ParameterId};
 
 /// Powers of parameters, sorted; empty for the constant term.
 pub(super) type Powers = BTreeMap<ParameterId, u32>;
