@@ -20,11 +20,11 @@ pub(crate) fn table(module: &Module) -> String {
         let cost = Cost::of(function);
         let _ = write!(text, "<tr><th scope=\"row\">{}</th>", escape(&function.name()).replace('_', "_<wbr>"));
         for count in [cost.mul, cost.add, cost.div, cost.neg, cost.sincos, cost.exp] {
-            let _ = write!(text, "<td class=\"count\">{count}</td>");
+            let _ = write!(text, "<td>{count}</td>");
         }
         let _ = writeln!(
             text,
-            "<td>{}</td><td class=\"weight\" data-value=\"{weight}\">{weight} <span class=\"bar\" data-bar=\"{weight}\"></span></td></tr>",
+            "<td>{}</td><td data-value=\"{weight}\">{weight} <span class=\"bar\"></span></td></tr>",
             escape(function.method),
             weight = cost.weight(),
         );

@@ -61,7 +61,7 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
         let _ = writeln!(text, "/*\n{PLOTS_LICENCE}*/\n{PLOTS}");
     }
     text += "globalThis.robot = ";
-    text += &closed(module);
+    text += &closed(&brief(module));
     for (name, file) in FILES {
         let file = if *name == "logs" && !with_plots { WITHOUT_LOGS } else { file };
         let _ = write!(text, "const {} = ", variable(name));
@@ -70,8 +70,8 @@ pub(crate) fn script(module: &str, with_plots: bool) -> String {
     inert(&text)
 }
 
-/// A file without the lines that are comments alone, a fifth of it, and without indentation, an eighth: both are for whoever reads `page/web`.
-/// A text of a file ends on the line on which it begins, so that no indentation is part of one.
+/// A file without the lines that are comments alone, a fifth of it, without indentation, an eighth, and without empty lines: they are for whoever
+/// reads `page/web`, or the module that `armgen generate` writes, half of which they are. A text of a file ends on the line on which it begins, so that no indentation is part of one.
 fn brief(file: &str) -> String {
     let mut text = String::with_capacity(file.len());
     let mut within = false;
@@ -82,7 +82,7 @@ fn brief(file: &str) -> String {
         // Code may follow a comment on its line.
         let comment = within || words.starts_with("//") || (begins && (ends || !words.contains("*/")));
         within = comment && begins && !ends;
-        if !comment {
+        if !comment && !words.is_empty() {
             text.push_str(line.trim_start());
             text.push('\n');
         }

@@ -24,9 +24,9 @@ export function cost() {
     const table = /** @type {HTMLTableElement | null} */ (document.querySelector("#cost table"));
     if (!table) return;
     sortable(table);
-    const bars = [...table.querySelectorAll("[data-bar]")];
-    const largest = Math.max(...bars.map((bar) => Number(bar.getAttribute("data-bar"))));
-    for (const bar of bars) {
-        /** @type {HTMLElement} */ (bar).style.width = `${Math.max(1, (100 * Number(bar.getAttribute("data-bar"))) / (largest || 1))}%`;
+    const weights = [.../** @type {NodeListOf<HTMLElement>} */ (table.querySelectorAll("[data-value]"))];
+    const largest = Math.max(...weights.map((cell) => Number(cell.dataset.value)));
+    for (const cell of weights) {
+        /** @type {HTMLElement} */ (cell.lastElementChild).style.width = `${Math.max(1, (100 * Number(cell.dataset.value)) / (largest || 1))}%`;
     }
 }
