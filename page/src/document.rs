@@ -179,8 +179,8 @@ fn sliders(rows: &[Row]) -> String {
             "<div class=\"joint\" data-joint=\"{k}\"><label for=\"q{k}\"><i>q</i><sub>{k}</sub> {name}</label>\
              <input type=\"range\" id=\"q{k}\" step=\"any\">\
              <span class=\"exact\"><input type=\"text\" id=\"q{k}-value\" autocomplete=\"off\" spellcheck=\"false\" aria-label=\"q{k}, exact\" aria-describedby=\"q{k}-unit q{k}-fault\"></span><span class=\"unit\" id=\"q{k}-unit\" data-unit=\"{unit}\">{unit}</span>\
-             <label class=\"rate\"><i>q̇</i> <input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}\" aria-describedby=\"dq{k}-unit\"> <span class=\"unit\" id=\"dq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s</span></label>\
-             <label class=\"rate\"><i>q̈</i> <input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}\" aria-describedby=\"ddq{k}-unit\"> <span class=\"unit\" id=\"ddq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s²</span></label>\
+             <label class=\"rate\"><i>q̇</i> <span class=\"exact\"><input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}\" aria-describedby=\"dq{k}-unit\"></span> <span class=\"unit\" id=\"dq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s</span></label>\
+             <label class=\"rate\"><i>q̈</i> <span class=\"exact\"><input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}\" aria-describedby=\"ddq{k}-unit\"></span> <span class=\"unit\" id=\"ddq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s²</span></label>\
              <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span><span class=\"outside\" id=\"q{k}-fault\" role=\"status\" hidden></span></div>"
         );
     }

@@ -5,8 +5,9 @@
 use std::fmt::Write;
 
 use armgen_codegen::catalogue::Absent;
+use armgen_codegen::manipulator::{LinkId, Pose};
 use armgen_codegen::parallel::parallel_map;
-use armgen_codegen::show::{Form, Item, Sheet, Shown, Style, ASK_THE_PAGE};
+use armgen_codegen::show::{Form, Item, Reading, Sheet, Shown, Style, ASK_THE_PAGE};
 use armgen_codegen::Model;
 use serde_json::{json, Map, Value};
 
@@ -23,8 +24,10 @@ const TOGETHER: usize = 800_000;
 pub(crate) struct Equations {
     quantities: Vec<Quantity>,
     absent: Vec<Absent>,
-    /// The determinant's factors with the numbers of the description, and where each is zero.
+    /// The determinant's factors with the numbers of the description, or those that all minors share, and where each is zero.
     pub(crate) factors: Value,
+    /// Of an arm of more joints than the six rows of its task the same of its first six joints; null of others.
+    pub(crate) first_six: Value,
 }
 
 struct Quantity {
@@ -49,10 +52,8 @@ impl Equations {
         let factors = nominal.quantities.iter().find(|shown| shown.factors.is_some());
         Equations {
             quantities,
-            factors: factors.map_or(Value::Null, |shown| {
-                let value = serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
-                json!({"factors": value["factors"], "singular": value["singular"]})
-            }),
+            factors: factors.map_or(Value::Null, factors_of),
+            first_six: first_six(model).as_ref().map_or(Value::Null, factors_of),
             absent: nominal.absent,
         }
     }
@@ -89,6 +90,29 @@ impl Equations {
         }
         text
     }
+}
+
+/// The factors of a determinant, or those that all minors share, and where each is zero.
+fn factors_of(shown: &Shown) -> Value {
+    let value = serde_json::to_value(shown).expect("strings and numbers always have a JSON form");
+    json!({"factors": value["factors"], "common": value["common_factors"], "singular": value["singular"]})
+}
+
+/// The determinant of the first six columns of the Jacobian of a longer arm, which is that of the arm without the other joints: where a task of
+/// all six rows is seen from changes no determinant. J loses rank nowhere but where it is zero.
+fn first_six(model: &Model) -> Option<Shown> {
+    let whole = &model.manipulator;
+    let sixth = LinkId(5);
+    if whole.task.len() != 6 || whole.joints.get(6)?.parent != Some(sixth) {
+        return None;
+    }
+    let mut shorter = whole.clone();
+    shorter.tip = sixth;
+    shorter.joints.truncate(6);
+    shorter.tool = Pose::identity();
+    let closed = Style { form: Form::Closed, digits: None };
+    let mut sheet = Sheet::in_style(&Model::new(shorter), &[Item::Determinant], Reading::Nominal, closed);
+    sheet.quantities.pop()
 }
 
 /// Where a page has what [`ASK_THE_PAGE`] asks for.

@@ -171,6 +171,7 @@ fn data(
         "leftOut": left_out,
         "equations": equations.data(),
         "determinant": equations.factors,
+        "firstSix": equations.first_six,
         "runs": logs::data(runs, rows),
     })
 }

@@ -26,25 +26,28 @@ export function check(data, state, picture) {
     picture.ghosts.push(() => {
         if (!ghost) return [];
         place();
-        return ghost.solids.solids;
+        return [ghost.solids];
     });
     const layer = picture.layers.marks;
     picture.extras.push(() => {
+        picture.labels.marks = [];
         if (!ghost) {
             if (layer.firstChild) layer.replaceChildren();
             return;
         }
-        const taken = picture.texts();
+        const taken = picture.texts("marks");
         const mark = (point, kind, text, below) => {
             const [x, y] = picture.view.project(point).map((c) => Math.round(c * 10) / 10);
             const cross = svg("path", { class: kind, d: `M${x - 8} ${y - 8}l16 16m0 -16l-16 16` });
-            const places = [26, 44, -12, 62].flatMap((off) => [{ x: x + 12, y: y + off, end: false }, { x: x - 12, y: y + off, end: true }]);
-            const { box, at } = settle(text, places, picture.view.pixel, taken);
+            const { pixel } = picture.view;
+            const places = [26, 44, -12, 62, -30, 80, -48, 98, -66, 116, -84].flatMap((off) => [{ x: x + 12, y: y + off * pixel, end: false }, { x: x - 12, y: y + off * pixel, end: true }]);
+            const { box, at } = settle(text, places, pixel, taken);
             taken.push(box);
+            picture.labels.marks.push(box);
             const words = svg("text", { ...at, class: kind }, text);
             return below ? [words] : [cross, words];
         };
-        layer.replaceChildren(...mark(ghost.measured.position, "measured", "measured, pose 1", false), ...mark(place(), "suspect", "the arm with this mistake mended", true));
+        layer.replaceChildren(...mark(ghost.measured.position, "measured", "measured, pose 1", false), ...mark(place(), "suspect", "mistake mended", true));
     });
     const choose = (suspect, button, measured) => {
         const chosen = button && button.getAttribute("aria-pressed") !== "true";

@@ -70,7 +70,7 @@ export function laidOver(log, other, names) {
 export function logs(data, state, picture) {
     const runs = [.../** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("details[data-log]"))];
     if (runs.length === 0) return;
-    const [time, value, play, said] = ["time", "time-value", "log-play", "playback-said"].map(byId);
+    const [time, timed, value, play, said] = ["time", "time-of", "time-value", "log-play", "playback-said"].map(byId);
     /**
      * @type {{name: string, log: Log, places: number[], rates: number[], trails: {path: number[][], kind: string}[],
      *     over: {log: Log, places: number[]} | null, charts: any[]} | null}
@@ -79,6 +79,7 @@ export function logs(data, state, picture) {
     const opened = new Map();
     let moving = 0;
 
+    const shownTime = () => Number(active?.log.columns[0][k]);
     // The sample that is shown, and where the cursors stand as long as the pointer is in no plot.
     let k = 0;
     const mark = () => {
@@ -86,7 +87,7 @@ export function logs(data, state, picture) {
         const { charts, log } = active;
         for (const chart of charts) {
             const left = chart.valToPos(log.columns[0][k], "x");
-            if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: Math.max(0, chart.cursor.top) }, false);
+            if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: 0 }, false);
         }
     };
     const show = (t, fromChart) => {
@@ -94,7 +95,9 @@ export function logs(data, state, picture) {
         const { log } = active;
         k = sampleAt(log.columns[0], t);
         time.value = String(t);
-        value.textContent = `${short(Number(t.toPrecision(5)))} s`;
+        // That of the sample which is shown, as in the legends.
+        value.textContent = `${short(shownTime())} s`;
+        time.setAttribute("aria-valuetext", value.textContent);
         if (active.places.length > 0) {
             const q = active.places.map((place) => log.columns[place][k]);
             const rates = active.rates.map((place) => log.columns[place][k] ?? 0);
@@ -107,6 +110,7 @@ export function logs(data, state, picture) {
     const choose = (run) => {
         const again = active?.name === run.name;
         active = run;
+        timed.textContent = `${run.name}, time`;
         const times = run.log.columns[0];
         time.min = String(times[0] ?? 0);
         time.max = String(times[times.length - 1] ?? 1);
@@ -130,11 +134,11 @@ export function logs(data, state, picture) {
         const over = active?.over;
         if (!over || over.places.length === 0) return [];
         const names = over.places.map((place) => over.log.names[place]);
-        const q = laidOver({ columns: [[time.valueAsNumber]] }, over.log, names).map(([value]) => value);
+        const q = laidOver({ columns: [[shownTime()]] }, over.log, names).map(([value]) => value);
         // It has not begun, or has ended.
         if (!q.every((x) => x !== null)) return [];
         other.place(q, robot.linkFrames(q), robot.directKinematics(q));
-        return other.solids;
+        return [other];
     });
     const pause = () => {
         cancelAnimationFrame(moving);
@@ -239,6 +243,7 @@ export function logs(data, state, picture) {
     const leave = () => {
         pause();
         active = null;
+        timed.textContent = "time";
         said.textContent = "No run is followed.";
         picture.sight.keep("run", null);
         picture.redraw();
@@ -305,7 +310,8 @@ function chart(host, log, plot, name, over) {
     const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "11px sans-serif", labelFont: "12px sans-serif", labelSize: 18, size: 46 });
     const curve = (label, k, dash, weight) => ({
         label,
-        stroke: () => (isDark() ? DARK : COLOURS)[k % COLOURS.length],
+        hues: [COLOURS, DARK].map((all) => all[k % all.length]),
+        stroke: (_, i) => series[i - 1].hues[Number(isDark())],
         dash,
         width: weight,
         points: { show: false },
@@ -322,13 +328,16 @@ function chart(host, log, plot, name, over) {
             values.push(column);
         });
     }
+    // What is no part of the canvas, which is drawn anew with another theme, has the colours of both.
+    const colour = (_, i) => `light-dark(${series[i - 1].hues})`;
     const options = {
         title: plot.unit ? `${plot.title}, ${plot.unit}` : plot.title,
         width: width(host),
         height: HEIGHT,
         scales: { x: { time: false } },
-        cursor: { sync: { key: name } },
-        legend: { markers: { dash: (_, k) => (k > 0 && series[k - 1].dash ? "dotted" : "solid") } },
+        // Its values stand in the legend; a line across would lie where nothing is.
+        cursor: { y: false, sync: { key: name }, points: { stroke: colour, fill: colour } },
+        legend: { markers: { stroke: colour, dash: (_, k) => (k > 0 && series[k - 1].dash ? "dotted" : "solid") } },
         series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
         axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
     };

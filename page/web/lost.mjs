@@ -2,7 +2,7 @@
  * Which motion is lost at a singular posture: combinations u of the rows of J with u' J = 0, in words and as lines in the picture.
  *
  * u = (f, m) is a wrench at the tip that no torque answers. Its line goes through r = tip + f x m / |f|² along f, and its pitch is
- * h = f·m / |f|²: with h = 0 no point of the line moves along it, with f = 0 there is no turn about m.
+ * h = f·m / |f|²: with h = 0 no point of the line moves along it, with f = 0 there is no turn about any line along m, wherever it is.
  */
 
 import { byId, svg } from "./dom.mjs";
@@ -15,6 +15,9 @@ import { atLine, axes, needless } from "./why.mjs";
 
 export const VELOCITY = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
 
+/** How far parallel lines are apart, in units of the drawing. */
+const BESIDE = 28;
+
 /** As a sum: vx − 0.5 ωz. @param {number[]} of one number for each row @param {string[]} names */
 export function combination(of, names) {
     const terms = of.flatMap((x, k) => (x === 0 ? [] : [{ x, text: Math.abs(x) === 1 ? names[k] : `${short(Number(Math.abs(x).toPrecision(4)))} ${names[k]}` }]));
@@ -25,7 +28,7 @@ export function combination(of, names) {
 export function line(wrench, tip, hardly) {
     const [f, m] = [wrench.slice(0, 3), wrench.slice(3)];
     const no = hardly ? "hardly any" : "no";
-    if (norm(f) === 0) return { at: tip, direction: scale(m, 1 / norm(m)), kind: "turn", text: `${no} turn about this line` };
+    if (norm(f) === 0) return { at: tip, direction: scale(m, 1 / norm(m)), kind: "turn", text: `${no} turn about these lines` };
     const pitch = dot(f, m) / dot(f, f);
     const rest = Math.abs(pitch) < 1e-6 * Math.max(norm(m) / norm(f), 1e-3);
     const text = rest ? `${no} motion along this line` : `v ${pitch < 0 ? "−" : "+"} ${short(Number(Math.abs(pitch).toPrecision(4)))} ω along this line ${hardly ? "hardly moves" : "stays 0"}`;
@@ -46,8 +49,8 @@ export function stretch(middle, by) {
     return [low, Math.min(last, low + 2)].map((s) => middle.map((c, k) => c + s * by[k]));
 }
 
-/** The elements of a line and of its words, and where these are. @param {{at: number[], direction: number[], text: string}} line @param {import("./picture.mjs").Picture} picture @param {import("./labels.mjs").Box[]} taken */
-function drawn({ at, direction, text }, picture, taken) {
+/** The elements of a line, or of three that stand for all parallel ones, and of its words, and where these are. @param {{at: number[], direction: number[], kind: string, text: string}} line @param {import("./picture.mjs").Picture} picture @param {import("./labels.mjs").Box[]} taken */
+function drawn({ at, direction, kind, text }, picture, taken) {
     const { view, arm } = picture;
     const middle = view.project(at);
     const by = view.projectDirection(scale(direction, 0.35 * arm.size));
@@ -65,14 +68,17 @@ function drawn({ at, direction, text }, picture, taken) {
         if (x < 0 || x > WIDTH || y < 0 || y > HEIGHT) return [];
         const mark = svg("path", { d: `M${x - 8} ${y}a8 8 0 1 0 16 0a8 8 0 1 0 -16 0M${x - 1} ${y}h2` });
         const beside = [-10, 22, -30, 42, -50, 62, -70].flatMap((off) => [14, -14].map((by) => ({ x: x + by, y: y + off * view.pixel, end: by < 0 })));
-        return [mark, place(beside, `${text}, seen along it`, links)];
+        return [mark, place(beside, `${text}, seen along ${kind === "turn" ? "them" : "it"}`, links)];
     }
-    const ends = stretch(middle, by);
-    if (!ends) return [];
-    const [[x, y], [u, v]] = ends;
-    const points = [...links, ...Array.from({ length: 41 }, (_, k) => [x + ((u - x) * k) / 40, y + ((v - y) * k) / 40])];
+    const aside = [-by[1], by[0]].map((c) => (c * BESIDE) / Math.hypot(...by));
+    const all = (kind === "turn" ? [0, -1, 1] : [0]).flatMap((s) => stretch(middle.map((c, k) => c + s * aside[k]), by) ?? []);
+    if (all.length === 0) return [];
+    const [[x, y], [u, v]] = all;
+    const d = all.map((end, k) => (k % 2 ? "L" : "M") + end.map((c) => c.toFixed(1)).join(" ")).join("");
+    const lines = all.flatMap((end, k) => (k % 2 ? Array.from({ length: 41 }, (_, i) => end.map((c, j) => c + ((all[k - 1][j] - c) * i) / 40)) : []));
+    const points = [...links, ...lines];
     const places = [[u, v], [x, y]].flatMap((end) => [...around(end, end[0] > WIDTH / 2), ...around(end, end[0] <= WIDTH / 2)]);
-    return [svg("path", { d: `M${[x, y, u, v].map((c) => c.toFixed(1)).join(" ").replace(/^(\S+ \S+) /, "$1L")}` }), place([...places, ...around([(x + u) / 2, (y + v) / 2], false)], text, points)];
+    return [svg("path", { d }), place([...places, ...around([(x + u) / 2, (y + v) / 2], false)], text, points)];
 }
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
@@ -85,8 +91,10 @@ export function lostMotion(data, state, picture) {
     const draw = () => {
         const shown = byId("show-lost").checked ? lines.filter(({ at }) => norm(at) < 3 * picture.arm.size) : [];
         if (shown.length === 0 && !layer.firstChild) return;
-        const taken = picture.texts();
+        const taken = picture.texts("lost");
+        const others = taken.length;
         layer.replaceChildren(...shown.flatMap((line) => drawn(line, picture, taken)));
+        picture.labels.lost = taken.slice(others);
     };
     const write = (element, text) => element.textContent !== text && (element.textContent = text);
     state.on("singular", () => {

@@ -3,13 +3,13 @@
  * `data-value` and are copied.
  */
 
-import { byId, copy, html, math } from "./dom.mjs";
+import { byId, copy, html } from "./dom.mjs";
 import { exact, inWords, short, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
 import { condition, determinant, manipulability, ROUNDING } from "./linear.mjs";
 import { VELOCITY } from "./lost.mjs";
-import { mathml } from "./mathml.mjs";
 import { sizes, withoutNoise } from "./noise.mjs";
+import { formula, setOf, whereSingular } from "./singular.mjs";
 import { range } from "./state.mjs";
 
 /** A factor is near zero below this part of what it can be, and zero below that which rounding of it and of q makes. */
@@ -29,13 +29,16 @@ const SINGULAR = 1000;
 export function numbers(data, state, arm) {
     const host = byId("quantities");
     const shown = quantities(data, state, arm).map((quantity) => table(quantity));
-    const title = html("h3", { id: "singular-title" }, "Singular postures");
-    const [lost, why] = ["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" }));
-    const singular = html("section", { id: "singular", "aria-labelledby": "singular-title" }, title, lost, why);
+    const parts = [["pose", "Pose and Jacobian"], ["singular", "Singular postures"], ["motion", "Equations of motion"]].map(([id, title]) =>
+        html("section", { id, "aria-labelledby": `${id}-title` }, html("h3", { id: `${id}-title` }, title)),
+    );
+    parts[1].append(html("p", { id: "singular-where" }, ...whereSingular(data)), ...["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" })));
+    let part = 0;
     for (const { element, quantity } of shown) {
-        if (quantity.singular) singular.append(element);
-        host.append(quantity.singular ? singular : element);
+        part = quantity.singular ? 1 : part === 1 ? 2 : part;
+        parts[part].append(element);
     }
+    host.append(...parts.filter((part) => part.childElementCount > 1));
     for (const [name, operations] of data.leftOut) {
         const title = name.replaceAll("_", " ");
         host.append(html("p", { class: "small" }, `The ${title} is left out: ${operations} operations. `, html("code", {}, `armgen generate ROBOT.yaml --functions ${name}`), " prints it."));
@@ -85,14 +88,14 @@ function quantities(data, state, arm) {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
         const zero = data.determinant.singular[k];
-        const where = zero?.startsWith("q") ? `zero at ${inWords(zero)}${rounded(zero)}` : (zero ?? "zero where several joints together make it so");
+        const set = setOf(zero, text);
+        const where = set === "" ? "zero where several joints together make it so" : zero.startsWith("q") ? `zero at ${set}` : set;
         const part = () => Math.abs(evaluate(factor, lookup)) / bound(factor, lookup);
         const of = () => (part() < ZERO ? 0 : evaluate(factor, lookup));
         const near = () => Number(part() < NEAR) + Number(part() < ZERO);
         const words = ["", "⚠ near zero: nearly singular", "⚠ zero: singular"];
-        const formula = text.length < 60 ? inWords(text) : "";
-        const set = text.length < 60 ? [", ", html("span", {}, math("math", {}, mathml(factor, { exact: false, count: 0, steps: "" })))] : [];
-        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, "of det J", "", of), more: [...set, `; ${where} `], formula, singular: true, near, words, buttons: zeroButtons(zero, data, state) });
+        const brief = text.length < 60;
+        list.push({ ...scalar(`factor_${k + 1}`, `factor ${k + 1}`, "of det J", "", of), more: [...(brief ? [", ", formula(text)] : []), `; ${where} `], formula: brief ? inWords(text) : "", singular: true, near, words, buttons: zeroButtons(zero, data, state) });
     });
     // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
@@ -112,12 +115,6 @@ function quantities(data, state, arm) {
     if (has("kinetic_energy")) list.push(scalar("kinetic_energy", "T", "Kinetic energy", "J", () => robot.kineticEnergy(state.q, state.dq)));
     if (has("potential_energy")) list.push({ ...scalar("potential_energy", "U", "Potential energy", "J", () => robot.potentialEnergy(state.q)), size: size.energy });
     return list;
-}
-
-/** The number of a zero such as `q3 = atan(-4318/203) mod pi`, for whom it is to be typed; nothing for one that is plain. @param {string} zero */
-function rounded(zero) {
-    const angle = /= (.*atan.*) mod/.exec(zero)?.[1];
-    return angle === undefined ? "" : ` (${short(evaluate(parse(angle), () => Math.PI))})`;
 }
 
 /** Buttons that set a joint to where a factor is zero. @param {string | null} text @param {any} data @param {import("./state.mjs").State} state */

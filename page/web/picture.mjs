@@ -8,7 +8,7 @@ import { box } from "./labels.mjs";
 import { Arm, step, unit } from "./scene.mjs";
 import { narrow, Sight } from "./sight.mjs";
 import { Ball, Box, drawSolids } from "./solids.mjs";
-import { along, column, compose, identity, norm, origin, place } from "./vector.mjs";
+import { along, column, compose, identity, norm, origin, place, subtract } from "./vector.mjs";
 import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
 
 const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "lost", "dimensions", "marks", "gravity"];
@@ -40,7 +40,7 @@ export class Picture {
         this.layers.frames.append(...this.frames.map((frame) => frame.element));
         /** Which row is drawn as on a sheet, from 0. @type {number | null} */
         this.row = null;
-        /** Solids of other arms or postures that are drawn pale over the arm. @type {(() => any[])[]} */
+        /** Other arms or postures that are drawn pale over the arm. @type {(() => Arm[])[]} */
         this.ghosts = [];
         /** What others draw in the picture, after the arm. @type {((picture: Picture) => void)[]} */
         this.extras = [];
@@ -50,6 +50,8 @@ export class Picture {
         this.beside = [];
         /** The boxes of the names of the frames. @type {import("./labels.mjs").Box[]} */
         this.names = [];
+        /** The boxes of the texts that others draw, by their layers. @type {Record<string, import("./labels.mjs").Box[]>} */
+        this.labels = {};
         /** A pixel of the window in units of the drawing. */
         this.unit = 1;
         /** Points that were laid into the picture since a view was chosen. @type {number[][]} */
@@ -114,10 +116,12 @@ export class Picture {
     redraw() {
         const { view, links, end } = this;
         drawSolids(this.layers.links, this.arm.solids, view);
-        const ghosts = this.ghosts.flatMap((of) => of());
-        drawSolids(this.layers.ghosts, ghosts, view);
-        // An arm that is held against that of the page stands before it, other postures behind it.
-        const side = ghosts.some(({ element }) => element.matches(".suspect, .other")) ? "after" : "before";
+        // An arm that is held against that of the page stands before it, other postures behind it; one that lies on it would only hide it.
+        const isBefore = ({ solids }) => solids[0].element.matches(".suspect, .other");
+        const isApart = ({ points }) => points.some((point, i) => norm(subtract(point, this.arm.points[i])) > 1e-6 * this.arm.size);
+        const ghosts = this.ghosts.flatMap((of) => of()).filter((ghost) => !isBefore(ghost) || isApart(ghost));
+        drawSolids(this.layers.ghosts, ghosts.flatMap(({ solids }) => solids), view);
+        const side = ghosts.some(isBefore) ? "after" : "before";
         if (this.side !== side) this.layers.links[side](this.layers.ghosts);
         this.side = side;
         this.drawFrames([identity(), ...links, end]);
@@ -197,15 +201,17 @@ export class Picture {
         /** @type {Element} */ (this.layers.grid.firstChild).setAttribute("d", d);
     }
 
-    /** The places of the texts that are always there: frames, gravity, and the badge over the picture. @returns {import("./labels.mjs").Box[]} */
-    texts() {
+    /** The places of texts: of frames, gravity, the badge over the picture, and those of other layers than the one that asks. @param {string} [layer] @returns {import("./labels.mjs").Box[]} */
+    texts(layer = "") {
+        const others = Object.keys(this.labels).filter((name) => name !== layer).flatMap((name) => this.labels[name]);
         const { pixel } = this.view;
-        const frames = byId("show-frames").checked ? this.names : [];
+        // With the outline of their letters.
+        const frames = byId("show-frames").checked ? this.names.map(({ x, y, width, height }) => ({ x: x - 2, y: y - 3, width: width + 4, height: height + 6 })) : [];
         const badge = byId("singular-posture").textContent;
         const wide = badge.length * 7.4 * this.unit + 24;
         const lines = narrow.matches ? 1 : Math.ceil(wide / (WIDTH - 16));
         const badges = badge ? [{ x: 0, y: 0, width: Math.min(wide, WIDTH), height: (14 + 20 * lines) * this.unit }] : [];
-        return [...frames, box("gravity 9.81 m/s²", { x: 12, y: HEIGHT - 8, end: false }, pixel), { x: 20, y: HEIGHT - 104, width: 52, height: 84 }, ...badges];
+        return [...frames, ...others, box("gravity 9.81 m/s²", { x: 12, y: HEIGHT - 8, end: false }, pixel), { x: 20, y: HEIGHT - 104, width: 52, height: 84 }, ...badges];
     }
 
     /** An arrow in the corner, as long as it is seen. */

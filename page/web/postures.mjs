@@ -36,7 +36,7 @@ export function postures(data, state, picture) {
             if (isShown(q)) return [];
             arm.place(q, robot.linkFrames(q), robot.directKinematics(q));
             for (const { element } of arm.solids) element.classList.toggle("lit", k === lit);
-            return arm.solids;
+            return [arm];
         });
     });
     const light = (k) => {

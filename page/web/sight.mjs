@@ -8,7 +8,7 @@ import { byId } from "./dom.mjs";
 /** The window that has one column. */
 export const narrow = matchMedia("(max-width: 800px)");
 
-/** The most that the picture takes of the window then: the same as in the style. */
+/** The most that the picture takes of the window then: a part of its height, and px. */
 const PART = 0.3;
 const MOST = 256;
 
@@ -20,6 +20,8 @@ export class Sight {
         this.place = byId("picture-place");
         /** How high the contents are, which stay above it. */
         this.contents = 0;
+        /** How high the picture is while it is kept, px; the style has it from here. */
+        this.height = 0;
         const contents = /** @type {HTMLElement} */ (document.querySelector("nav"));
         new ResizeObserver(() => {
             this.contents = contents.offsetHeight;
@@ -27,12 +29,19 @@ export class Sight {
         }).observe(contents);
         const update = () => this.update();
         addEventListener("scroll", update, { passive: true });
+        this.measure();
         addEventListener("resize", () => {
+            this.measure();
             this.set(false);
             update();
         });
         document.addEventListener("focusin", ({ target }) => this.keep("focus", target instanceof Element ? target.closest("#sheet, #singular") : null));
         document.addEventListener("focusout", () => this.keep("focus", null));
+    }
+
+    measure() {
+        this.height = Math.min(PART * innerHeight, MOST);
+        document.documentElement.style.setProperty("--picture", `${this.height}px`);
     }
 
     /** Keeps the picture while an element is seen that acts on it in this way; none: no longer. @param {string} kind @param {Element | null} element */
@@ -46,7 +55,7 @@ export class Sight {
     /** Whether it is kept from now on; what is `pressed` comes below it. @param {boolean} [pressed] */
     update(pressed = false) {
         const top = this.contents;
-        const below = top + (pressed ? 0 : Math.min(PART * innerHeight, MOST));
+        const below = top + (pressed ? 0 : this.height);
         const seen = [...this.acting.values()].some((element) => {
             const box = element.getBoundingClientRect();
             return box.top < innerHeight && box.bottom > below;

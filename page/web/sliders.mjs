@@ -59,9 +59,12 @@ export function sliders(data, state) {
             field.addEventListener("change", () => {
                 if (typing.has(field)) take();
                 const { badInput } = field.validity;
-                const wrong = badInput || (field.value.trim() !== "" && !Number.isFinite(typed(field.value)));
-                part.fault.hidden = !wrong;
-                part.fault.textContent = badInput ? "this field takes digits alone" : fault(field.value, unit);
+                const text = field.value.trim();
+                const wrong = badInput || (text !== "" && !Number.isFinite(typed(text)));
+                // Digits that were added to a number may have been meant to take its place.
+                const sum = !wrong && !ofPi(text) && Number.isNaN(Number(text.replaceAll("−", "-")));
+                part.fault.hidden = !wrong && !sum;
+                part.fault.textContent = badInput ? "this field takes digits alone" : sum ? `${text} was taken for ${short(typed(text))}` : fault(text, unit);
                 if (wrong) return;
                 refused.delete(field);
                 field.value = exact(inUnit(values()[i], unit));
@@ -103,11 +106,13 @@ export function sliders(data, state) {
             const q = state.q[i];
             if (part.range.valueAsNumber !== q) part.range.value = String(q);
             if (write(part.field, q, part.unit)) part.fault.hidden = true;
-            const brief = short(inUnit(q, part.unit));
-            const around = part.field.parentElement;
-            if (around.getAttribute("data-short") !== brief) around.setAttribute("data-short", brief);
             write(part.rate, state.dq[i], part.unit);
             write(part.acceleration, state.ddq[i], part.unit);
+            [part.field, part.rate, part.acceleration].forEach((field, k) => {
+                const brief = short(inUnit([q, state.dq[i], state.ddq[i]][k], part.unit));
+                const around = field.parentElement;
+                if (around.getAttribute("data-short") !== brief) around.setAttribute("data-short", brief);
+            });
             const { limits } = part;
             const outside = limits !== null && (q < limits[0] || q > limits[1]);
             if (part.outside.hidden === outside) part.outside.hidden = !outside;
@@ -162,7 +167,12 @@ function fault(text, unit) {
 
 /** What was typed, in rad or m: an expression with pi is in rad whatever the fields are in. @param {string} text @param {string} unit */
 function meant(text, unit) {
-    return text.includes("pi") ? typed(text) : fromUnit(typed(text), unit);
+    return ofPi(text) ? typed(text) : fromUnit(typed(text), unit);
+}
+
+/** @param {string} text */
+function ofPi(text) {
+    return /pi|π/.test(text);
 }
 
 /** Leaves a field alone that holds the number already, while somebody types into it, and one whose text is said to be no number. @param {any} field @param {number} value @param {string} unit */

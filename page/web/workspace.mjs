@@ -6,6 +6,8 @@ import { byId, html, svg } from "./dom.mjs";
 import { inUnit, short, unitName, variable, withUnit } from "./format.mjs";
 import { evaluate, parse, zeros } from "./formula.mjs";
 import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
+import { extremes } from "./reach.mjs";
+import { step } from "./scene.mjs";
 import { sequence } from "./search.mjs";
 import { range } from "./state.mjs";
 import { origin } from "./vector.mjs";
@@ -18,16 +20,18 @@ const SIDE = 384;
 
 /** @param {any} data @param {import("./state.mjs").State} state @param {import("./picture.mjs").Picture} picture */
 export function workspace(data, state, picture) {
-    let points = null;
+    const tip = (q) => origin(robot.directKinematics(q));
+    /** @type {{q: number[], p: number[]}[] | null} */
+    let samples = null;
     const reach = () => {
-        points ??= sequence(data.rows.length, POINTS).map((part) => {
+        samples ??= sequence(data.rows.length, POINTS).map((part) => {
             const q = data.rows.map((row, i) => {
                 const [low, high] = range(row);
                 return low + part[i] * (high - low);
             });
-            return origin(robot.directKinematics(q));
+            return { q, p: tip(q) };
         });
-        return points;
+        return samples;
     };
     const layer = picture.layers.points;
     const path = svg("path");
@@ -37,13 +41,17 @@ export function workspace(data, state, picture) {
             return;
         }
         if (!layer.firstChild) layer.append(path);
-        path.setAttribute("d", reach().map((point) => `M${picture.view.project(point).map((x) => x.toFixed(1)).join(" ")}h0`).join(""));
+        path.setAttribute("d", reach().map(({ p }) => `M${picture.view.project(p).map((x) => x.toFixed(1)).join(" ")}h0`).join(""));
     });
     ellipsoids(data, state, picture);
     for (const name of ["points", "velocity", "force"]) byId(`show-${name}`).addEventListener("input", () => picture.redraw());
     const details = byId("reach");
+    /** @type {ReturnType<typeof extremes> | null} */
+    let ends = null;
     const draw = () => {
-        if (details.open) details.querySelector("div")?.replaceChildren(...views(reach(), assumed(data.rows)));
+        if (!details.open) return;
+        ends ??= extremes(data.rows, tip, reach());
+        details.querySelector("div")?.replaceChildren(...views(reach().map(({ p }) => p), ends, assumed(data.rows)));
     };
     details.addEventListener("toggle", draw);
     state.on("units", draw);
@@ -57,29 +65,28 @@ export function assumed(rows) {
     return [...said(free("revolute"), "a whole turn was taken"), ...said(free("prismatic"), `−${withUnit(1, "m")} to ${withUnit(1, "m")} was assumed`)].join("; ");
 }
 
-/** The points from the side and from above. @param {number[][]} points @param {string} ranges that were assumed */
-function views(points, ranges) {
-    const away = points.map(([x, y]) => Math.hypot(x, y));
-    const size = Math.max(...points.flat().map(Math.abs), ...away) || 1;
+/** The points from the side and from above, and how far they go. @param {number[][]} points @param {ReturnType<typeof extremes>} ends @param {string} ranges that were assumed */
+function views(points, ends, ranges) {
+    const size = ends.reach || 1;
+    const unit = step(size);
     const picture = (title, [across, up], all) => {
         const at = (x) => ((x / size) * 110).toFixed(1);
         const d = all.map(([x, y]) => `M${at(x)} ${at(-y)}h0`).join("");
         const axes = svg("path", { class: "axes", d: "M-118 0H118M0 -118V118" });
-        // Both axes end at the same length, whose tick is at 110.
-        const ticks = svg("path", { class: "axes", d: "M110 -3V3M-3 -110H3" });
-        const end = withUnit(Number(size.toPrecision(3)), "m");
-        const names = [svg("text", { x: 118, y: 132, "text-anchor": "end" }, `${across}: to ${end}`), svg("text", { x: 0, y: -124, "text-anchor": "middle" }, `${up}: to ${end}`)];
+        // A length of both axes, for scale.
+        const tick = at(unit);
+        const ticks = svg("path", { class: "axes", d: `M${tick} -3V3M-3 -${tick}H3` });
+        const text = (x, y, words, anchor) => svg("text", { x, y, "text-anchor": anchor }, words);
+        const names = [text(118, 132, across, "end"), text(0, -124, up, "middle"), text(tick, 13, withUnit(unit, "m"), "middle"), text(6, 3 - Number(tick), withUnit(unit, "m"), "start")];
         return html("figure", {}, svg("svg", { viewBox: "-120 -136 240 274", class: "reach", role: "img", "aria-label": title }, axes, ticks, svg("path", { d }), ...names), html("figcaption", {}, title));
     };
-    // Points are samples: more digits would be none of the arm's.
-    const about = (x) => withUnit(Math.abs(x) < 0.005 * size ? 0 : Number(x.toPrecision(3)), "m");
-    const extent = (values) => `${about(Math.min(...values))} to ${about(Math.max(...values))}`;
-    const heights = points.map((point) => point[2]);
-    const farthest = Math.max(...points.map((point) => Math.hypot(...point)));
+    const about = (x) => withUnit(Math.abs(x) < 1e-4 * size ? 0 : Number(x.toPrecision(4)), "m");
+    const extent = (/** @type {number[]} */ [low, high]) => `${about(low)} to ${about(high)}`;
+    const [x, y, z] = ends.axes.map(extent);
     return [
-        picture(`side: distance from the z axis ${extent(away)}, z ${extent(heights)}`, ["distance", "z"], points.map((point, i) => [away[i], point[2]])),
-        picture(`top: x ${extent(points.map((p) => p[0]))}, y ${extent(points.map((p) => p[1]))}`, ["x", "y"], points),
-        html("p", {}, `Reach: about ${about(farthest)} from the origin of the base, the farthest of ${points.length} postures within the limits${ranges && `. ${ranges}`}.`),
+        picture(`side: distance from the z axis ${extent(ends.away)}, z ${z}`, ["distance", "z"], points.map(([x, y, z]) => [Math.hypot(x, y), z])),
+        picture(`top: x ${x}, y ${y}`, ["x", "y"], points),
+        html("p", {}, `Reach: ${about(size)} from the origin of the base. These lengths are the extremes within the limits, searched for from the outermost of ${points.length} postures, whose points are shown; a search can miss a farther one${ranges && `. ${ranges}`}.`),
     ];
 }
 

@@ -8,22 +8,21 @@ use crate::pages::{robot, written_with};
 /// A log is played: the arm follows the time line, the tip leaves its trail, plots and figures are there.
 #[test]
 fn a_log_is_played_on_the_arm() {
-    let rows: String = (0..=100)
-        .map(|k| {
+    let run = |name: &str, rate: f64| {
+        let row = |k| {
             let t = f64::from(k) / 10.0;
-            format!("{t},{},{},0.1,0,0.01,0,0\n", 0.05 * t, -0.1 * t)
-        })
-        .collect();
-    let csv = format!("t,q_shoulder,q_elbow,q_quill,q_wrist,e_x,e_y,e_z\n{rows}");
-    let log = Log::read(&csv, |name| match name {
-        "t" => "s".into(),
-        name if name.starts_with("q_") => "rad, m".into(),
-        _ => "m".into(),
-    })
-    .expect("a log");
-    let run = Run { name: "small".into(), log: Some(log.clone()), ..Run::default() };
-    let large = Run { name: "large".into(), log: Some(log), ..Run::default() };
-    let file = written_with("logs", &robot("scara"), &[run.clone(), large]);
+            format!("{t},{},{},0.1,0,0.01,0,0\n", rate * t, -0.1 * t)
+        };
+        let csv = format!("t,q_shoulder,q_elbow,q_quill,q_wrist,e_x,e_y,e_z\n{}", (0..=100).map(row).collect::<String>());
+        let unit = |name: &str| match name {
+            "t" => "s".into(),
+            name if name.starts_with("q_") => "rad, m".into(),
+            _ => "m".into(),
+        };
+        Run { name: name.into(), log: Some(Log::read(&csv, unit).expect("a log")), ..Run::default() }
+    };
+    let (small, large, same) = (run("small", 0.05), run("large", 0.07), run("same", 0.05));
+    let file = written_with("logs", &robot("scara"), &[small.clone(), large, same]);
     let Some(mut tab) = Tab::open(&file, 1600, "light") else { return };
     let played = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'); log.open = true; \
@@ -70,8 +69,28 @@ fn a_log_is_played_on_the_arm() {
     );
     assert_eq!(contrast, serde_json::json!([true, true, true, true]));
     assert_eq!(stays, serde_json::json!(["5", "-0.5", true, true, "5", "-0.5", false, true]));
+    // An arm in the same posture would only change the colours of this one.
+    let hidden = "(async () => { const select = document.querySelector('.lay-over select'), seen = []; \
+                  for (const name of ['same', 'large', '']) { select.value = name; select.dispatchEvent(new Event('change')); \
+                      await new Promise((done) => setTimeout(done, 600)); seen.push(document.querySelectorAll('#arm .ghosts .solid').length > 5); } return seen; })()";
+    assert_eq!(tab.run(hidden), serde_json::json!([false, true, false]));
+    // Between two samples all of the page is at the one before; a theme that is chosen later is that of legend and cursor, too; the time line
+    // says whose time it is, and what it is moved to lies below it.
+    let one = tab.run(
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'), time = document.getElementById('time'); \
+         time.value = '4.2938'; time.dispatchEvent(new Event('input')); await new Promise((done) => setTimeout(done, 100)); \
+         const times = [...log.querySelectorAll('.u-legend .u-series:first-child .u-value'), document.getElementById('time-value')].map((one) => one.textContent); \
+         const colours = () => [log.querySelector('.u-cursor-pt'), log.querySelectorAll('.u-marker')[1]].map((one) => getComputedStyle(one).borderTopColor); \
+         const before = colours(); document.getElementById('theme').click(); const after = colours(); document.getElementById('theme').click(); \
+         const lines = [...log.querySelectorAll('.u-cursor-y')].filter((line) => line.checkVisibility()).length; \
+         const summary = log.querySelector('summary'); summary.scrollIntoView(); await new Promise((done) => setTimeout(done, 50)); \
+         const below = summary.getBoundingClientRect().top >= document.getElementById('playback').getBoundingClientRect().bottom - 1; \
+         return [[...new Set(times)], before.every((colour, k) => colour !== after[k]), new Set([...before, ...after]).size, lines, below, \
+                 document.getElementById('time-of').textContent, document.getElementById('q2-value').value]; })()",
+    );
+    assert_eq!(one, serde_json::json!([["4.2 s"], true, 2, 0, true, "small, time", "-0.42"]));
     tab.close();
     let other = robot("ur5");
-    let misfit = armgen_page::page(&other, &[run]).expect_err("other joints");
+    let misfit = armgen_page::page(&other, &[small]).expect_err("other joints");
     assert!(misfit.reason.contains("shoulder, elbow") && misfit.reason.contains("the arm's are joint1"), "{misfit:?}");
 }

@@ -121,7 +121,7 @@ fn formulas_and_numbers_cannot_be_misread() {
     tab.close();
     let Some(mut tab) = opened(&robot("puma560"), 1600, "light") else { return };
     let noise = tab.run(&format!(
-        "(() => {{ {MOVE}(1); for (const q of document.querySelectorAll('.exact input')) {{ q.value = 'pi/2'; q.dispatchEvent(new Event('input')); }} \
+        "(() => {{ {MOVE}(1); for (const q of document.querySelectorAll('input[id$=-value]')) {{ q.value = 'pi/2'; q.dispatchEvent(new Event('input')); }} \
          const entries = [...document.querySelectorAll('td[data-quantity]')]; \
          const small = entries.filter((entry) => Math.abs(Number(entry.dataset.value)) < 1e-15 && Number(entry.dataset.value) !== 0); \
          const minus = entries.filter((entry) => entry.textContent === '−0' || entry.textContent === '-0'); \
@@ -178,7 +178,8 @@ fn fields_take_expressions() {
          field.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowUp' })); seen.push(Number(field.value).toFixed(6)); \
          put('1.5x'); const slide = (id) => { document.getElementById(id).value = 0.3; \
              document.getElementById(id).dispatchEvent(new Event('input', { bubbles: true })); seen.push([field.value, fault.hidden]); }; \
-         slide('q2'); slide('q1'); return seen; })()",
+         slide('q2'); slide('q1'); document.getElementById('angle-unit').click(); \
+         for (const text of ['-0.3-0.4', '-0.7']) { put(text); seen.push(fault.hidden || fault.textContent); } return seen; })()",
     );
     let expected = serde_json::json!([
         ["-0.7853981633974483", "−0.785398", "-0.785", true, false],
@@ -193,10 +194,48 @@ fn fields_take_expressions() {
         "-67.754935",
         ["1.5x", "−67.7549", "-1.183", false, true],
         ["1.5x", false],
-        ["17.188733853924695", true]
+        ["17.188733853924695", true],
+        // What was added to a number that stood there is said to be a sum.
+        ["-0.7", "−0.7", "-0.700", false, false],
+        "-0.3-0.4 was taken for −0.7",
+        ["-0.7", "−0.7", "-0.700", true, false],
+        true
     ]);
     assert_eq!(seen, expected);
     let shown = "[...document.querySelectorAll('#sliders .rate .unit')].every((unit) => unit.checkVisibility())";
     assert_eq!(tab.run(shown), true, "units of rates are seen in a narrow window");
     tab.close();
+}
+
+/// Where an arm is singular stands in a sentence; of the Panda where the determinant of its first six joints is zero, whose factors are those of
+/// the determinant of as many columns of the Jacobian.
+#[test]
+fn where_an_arm_is_singular_is_said() {
+    let where_said = "document.getElementById('singular-where').textContent.split(': only')[0]";
+    for (name, said) in [
+        ("scara", "Singular where q₂ = 0 mod π; and nowhere else."),
+        ("ur5", "Singular where q₃ = 0 mod π; or q₅ = 0 mod π; or 0.0157787sin(q2+q3+q4)−0.0653905cos(q2+q3)−0.0708502cosq2 = 0; and nowhere else."),
+        (
+            "panda7",
+            "Singular where the determinants of all choices of 6 columns of J are zero at once; w² is the sum of their squares. That of the first six is \
+             zero nowhere but where q₂ = 0 mod π; or q₄ = −0.467002, 0, 2.63084, 2.67459 mod 2 π; or q₅ = π/2 mod π",
+        ),
+    ] {
+        let Some(mut tab) = opened(&robot(name), 1600, "light") else { return };
+        // Spaces between the parts of a formula are those of the browser.
+        let text = tab.run(where_said).as_str().expect("a text").replace(['\u{2062}', '\u{2061}', '\u{200a}', '\u{2009}'], "");
+        assert_eq!(text, said, "{name}");
+        if name == "panda7" {
+            let product = tab.run("JSON.parse(document.getElementById('data').textContent).firstSix.factors.map((factor) => `(${factor})`).join('*')");
+            let product = product.as_str().expect("factors").replace("sin(", "Math.sin(").replace("cos(", "Math.cos(");
+            let ratios = format!(
+                "[1, 2, 3, 4, 5].map((k) => {{ const q = Array.from({{ length: 7 }}, (_, i) => Math.sin(1.7 * k + 2.3 * i)), [q1, q2, q3, q4, q5] = q; \
+                 const minor = (rows, columns) => rows.length === 0 ? 1 : columns.reduce((sum, c, i) => \
+                     sum + (i % 2 ? -1 : 1) * rows[0][c] * minor(rows.slice(1), columns.filter((other) => other !== c)), 0); \
+                 return Math.abs(minor(robot.geometricJacobian(q), [0, 1, 2, 3, 4, 5]) / ({product})); }}).map((ratio) => Math.abs(ratio - 1) < 1e-9)"
+            );
+            assert_eq!(tab.run(&ratios), serde_json::json!([true, true, true, true, true]));
+        }
+        tab.close();
+    }
 }

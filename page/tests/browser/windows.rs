@@ -175,3 +175,24 @@ fn the_badge_of_a_narrow_window_leaves_the_arm_free() {
         tab.close();
     }
 }
+
+/// A picture that is out of sight, or smaller than any arm, is not drawn: lengths over its size would be infinite.
+#[test]
+fn a_picture_without_a_size_says_nothing() {
+    let file = written(&robot("ur5"));
+    // The window of one column keeps room for the badge, by the size of the picture.
+    let Some(mut tab) = Tab::open(&file, 360, "light") else { return };
+    let drawn = "document.querySelectorAll('#arm .links .solid').length";
+    let before = tab.run(drawn);
+    for style in ["display: none", "width: 0; height: 0; overflow: hidden", "width: 20px; height: 16px; overflow: hidden", ""] {
+        tab.run(&format!(
+            "(async () => {{ document.getElementById('picture-place').style.cssText = '{style}'; \
+             for (let k = 0; k < 3; k++) await new Promise((done) => requestAnimationFrame(done)); \
+             const q = document.getElementById('q2'); q.value = '0.5'; q.dispatchEvent(new Event('input', {{ bubbles: true }})); }})()"
+        ));
+        let numbers =
+            "[...document.querySelectorAll('#arm [x], #arm [d], #arm [x1]')].every((one) => !/NaN|Infinity/.test(one.outerHTML))";
+        assert_eq!((tab.run(drawn), tab.run(numbers)), (before.clone(), true.into()), "{style}");
+    }
+    tab.close();
+}

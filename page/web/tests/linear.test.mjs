@@ -80,7 +80,7 @@ test("what the axes do says why", () => {
 test("the line of a wrench is where it has no moment across it", () => {
     const straight = line([1, 0, 0, 0, 0, 0], [1, 2, 3], false);
     assert.deepEqual([straight.at, straight.direction, straight.text], [[1, 2, 3], [1, 0, 0], "no motion along this line"]);
-    assert.equal(line([0, 0, 0, 0, 2, 0], [0, 0, 0], true).text, "hardly any turn about this line");
+    assert.equal(line([0, 0, 0, 0, 2, 0], [0, 0, 0], true).text, "hardly any turn about these lines");
     // A force along x whose line lies 0.5 above the tip turns about y at the tip: m = (at - tip) x f.
     assert.deepEqual(line([1, 0, 0, 0, 0.5, 0], [0, 0, 0], false).at, [0, 0, 0.5]);
     assert.equal(line([1, 0, 0, 0.2, 0, 0], [0, 0, 0], false).text, "v + 0.2 ω along this line stays 0");

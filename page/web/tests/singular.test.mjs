@@ -1,0 +1,24 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { roots, setOf } from "../singular.mjs";
+
+test("zeros of a function of an angle are all found, also where it touches zero", () => {
+    const near = (found, expected) => {
+        assert.equal(found.length, expected.length, `${found}`);
+        found.forEach((x, k) => assert.ok(Math.abs(x - expected[k]) < 1e-7, `${found}`));
+    };
+    near(roots(Math.sin, 1), [-Math.PI, 0]);
+    near(roots((x) => Math.cos(x) - 0.5, 1.5), [-Math.PI / 3, Math.PI / 3]);
+    near(roots((x) => 1 - Math.cos(x - 0.123), 2), [0.123]);
+    near(roots((x) => 1.0001 - Math.cos(x), 2), []);
+});
+
+test("a set is said with numbers where no formula says it", () => {
+    assert.equal(setOf("q2 = 0 mod pi", "sin(q2)"), "q₂ = 0 mod π");
+    assert.equal(setOf("q3 = atan(-1/2) mod pi", "cos(q3) + 2*sin(q3)"), "q₃ = atan(−1/2) mod π (−0.463648)");
+    assert.equal(setOf(null, "sin(q2 + q3)"), "");
+    assert.equal(setOf("q4 with 2*cos(2*q4) - 2*cos(q4) = 0", "cos(2*q4) - cos(q4)"), "q₄ = −2.0944, 0, 2.0944 mod 2 π");
+    assert.equal(setOf("q4 with cos(2*q4) + 3 = 0", "cos(2*q4) + 3"), "never");
+    assert.equal(setOf("q1 with q1^3 - 2 = 0", "q1^3 - 2"), "q₁ with q1^3 − 2 = 0".replace("q1", "q₁"));
+});
