@@ -74,7 +74,7 @@ impl Equations {
             let _ = match &quantity.text {
                 Some(_) => writeln!(
                     text,
-                    "<details id=\"equation-{name}\" data-equation=\"{name}\"><summary{about}><b>{symbol}</b> {words}, {size}</summary><div></div></details>"
+                    "<details data-equation=\"{name}\"><summary{about}><b>{symbol}</b> {words}, {size}</summary><div></div></details>"
                 ),
                 None => writeln!(
                     text,

@@ -6,10 +6,10 @@
 import { byId, copy, html } from "./dom.mjs";
 import { exact, inWords, short, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
-import { condition, determinant, manipulability, ROUNDING } from "./linear.mjs";
+import { condition, determinant, gram, manipulability, ROUNDING } from "./linear.mjs";
 import { VELOCITY } from "./lost.mjs";
 import { sizes, withoutNoise } from "./noise.mjs";
-import { formula, setOf, whereSingular } from "./singular.mjs";
+import { formula, pairs, setOf, whereSingular } from "./singular.mjs";
 import { range } from "./state.mjs";
 
 /** A factor is near zero below this part of what it can be, and zero below that which rounding of it and of q makes. */
@@ -32,7 +32,7 @@ export function numbers(data, state, arm) {
     const parts = [["pose", "Pose and Jacobian"], ["singular", "Singular postures"], ["motion", "Equations of motion"]].map(([id, title]) =>
         html("section", { id, "aria-labelledby": `${id}-title` }, html("h3", { id: `${id}-title` }, title)),
     );
-    parts[1].append(html("p", { id: "singular-where" }, ...whereSingular(data)), ...["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" })));
+    parts[1].append(html("p", { id: "singular-where" }, ...whereSingular(data)), ...twoJoints(data, state), ...["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" })));
     let part = 0;
     for (const { element, quantity } of shown) {
         part = quantity.singular ? 1 : part === 1 ? 2 : part;
@@ -131,6 +131,25 @@ function zeroButtons(text, data, state) {
         });
         return button;
     });
+}
+
+/** The values of two joints that make a longer arm singular, searched for when they are asked for; nothing of other arms. @param {any} data @param {import("./state.mjs").State} state */
+function twoJoints(data, state) {
+    if (!data.firstSix?.singular?.every((text) => text?.startsWith("q"))) return [];
+    const list = html("ul");
+    const details = html("details", {}, html("summary", {}, "Two joints that make it singular, whatever the others do"), list);
+    details.addEventListener("toggle", () => {
+        if (list.firstChild) return;
+        const w = (q) => Math.sqrt(Math.abs(determinant(gram(robot.geometricJacobian(q)))));
+        const all = pairs(data, w).map((pair) => {
+            const button = html("button", { type: "button" }, `set ${pair.map(([i, x]) => `${variable(i + 1)} = ${short(x)}`).join(", ")}`);
+            button.addEventListener("click", () => state.move(state.q.map((x, i) => pair.find(([k]) => k === i)?.[1] ?? x)));
+            return html("li", {}, button);
+        });
+        list.append(...all);
+        details.append(html("p", { class: "small" }, "In rad, found by a search, which can miss some. Other singular postures tie three joints or more."));
+    });
+    return [details];
 }
 
 /** Of value + k period the one within limits that is nearest to q; the value itself where none is within. @param {number} value @param {number} period @param {number} q @param {number} low @param {number} high */
@@ -289,6 +308,8 @@ function copyButtons(quantity) {
 
 /** The way to the equation of a quantity, where the page has it. @param {string} name */
 function equationLink(name) {
-    const equation = document.getElementById(`equation-${name === "det" ? "determinant" : name}`);
-    return equation ? [" ", html("a", { href: `#${equation.id}`, class: "small" }, "its equation")] : [];
+    const equation = document.querySelector(`[data-equation="${name === "det" ? "determinant" : name}"]`);
+    if (!equation) return [];
+    equation.id = `equation-${equation.getAttribute("data-equation")}`;
+    return [" ", html("a", { href: `#${equation.id}`, class: "small" }, "its equation")];
 }

@@ -10,27 +10,30 @@ import { inWords, short, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
 import { mathml } from "./mathml.mjs";
 import { ROUNDING } from "./linear.mjs";
+import { sequence } from "./search.mjs";
 
-/** Pieces of a turn in which a factor is looked at. */
-const PIECES = 1440;
-
-/** The angles from -pi on, below pi, at which a function of an angle is zero; `size` is what it can be. @param {(x: number) => number} of @param {number} size */
-export function roots(of, size) {
-    const step = (2 * Math.PI) / PIECES;
-    const at = (k) => (k - PIECES / 2) * step;
+/**
+ * The angles from -pi on, below pi, at which a function of an angle is zero: below `least`, where that is not told by its signs.
+ *
+ * @param {(x: number) => number} of @param {number} least @param {number} [pieces] of a turn, in each of which it is looked at
+ */
+export function roots(of, least, pieces = 1440) {
+    const step = (2 * Math.PI) / pieces;
+    const at = (k) => (k - pieces / 2) * step;
+    const values = Array.from({ length: pieces + 2 }, (_, k) => of(at(k - 1)));
     const found = [];
-    for (let k = 0; k < PIECES; k++) {
+    for (let k = 0; k < pieces; k++) {
         let [low, high] = [at(k), at(k + 1)];
-        const isZero = () => Math.abs(of(low)) <= 64 * ROUNDING * size;
-        if (isZero()) {
+        const [before, here, after] = values.slice(k, k + 3);
+        if (Math.abs(here) <= least) {
             // At a multiple of what a turn was divided into.
-        } else if (of(low) * of(high) < 0) {
+        } else if (here * after < 0) {
             for (let i = 0; i < 60; i++) {
                 const middle = (low + high) / 2;
                 if (of(low) * of(middle) <= 0) high = middle;
                 else low = middle;
             }
-        } else if (Math.abs(of(low)) > Math.min(Math.abs(of(at(k - 1))), Math.abs(of(high)))) {
+        } else if (Math.abs(here) > Math.min(Math.abs(before), Math.abs(after))) {
             continue;
         } else {
             // It comes near and goes away again: where it is least it may touch zero.
@@ -39,7 +42,7 @@ export function roots(of, size) {
                 if (Math.abs(of(a)) < Math.abs(of(b))) high = b;
                 else low = a;
             }
-            if (!isZero()) continue;
+            if (Math.abs(of(low)) > least) continue;
         }
         const root = Math.abs(low) < 1e-8 ? 0 : low;
         if (!found.some((other) => Math.abs(other - root) < 1e-7)) found.push(root);
@@ -52,10 +55,15 @@ export function setOf(zero, factor) {
     const [, joint] = /^q(\d+) with /.exec(zero ?? "") ?? [];
     if (!zero?.startsWith("q")) return zero ?? "";
     if (!joint) return inWords(zero) + rounded(zero);
-    const node = parse(factor);
     if (!/(sin|cos)\(/.test(factor)) return `${variable(joint)} with ${inWords(factor)} = 0`;
-    const all = roots((x) => evaluate(node, () => x), bound(node, () => 0)).map(short);
+    const all = rootsOf(factor).map(short);
     return all.length === 0 ? "never" : `${variable(joint)} = ${all.join(", ")} mod 2 π`;
+}
+
+/** The angles at which a factor of one angle is zero. @param {string} factor */
+function rootsOf(factor) {
+    const node = parse(factor);
+    return roots((x) => evaluate(node, () => x), 64 * ROUNDING * bound(node, () => 0));
 }
 
 /** The number of a zero such as `q3 = atan(-4318/203) mod pi`, for whom it is to be typed; nothing for one that is plain. @param {string} zero */
@@ -79,6 +87,38 @@ function sets(factors, singular) {
         return set === "" ? (factor.length > LONG ? [`factor ${k + 1} is zero`] : [formula(factor), " = 0"]) : set === "never" ? [] : [set];
     });
     return all.filter((set) => set.length > 0).flatMap((set, k) => (k === 0 ? set : ["; or ", ...set]));
+}
+
+/**
+ * Values of two joints at which a longer arm is singular whatever the others do: of those of the first six joints with what a search finds
+ * beside each. The first joint and the last of all change nothing.
+ *
+ * @param {any} data @param {(q: number[]) => number} w @returns {[number, number][][]} joints from 0, and their values
+ */
+export function pairs(data, w) {
+    const { factors, singular } = data.firstSix;
+    const alone = factors.flatMap((factor, f) => {
+        const { joint, period, values } = zeros(singular[f]) ?? { joint: Number(singular[f].match(/\d+/)), period: 0, values: rootsOf(factor).map((value) => ({ value })) };
+        return values.flatMap(({ value }) => (period === Math.PI ? [value, value > 0 ? value - Math.PI : value + Math.PI] : [value]).map((value) => [joint - 1, value]));
+    });
+    // What the others do.
+    const elsewhere = sequence(data.rows.length, 3).map((part) => part.map((x) => 6 * x - 3));
+    /** @type {[number, number][][]} */
+    const found = [];
+    for (const [i, x] of alone) {
+        for (let k = 1; k < data.rows.length - 1; k++) {
+            if (k === i || data.rows[k].type !== "revolute") continue;
+            const at = (y, others) => w(others.map((other, m) => (m === i ? x : m === k ? y : other)));
+            const [first, ...rest] = elsewhere;
+            const least = 1e-6 * Math.max(...[0, 1, 2, 3, 4, 5].map((y) => at(y, first)));
+            for (const y of roots((y) => at(y, first), least, 120)) {
+                const pair = /** @type {[number, number][]} */ ([[i, x], [k, y]]).sort(([a], [b]) => a - b);
+                const isKnown = found.some((other) => other.every(([m, z], j) => m === pair[j][0] && Math.abs(Math.sin((z - pair[j][1]) / 2)) < 1e-6));
+                if (!isKnown && rest.every((others) => at(y, others) < 10 * least)) found.push(pair);
+            }
+        }
+    }
+    return found;
 }
 
 /** The sentences. @param {any} data @returns {(Node | string)[]} */

@@ -164,7 +164,8 @@ function map(data, state, picture) {
                 signs.push(each.map((value) => value < 0));
             }
         }
-        const largest = Math.max(...values);
+        const [largest, smallest] = [Math.max(...values), Math.min(...values)];
+        const lowest = values.indexOf(smallest);
         const scale = picture.arm.size ** data.task.length;
         const unit = (k) => (data.rows[k].type === "revolute" ? "rad" : "m");
         // Names and ends of the axes, in the reader's units.
@@ -199,7 +200,8 @@ function map(data, state, picture) {
         context.strokeRect(((state.q[i] - a) / (b - a)) * SIDE - 5, SIDE - ((state.q[j] - c) / (d - c)) * SIDE - 5, 10, 10);
         byId("w-said").textContent =
             `Across: ${variable(i + 1)} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: ${variable(j + 1)} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
-            `w from 0 (dark) to ${short(largest)} (bright)${square ? ", white lines where a factor of det J changes its sign" : ""}; the square is the posture that is shown.`;
+            `w from 0 (dark) to ${short(largest)} (bright), the least that is drawn ${short(Number(smallest.toPrecision(3)))} at ${variable(i + 1)} = ${withUnit(Number(at(lowest % CELLS, a, b).toPrecision(3)), unit(i))}, ${variable(j + 1)} = ${withUnit(Number(at(Math.floor(lowest / CELLS), c, d).toPrecision(3)), unit(j))}${square ? ", white lines where a factor of det J changes its sign" : ""}; the square is the posture that is shown. `;
+        byId("w-said").append(html("a", { href: "#singular" }, "Where the arm is singular"));
     };
     details.addEventListener("toggle", draw);
     let waiting = 0;

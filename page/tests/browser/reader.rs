@@ -235,6 +235,17 @@ fn where_an_arm_is_singular_is_said() {
                  return Math.abs(minor(robot.geometricJacobian(q), [0, 1, 2, 3, 4, 5]) / ({product})); }}).map((ratio) => Math.abs(ratio - 1) < 1e-9)"
             );
             assert_eq!(tab.run(&ratios), serde_json::json!([true, true, true, true, true]));
+            // Two joints at values that are found make it singular, wherever the others are.
+            let pairs = tab.run(&format!(
+                "(async () => {{ {MOVE}(1); const details = document.querySelector('#singular details'); details.open = true; \
+                 while (!details.querySelector('button')) await new Promise((done) => setTimeout(done, 20)); \
+                 const badge = () => document.getElementById('singular-posture').textContent; const seen = [badge()]; \
+                 for (const button of details.querySelectorAll('button')) {{ {MOVE}(2); button.click(); seen.push(`${{button.textContent}}: ${{badge()}}`); }} return seen; }})()"
+            ));
+            let pairs: Vec<&str> = pairs.as_array().expect("a list").iter().filter_map(serde_json::Value::as_str).collect();
+            assert_eq!(pairs[0], "");
+            assert!(pairs.contains(&"set q₂ = 0, q₄ = 0: ⚠ singular posture") && pairs.len() >= 9, "{pairs:?}");
+            assert!(pairs[1..].iter().all(|said| said.ends_with("singular posture")), "{pairs:?}");
         }
         tab.close();
     }
