@@ -4,8 +4,13 @@ import test from "node:test";
 import { extremes } from "../reach.mjs";
 import { sequence } from "../search.mjs";
 
+/** Where the first joint is not at a step of its range when the arm points along x. */
+const OFFSET = 0.123;
 /** Two links of 0.5 and 0.3 m in a plane on a column of 1 m, and a quill below; nothing but their tip. */
-const tip = ([a, b, d]) => [0.5 * Math.cos(a) + 0.3 * Math.cos(a + b), 0.5 * Math.sin(a) + 0.3 * Math.sin(a + b), 1 - d];
+const tip = ([a, b, d]) => {
+    const [first, second] = [a - OFFSET, a - OFFSET + b];
+    return [0.5 * Math.cos(first) + 0.3 * Math.cos(second), 0.5 * Math.sin(first) + 0.3 * Math.sin(second), 1 - d];
+};
 const rows = (first, second) => [{ type: "revolute", limits: first }, { type: "revolute", limits: second }, { type: "prismatic", limits: [0.1, 0.4] }];
 const samples = (rows) =>
     sequence(3, 200).map((part) => {
@@ -31,7 +36,7 @@ test("an arm that turns about z comes as far in every direction", () => {
 });
 
 test("limits are where they are", () => {
-    const limited = rows([0, Math.PI / 2], [0.5, 1]);
+    const limited = rows([OFFSET, OFFSET + Math.PI / 2], [0.5, 1]);
     const { away, axes } = extremes(limited, tip, samples(limited));
     // The law of cosines at both limits of the elbow.
     [1, 0.5].forEach((b, k) => near(away[k], Math.sqrt(0.34 + 0.3 * Math.cos(b))));
