@@ -92,7 +92,7 @@ fn emitted_modules_find_every_posture() {
     all.extend(made_up().into_iter().map(|(name, _, _, text)| (name.to_owned(), text)));
     for (name, text) in all {
         project.add(&name, &text, Scalar::F64);
-        if ["puma560", "scara4", "parallel", "general"].contains(&name.as_str()) {
+        if ["puma560", "scara4", "parallel", "general", "position3r"].contains(&name.as_str()) {
             project.add(&name, &text, Scalar::F32);
         }
     }

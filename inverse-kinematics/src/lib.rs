@@ -49,7 +49,7 @@
 //! [`shoulder_elbow_wrist`](f64::shoulder_elbow_wrist) takes the swivel angle of the elbow instead: at most 8.
 //!
 //! If the pose is in L1 or L2, only `regional_general`, `regional_slide` and `regional_mid_slide` hold for all poses.
-//! [`polish`](f64::polish) takes the digits back that block R with D = 2 loses; `three_parallel` wants it where neither axes b and c nor a and c
+//! [`polish`](f64::polish) takes the digits back that block R with D = 2 loses, on the six equations of a loop or the three of a position; `three_parallel` wants it where neither axes b and c nor a and c
 //! intersect or are parallel.
 //! [`Arrangement::of_arm`](f64::Arrangement::of_arm) puts a solution into the arm's order and takes the turned axes off.
 //!

@@ -97,6 +97,45 @@ in_both_scalars! {
     const R: bool = false;
     const P: bool = true;
 
+    /// A case with its solutions polished, as a position asks for it.
+    fn polished(kinds: [bool; 3], block: Block, a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {
+        let mut found = block(a, b, w, p);
+        let links = [*a, *b, displaced(w)];
+        polish(&mut found, &Loop { links: &links, prismatic: kinds, target: p, length: 0.5 });
+        found
+    }
+
+    fn general(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {
+        polished([R, R, R], regional_general, a, b, w, p)
+    }
+
+    fn slide(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {
+        polished([P, R, R], regional_slide, a, b, w, p)
+    }
+
+    fn mid_slide(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3, 4> {
+        polished([R, P, R], regional_mid_slide, a, b, w, p)
+    }
+
+    /// The cases that are polished for a position, with their joints.
+    const POSITIONS: [([bool; 3], Block); 3] = [([R, R, R], general), ([P, R, R], slide), ([R, P, R], mid_slide)];
+
+    /// The determinant of the Jacobian of the point, from its differences over a right angle to either side, or a metre, in which it is exact.
+    fn determinant(kinds: [bool; 3], a: &Frame, b: &Frame, w: Vector, q: [f64; 3]) -> Real {
+        let at = |i: usize, step: f64| {
+            let mut q = q;
+            q[i] += step;
+            reached(kinds, a, b, w, &posture(kinds, q))
+        };
+        let step = |i: usize| if kinds[i] { 1.0 } else { std::f64::consts::FRAC_PI_2 };
+        let [x, y, z] = [0, 1, 2].map(|i| minus(at(i, step(i)), at(i, -step(i))));
+        dot(x, cross(y, z))
+    }
+
+    fn posture(kinds: [bool; 3], q: [f64; 3]) -> [[Real; 2]; 3] {
+        [0, 1, 2].map(|i: usize| if kinds[i] { [q[i] as Real, 0.0] } else { point(q[i]) })
+    }
+
     /// Errors of closed forms; those of block R with D = 2 before they are polished.
     const CLOSED: Real = 5000.0 * UNIT_ROUNDOFF;
 
@@ -139,6 +178,95 @@ in_both_scalars! {
     #[test]
     fn slide_then_general() {
         assert!(check(6, [P, R, R], regional_slide, |r| (any(r), any(r)), 4) < POLISHED);
+    }
+
+    /// Newton's method on the three equations of a position: the last digits, no solution lost, and what is missed where there is none.
+    #[test]
+    fn positions_are_polished() {
+        for (number, (kinds, block)) in POSITIONS.into_iter().enumerate() {
+            let worst = check(14 + number as u64, kinds, block, |r| (any(r), any(r)), 4);
+            assert!(worst < 256.0 * UNIT_ROUNDOFF, "{worst:e}");
+        }
+        let random = &mut Random(17);
+        for _ in 0..200 {
+            let (a, b, w) = (any(random), any(random), vector(random));
+            let far = general(&a, &b, w, [7.0, 4.0, -4.0]);
+            // 9 m away with arms of at most 4 m.
+            assert!(far.count == 0 && !far.near && far.miss > 2.0 && far.miss < 9.0, "{far:?}");
+        }
+    }
+
+    /// Where the Jacobian of a position is singular rounding of the point decides about two solutions; 1e-4 beside it, not.
+    #[test]
+    fn folds_of_positions_are_told() {
+        if UNIT_ROUNDOFF > 1e-10 {
+            return;
+        }
+        for (number, (kinds, block)) in POSITIONS.into_iter().enumerate() {
+            let random = &mut Random(20 + number as u64);
+            let (mut told, mut beside) = (0, 0);
+            for _ in 0..500 {
+                let (a, b, w) = (any(random), any(random), vector(random));
+                let det = |q| determinant(kinds, &a, &b, w, q);
+                let (mut one, mut other) = loop {
+                    let mut draw = || kinds.map(|p| if p { random.between(-0.5, 0.5) } else { random.angle() });
+                    let (one, other) = (draw(), draw());
+                    if (det(one) > 0.0) != (det(other) > 0.0) {
+                        break (one, other);
+                    }
+                };
+                let sign = det(one) > 0.0;
+                for _ in 0..60 {
+                    let middle = [0, 1, 2].map(|i: usize| 0.5 * (one[i] + other[i]));
+                    if (det(middle) > 0.0) == sign {
+                        one = middle;
+                    } else {
+                        other = middle;
+                    }
+                }
+                let gradient = [0, 1, 2].map(|i: usize| {
+                    let (mut more, mut less) = (one, one);
+                    more[i] += 1e-4;
+                    less[i] -= 1e-4;
+                    (det(more) - det(less)) as f64
+                });
+                let size = gradient.iter().map(|x| x * x).sum::<f64>().sqrt();
+                let found = |step: f64| {
+                    let q = [0, 1, 2].map(|i: usize| one[i] + step * gradient[i] / size);
+                    block(&a, &b, w, reached(kinds, &a, &b, w, &posture(kinds, q)))
+                };
+                let doubtful = |f: &Branches<3, 4>| f.near || f.found().iter().any(|b| b.double || b.free != 0);
+                told += usize::from(doubtful(&found(0.0)));
+                let next = found(1e-4);
+                beside += usize::from(!doubtful(&next) && next.count > 0 && next.count % 2 == 0);
+            }
+            println!("{told} of 500 folds told, {beside} complete beside");
+            assert!(told >= 499 && beside >= 497, "{kinds:?}: {told} told, {beside} complete beside");
+        }
+    }
+
+    /// Next to the first axis its angle is hardly determined: the inverse of the Jacobian says so, which no root does.
+    #[test]
+    fn points_beside_the_first_axis_are_told() {
+        if UNIT_ROUNDOFF > 1e-10 {
+            return;
+        }
+        let random = &mut Random(30);
+        for (kinds, block) in [POSITIONS[0], POSITIONS[2]] {
+            for _ in 0..200 {
+                let (mut a, b, w) = (any(random), any(random), vector(random));
+                let q = posture(kinds, kinds.map(|p| if p { random.between(-0.5, 0.5) } else { random.angle() }));
+                let at = reached(kinds, &a, &b, w, &[[1.0, 0.0], q[1], q[2]]);
+                let base = [a[0][3] - at[0], a[1][3] - at[1]];
+                let mut found = |beside: Real| {
+                    (a[0][3], a[1][3]) = (base[0] + beside, base[1]);
+                    block(&a, &b, w, reached(kinds, &a, &b, w, &q))
+                };
+                assert!(found(1e-8).near, "{kinds:?}");
+                let away = found(1e-3);
+                assert!(!away.near && away.count % 2 == 0 && away.count > 0, "{kinds:?}: {away:?}");
+            }
+        }
     }
 
     #[test]

@@ -218,7 +218,7 @@ impl Arrangement {
 pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<InverseKinematics, String> {
     let slides = chain.joints.iter().filter(|joint| joint.prismatic).count();
     let found = match (chain.joints.len(), slides) {
-        (3, _) if target == Target::Position => position(chain),
+        (3, _) if target == Target::Position => position(chain, true).or_else(|| position(chain, false)),
         (4, _) => parallel_turns(chain),
         (6, 3) => three_prismatic(chain),
         (6, 0 | 1) => spherical_triple(chain, true)
@@ -357,9 +357,9 @@ fn parallel_turns(chain: &Chain) -> Option<Class> {
 }
 
 /// Three joints that bring the end effector to a position.
-fn position(chain: &Chain) -> Option<Class> {
+fn position(chain: &Chain, closed: bool) -> Option<Class> {
     chain.arrangements().filter(|way| way.open == 2).find_map(|way| {
-        let case = regional(way.kinds(), &way.links[0], &way.links[1], true).filter(|case| case.closed)?;
+        let case = regional(way.kinds(), &way.links[0], &way.links[1], true).filter(|case| case.closed == closed)?;
         let joints = way.joints();
         let class = format!("position of three joints, {}", case.because(&joints));
         let choices = case.choices(&joints);

@@ -63,6 +63,35 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
             4,
             &[(R, "0.1", quarter, "0.3", "0.1"), (R, elbow, "0", "0.1", "0"), (R, "0.35", "0.2", "0.05", "0.3")],
         ),
+        // Positions without related axes, with angles that are no fractions of a turn; the last has its slide at the end.
+        arm(
+            "position3r",
+            "task: [x, y, z]",
+            "position of three joints, axes 1, 2 and 3 neither are parallel nor intersect",
+            4,
+            &[(R, "0.2", "0.9", "0.3", "0.1"), (R, elbow, "-1.1", "0.1", "0"), (R, "0.35", quarter, "0.05", "0.3")],
+        ),
+        arm(
+            "position_prr",
+            "task: [x, y, z]",
+            "position of three joints, joint 1 slides",
+            4,
+            &[(P, "0.2", "0.9", "0.3", "0.1"), (R, elbow, "-1.1", "0.1", "0"), (R, "0.35", quarter, "0.05", "0.3")],
+        ),
+        arm(
+            "position_rpr",
+            "task: [x, y, z]",
+            "position of three joints, joint 2 slides",
+            4,
+            &[(R, "0.2", "0.9", "0.3", "0.1"), (P, elbow, "-1.1", "0.1", "0.4"), (R, "0.35", quarter, "0.05", "0.3")],
+        ),
+        arm(
+            "position_rrp",
+            "task: [x, y, z]",
+            "position of three joints, joint 3 slides",
+            4,
+            &[(R, "0.2", "0.9", "0.3", "0.1"), (R, elbow, "-1.1", "0.1", "0"), (P, "0.1", quarter, "0.05", "0.3")],
+        ),
         // A spherical wrist behind three axes that are not related, with angles that are no fractions of a turn.
         arm(
             "pieper",

@@ -13,8 +13,8 @@ impl Random {
     }
 }
 
-/// The determinant of the Jacobian of six joints, from differences of the pose: it is linear in each sine, cosine and slide, so that those over a
-/// right angle to either side, or a metre, are no approximation.
+/// The determinant of the Jacobian of six joints, or of that of the position of three, from differences of the pose: it is linear in each sine,
+/// cosine and slide, so that those over a right angle to either side, or a metre, are no approximation.
 fn determinant(q: &[f64], revolute: &[bool], t: &dyn Fn(&[f64]) -> [[f64; 4]; 4]) -> f64 {
     let here = t(q);
     let column = |i: usize| {
@@ -30,10 +30,11 @@ fn determinant(q: &[f64], revolute: &[bool], t: &dyn Fn(&[f64]) -> [[f64; 4]; 4]
         let turn = |i: usize, j: usize| (0..3).map(|k| d(i, k) * here[j][k]).sum::<f64>();
         [d(0, 3), d(1, 3), d(2, 3), turn(2, 1), turn(0, 2), turn(1, 0)]
     };
-    let mut rows: Vec<[f64; 6]> = (0..6).map(column).collect();
+    let joints = q.len();
+    let mut rows: Vec<[f64; 6]> = (0..joints).map(column).collect();
     let mut product = 1.0;
-    for k in 0..6 {
-        let pivot = (k..6).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).unwrap_or(k);
+    for k in 0..joints {
+        let pivot = (k..joints).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).unwrap_or(k);
         if pivot != k {
             rows.swap(k, pivot);
             product = -product;
@@ -42,9 +43,9 @@ fn determinant(q: &[f64], revolute: &[bool], t: &dyn Fn(&[f64]) -> [[f64; 4]; 4]
         if product == 0.0 {
             return 0.0;
         }
-        for i in k + 1..6 {
+        for i in k + 1..joints {
             let factor = rows[i][k] / rows[k][k];
-            for j in k..6 {
+            for j in k..joints {
                 rows[i][j] -= factor * rows[k][j];
             }
         }
@@ -132,7 +133,7 @@ macro_rules! check {
         assert!(worst < if single { 2e-3 } else { 1e-11 }, "{}: {worst:e}", stringify!($module));
         assert!(complete * 100 >= poses * if single { 60 } else { 97 }, "{}: {complete}", stringify!($module));
         // Where the Jacobian is singular rounding decides about solutions, or some joints can move; 1e-4 beside it nothing does.
-        if let (6, 0, false) = (DOF, $columns.start, single) {
+        if let (6, 0, false) | (3, 3, false) = (DOF, $columns.start, single) {
             let t = |q: &[f64]| {
                 let q: [Real; DOF] = std::array::from_fn(|i| q[i] as Real);
                 $module::direct_kinematics(&q).map(|row| row.map(f64::from))

@@ -1,64 +1,78 @@
-// Newton's method on a closed loop of six joints: the last digits of a solution, its residual, and how well it is determined.
+// Newton's method on a closed loop of six joints, or on the position that three joints reach: the last digits of a solution, its residual, and
+// how well it is determined.
 
 /// How far from closed a loop may stay that counts as closed, relative to the arm's length: 1e-13 in double precision.
 /// Six frames in a row come to about 50 u.
 pub const CLOSED: Real = 1024.0 * UNIT_ROUNDOFF;
 
-/// A loop J1 L1 ... J6 L6 = 1 that is to be closed.
+/// What N joints have to meet, in as many equations: six close a loop, J1 L1 ... J6 L6 = 1; three bring the origin of J1 L1 J2 L2 J3 L3 to a point.
 #[derive(Clone, Copy, Debug)]
-pub struct Loop<'a> {
-    /// L1 to L6.
-    pub links: &'a [Frame; 6],
+pub struct Loop<'a, const N: usize> {
+    /// L1 to LN.
+    pub links: &'a [Frame; N],
     /// The kinds of the joints.
-    pub prismatic: [bool; 6],
+    pub prismatic: [bool; N],
+    /// Where the origin is to go: 0 if a loop is to be closed.
+    pub target: Vector,
     /// A length of the arm's size, > 0: an angle of 1 rad counts as much as this length.
     pub length: Real,
 }
 
 /// What [`Loop::close`] reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closed {
+pub struct Closed<const N: usize> {
     /// The joints' values.
-    pub joints: [[Real; 2]; 6],
-    /// The largest component of displacement and turn (times the length) by which the loop stays open.
+    pub joints: [[Real; 2]; N],
+    /// The largest component of displacement and turn (times the length) by which the equations are missed.
     pub residual: Real,
-    /// The loop is closed at a place where its Jacobian is so nearly singular that rounding of the pose decides between two solutions and none.
+    /// They are met at a place where their Jacobian is so nearly singular that rounding of the pose decides between two solutions and none.
     pub double: bool,
 }
 
-/// Six linear equations and their right side.
-type Equations = [[Real; 7]; 6];
+/// N linear equations.
+#[derive(Clone, Copy, Debug)]
+struct Equations<const N: usize> {
+    rows: [[Real; N]; N],
+    right: [Real; N],
+}
 
-impl Loop<'_> {
+impl<const N: usize> Loop<'_, N> {
     /// The equations of one step, J dq = -residual, and the residual: columns (z × (t - p), z) of axes z through p.
-    fn equations(&self, joints: &[[Real; 2]; 6]) -> (Equations, Real) {
+    fn equations(&self, joints: &[[Real; 2]; N]) -> (Equations<N>, Real) {
         let mut chain = IDENTITY;
-        let mut axes = [([0.0; 3], [0.0; 3]); 6];
+        let mut axes = [([0.0; 3], [0.0; 3]); N];
         for (((axis, value), link), prismatic) in axes.iter_mut().zip(joints).zip(self.links).zip(self.prismatic) {
             *axis = (column(&chain, 2), column(&chain, 3));
             chain = compose(&chain, &joint_then(prismatic, *value, link));
         }
         let t = column(&chain, 3);
-        let turn = turn_vector_of(&chain);
-        let mut rows = [[0.0; 7]; 6];
+        let mut of = Equations { rows: [[0.0; N]; N], right: [0.0; N] };
         let mut residual: Real = 0.0;
         for k in 0..3 {
-            rows[k][6] = -t[k];
-            rows[k + 3][6] = -self.length * turn[k];
-            residual = residual.max(t[k].abs()).max(self.length * turn[k].abs());
+            of.right[k] = self.target[k] - t[k];
+            residual = residual.max(of.right[k].abs());
+        }
+        if N > 3 {
+            let turn = turn_vector_of(&chain);
+            for k in 0..3 {
+                of.right[k + 3] = -self.length * turn[k];
+                residual = residual.max(of.right[k + 3].abs());
+            }
         }
         for (i, ((z, p), prismatic)) in axes.iter().zip(self.prismatic).enumerate() {
             let linear = if prismatic { *z } else { cross(*z, minus(t, *p)) };
             for k in 0..3 {
-                rows[k][i] = linear[k];
-                rows[k + 3][i] = if prismatic { 0.0 } else { self.length * z[k] };
+                of.rows[k][i] = linear[k];
+                if N > 3 {
+                    of.rows[k + 3][i] = if prismatic { 0.0 } else { self.length * z[k] };
+                }
             }
         }
-        (rows, residual)
+        (of, residual)
     }
 
     /// The values after a step, each at most half a radian or half the length.
-    fn moved(&self, joints: &[[Real; 2]; 6], step: &[Real; 6]) -> [[Real; 2]; 6] {
+    fn moved(&self, joints: &[[Real; 2]; N], step: &[Real; N]) -> [[Real; 2]; N] {
         let mut moved = *joints;
         for ((value, step), prismatic) in moved.iter_mut().zip(step).zip(self.prismatic) {
             let [c, s] = *value;
@@ -75,17 +89,17 @@ impl Loop<'_> {
     /// Newton's method from `joints` until the residual no longer falls, at most 6 steps. At a `contact`, where two solutions may have met, 12, since
     /// it only halves the distance there; and as that place is found to the root of its residual only, a larger rounding is asked for in `double`.
     /// NaN: a residual that is not small.
-    pub fn close(&self, joints: &[[Real; 2]; 6], contact: bool) -> Closed {
+    pub fn close(&self, joints: &[[Real; 2]; N], contact: bool) -> Closed<N> {
         let (steps, units) = if contact { (12, 1024.0) } else { (6, 32.0) };
         let mut best = Closed { joints: *joints, residual: Real::INFINITY, double: false };
         let mut joints = *joints;
         for step in 0..=steps {
-            let (rows, residual) = self.equations(&joints);
+            let (equations, residual) = self.equations(&joints);
             let falls = residual < 0.5 * best.residual;
-            let (x, pivot) = solve(&rows);
+            let (x, pivot) = solve(&equations);
             if residual < best.residual {
                 // Only a small pivot lets the Jacobian be nearly singular: the inverse is worth its time there.
-                let double = !(pivot > 1e-3 * self.length) && self.nearly_double(&rows, units);
+                let double = !(pivot > 1e-3 * self.length) && self.nearly_double(&equations, units);
                 best = Closed { joints, residual, double };
             }
             let precise = residual <= 16.0 * UNIT_ROUNDOFF * self.length;
@@ -100,14 +114,13 @@ impl Loop<'_> {
     /// Whether |J⁻¹|² K `units` u >= 1/2 with lengths in units of the arm's length: what Newton and Kantorovich's theorem asks for to hold one
     /// solution apart from another after a change of the pose by its rounding. K, the bound of second derivatives, is taken as 4:
     /// lever arms of two lengths of the arm.
-    fn nearly_double(&self, rows: &Equations, units: Real) -> bool {
+    fn nearly_double(&self, equations: &Equations<N>, units: Real) -> bool {
         const SECOND_DERIVATIVES: Real = 4.0;
         let mut square = 0.0;
-        for k in 0..6 {
-            let mut unit = *rows;
-            for (i, row) in unit.iter_mut().enumerate() {
-                row[6] = if i == k { self.length } else { 0.0 };
-            }
+        for k in 0..N {
+            let mut unit = *equations;
+            unit.right = [0.0; N];
+            unit.right[k] = self.length;
             let (x, _) = solve(&unit);
             for (x, prismatic) in x.iter().zip(self.prismatic) {
                 let x = if prismatic { x / self.length } else { *x };
@@ -120,39 +133,41 @@ impl Loop<'_> {
     /// The least residual that damped steps (Levenberg, Marquardt) reach from `joints` in 30 of them: how far a pose out of reach is. `damping`, of
     /// the squared length, is divided by 4 by each that succeeds. `double`: the Jacobian is singular there, to the root of a larger rounding,
     /// since such a place is found to the root of its residual only.
-    pub fn nearest(&self, joints: &[[Real; 2]; 6], damping: Real) -> Closed {
+    pub fn nearest(&self, joints: &[[Real; 2]; N], damping: Real) -> Closed<N> {
         let mut joints = *joints;
-        let (mut rows, mut residual) = self.equations(&joints);
-        let square = |rows: &Equations| rows.iter().fold(0.0, |sum, row| sum + row[6] * row[6]);
+        let (mut here, mut residual) = self.equations(&joints);
+        let square = |equations: &Equations<N>| equations.right.iter().fold(0.0, |sum, e| sum + e * e);
         let mut damping = damping * self.length * self.length;
         for _ in 0..30 {
             // (J'J + damping) dq = J' e
-            let mut normal = [[0.0; 7]; 6];
-            for i in 0..6 {
-                for j in 0..7 {
-                    normal[i][j] = rows.iter().fold(0.0, |sum, row| sum + row[i] * row[j]);
+            let mut normal = Equations { rows: [[0.0; N]; N], right: [0.0; N] };
+            for i in 0..N {
+                for j in 0..N {
+                    normal.rows[i][j] = here.rows.iter().fold(0.0, |sum, row| sum + row[i] * row[j]);
                 }
-                normal[i][i] += damping;
+                normal.rows[i][i] += damping;
+                normal.right[i] = here.rows.iter().zip(here.right).fold(0.0, |sum, (row, e)| sum + row[i] * e);
             }
             let (x, _) = solve(&normal);
             let next = self.moved(&joints, &x);
             let (there, left) = self.equations(&next);
-            if square(&there) < square(&rows) {
-                (joints, rows, residual) = (next, there, left);
+            if square(&there) < square(&here) {
+                (joints, here, residual) = (next, there, left);
                 damping *= 0.25;
             } else {
                 damping *= 4.0;
             }
         }
-        Closed { joints, residual, double: self.nearly_double(&rows, 1024.0) }
+        Closed { joints, residual, double: self.nearly_double(&here, 1024.0) }
     }
 }
 
-/// Closes every solution of a loop to the last digits: for constructions that lose some on the way (block R with D = 2). Solutions with a
+/// Brings every solution to the last digits: for constructions that lose some on the way (block R with D = 2). Solutions with a
 /// joint that is free stay as they are. One that cannot be closed is none, and says `near`: it has been found for rounding alone.
+/// So does a position's whose Jacobian is nearly singular. That of a loop also is where two turns of a wrist meet, which blocks tell apart.
 /// Where there is none and no block says by how much it missed, `miss` is the least residual of [`Loop::nearest`] from four postures; one that closes
 /// the loop all the same says `near`.
-pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
+pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closing: &Loop<J>) {
     let mut kept = Branches { all: found.all, ..Branches::new() };
     (kept.miss, kept.near, kept.continuum) = (found.miss, found.near, found.continuum);
     for branch in found.found() {
@@ -164,13 +179,14 @@ pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
                 continue;
             }
             branch.joints = closed.joints;
+            kept.near |= J == 3 && closed.double;
         }
         kept.add(branch);
     }
     if kept.count == 0 && !kept.near && !kept.continuum && !(kept.miss < Real::INFINITY) {
         const STARTS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         for first in 0..4 {
-            let mut joints = [[0.0; 2]; 6];
+            let mut joints = [[0.0; 2]; J];
             for (i, (joint, prismatic)) in joints.iter_mut().zip(closing.prismatic).enumerate() {
                 *joint = if prismatic { [0.0; 2] } else { STARTS[(first + i * i) % 4] };
             }
@@ -180,6 +196,12 @@ pub fn polish<const N: usize>(found: &mut Branches<6, N>, closing: &Loop) {
         }
     }
     *found = kept;
+}
+
+/// The displacement of the origin to a point: the last link of a loop that brings that point to its target.
+#[inline]
+pub fn displaced([x, y, z]: Vector) -> Frame {
+    [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z]]
 }
 
 /// The turn of a frame: sine times axis for less than a right angle, beyond that angle times axis; about x for a half turn.
@@ -199,33 +221,35 @@ fn turn_vector_of(f: &Frame) -> Vector {
 }
 
 /// The solution by elimination with row pivots, and the smallest pivot; components whose pivot vanishes are 0.
-fn solve(equations: &Equations) -> ([Real; 6], Real) {
-    let mut rows = *equations;
+fn solve<const N: usize>(equations: &Equations<N>) -> ([Real; N], Real) {
+    let Equations { mut rows, mut right } = *equations;
     let mut smallest = Real::INFINITY;
-    for k in 0..6 {
+    for k in 0..N {
         let mut pivot = k;
-        for i in k + 1..6 {
+        for i in k + 1..N {
             if rows[i][k].abs() > rows[pivot][k].abs() {
                 pivot = i;
             }
         }
-        if pivot > k && pivot < 6 {
+        if pivot > k && pivot < N {
             rows.swap(k, pivot);
+            right.swap(k, pivot);
         }
-        let row = rows[k];
+        let (row, e) = (rows[k], right[k]);
         smallest = smallest.min(row[k].abs());
         let over = if row[k] != 0.0 { 1.0 / row[k] } else { 0.0 };
-        for below in rows.iter_mut().skip(k + 1) {
+        for (below, left) in rows.iter_mut().zip(&mut right).skip(k + 1) {
             let factor = below[k] * over;
-            for j in k + 1..7 {
+            for j in k + 1..N {
                 below[j] -= factor * row[j];
             }
+            *left -= factor * e;
         }
     }
-    let mut x = [0.0; 6];
-    for k in (0..6).rev() {
-        let mut sum = rows[k][6];
-        for j in k + 1..6 {
+    let mut x = [0.0; N];
+    for k in (0..N).rev() {
+        let mut sum = right[k];
+        for j in k + 1..N {
             sum -= rows[k][j] * x[j];
         }
         x[k] = if rows[k][k] != 0.0 { sum / rows[k][k] } else { 0.0 };
@@ -237,7 +261,7 @@ fn solve(equations: &Equations) -> ([Real; 6], Real) {
 const SAME: Real = 8.0;
 
 /// Adds a solution unless it is known.
-fn merge<const N: usize>(found: &mut Branches<6, N>, closed: &Closed, double: bool) {
+fn merge<const N: usize>(found: &mut Branches<6, N>, closed: &Closed<6>, double: bool) {
     let same = SAME * sqrt(UNIT_ROUNDOFF);
     let count = found.count;
     for known in found.all.iter_mut().take(count) {

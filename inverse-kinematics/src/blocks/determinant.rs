@@ -38,7 +38,7 @@ fn sampled(eliminants: &Eliminants, spread: &Spread) -> ([Real; 24], Real) {
 struct Search<'a> {
     eliminants: &'a Eliminants,
     spread: Spread,
-    closing: Loop<'a>,
+    closing: Loop<'a, 6>,
 }
 
 impl Search<'_> {
@@ -161,7 +161,7 @@ pub fn determinant_on_circle(links: &[Frame; 6], prismatic: [bool; 6], length: R
     }
     let (a, b, noise) = fourier::<24, 9>(&samples, largest);
     result.noise = noise;
-    let search = Search { eliminants: &eliminants, spread, closing: Loop { links: &unit, prismatic, length: 1.0 } };
+    let search = Search { eliminants: &eliminants, spread, closing: Loop { links: &unit, prismatic, target: [0.0; 3], length: 1.0 } };
     let roots = search.roots(&a, &b, noise, largest);
     result.roots = roots.count;
     result.free = roots.free || noise > NOTHING_BUT_NOISE;

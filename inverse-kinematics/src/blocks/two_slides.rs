@@ -214,7 +214,7 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
     for (i, kind) in prismatic.iter_mut().enumerate() {
         *kind = slides.contains(&i);
     }
-    let closing = Loop { links: &unit, prismatic, length: 1.0 };
+    let closing = Loop { links: &unit, prismatic, target: [0.0; 3], length: 1.0 };
     found.continuum = roots.free;
     for root in roots.all.iter().take(roots.count) {
         let given = [root.c, root.s];

@@ -42,7 +42,7 @@ mod solver {
             n => {
                 let links = first.links_at(&t);
                 let mut found = spherical_triple(&links, [false; 3], regional[usize::from(n) - 3]);
-                polish(&mut found, &Loop { links: &links, prismatic: [false; 6], length });
+                polish(&mut found, &Loop { links: &links, prismatic: [false; 6], target: [0.0; 3], length });
                 conclude(&found, false)
             }
         }

@@ -137,9 +137,12 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
             }
             of_case(case, kinds)
         }
-        Construction::Position { case } => {
+        Construction::Position { case, polished } => {
             if joints != 3 || way.open != 2 {
                 return fail("the position is not behind the third joint");
+            }
+            if *polished != is_rough(case) {
+                return fail("Newton's method is called where it should not be, or is not");
             }
             of_case(case, &way.prismatic)
         }

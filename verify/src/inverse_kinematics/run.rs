@@ -143,7 +143,7 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
             let links = links_at(&way);
             let mut found = block::spherical_triple(&links, kinds, case(name)?);
             if *polished {
-                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, length });
+                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length });
             }
             in_order(text, &way, found)
         }
@@ -152,7 +152,7 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
             let links = links_at(&way);
             let mut found = block::three_parallel(&links);
             if *polished {
-                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, length });
+                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length });
             }
             in_order(text, &way, found)
         }
@@ -168,7 +168,7 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
             let way = arrangement::<6>(first)?;
             in_order(text, &way, block::two_slides(&way.links_at(t), [slides[0], slides[1]], length))
         }
-        Construction::Position { case: name } => {
+        Construction::Position { case: name, polished } => {
             let way = arrangement::<3>(first)?;
             let (a, b) = (way.links[0], way.links[1]);
             let position = block::column(t, 3);
@@ -177,7 +177,12 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
             } else {
                 (block::column(&way.before, 3), block::transform(&block::inverse(&way.after), position))
             };
-            in_order(text, &way, case(name)?(&a, &b, from, to))
+            let mut found = case(name)?(&a, &b, from, to);
+            if *polished {
+                let links = [a, b, block::displaced(from)];
+                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: to, length });
+            }
+            in_order(text, &way, found)
         }
     })
 }

@@ -299,7 +299,9 @@ fn case(name: &str) -> Option<Case> {
 /// Whether the construction of a module is one of closed forms.
 pub(super) fn is_closed(construction: &Construction) -> bool {
     match construction {
-        Construction::SphericalTriple { polished, .. } | Construction::ThreeParallel { polished } => !polished,
+        Construction::SphericalTriple { polished, .. }
+        | Construction::ThreeParallel { polished }
+        | Construction::Position { polished, .. } => !polished,
         Construction::General | Construction::TwoSlides { .. } => false,
         _ => true,
     }
@@ -345,7 +347,7 @@ pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<(), 
             let found = blocks::parallel_turns(&std::array::from_fn(|i| frame(&links[i])), [kinds[0], kinds[1], kinds[2]], case);
             found.found().iter().try_for_each(|branch| judge(&branch.joints, branch.signs))
         }
-        Construction::Position { case: name } => {
+        Construction::Position { case: name, .. } => {
             let Some(case) = case(name).filter(|_| joints == 3) else { return Ok(()) };
             let (a, b) = (frame(&links[0]), frame(&links[1]));
             let [from, to] = at.closed.points(&module.loops[0], at.pose).map(|point| point.map(real));

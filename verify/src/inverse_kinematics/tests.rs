@@ -61,6 +61,30 @@ fn made_up() -> Vec<(&'static str, usize, String)> {
             &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["R", "0.35", o, "0.05", o]],
         ),
         arm(
+            "position, axes unrelated",
+            4,
+            "task: [x, y, z]",
+            &[["R", "0.2", q, "0.3", o], ["R", "0.4", minus, "0.1", o], ["R", "0.35", q, "0.05", o]],
+        ),
+        arm(
+            "position, slide first",
+            4,
+            "task: [x, y, z]",
+            &[["P", "0.1", o, "0.3", o], ["R", "0.4", minus, "0.1", o], ["R", "0.35", q, "0.05", o]],
+        ),
+        arm(
+            "position, slide between",
+            4,
+            "task: [x, y, z]",
+            &[["R", "0.1", "pi/4", "0.3", o], ["P", "0.4", "pi/4", "0.1", q], ["R", "0.35", q, "0.05", o]],
+        ),
+        arm(
+            "position, slide last",
+            4,
+            "task: [x, y, z]",
+            &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["P", "0.1", q, "0.05", o]],
+        ),
+        arm(
             "offset shoulder",
             8,
             "",
@@ -200,6 +224,11 @@ fn redundant() -> Vec<(&'static str, usize, String)> {
     arms
 }
 
+fn made_up_arm(name: &str) -> String {
+    let found = made_up().into_iter().find(|(arm, ..)| *arm == name);
+    found.expect("an arm").2
+}
+
 /// What is certified at a swivel angle: the text, its numbers, the loop and the class.
 #[test]
 fn a_swivel_angle_is_verified_and_not_counted() {
@@ -235,7 +264,7 @@ fn arms_of_each_class_are_verified() {
             assert_eq!(*found, solutions, "{name}: {report}");
         }
         // Every branch, where the construction is of closed forms: text without Newton's method and without a determinant.
-        let closed = !text.contains("impl Loop<'_> {");
+        let closed = !text.contains("pub fn polish<");
         assert_eq!(report.sound, closed.then_some(solutions), "{name}: {report}");
     }
 }
@@ -291,10 +320,31 @@ fn other_texts_of_slides_are_refused() {
         ("two slides", "take(roots.shallow_count)", "take(0)", why),
         ("two slides", places.0, places.1, "the joints that slide are others"),
     ];
-    let arms = made_up();
     for (name, old, new, says) in errors {
-        let (_, _, arm) = arms.iter().find(|(arm, ..)| *arm == name).expect("an arm");
-        let (source, text) = module(arm);
+        let (source, text) = module(&made_up_arm(name));
+        assert!(text.contains(old), "{old}");
+        let fault = verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default();
+        assert!(fault.contains(says), "{name}, {new}: {fault}");
+    }
+}
+
+/// The same of positions that are polished: a lost branch, a sign, the point, no polish, a wrong class.
+#[test]
+fn other_texts_of_positions_are_refused() {
+    let why = "is not the tested one";
+    let errors = [
+        ("position, axes unrelated", "self.target[k] - t[k]", "self.target[k] + t[k]", why),
+        ("position, axes unrelated", "take(roots.count) {", "take(1) {", why),
+        ("position, axes unrelated", "J == 3 && closed.double", "false", why),
+        ("position, axes unrelated", "displaced(from)]", "b]", "should stand where"),
+        ("position, axes unrelated", "target: to", "target: from", "should stand where"),
+        ("position, axes unrelated", "regional_general(&a", "regional_slide(&a", "`regional_slide` does not hold"),
+        ("position, slide first", "regional_slide(&a", "regional_general(&a", "`regional_general` does not hold"),
+        ("position, slide between", "regional_mid_slide(&a", "regional_mid_slide_across(&a", "the class is wrong"),
+        ("position, slide last", "backward: true", "backward: false", "should stand where"),
+    ];
+    for (name, old, new, says) in errors {
+        let (source, text) = module(&made_up_arm(name));
         assert!(text.contains(old), "{old}");
         let fault = verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default();
         assert!(fault.contains(says), "{name}, {new}: {fault}");
@@ -333,7 +383,7 @@ fn what_is_not_armgens_is_refused() {
 /// In C: judged by the module in Rust, and refused wherever it is not its translation.
 #[test]
 fn modules_in_c_are_verified() {
-    let (_, _, shoulder) = made_up().remove(3);
+    let shoulder = made_up_arm("offset shoulder");
     let source = Source::new("robot.yaml", shoulder.as_str());
     let functions = Selection::named(["direct_kinematics"]).expect("a function");
     for scalar in [Scalar::F64, Scalar::F32] {
@@ -417,7 +467,7 @@ type Fault<'a> = &'a dyn Fn() -> Option<String>;
 /// What each check is for; `peel` leaves the checks out that refuse a trick, one after the other.
 pub(crate) fn tricks(peel: &mut dyn FnMut(&str, &[(Check, &'static str)], Fault<'_>)) {
     use Check::{Branches, Class, Counts, Limits, Loop, LoopNumbers, Meeting, MostSolutions, Reached, Sound, WholeText};
-    let (_, _, shoulder) = made_up().remove(3);
+    let shoulder = made_up_arm("offset shoulder");
     let (source, text) = module(&shoulder);
     let mut edited = |old: &str, new: &str, layers: &[(Check, &'static str)]| {
         assert!(text.contains(old), "{old}");

@@ -47,7 +47,7 @@ pub(super) enum Construction {
     SphericalTriple { kinds: Vec<bool>, case: String, polished: bool },
     ThreeParallel { polished: bool },
     ParallelTurns { kinds: Vec<bool>, case: String },
-    Position { case: String },
+    Position { case: String, polished: bool },
     ThreePrismatic { turning: Vec<usize> },
     TwoSlides { slides: Vec<usize> },
     ShoulderElbowWrist,
@@ -263,7 +263,9 @@ const MOVED: &str = "letmutlinks=LOOP.links_at(&t);links[";
 const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}lett:Frame=[x,y,z];";
 const POSITION: &str =
     "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
-const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,length:LENGTH});";
+const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:[0.0;3],length:LENGTH});";
+const POLISH_POSITION: &str =
+    "letlinks=[a,b,displaced(from)];polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:to,length:LENGTH});";
 const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
 
 /// The function from behind its check of the arguments, and the place of the link that a given joint moves.
@@ -308,14 +310,24 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
         reader.expect(",LENGTH);")?;
         Construction::TwoSlides { slides }
     } else {
-        reader.expect("let[a,b,_]=LOOP.links;letmutfound=")?;
-        let case = name(reader, '(')?;
-        reader.expect(if loops.first().is_some_and(|way| way.backward) {
-            "&a,&b,transform(&LOOP.before,position),column(&inverse(&LOOP.after),3));"
+        let points = if loops.first().is_some_and(|way| way.backward) {
+            "transform(&LOOP.before,position),column(&inverse(&LOOP.after),3));"
         } else {
-            "&a,&b,column(&LOOP.before,3),transform(&inverse(&LOOP.after),position));"
-        })?;
-        Construction::Position { case }
+            "column(&LOOP.before,3),transform(&inverse(&LOOP.after),position));"
+        };
+        reader.expect("let[a,b,_]=LOOP.links;")?;
+        let polished = reader.take("let(from,to)=(");
+        if polished {
+            reader.expect(points)?;
+        }
+        reader.expect("letmutfound=")?;
+        let case = name(reader, '(')?;
+        reader.expect("&a,&b,")?;
+        reader.expect(if polished { "from,to);" } else { points })?;
+        if polished {
+            reader.expect(POLISH_POSITION)?;
+        }
+        Construction::Position { case, polished }
     };
     reader.expect(IN_ORDER)?;
     // Without branches by the joint variables.

@@ -178,7 +178,10 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
             names.extend(polished.then_some("closure"));
         }
         Construction::ParallelTurns(_, case) => names.extend(["parallel_turns", case.text]),
-        Construction::Position(_, case) => names.push(case.text),
+        Construction::Position(_, case) => {
+            names.push(case.text);
+            names.extend((!case.closed).then_some("closure"));
+        }
         Construction::ThreePrismatic(..) => names.push("three_prismatic"),
         Construction::TwoSlides(..) => names.push("two_slides"),
         Construction::ShoulderElbowWrist(_) => names.push("shoulder_elbow_wrist"),
@@ -346,7 +349,9 @@ fn function(found: &InverseKinematics) -> TokenStream {
         let kinds = way.prismatic.iter().take(count);
         quote!([#(#kinds),*])
     };
-    let polish = quote!(polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, length: LENGTH }););
+    let polish = quote! {
+        polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
+    };
     // Solutions without branches come in the order of their joint variables.
     let by_angle = matches!(found.construction, Construction::TwoSlides(..));
     let conclusion = match found.given() {
@@ -405,9 +410,19 @@ fn function(found: &InverseKinematics) -> TokenStream {
             } else {
                 (quote!(column(&LOOP.before, 3)), quote!(transform(&inverse(&LOOP.after), position)))
             };
+            let found = if case.closed {
+                quote!(let mut found = #block(&a, &b, #from, #to);)
+            } else {
+                quote! {
+                    let (from, to) = (#from, #to);
+                    let mut found = #block(&a, &b, from, to);
+                    let links = [a, b, displaced(from)];
+                    polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: to, length: LENGTH });
+                }
+            };
             quote! {
                 let [a, b, _] = LOOP.links;
-                let mut found = #block(&a, &b, #from, #to);
+                #found
                 #in_order
             }
         }

@@ -47,7 +47,7 @@ macro_rules! every_block {
 
             /// Of each construction of a whole arm: its solutions, polished, in the arm's order, as a module gives them.
             fn whole<const N: usize>(mut found: Branches<6, N>, links: &[Frame; 6]) {
-                polish(&mut found, &Loop { links, prismatic: black_box([false; 6]), length: number() });
+                polish(&mut found, &Loop { links, prismatic: black_box([false; 6]), target: [0.0; 3], length: number() });
                 let way = way::<6>();
                 let mut in_order: Branches<6, 16> = Branches::new();
                 for branch in found.found() {
@@ -87,6 +87,10 @@ macro_rules! every_block {
                     whole(spherical_triple(&links, prismatic, block), &links);
                     let found = parallel_turns(&way::<4>().links_at(&frame()), prismatic, block);
                     keep(found.found().iter().map(|branch| way::<4>().of_arm(branch).free).sum::<u32>());
+                    solutions(&found);
+                    let links = [frame(), frame(), displaced(vector())];
+                    let mut found = block(&links[0], &links[1], vector(), vector());
+                    polish(&mut found, &Loop { links: &links, prismatic, target: vector(), length: number() });
                     solutions(&found);
                 }
                 whole(three_parallel(&links), &links);
