@@ -90,28 +90,23 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     let chain = Chain::of(manipulator)?;
     let length = size(&chain);
     let given = manipulator.inverse_kinematics.given;
-    if (chain.joints.len() == 7 || given.is_some()) && target(manipulator, &chain) == Ok(Target::Pose) {
-        return redundant(&chain, &length, given);
+    let (target, wanted) = target(manipulator, &chain)?;
+    if chain.joints.len() == wanted + 1 {
+        return redundant(&chain, target, &length, given);
     }
     if given.is_some() {
-        return Err(NOTHING_TOO_MANY.into());
+        return Err("`given` is for arms with one joint more than the target asks for".into());
     }
-    let target = target(manipulator, &chain)?;
     classes::classify(&completed(chain, target)?, target, length)
 }
 
-const NOTHING_TOO_MANY: &str = "`given` is for arms with one joint more than the target asks for";
-
-/// Seven joints and a pose: what the description says is given; else the swivel angle where there is one, or the joint that leaves the cheapest
-/// class, of those that do the last one, joints at the ends of the arm before those between.
-fn redundant(chain: &Chain, length: &Number, given: Option<GivenBeside>) -> Result<InverseKinematics, String> {
+/// One joint more than the target asks for: what the description says is given; else the swivel angle where there is one, or the joint that leaves
+/// the cheapest class, of those that do the last one, joints at the ends of the arm before those between.
+fn redundant(chain: &Chain, target: Target, length: &Number, given: Option<GivenBeside>) -> Result<InverseKinematics, String> {
     let joints = chain.joints.len();
-    if joints != 7 {
-        return Err(NOTHING_TOO_MANY.into());
-    }
     let with = |joint: usize| {
         let (rest, given) = chain.without(joint);
-        let mut found = classes::classify(&rest, Target::Pose, length.clone())?;
+        let mut found = classes::classify(&completed(rest, target)?, target, length.clone())?;
         found.class += &format!("; q{} is given", joint + 1);
         // A joint between two others belongs to the loop.
         found.redundancy = given
@@ -130,18 +125,15 @@ fn redundant(chain: &Chain, length: &Number, given: Option<GivenBeside>) -> Resu
     if let Some(found) = classes::shoulder_elbow_wrist(chain, length) {
         return Ok(found);
     }
-    let is_closed = |found: &Result<InverseKinematics, String>| {
-        found.as_ref().is_ok_and(|found| !matches!(found.construction, Construction::General(_)))
-    };
-    let last = with(joints - 1);
-    if is_closed(&last) {
-        return last;
+    let mut rest = Err(String::new());
+    for joint in [joints - 1, 0].into_iter().chain((1..joints - 1).rev()) {
+        let found = with(joint);
+        if found.as_ref().is_ok_and(InverseKinematics::is_cheap) {
+            return found;
+        }
+        rest = rest.or(found);
     }
-    let first = with(0);
-    if is_closed(&first) {
-        return first;
-    }
-    (1..joints - 1).rev().map(with).find(Result::is_ok).unwrap_or(last.or(first))
+    rest
 }
 
 impl InverseKinematics {
@@ -159,6 +151,15 @@ impl InverseKinematics {
         }
     }
 
+    /// Whether no other class of its target is cheaper by much: neither a determinant nor a position that Newton's method finishes.
+    fn is_cheap(&self) -> bool {
+        match &self.construction {
+            Construction::General(_) => false,
+            Construction::Position(_, case) => case.closed,
+            _ => true,
+        }
+    }
+
     /// The joint whose value is given, where one is.
     pub fn given(&self) -> Option<&Given> {
         match &self.redundancy {
@@ -168,8 +169,8 @@ impl InverseKinematics {
     }
 }
 
-/// The target that the rows of the task make.
-fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
+/// The target that the rows of the task make, and for how many joints it asks; one more is given.
+fn target(manipulator: &Manipulator, chain: &Chain) -> Result<(Target, usize), String> {
     let rows = |rows: [TaskRow; 3]| rows.map(|row| manipulator.task.contains(&row));
     let mut linear = rows([TaskRow::X, TaskRow::Y, TaskRow::Z]);
     let mut angular = rows([TaskRow::Rx, TaskRow::Ry, TaskRow::Rz]);
@@ -180,7 +181,7 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
         Some(Target::Planar) | None => {}
         Some(Target::Pointing) => {
             return match chain.joints.len() {
-                5 => Ok(Target::Pointing),
+                5 => Ok((Target::Pointing, 5)),
                 _ => Err("a pointing target asks for five joints".into()),
             }
         }
@@ -190,18 +191,43 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<Target, String> {
     if wanted == Some(Target::Planar) && count(angular) != 1 {
         return Err("a planar target asks for a task with one angular row".into());
     }
-    match (count(linear), count(angular), axis) {
-        (3, 3, _) => Ok(Target::Pose),
-        (3, 0, _) if chain.joints.len() == 3 => Ok(Target::Position),
-        (2, 0, _)
-            if chain.joints.len() == 2 && linear.iter().position(|row| !row).is_some_and(|axis| chain.turns_about(axis)) =>
-        {
-            Ok(Target::Position)
+    let (places, joints) = (count(linear), chain.joints.len());
+    // Across which axis a plane is, of two rows.
+    let across = || linear.iter().position(|row| !row);
+    let target = match (places, count(angular), axis) {
+        (3, 3, _) => return Ok((Target::Pose, 6)),
+        (3, 0, _) => Target::Position,
+        (2, 0, _) if across().is_some_and(|axis| chain.turns_about(axis)) => Target::Position,
+        (2, 0, _) => {
+            return Err("two rows of position are a target where all revolute axes are parallel to the axis of the third; \
+                        `task: [x, y, z]` asks for the whole position"
+                .into())
         }
-        (_, 0, _) => Err("a position alone as the target asks for as many rows as joints".into()),
-        (3, 1, Some(axis)) if chain.turns_about(axis) && chain.joints.len() == 4 => Ok(Target::Planar),
-        (2, 1, Some(axis)) if chain.turns_about(axis) && chain.joints.len() == 3 && !linear[axis] => Ok(Target::Planar),
-        _ => Err("the rows of the task are neither a pose nor a planar target with as many rows as joints".into()),
+        (2 | 3, 1, Some(axis)) if !chain.turns_about(axis) => {
+            return Err(format!(
+                "an angular row is a target beside rows of position where all revolute axes are parallel to its axis, here {} of the base; \
+                 `task: [x, y, z]` asks for the position alone",
+                ["x", "y", "z"][axis]
+            ))
+        }
+        (3, 1, Some(_)) => Target::Planar,
+        (2, 1, Some(axis)) if !linear[axis] => Target::Planar,
+        _ => {
+            return Err("the rows of the task make no target: that is a pose (all six rows), a position (two or three linear rows), these with \
+                        the angular row of an axis to which all revolute axes are parallel, or, by `inverse_kinematics: {target: pointing}`, \
+                        position and z axis of the end effector of five joints"
+                .into())
+        }
+    };
+    let wanted = places + count(angular);
+    match joints.checked_sub(wanted) {
+        Some(0 | 1) => Ok((target, wanted)),
+        Some(more) => {
+            Err(format!("{joints} joints are {more} more than the {wanted} rows of the task, and one more can be given"))
+        }
+        None => {
+            Err(format!("{joints} joints are fewer than the {wanted} rows of the task; leave rows out that they cannot meet"))
+        }
     }
 }
 

@@ -31,7 +31,21 @@ fn classes_of_robots() {
     assert_eq!(class("scara4"), of("all revolute axes parallel (joints 1 2 4)", 2));
     assert_eq!(class("scara"), of("all revolute axes parallel (joints 1 2 4)", 2));
     assert_eq!(class("panda7"), of("spherical triple (axes 1 2 3 through one point), axes 6 and 5 intersect; q7 is given", 8));
-    assert!(class("base_set").is_err() && class("single_joint").is_err());
+    assert_eq!(class("base_set"), of("position of three joints, axes 2 and 3 are parallel; q4 is given", 4));
+    assert_eq!(class("load_friction"), of("position of three joints, joints 1 and 4 slide; q3 is given", 2));
+    assert!(class("single_joint").is_err());
+    // Why there is no function, and what would be one.
+    for (name, why) in [
+        ("counterbalance", "parallel to its axis, here z of the base; `task: [x, y, z]` asks for the position alone"),
+        ("everything", "the rows of the task make no target"),
+    ] {
+        let reason = class(name).expect_err("no class");
+        assert!(reason.contains(why), "{name}: {reason}");
+    }
+    // Three joints of a plane reach no position outside of it.
+    let (_, _, _, text) = made_up().into_iter().find(|(name, ..)| *name == "position4r_j2").expect("an arm");
+    let reason = classified("plane", &text.replace("given: j2", "given: j1")).expect_err("no class");
+    assert!(reason.contains("for a position and 3 joints of this geometry"), "{reason}");
     for (name, class, most, text) in made_up() {
         let found = classified(name, &text).unwrap_or_else(|reason| panic!("{name}: {reason}"));
         assert!(found.class.starts_with(class) && found.most == most, "{name}: {} {}", found.class, found.most);

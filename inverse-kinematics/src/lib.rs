@@ -44,8 +44,8 @@
 //! | P R P | directions not always parallel | `regional_slide_turn_slide` | 2 |
 //! | P P P | directions span space | `regional_slides` | 1 |
 //!
-//! Seven joints and a pose: [`Given`](f64::Given) takes the first or the last joint, whose value is given, off the pose, and puts it back
-//! into solutions. Where the first three and the last three turn about axes through one point each,
+//! One joint too many: [`Given`](f64::Given) takes the first or the last joint, whose value is given, off the pose (off a position: moves the
+//! point or the position), is the link between two others, and puts the joint back into solutions. Where the first three and the last three turn about axes through one point each,
 //! [`shoulder_elbow_wrist`](f64::shoulder_elbow_wrist) takes the swivel angle of the elbow instead: at most 8.
 //!
 //! If the pose is in L1 or L2, only `regional_general`, `regional_slide` and `regional_mid_slide` hold for all poses.

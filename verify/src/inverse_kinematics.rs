@@ -448,6 +448,7 @@ fn construction(
             if !closed.closes(way, &kinds, &posture, &pose) && Check::Loop.is_made() {
                 return Err("LOOP: it is not the loop of this arm".into());
             }
+            closed.links = closed.links_at(way, &pose);
             match class::most(&module.construction, way, &closed) {
                 Ok(found) => most = found,
                 Err(fault) if Check::Class.is_made() => return Err(fault),
@@ -485,15 +486,17 @@ fn sound(
             let whole = posture(&chain, &mut field);
             let mut pose = chain.pose(&whole);
             let mut closed = closed.clone();
+            let mut tip = [0; 3];
             if let Some(given) = &module.given {
                 let value = whole[given.joint];
                 let link = points::link(given, &claims.given, &field, value).ok_or("a constant of the loop divides by zero")?;
                 match given.place {
+                    None if !module.rotation && given.joint > 0 => tip = link.map(|row| row[3]),
                     None => pose = points::rest(given, &link, chain.modulus, &pose),
                     Some(place) => closed.links[place] = link,
                 }
             }
-            let at = soundness::At { closed: &closed, pose: &pose, posture: &whole };
+            let at = soundness::At { closed: &closed, pose: &pose, tip, posture: &whole };
             let branch = soundness::run(module, &at, &mut sound);
             if let (Err(branch), true) = (branch, Check::Sound.is_made()) {
                 return Err(format!("BRANCHES: branch {branch} does not close the loop"));

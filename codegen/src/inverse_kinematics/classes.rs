@@ -1,10 +1,10 @@
 //! Which class an arm is of: the cheapest whose exact tests it passes; of equals the lowest start of the loop, forwards before backwards.
 
 use super::chain::{Arrangement, Chain};
-use super::frame::{compose, is_parallel, is_right, is_zero, sum_of_angles, turn_about_z, turns_beside_x, Frame};
+use super::frame::{compose, is_parallel, is_right, is_zero, slide_along_z, sum_of_angles, turn_about_z, turns_beside_x, Frame};
 use super::general;
 use super::{Choice, Construction, InverseKinematics, Redundancy, Target};
-use crate::exact::Number;
+use crate::exact::{Number, Rational};
 
 /// A case of block 6: three joints that bring a point to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,36 +89,32 @@ const CROSSING: Regional = Regional {
     because: "axes {1} and {2} intersect",
 };
 
-/// The case of block 6 for the first three joints of a loop.
+/// The case of block 6 for the first three joints of a loop: with a joint that is given between them, that of some of its values.
 fn regional_of(way: &Arrangement) -> Option<Regional> {
-    let (a, b) = (&way.links[0], &way.links[1]);
-    let moved = way.given.as_ref().is_some_and(|given| given.place == Some(1));
-    // B may then be any frame, and is not at a particular place but at particular values of the joint that is given.
-    if moved && way.is_constant(0) && way.kinds() == [false; 3] && is_zero(&a[0][3]) && !is_parallel(a) {
-        return Some(CROSSING);
-    }
-    regional(way.kinds(), a, b, way.is_constant(0) && way.is_constant(1))
+    let constant = [0, 1].map(|place| way.is_constant(place));
+    let [one, other] =
+        [0, 1].map(|sample| regional(way.kinds(), &way.link(0, sample), &way.link(1, sample), constant, way.open < 2));
+    one.filter(|_| one == other)
 }
 
-/// The case of block 6 for three joints of given kinds with links A, B; not `constant`: the pose is in one of the links.
-fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: bool) -> Option<Regional> {
+/// The case of block 6 for three joints of given kinds with links A, B, as far as they are `constant`; `posed`: the pose is in one of them, and that
+/// one is not looked at.
+fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: [bool; 2], posed: bool) -> Option<Regional> {
     let case = |function, text, closed, most, choices, because| Some(Regional { function, text, closed, most, choices, because });
-    if !constant {
+    let meet = |f: &Frame| is_zero(&f[0][3]);
+    let crossing = constant[0] && meet(a) && !is_parallel(a);
+    if posed {
+        let degenerate = constant[0] && is_parallel(a);
         return match kinds {
-            [false, false, false] => case(
-                "regional_general",
-                TURNING,
-                false,
-                4,
-                &[] as &[(Pair, Sign)],
-                "no two axes of {1} {2} {3} related for every pose",
-            ),
+            [false, false, false] if crossing => Some(CROSSING),
+            [false, false, false] if !degenerate => {
+                case("regional_general", TURNING, false, 4, &[], "no two axes of {1} {2} {3} related for every pose")
+            }
             _ => None,
         };
     }
-    let meet = |f: &Frame| is_zero(&f[0][3]);
     match kinds {
-        [false, false, false] if is_parallel(b) && !meet(b) && !is_parallel(a) => case(
+        [false, false, false] if constant[1] && is_parallel(b) && !meet(b) && !is_parallel(a) => case(
             "regional_elbow",
             TURNING,
             true,
@@ -126,11 +122,15 @@ fn regional(kinds: [bool; 3], a: &Frame, b: &Frame, constant: bool) -> Option<Re
             &[(SHOULDER, Sign::Root(1)), (ELBOW, Sign::Links)],
             "axes {2} and {3} are parallel",
         ),
-        [false, false, false] if meet(a) && !is_parallel(a) && !(is_parallel(b) && meet(b)) => Some(CROSSING),
-        [false, false, false] if !is_parallel(a) && !is_parallel(b) && !meet(b) => {
-            case("regional_general", TURNING, false, 4, &[], "axes {1}, {2} and {3} neither are parallel nor intersect")
+        [false, false, false] if crossing && !(is_parallel(b) && meet(b)) => Some(CROSSING),
+        [false, false, false] if !is_parallel(a) && !meet(a) && !(constant[1] && (is_parallel(b) || meet(b))) => {
+            let because = match constant[1] {
+                true => "axes {1}, {2} and {3} neither are parallel nor intersect",
+                false => "axes {1} and {2} neither are parallel nor intersect",
+            };
+            case("regional_general", TURNING, false, 4, &[], because)
         }
-        [true, false, false] if is_parallel(b) && !meet(b) && !is_right(a) => case(
+        [true, false, false] if constant[1] && is_parallel(b) && !meet(b) && !is_right(a) => case(
             "regional_slide_elbow",
             ONE_SLIDE,
             true,
@@ -207,6 +207,18 @@ impl Arrangement {
     /// The numbers of its joints in the arm, from 1.
     fn joints(&self) -> Vec<usize> {
         self.order.iter().map(|joint| self.number(*joint)).collect()
+    }
+
+    /// The link at a place; where a joint that is given moves it, at one of two values of that joint. They are no particular ones, so that what is so at
+    /// both is so at all.
+    fn link(&self, place: usize, sample: usize) -> Frame {
+        let moved = self.given.as_ref().filter(|given| given.place == Some(place));
+        let Some(given) = moved else { return self.links[place].clone() };
+        let (x, y, over) = [(33, 56, 65), (48, 55, 73)][sample];
+        let over = Number::from(Rational::ONE / Rational::from(over));
+        let [c, s] = [x, y].map(|k| &Number::from(k) * &over);
+        let joint = if given.prismatic { slide_along_z(&c) } else { turn_about_z(&[c, s]) };
+        compose(&given.before, &compose(&joint, &given.after))
     }
 
     fn kinds(&self) -> [bool; 3] {
@@ -345,7 +357,7 @@ fn parallel_turns(chain: &Chain) -> Option<Class> {
                 }
                 since = Some(super::frame::identity());
             }
-            since = since.map(|between| compose(&between, &way.links[place]));
+            since = since.map(|between| compose(&between, &way.link(place, 0)));
         }
         let case = regional_of(&way).filter(|case| case.closed)?;
         let joints = way.joints();
@@ -359,7 +371,7 @@ fn parallel_turns(chain: &Chain) -> Option<Class> {
 /// Three joints that bring the end effector to a position.
 fn position(chain: &Chain, closed: bool) -> Option<Class> {
     chain.arrangements().filter(|way| way.open == 2).find_map(|way| {
-        let case = regional(way.kinds(), &way.links[0], &way.links[1], true).filter(|case| case.closed == closed)?;
+        let case = regional_of(&way).filter(|case| case.closed == closed)?;
         let joints = way.joints();
         let class = format!("position of three joints, {}", case.because(&joints));
         let choices = case.choices(&joints);

@@ -92,6 +92,89 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
             4,
             &[(R, "0.2", "0.9", "0.3", "0.1"), (R, elbow, "-1.1", "0.1", "0"), (P, "0.1", quarter, "0.05", "0.3")],
         ),
+        // One joint too many for a position: those of an elbow behind a turning base given; axes that are not related.
+        arm(
+            "position4r",
+            "task: [x, y, z]",
+            "position of three joints, axes 2 and 3 are parallel; q4 is given",
+            4,
+            &[
+                (R, "0.1", quarter, "0.3", "0.1"),
+                (R, elbow, "0", "0.1", "0"),
+                (R, "0.35", "0", "0.05", "0.3"),
+                (R, "0.1", "0.2", "0.02", "0"),
+            ],
+        ),
+        arm(
+            "position4r_j2",
+            "task: [x, y, z]\ninverse_kinematics: {given: j2}",
+            "position of three joints, axes 3 and 4 are parallel",
+            4,
+            &[
+                (R, "0.1", quarter, "0.3", "0.1"),
+                (R, elbow, "0", "0.1", "0"),
+                (R, "0.35", "0", "0.05", "0.3"),
+                (R, "0.1", "0.2", "0.02", "0"),
+            ],
+        ),
+        arm(
+            "position4r_j3",
+            "task: [x, y, z]\ninverse_kinematics: {given: j3}",
+            "position of three joints, axes 1 and 2 neither",
+            4,
+            &[
+                (R, "0.1", quarter, "0.3", "0.1"),
+                (R, elbow, "0", "0.1", "0"),
+                (R, "0.35", "0", "0.05", "0.3"),
+                (R, "0.1", "0.2", "0.02", "0"),
+            ],
+        ),
+        arm(
+            "position4r_general",
+            "task: [x, y, z]",
+            "position of three joints, axes 1, 2 and 3 neither are parallel nor intersect; q4 is given",
+            4,
+            &[
+                (R, "0.2", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (R, "0.35", quarter, "0.05", "0.3"),
+                (R, "0.1", "0.2", "0.02", "0"),
+            ],
+        ),
+        arm(
+            "position_prpr",
+            "task: [x, y, z]",
+            "position of three joints, joints 1 and 3 slide; q4 is given",
+            2,
+            &[
+                (P, "0.2", "0.9", "0.3", "0.1"),
+                (R, elbow, "-1.1", "0.1", "0"),
+                (P, "0.35", quarter, "0.05", "0.3"),
+                (R, "0.1", "0.2", "0.02", "0"),
+            ],
+        ),
+        // The same in a plane.
+        arm(
+            "planar4r",
+            "task: [x, y, rz]",
+            "all revolute axes parallel (joints 1 2 3); q4 is given",
+            2,
+            &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0.2"), (R, "0.3", "0", "0", "0"), (R, "0.2", "0", "0", "0")],
+        ),
+        arm(
+            "planar4r_j2",
+            "task: [x, y, rz]\ninverse_kinematics: {given: j2}",
+            "all revolute axes parallel (joints 1 3 4); q2 is given",
+            2,
+            &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0.2"), (R, "0.3", "0", "0", "0"), (R, "0.2", "0", "0", "0")],
+        ),
+        arm(
+            "planar3r_xy",
+            "task: [x, y]",
+            "position of three joints",
+            2,
+            &[(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0", "0.2"), (R, "0.3", "0", "0", "0")],
+        ),
         // A spherical wrist behind three axes that are not related, with angles that are no fractions of a turn.
         arm(
             "pieper",

@@ -85,7 +85,7 @@ pub trait InverseKinematics<const N: usize, const K: usize>: JointRanges<N> {
     fn branch_signs(&self) -> u16;
 }
 
-/// Inverse kinematics of an arm with one joint more than a pose asks for: all joint variables that reach a pose with a given value of one argument,
+/// Inverse kinematics of an arm with one joint more than its task asks for: all joint variables that reach a pose with a given value of one argument,
 /// the `redundancy`, at most `K` where they are finitely many.
 ///
 /// The redundancy is the variable of a joint, rad or m, or the swivel angle of the elbow about the line from shoulder to wrist, rad; the emitted

@@ -31,10 +31,9 @@ impl Link<'_> {
     }
 }
 
-/// The most solutions of a case of block 6 for joints of these kinds with links A and B; not `constant`: the pose or the joint that is given
-/// is in one of them. Or what is wrong.
-fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, constants: [bool; 2]) -> Result<usize, String> {
-    let constant = constants == [true; 2];
+/// The most solutions of a case of block 6 for joints of these kinds with links A and B, or what is wrong. A link that is not `constant` is that of
+/// the pose or of the joint that is given, at a random value.
+fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, constant: [bool; 2]) -> Result<usize, String> {
     let link = |frame| Link { frame, one: closed.modulus.one };
     let product = closed.modulus.compose(a, b);
     let determinant = {
@@ -43,15 +42,16 @@ fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, cons
     };
     let (a, b, both) = (link(a), link(b), link(&product));
     let turning = [false; 3];
+    let coaxial = b.is_parallel() && b.meets();
     let (wanted, holds, most) = match case {
-        "regional_general" => (turning, !constant || !a.is_parallel() && !b.is_parallel() && !b.meets(), 4),
-        // B may be any frame.
-        "regional_crossing" if constants == [true, false] => (turning, a.meets() && !a.is_parallel(), 4),
-        _ if !constant => return Err(format!("`{case}` does not hold at all poses")),
-        "regional_elbow" => (turning, b.is_parallel() && !b.meets() && !a.is_parallel(), 4),
-        "regional_crossing" => (turning, a.meets() && !a.is_parallel() && !(b.is_parallel() && b.meets()), 4),
-        "regional_slide_elbow" => ([true, false, false], b.is_parallel() && !b.meets() && !a.is_right(), 2),
-        "regional_slide_across" => ([true, false, false], a.is_right() && !(b.is_parallel() && b.meets()), 4),
+        "regional_general" => {
+            let (first, second) = (!a.is_parallel() && !a.meets(), !b.is_parallel() && !b.meets());
+            (turning, first && (second || !constant[1]), 4)
+        }
+        "regional_elbow" => (turning, constant[1] && b.is_parallel() && !b.meets() && !a.is_parallel(), 4),
+        "regional_crossing" => (turning, constant[0] && a.meets() && !a.is_parallel() && !coaxial, 4),
+        "regional_slide_elbow" => ([true, false, false], constant[1] && b.is_parallel() && !b.meets() && !a.is_right(), 2),
+        "regional_slide_across" => ([true, false, false], a.is_right() && !coaxial, 4),
         "regional_slide" => ([true, false, false], !b.is_parallel() && !a.is_right(), 4),
         "regional_mid_slide_elbow" => ([false, true, false], both.is_parallel() && !a.is_right(), 2),
         "regional_mid_slide_across" => ([false, true, false], a.is_right(), 4),
@@ -61,9 +61,9 @@ fn regional(case: &str, kinds: &[bool], [a, b]: [&Frame; 2], closed: &Loop, cons
         "regional_slides" => ([true; 3], determinant != 0, 1),
         other => return Err(format!("there is no construction `{other}`")),
     };
-    // Between two turns a constant link is in its normal form; that of the pose or of the joint that is given is whatever it is.
-    let normal = case == "regional_general" && !constant
-        || (!constants[0] || kinds[0] || kinds[1] || a.is_normal()) && (!constants[1] || kinds[1] || kinds[2] || b.is_normal());
+    // Between two turns a constant link is in its normal form; another is whatever it is.
+    let normal =
+        (!constant[0] || kinds[0] || kinds[1] || a.is_normal()) && (!constant[1] || kinds[1] || kinds[2] || b.is_normal());
     if kinds == wanted && holds && normal {
         Ok(most)
     } else {

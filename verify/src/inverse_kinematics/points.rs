@@ -189,15 +189,15 @@ impl Loop {
         self.are_values(prismatic, values).then(|| image(m, &chain, point))
     }
 
-    /// Of a position: the point behind the third joint, and where it has to be as seen from before the first.
-    pub(super) fn points(&self, way: &Arrangement, pose: &Frame) -> [[u64; 3]; 2] {
+    /// Of a position, which `tip` reaches: the point behind the third joint, and where it has to be as seen from before the first.
+    pub(super) fn points(&self, way: &Arrangement, pose: &Frame, tip: [u64; 3]) -> [[u64; 3]; 2] {
         let m = self.modulus;
         let position = pose.map(|row| row[3]);
-        let origin = |f: &Frame| f.map(|row| row[3]);
+        let back = m.inverse_frame(&self.after);
         if way.backward {
-            [image(m, &self.before, position), origin(&m.inverse_frame(&self.after))]
+            [image(m, &self.before, position), image(m, &back, tip)]
         } else {
-            [origin(&self.before), image(m, &m.inverse_frame(&self.after), position)]
+            [image(m, &self.before, tip), image(m, &back, position)]
         }
     }
 }

@@ -103,7 +103,7 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
                 let way = arrangement::<7>(&text.loops[0])?;
                 Some(in_order(text, &way, block::shoulder_elbow_wrist(&way, t, redundancy)))
             }
-            _ => of_rest(text, t, None),
+            _ => of_rest(text, t, None, [0.0; 3]),
         };
     };
     let numbers: Option<Vec<f64>> = given.numbers.iter().map(|x| x.parse().ok()).collect();
@@ -111,9 +111,12 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
     let frame = |at: usize| -> block::Frame { std::array::from_fn(|i| std::array::from_fn(|j| numbers[at + 4 * i + j])) };
     let joint = block::Given { joint: given.joint, prismatic: given.prismatic, before: frame(0), after: frame(12) };
     let value = joint.value(redundancy);
+    let link = joint.link(value);
     let mut outcome = match given.place {
-        None => of_rest(text, &joint.rest(value, t), None)?,
-        Some(place) => of_rest(text, t, Some((place, joint.link(value))))?,
+        // A position says nothing of the rotation in which what the last joint moves stands.
+        None if !text.rotation && given.joint > 0 => of_rest(text, t, None, block::column(&link, 3))?,
+        None => of_rest(text, &joint.rest(value, t), None, [0.0; 3])?,
+        Some(place) => of_rest(text, t, Some((place, link)), [0.0; 3])?,
     };
     for solution in &mut outcome.solutions {
         solution.insert(given.joint, value);
@@ -121,15 +124,15 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
     Some(outcome)
 }
 
-/// The same of the joints that are not given.
-fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) -> Option<Outcome> {
-    let links_at = |way: &block::Arrangement<6>| {
-        let mut links = way.links_at(t);
+/// The same of the joints that are not given. `tip`: the point that has the position, seen from behind them.
+fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, tip: block::Vector) -> Option<Outcome> {
+    fn with_moved<const J: usize>(mut links: [block::Frame; J], moved: Option<(usize, block::Frame)>) -> [block::Frame; J] {
         if let Some((place, link)) = moved {
             links[place] = link;
         }
         links
-    };
+    }
+    let links_at = |way: &block::Arrangement<6>| with_moved(way.links_at(t), moved);
     let length: f64 = text.length.parse().ok()?;
     let first = &text.loops[0];
     Some(match &text.construction {
@@ -158,7 +161,8 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
         }
         Construction::ParallelTurns { kinds, case: name } => {
             let way = arrangement::<4>(first)?;
-            in_order(text, &way, block::parallel_turns(&way.links_at(t), [kinds[0], kinds[1], kinds[2]], case(name)?))
+            let links = with_moved(way.links_at(t), moved);
+            in_order(text, &way, block::parallel_turns(&links, [kinds[0], kinds[1], kinds[2]], case(name)?))
         }
         Construction::ThreePrismatic { turning } => {
             let way = arrangement::<6>(first)?;
@@ -170,12 +174,12 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>) 
         }
         Construction::Position { case: name, polished } => {
             let way = arrangement::<3>(first)?;
-            let (a, b) = (way.links[0], way.links[1]);
+            let [a, b, _] = with_moved(way.links, moved);
             let position = block::column(t, 3);
             let (from, to) = if way.backward {
-                (block::transform(&way.before, position), block::column(&block::inverse(&way.after), 3))
+                (block::transform(&way.before, position), block::transform(&block::inverse(&way.after), tip))
             } else {
-                (block::column(&way.before, 3), block::transform(&block::inverse(&way.after), position))
+                (block::transform(&way.before, tip), block::transform(&block::inverse(&way.after), position))
             };
             let mut found = case(name)?(&a, &b, from, to);
             if *polished {

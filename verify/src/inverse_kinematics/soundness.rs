@@ -275,6 +275,8 @@ pub(super) struct At<'a> {
     pub(super) closed: &'a Loop,
     /// The pose that the joints of the loop have to reach.
     pub(super) pose: &'a Displacement,
+    /// Of a position: the point that reaches it, seen from behind these joints.
+    pub(super) tip: [u64; 3],
     /// The posture that reaches it, in the arm's order.
     pub(super) posture: &'a [[u64; 2]],
 }
@@ -350,12 +352,12 @@ pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<(), 
         Construction::Position { case: name, .. } => {
             let Some(case) = case(name).filter(|_| joints == 3) else { return Ok(()) };
             let (a, b) = (frame(&links[0]), frame(&links[1]));
-            let [from, to] = at.closed.points(&module.loops[0], at.pose).map(|point| point.map(real));
+            let [from, to] = at.closed.points(&module.loops[0], at.pose, at.tip).map(|point| point.map(real));
             let found = case(&a, &b, from, to);
             found.found().iter().try_for_each(|branch| {
                 let numbers: Option<Vec<[u64; 2]>> = branch.joints.iter().map(|[c, s]| Some([c.value()?, s.value()?])).collect();
                 let Some(numbers) = numbers else { return Ok(()) };
-                let [from, to] = at.closed.points(&module.loops[0], at.pose);
+                let [from, to] = at.closed.points(&module.loops[0], at.pose, at.tip);
                 if at.closed.moved(&module.loops[0].prismatic, &links, &numbers, from) != Some(to) {
                     return wrong(branch.signs);
                 }

@@ -85,6 +85,42 @@ fn made_up() -> Vec<(&'static str, usize, String)> {
             &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["P", "0.1", q, "0.05", o]],
         ),
         arm(
+            "position and q4",
+            4,
+            "task: [x, y, z]",
+            &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["R", "0.35", o, "0.05", o], ["R", "0.2", q, "0.02", o]],
+        ),
+        arm(
+            "position and q2",
+            4,
+            "task: [x, y, z]\ninverse_kinematics: {given: j2}",
+            &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["R", "0.35", o, "0.05", o], ["R", "0.2", q, "0.02", o]],
+        ),
+        arm(
+            "position and q3",
+            4,
+            "task: [x, y, z]\ninverse_kinematics: {given: j3}",
+            &[["R", "0.1", q, "0.3", o], ["R", "0.4", o, "0.1", o], ["R", "0.35", o, "0.05", o], ["R", "0.2", q, "0.02", o]],
+        ),
+        arm(
+            "position and a boom",
+            2,
+            "task: [x, y, z]\ninverse_kinematics: {given: j3}",
+            &[["P", "0.1", o, "0.2", o], ["R", o, q, "0.2", o], ["R", "0.1", minus, "0.1", o], ["P", o, o, o, o]],
+        ),
+        arm(
+            "planar and q4",
+            2,
+            "task: [x, y, rz]",
+            &[["R", "0.5", o, o, o], ["R", "0.4", o, o, o], ["R", "0.3", o, o, o], ["R", "0.2", o, o, o]],
+        ),
+        arm(
+            "planar and q2",
+            2,
+            "task: [x, y, rz]\ninverse_kinematics: {given: j2}",
+            &[["R", "0.5", o, o, o], ["R", "0.4", o, o, o], ["R", "0.3", o, o, o], ["R", "0.2", o, o, o]],
+        ),
+        arm(
             "offset shoulder",
             8,
             "",
@@ -342,6 +378,15 @@ fn other_texts_of_positions_are_refused() {
         ("position, slide first", "regional_slide(&a", "regional_general(&a", "`regional_general` does not hold"),
         ("position, slide between", "regional_mid_slide(&a", "regional_mid_slide_across(&a", "the class is wrong"),
         ("position, slide last", "backward: true", "backward: false", "should stand where"),
+        // A joint that is given: the point that it moves, the link, the joint, the room for solutions, the class.
+        ("position and q4", "transform(&LOOP.before, tip)", "transform(&LOOP.before, position)", "should stand where"),
+        ("position and q4", "column(&GIVEN.link(value), 3)", "column(&GIVEN.link(value), 2)", "should stand where"),
+        ("position and q4", "q[3]", "q[2]", "should stand where"),
+        ("position and q4", " = regional_elbow(", " = regional_crossing(", "`regional_crossing` does not hold"),
+        ("position and q2", "links[0] = ", "links[1] = ", "not the loop of this arm"),
+        ("position and q3", "GIVEN.with::<3, DOF, 4>", "GIVEN.with::<3, DOF, 8>", "should stand where"),
+        ("planar and q4", "GIVEN.with::<4, 5, 4>", "GIVEN.with::<4, DOF, 4>", "should stand where"),
+        ("planar and q4", "|| !redundancy.is_finite()", "", "should stand where"),
     ];
     for (name, old, new, says) in errors {
         let (source, text) = module(&made_up_arm(name));

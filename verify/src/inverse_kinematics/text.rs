@@ -253,12 +253,17 @@ const EXPORT: &str = "#[allow(unused_imports)]pubuseself::all_solutions::{invers
 const HEAD: &str = "Real,Solution,Solutions,Verdict,BRANCHES,DOF,MAX_SOLUTIONS};\
                     #[allow(dead_code,unreachable_pub,clippy::all,clippy::pedantic)]#[rustfmt::skip]modall_solutions{";
 const BEGIN: &str = "pubfninverse_kinematics(t:&[[Real;4];4])->Solutions{let[x,y,z,_]=*t;";
-const BEGIN_REDUNDANT: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;\
-                               if!is_pose(t)||!redundancy.is_finite(){returnSolutions::none(Verdict::Invalid);}";
+const BEGIN_REDUNDANT: &str = "pubfninverse_kinematics(t:&[[Real;4];4],redundancy:Real)->Solutions{let[x,y,z,_]=*t;";
+const ROTATION_REDUNDANT: &str = "if!is_pose(t)||!redundancy.is_finite(){returnSolutions::none(Verdict::Invalid);}";
+const POSITION_REDUNDANT: &str = "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite())||!redundancy.is_finite()\
+                                  {returnSolutions::none(Verdict::Invalid);}";
 const VALUE: &str = "letvalue=GIVEN.value(redundancy);";
+const FIRST_POSITION: &str = "letposition=transform(&inverse(&GIVEN.link(value)),position);";
+const TIP: &str = "lettip=column(&GIVEN.link(value),3);";
 const REST: &str = "lett:Frame=GIVEN.rest(value,&[x,y,z]);";
 const POSE: &str = "lett:Frame=[x,y,z];";
 const LINKS: &str = "letlinks=LOOP.links_at(&t);";
+const MOVED_POINT: &str = "letmutlinks=LOOP.links;links[";
 const MOVED: &str = "letmutlinks=LOOP.links_at(&t);links[";
 const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}lett:Frame=[x,y,z];";
 const POSITION: &str =
@@ -269,7 +274,13 @@ const POLISH_POSITION: &str =
 const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
 
 /// The function from behind its check of the arguments, and the place of the link that a given joint moves.
-fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(Construction, Option<usize>), String> {
+///
+/// - `tip`: the point of a position stands behind a last joint, which is given.
+fn body(
+    reader: &mut Reader<'_>,
+    loops: &[Arrangement],
+    (dof, given, tip): (usize, bool, bool),
+) -> Result<(Construction, Option<usize>), String> {
     let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
     if reader.take(if given {
         "conclude(&GIVEN.with::<6,DOF,16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}"
@@ -279,9 +290,14 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
         return Ok((Construction::General, None));
     }
     let mut moved = None;
-    if given && reader.take(MOVED) {
+    let point = given && reader.take(MOVED_POINT);
+    if point || given && reader.take(MOVED) {
         moved = Some(reader.until(']')?.parse().map_err(|_| "the place of the joint that is given is no number")?);
         reader.expect("=GIVEN.link(value);")?;
+    }
+    if point {
+        let construction = position(reader, loops, (tip, true))?;
+        return conclusion(reader, loops, (dof, given), construction).map(|construction| (construction, moved));
     }
     let links = moved.is_some() || reader.take(LINKS);
     let construction = if links && reader.take("letmutfound=spherical_triple(&links,") {
@@ -290,6 +306,12 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
         let case = name(reader, ')')?;
         reader.expect(";")?;
         Construction::SphericalTriple { kinds, case, polished: reader.take(POLISH) }
+    } else if links && reader.take("letmutfound=parallel_turns(&links,") {
+        let kinds = bools(&reader.value()?)?;
+        reader.expect(",")?;
+        let case = name(reader, ')')?;
+        reader.expect(";")?;
+        Construction::ParallelTurns { kinds, case }
     } else if links {
         reader.expect("letmutfound=three_parallel(&links);")?;
         Construction::ThreeParallel { polished: reader.take(POLISH) }
@@ -310,31 +332,54 @@ fn body(reader: &mut Reader<'_>, loops: &[Arrangement], given: bool) -> Result<(
         reader.expect(",LENGTH);")?;
         Construction::TwoSlides { slides }
     } else {
-        let points = if loops.first().is_some_and(|way| way.backward) {
-            "transform(&LOOP.before,position),column(&inverse(&LOOP.after),3));"
-        } else {
-            "column(&LOOP.before,3),transform(&inverse(&LOOP.after),position));"
-        };
-        reader.expect("let[a,b,_]=LOOP.links;")?;
-        let polished = reader.take("let(from,to)=(");
-        if polished {
-            reader.expect(points)?;
-        }
-        reader.expect("letmutfound=")?;
-        let case = name(reader, '(')?;
-        reader.expect("&a,&b,")?;
-        reader.expect(if polished { "from,to);" } else { points })?;
-        if polished {
-            reader.expect(POLISH_POSITION)?;
-        }
-        Construction::Position { case, polished }
+        position(reader, loops, (tip, false))?
     };
+    conclusion(reader, loops, (dof, given), construction).map(|construction| (construction, moved))
+}
+
+/// A position, from where its links are known, or already `moved` by a joint that is given.
+fn position(reader: &mut Reader<'_>, loops: &[Arrangement], (tip, moved): (bool, bool)) -> Result<Construction, String> {
+    let end = |frame: &str| if tip { format!("transform(&{frame},tip)") } else { format!("column(&{frame},3)") };
+    let points = if loops.first().is_some_and(|way| way.backward) {
+        format!("transform(&LOOP.before,position),{});", end("inverse(&LOOP.after)"))
+    } else {
+        format!("{},transform(&inverse(&LOOP.after),position));", end("LOOP.before"))
+    };
+    reader.expect(if moved { "let[a,b,_]=links;" } else { "let[a,b,_]=LOOP.links;" })?;
+    let polished = reader.take("let(from,to)=(");
+    if polished {
+        reader.expect(&points)?;
+    }
+    reader.expect("letmutfound=")?;
+    let case = reader.until('(')?.to_owned();
+    reader.expect("&a,&b,")?;
+    reader.expect(if polished { "from,to);" } else { &points })?;
+    if polished {
+        reader.expect(POLISH_POSITION)?;
+    }
+    Ok(Construction::Position { case, polished })
+}
+
+/// The end of the function.
+fn conclusion(
+    reader: &mut Reader<'_>,
+    loops: &[Arrangement],
+    (dof, given): (usize, bool),
+    construction: Construction,
+) -> Result<Construction, String> {
     reader.expect(IN_ORDER)?;
     // Without branches by the joint variables.
     let by_angle = matches!(construction, Construction::TwoSlides { .. });
-    reader.expect(if given { "conclude(&GIVEN.with::<6,DOF,8>(&found,value)," } else { "conclude(&found," })?;
+    if given {
+        let others = loops.first().map_or(0, |way| way.order.len());
+        let all = if others + 1 == dof { "DOF".to_owned() } else { (others + 1).to_string() };
+        let most = if others == 6 { 8 } else { 4 };
+        reader.expect(&format!("conclude(&GIVEN.with::<{others},{all},{most}>(&found,value),"))?;
+    } else {
+        reader.expect("conclude(&found,")?;
+    }
     reader.expect(if by_angle { "true)}" } else { "false)}" })?;
-    Ok((construction, moved))
+    Ok(construction)
 }
 
 impl Text {
@@ -394,25 +439,28 @@ impl Text {
             joint = Some(given(&reader.value()?)?);
             reader.expect(";")?;
         }
+        reader.expect(if redundant { BEGIN_REDUNDANT } else { BEGIN })?;
+        let rotation = reader.take(if redundant { ROTATION_REDUNDANT } else { ROTATION });
+        if !rotation {
+            reader.expect(if redundant { POSITION_REDUNDANT } else { POSITION })?;
+        }
         // Whether the given joint is at an end of the arm.
-        let mut at_end = false;
+        let (mut at_end, mut tip) = (false, false);
         if redundant {
-            reader.expect(BEGIN_REDUNDANT)?;
-            if joint.is_some() {
+            if let Some(joint) = &joint {
                 reader.expect(VALUE)?;
-                at_end = reader.take(REST);
+                at_end = match (rotation, joint.joint) {
+                    (true, _) => reader.take(REST),
+                    (false, 0) => reader.take(FIRST_POSITION),
+                    (false, _) => reader.take(TIP),
+                };
+                tip = at_end && !rotation && joint.joint > 0;
             }
-            if !at_end {
+            if !at_end && rotation {
                 reader.expect(POSE)?;
             }
-        } else {
-            reader.expect(BEGIN)?;
         }
-        let rotation = redundant || reader.take(ROTATION);
-        if !rotation {
-            reader.expect(POSITION)?;
-        }
-        let (construction, moved) = body(&mut reader, &loops, joint.is_some())?;
+        let (construction, moved) = body(&mut reader, &loops, (dof, joint.is_some(), tip))?;
         let first = loops.first_mut().ok_or("there is no loop")?;
         if moved.is_some_and(|place| place >= first.order.len() || place == first.open) {
             return Err("the place of the joint that is given is none".into());
@@ -424,6 +472,9 @@ impl Text {
             if joint.joint >= dof || end != at_end || end == moved.is_some() {
                 return Err("GIVEN: the function takes the joint from another place of the arm".into());
             }
+        }
+        if rotation == matches!(construction, Construction::Position { .. }) {
+            return Err("what is read of the pose is not what the construction asks for".into());
         }
         if redundant {
             let value = joint.as_ref().map_or("swivel_angle(&LOOP,q)".to_owned(), |joint| format!("q[{}]", joint.joint));

@@ -2,7 +2,7 @@
 
 use armgen_inverse_kinematics::texts::{Text, TEXTS};
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, ToTokens};
 
 use super::literal::literal;
 use super::runtime::is_implemented;
@@ -152,7 +152,7 @@ fn solver(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String
 pub(in crate::emit) fn items(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> String {
     let mut text = format(constants(joints, scalar, found));
     text.push('\n');
-    text += &format(function(found));
+    text += &format(function(found, joints.len()));
     for block in needed(scalar, found) {
         text.push('\n');
         text += block.source;
@@ -344,7 +344,7 @@ pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<Str
     })
 }
 
-fn function(found: &InverseKinematics) -> TokenStream {
+fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
     let kinds = |way: &Arrangement, count: usize| {
         let kinds = way.prismatic.iter().take(count);
         quote!([#(#kinds),*])
@@ -356,7 +356,16 @@ fn function(found: &InverseKinematics) -> TokenStream {
     let by_angle = matches!(found.construction, Construction::TwoSlides(..));
     let conclusion = match found.given() {
         None => quote!(conclude(&found, #by_angle)),
-        Some(_) => quote!(conclude(&GIVEN.with::<6, DOF, 8>(&found, value), #by_angle)),
+        Some(_) => {
+            let others = found.loops().first().map_or(0, |way| way.order.len());
+            // With a virtual joint they are more than the arm has.
+            let all = match others + 1 {
+                all if all == dof => quote!(DOF),
+                all => usize_literal(all).into_token_stream(),
+            };
+            let (others, most) = (usize_literal(others), usize_literal(if others == 6 { 8 } else { 4 }));
+            quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), #by_angle))
+        }
     };
     let links = match found.given().and_then(|given| given.place) {
         None => quote!(let links = LOOP.links_at(&t);),
@@ -397,18 +406,36 @@ fn function(found: &InverseKinematics) -> TokenStream {
         }
         Construction::ParallelTurns(way, case) => {
             let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
+            let found = match found.given().and_then(|given| given.place) {
+                None => quote!(let mut found = parallel_turns(&LOOP.links_at(&t), #kinds, #block);),
+                Some(_) => quote!(#links let mut found = parallel_turns(&links, #kinds, #block);),
+            };
             quote! {
-                let mut found = parallel_turns(&LOOP.links_at(&t), #kinds, #block);
+                #found
                 #in_order
             }
         }
         Construction::Position(way, case) => {
             let block = format_ident!("{}", case.function);
-            // The origin of the end effector from before the last joint of the loop, and where it is to go from before the first.
+            // The origin of the end effector from before the last joint of the loop, and where it is to go from before the first. Behind a last
+            // joint that is given it is elsewhere.
+            let moved = found.given().is_some_and(|given| given.place.is_none() && given.joint > 0);
+            let tip = |frame: TokenStream| if moved { quote!(transform(&#frame, tip)) } else { quote!(column(&#frame, 3)) };
             let (from, to) = if way.backward {
-                (quote!(transform(&LOOP.before, position)), quote!(column(&inverse(&LOOP.after), 3)))
+                (quote!(transform(&LOOP.before, position)), tip(quote!(inverse(&LOOP.after))))
             } else {
-                (quote!(column(&LOOP.before, 3)), quote!(transform(&inverse(&LOOP.after), position)))
+                (tip(quote!(LOOP.before)), quote!(transform(&inverse(&LOOP.after), position)))
+            };
+            let links = match found.given().and_then(|given| given.place) {
+                None => quote!(let [a, b, _] = LOOP.links;),
+                Some(place) => {
+                    let place = usize_literal(place);
+                    quote! {
+                        let mut links = LOOP.links;
+                        links[#place] = GIVEN.link(value);
+                        let [a, b, _] = links;
+                    }
+                }
             };
             let found = if case.closed {
                 quote!(let mut found = #block(&a, &b, #from, #to);)
@@ -421,7 +448,7 @@ fn function(found: &InverseKinematics) -> TokenStream {
                 }
             };
             quote! {
-                let [a, b, _] = LOOP.links;
+                #links
                 #found
                 #in_order
             }
@@ -459,15 +486,32 @@ fn function(found: &InverseKinematics) -> TokenStream {
     };
     let (given, invalid) = match found.target {
         Target::Position => {
+            let condition = found.redundancy.as_ref().map(|_| quote!(|| !redundancy.is_finite()));
+            let value = found.given().map(|given| {
+                let moved = match given.place {
+                    Some(_) => None,
+                    None if given.joint == 0 => Some(quote!(let position = transform(&inverse(&GIVEN.link(value)), position);)),
+                    None => Some(quote!(let tip = column(&GIVEN.link(value), 3);)),
+                };
+                quote! {
+                    let value = GIVEN.value(redundancy);
+                    #moved
+                }
+            });
+            let invalid = match condition {
+                None => " `Invalid`: the position is not finite.",
+                Some(_) => " `Invalid`: the position or the redundancy is not finite.",
+            };
             let given = quote! {
                 let position = [x[3], y[3], z[3]];
-                if !position.iter().all(|p| p.is_finite()) {
+                if !position.iter().all(|p| p.is_finite()) #condition {
                     return Solutions::none(Verdict::Invalid);
                 }
+                #value
             };
-            (given, " `Invalid`: the position is not finite.")
+            (given, invalid)
         }
-        Target::Pose if found.redundancy.is_some() => {
+        _ if found.redundancy.is_some() => {
             let value = found.given().map(|given| match given.place {
                 None => quote! {
                     let value = GIVEN.value(redundancy);
