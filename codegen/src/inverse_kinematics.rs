@@ -13,6 +13,7 @@ mod classes;
 mod frame;
 mod general;
 mod steps;
+mod virtual_joints;
 
 use crate::exact::Number;
 pub use crate::kinds::Target;
@@ -42,6 +43,9 @@ pub struct InverseKinematics {
     pub length: Number,
     /// What is given beside the pose of an arm with one joint more than that asks for.
     pub redundancy: Option<Redundancy>,
+    /// Of an arm with fewer joints than the pose has rows: its own loop, from joint 1 on, with joints behind the last one that stay at 0. The
+    /// construction is that of the arm with virtual joints, which have to come out 0.
+    pub own: Option<Arrangement>,
 }
 
 /// What is given beside the pose of an arm with one joint more than that asks for.
@@ -97,7 +101,10 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     if given.is_some() {
         return Err("`given` is for arms with one joint more than the target asks for".into());
     }
-    classes::classify(&completed(chain, target)?, target, length)
+    if target == Target::Pose && chain.joints.len() < 6 {
+        return virtual_joints::classify(&chain, &length);
+    }
+    classes::classify(&completed(chain, target)?, target, length, true)
 }
 
 /// One joint more than the target asks for: what the description says is given; else the swivel angle where there is one, or the joint that leaves
@@ -106,7 +113,7 @@ fn redundant(chain: &Chain, target: Target, length: &Number, given: Option<Given
     let joints = chain.joints.len();
     let with = |joint: usize| {
         let (rest, given) = chain.without(joint);
-        let mut found = classes::classify(&completed(rest, target)?, target, length.clone())?;
+        let mut found = classes::classify(&completed(rest, target)?, target, length.clone(), true)?;
         found.class += &format!("; q{} is given", joint + 1);
         // A joint between two others belongs to the loop.
         found.redundancy = given

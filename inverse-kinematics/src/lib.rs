@@ -48,6 +48,9 @@
 //! point or the position), is the link between two others, and puts the joint back into solutions. Where the first three and the last three turn about axes through one point each,
 //! [`shoulder_elbow_wrist`](f64::shoulder_elbow_wrist) takes the swivel angle of the elbow instead: at most 8.
 //!
+//! Fewer joints than a pose has rows: the construction is that of the arm with virtual joints beyond the last one, and
+//! [`without_virtual_joints`](f64::without_virtual_joints) takes of its solutions, not polished, those that meet all rows.
+//!
 //! If the pose is in L1 or L2, only `regional_general`, `regional_slide` and `regional_mid_slide` hold for all poses.
 //! [`polish`](f64::polish) takes the digits back that block R with D = 2 loses, on the six equations of a loop or the three of a position; `three_parallel` wants it where neither axes b and c nor a and c
 //! intersect or are parallel.
@@ -97,6 +100,7 @@ macro_rules! blocks {
         include!("blocks/general.rs");
         include!("blocks/given.rs");
         include!("blocks/shoulder_elbow_wrist.rs");
+        include!("blocks/virtual_joints.rs");
     };
 }
 

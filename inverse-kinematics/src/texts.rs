@@ -51,5 +51,6 @@ texts! {
     "general" needs ["determinant", "arrangement"],
     "given" needs ["frame", "branches"],
     "shoulder_elbow_wrist" needs ["frame", "turn", "two_links", "regional", "three_turns", "branches", "arrangement"],
+    "virtual_joints" needs ["closure", "arrangement"],
     "solutions" needs ["frame", "angles", "branches"],
 }

@@ -261,6 +261,7 @@ fn fill(
         report.absent = true;
         return Ok(());
     };
+    let manipulator = &points::without_bodies(manipulator);
     report.scalar = module.real.name();
     report.most = module.most;
     // The first line has the name of a file, which can be chosen: poses that follow from it could be chosen, too.
@@ -269,14 +270,15 @@ fn fill(
     let mut stream = Stream::of(seed);
     let claims = claims(found)?;
     report.numbers = numbers(&module, manipulator, &claims)?;
-    let all: Vec<Formula> = claims.loops.iter().flatten().chain(&claims.given).cloned().collect();
+    let all: Vec<Formula> = claims.loops.iter().chain(&claims.own).flatten().chain(&claims.given).cloned().collect();
     report.exact_values = all.iter().map(ToString::to_string).collect();
     let constants = Constants::of(manipulator, &all)?;
     let most = construction(&module, manipulator, &constants, &claims, &mut stream)?;
     if module.most != most && Check::MostSolutions.is_made() {
         return Err(format!("MAX_SOLUTIONS: {} where the construction has {most}", module.most));
     }
-    report.sound = sound(&module, manipulator, &constants, &claims, &mut stream)?;
+    let sound = sound(&module, manipulator, &constants, &claims, &mut stream)?;
+    report.sound = sound.map(|(branches, _)| branches);
     if module.construction == Construction::ShoulderElbowWrist {
         report.uncounted = Some("the swivel angle is given".into());
         return Ok(());
@@ -308,7 +310,20 @@ fn fill(
     ));
     let branches =
         if module.branches.is_empty() { module.most } else { module.branches.iter().filter(|b| !b.is_empty()).count() };
-    let lost = if module.branches.is_empty() { generic.solutions > module.most } else { generic.solutions != branches };
+    // Of an arm with virtual joints those branches count that have them at 0.
+    let lost = match (&module.own, sound) {
+        (None, _) if !module.branches.is_empty() => generic.solutions != branches,
+        (Some(_), Some((_, own))) => {
+            if own != generic.solutions && Check::Branches.is_made() {
+                return Err(format!(
+                    "BRANCHES: {own} of them have the virtual joints at 0, and there are {} solutions at a random pose",
+                    generic.solutions
+                ));
+            }
+            false
+        }
+        _ => generic.solutions > module.most,
+    };
     if lost && Check::Branches.is_made() {
         return Err(format!("BRANCHES: {branches} of them, and there are {} solutions at a random pose", generic.solutions));
     }
@@ -321,7 +336,7 @@ fn fill(
         return Ok(());
     }
     let length = module.length.parse().unwrap_or(1.0);
-    let poses = RationalPose::some(module.dof, poses, length, &mut stream);
+    let poses = RationalPose::some(module.dof, poses, (length, module.own.is_some()), &mut stream);
     let arm = constants.arm.map(&|number| Float::F64.nearest(number).unwrap_or(0.0));
     let mut counter = Counter::new(manipulator, &constants, generic, stream);
     for (number, pose) in poses.iter().enumerate() {
@@ -352,6 +367,7 @@ fn fill(
 /// Exact values of the numbers of loops, in order: the generator's, which need no trust.
 struct Claims {
     loops: Vec<Vec<Formula>>,
+    own: Option<Vec<Formula>>,
     given: Vec<Formula>,
     length: Formula,
 }
@@ -364,7 +380,8 @@ fn claims(found: &Result<generator::InverseKinematics, String>) -> Result<Claims
     };
     let given =
         found.given().into_iter().flat_map(|given| [&given.before, &given.after]).flatten().flatten().map(formula).collect();
-    Ok(Claims { loops: found.loops().iter().map(numbers).collect(), given, length: formula(&found.length) })
+    let own = found.own.as_ref().map(numbers);
+    Ok(Claims { loops: found.loops().iter().map(numbers).collect(), own, given, length: formula(&found.length) })
 }
 
 /// Whether all numbers are the floats nearest to what is claimed, or to the description; how many there are.
@@ -398,7 +415,11 @@ fn numbers(module: &Text, manipulator: &Manipulator, claims: &Claims) -> Result<
     if !nearest(&module.length, &claims.length) && Check::LoopNumbers.is_made() {
         return Err(format!("LENGTH: {} is not the float nearest to {}", module.length, claims.length));
     }
+    if module.own.is_some() != claims.own.is_some() {
+        return Err("ARM: the arm has it if it has fewer joints than the pose has rows".into());
+    }
     let loops = module.loops.iter().map(|way| &way.numbers).zip(&claims.loops);
+    let loops = loops.chain(module.own.iter().map(|way| &way.numbers).zip(&claims.own));
     for (texts, claimed) in loops.chain(module.given.iter().map(|given| (&given.numbers, &claims.given))) {
         if texts.len() != claimed.len() {
             return Err("LOOP: the loop has another number of joints than the arm".into());
@@ -440,6 +461,12 @@ fn construction(
                 pose = points::rest(given, &link, chain.modulus, &pose);
             }
         }
+        if let (Some(way), Some(numbers)) = (&module.own, &claims.own) {
+            let own = Loop::of(way, numbers, &field).ok_or("a constant of the loop divides by zero")?;
+            if !own.closes(way, &kinds, &posture, &pose) && Check::Loop.is_made() {
+                return Err("ARM: it is not the loop of this arm".into());
+            }
+        }
         for (way, numbers) in module.loops.iter().zip(&claims.loops) {
             let mut closed = Loop::of(way, numbers, &field).ok_or("a constant of the loop divides by zero")?;
             if let (Some(place), Some(link)) = (way.moved, moved) {
@@ -449,7 +476,13 @@ fn construction(
                 return Err("LOOP: it is not the loop of this arm".into());
             }
             closed.links = closed.links_at(way, &pose);
-            match class::most(&module.construction, way, &closed) {
+            if module.own.is_some() && Check::Class.is_made() {
+                let values = closed.values(way, &kinds, &posture).unwrap_or_default();
+                if !closed.is_regular(&way.prismatic, &closed.links, &values) {
+                    return Err("the class is wrong: with its virtual joints the arm is singular wherever they are 0".into());
+                }
+            }
+            match class::most(&module.construction, way, &closed, module.own.is_some()) {
                 Ok(found) => most = found,
                 Err(fault) if Check::Class.is_made() => return Err(fault),
                 Err(_) => most = module.most,
@@ -462,21 +495,21 @@ fn construction(
 /// So many random poses are tried for branches that need square roots.
 const MOST_POSES: usize = 1 << 15;
 
-/// How many branches of a construction of closed forms close the loop.
+/// How many branches of a construction of closed forms close the loop, and the most of them at a pose that have all virtual joints at 0.
 fn sound(
     module: &Text,
     manipulator: &Manipulator,
     constants: &Constants,
     claims: &Claims,
     stream: &mut Stream,
-) -> Result<Option<usize>, String> {
+) -> Result<Option<(usize, usize)>, String> {
     if !soundness::is_closed(&module.construction) {
         return Ok(None);
     }
     let named: Vec<bool> = module.branches.iter().map(|name| !name.is_empty()).collect();
     let mut sound = vec![false; named.len()];
     let open = |sound: &[bool]| named.iter().zip(sound).any(|(named, sound)| *named && !sound);
-    let mut tried = 0;
+    let (mut tried, mut own) = (0, 0);
     while tried < MOST_POSES && open(&sound) {
         let mut field = constants.field(stream)?;
         let chain = Chain::of(manipulator, &field).ok_or("a constant of the description divides by zero")?;
@@ -498,8 +531,12 @@ fn sound(
             }
             let at = soundness::At { closed: &closed, pose: &pose, tip, posture: &whole };
             let branch = soundness::run(module, &at, &mut sound);
-            if let (Err(branch), true) = (branch, Check::Sound.is_made()) {
-                return Err(format!("BRANCHES: branch {branch} does not close the loop"));
+            match branch {
+                Ok(number) => own = own.max(number),
+                Err(branch) if Check::Sound.is_made() => {
+                    return Err(format!("BRANCHES: branch {branch} does not close the loop"))
+                }
+                Err(_) => {}
             }
         }
     }
@@ -507,7 +544,7 @@ fn sound(
     if let (Some(branch), true) = (lost, Check::Sound.is_made()) {
         return Err(format!("BRANCHES: branch {branch} does not close the loop at any of {tried} random poses"));
     }
-    Ok(Some(sound.into_iter().filter(|sound| *sound).count()))
+    Ok(Some((sound.into_iter().filter(|sound| *sound).count(), own)))
 }
 
 /// How far each solution is from the pose, in the columns from `first` on, which the target fixes.

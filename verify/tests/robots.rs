@@ -42,6 +42,25 @@ fn all_robots_are_verified_with_fused_operations() {
     check(&Options { fuse: true, ..Options::default() });
 }
 
+/// No robot is left out: its inverse kinematics is certified, or the module says why there is none.
+#[test]
+fn the_inverse_kinematics_of_every_robot_is_certified_or_says_why_not() {
+    let mut without = Vec::new();
+    for path in common::paths() {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        let source = common::source(&name);
+        let text = common::generate(&source, Scalar::F64).inverse_kinematics();
+        let report = armgen_verify::inverse_kinematics::verify(&source, &text, 8);
+        println!("{report}\n");
+        assert!(report.passed(), "{name}: {report}");
+        if report.absent {
+            assert!(text.contains("// There is no `inverse_kinematics`: "), "{text}");
+            without.push(name);
+        }
+    }
+    assert_eq!(without, ["counterbalance", "everything"]);
+}
+
 /// In `light` torques that may be given are a thousand times those that the arm asks for; in `lift` the rate of the shoulder, as the links
 /// beyond pass it on, cancels in the momentum of the slide along its axis.
 #[test]

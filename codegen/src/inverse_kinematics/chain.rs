@@ -44,6 +44,21 @@ pub(super) struct Chain {
     pub(super) left_out: Option<usize>,
     /// That joint with what is behind it, if it stands between two others; `normals` has what is before it.
     pub(super) between: Option<(Joint, Normal)>,
+    /// So many of the last joints are virtual and stay at 0.
+    pub(super) still: usize,
+}
+
+/// A virtual joint: behind the joint before it Rz(turn) Tz(d) Tx(a) Rx(alpha), then its own axis z.
+#[derive(Clone)]
+pub(super) struct Virtual {
+    pub(super) prismatic: bool,
+    /// (cos, sin) of the angle.
+    pub(super) turn: [Number; 2],
+    /// Where on the axis before it, seen from the foot of the common normal of that and the one before; none: where that joint's frame is.
+    pub(super) d: Option<Number>,
+    pub(super) a: Number,
+    /// (cos, sin) of the angle.
+    pub(super) alpha: [Number; 2],
 }
 
 /// A joint whose value is given. Documented with the block `given`.
@@ -82,6 +97,8 @@ pub struct Arrangement {
     pub offsets: Vec<[Number; 2]>,
     /// The number in the arm of the joint that is left out, from 0.
     pub(super) left_out: Option<usize>,
+    /// So many of the arm's last joints are virtual and stay at 0.
+    pub(super) still: usize,
     /// The joint between two others whose value is given, with the place of the link that it moves: that of `links` is the identity.
     pub(super) given: Option<Given>,
 }
@@ -124,7 +141,7 @@ impl Chain {
             }
         }
         let tool = compose(&frame(manipulator, &joint(manipulator.tip).link_frame), &frame(manipulator, &manipulator.tool.frame));
-        Ok(Chain { base, joints, normals, tool, left_out: None, between: None })
+        Ok(Chain { base, joints, normals, tool, left_out: None, between: None, still: 0 })
     }
 
     /// The arm without a joint, whose value is given; and that joint, if it is the first or the last one.
@@ -174,6 +191,19 @@ impl Chain {
         self.joints.push(Joint { prismatic: false, theta, d });
         self.tool = identity();
         Ok(())
+    }
+
+    /// A virtual joint beyond the last, behind which the end effector is where it was while the virtual joint is at 0.
+    pub(super) fn virtual_at_the_end(&mut self, joint: &Virtual) {
+        let Some(last) = self.joints.last_mut() else { return };
+        let by = joint.d.as_ref().map_or_else(Number::zero, |d| d - &last.d);
+        (last.theta, last.d) = (sum_of_angles(&last.theta, &joint.turn), &last.d + &by);
+        let normal = Normal { a: joint.a.clone(), alpha: joint.alpha.clone() };
+        let moved = compose(&compose(&turn_about_z(&joint.turn), &slide_along_z(&by)), &normal.frame(false));
+        self.tool = compose(&inverse(&moved), &self.tool);
+        self.normals.push(normal);
+        self.joints.push(Joint { prismatic: joint.prismatic, theta: no_turn(), d: Number::zero() });
+        self.still += 1;
     }
 
     /// Every length in it, with signs.
@@ -248,6 +278,7 @@ impl Chain {
             offsets: order.iter().map(|joint| offset(&self.joints[*joint])).collect(),
             order,
             left_out: self.left_out,
+            still: self.still,
             given,
         }
     }

@@ -226,8 +226,9 @@ impl Arrangement {
     }
 }
 
-/// The class of an arm with its virtual joints, or why it is of none.
-pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<InverseKinematics, String> {
+/// The class of an arm with its virtual joints, or why it is of none. Not `searched`: no class whose solutions are the roots of an equation that
+/// is sampled.
+pub(super) fn classify(chain: &Chain, target: Target, length: Number, searched: bool) -> Result<InverseKinematics, String> {
     let slides = chain.joints.iter().filter(|joint| joint.prismatic).count();
     let found = match (chain.joints.len(), slides) {
         (3, _) if target == Target::Position => position(chain, true).or_else(|| position(chain, false)),
@@ -236,8 +237,10 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
         (6, 0 | 1) => spherical_triple(chain, true)
             .or_else(|| three_parallel(chain))
             .or_else(|| spherical_triple(chain, false))
-            .or_else(|| general(chain, &length)),
-        (6, 2) => spherical_triple(chain, true).or_else(|| spherical_triple(chain, false)).or_else(|| two_slides(chain, &length)),
+            .or_else(|| searched.then(|| general(chain, &length))?),
+        (6, 2) => spherical_triple(chain, true)
+            .or_else(|| spherical_triple(chain, false))
+            .or_else(|| searched.then(|| two_slides(chain, &length))?),
         _ => None,
     };
     let none = || {
@@ -251,7 +254,7 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number) -> Result<
         format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
     };
     let Class { construction, class, most, choices } = found.ok_or_else(none)?;
-    Ok(InverseKinematics { target, construction, class, most, choices, length, redundancy: None })
+    Ok(InverseKinematics { target, construction, class, most, choices, length, redundancy: None, own: None })
 }
 
 /// A class that fits.
@@ -339,6 +342,7 @@ pub(super) fn shoulder_elbow_wrist(chain: &Chain, length: &Number) -> Option<Inv
         choices,
         length: length.clone(),
         redundancy: Some(Redundancy::Swivel),
+        own: None,
     })
 }
 

@@ -31,14 +31,18 @@ impl Arrangement {
     }
 }
 
-/// The pose of a fixed posture: T⁻¹ of the first arrangement's loop, in which the joints come in the arm's order.
-fn pose(way: &block::Arrangement<6>, length: f64, number: u64) -> block::Frame {
+/// The pose of a fixed posture: T⁻¹ of the first arrangement's loop, in which the joints come in the arm's order; the last ones are `still` at 0.
+fn pose(way: &block::Arrangement<6>, still: usize, length: f64, number: u64) -> block::Frame {
     let mut chain = way.after;
     for i in 0..6 {
         let x = scramble(8 * number + i as u64) as f64 / u64::MAX as f64 * 2.0 - 1.0;
         // An angle by its half angle's tangent is as good as any, and needs no sine.
         let t = x / (1.0 - x.abs() + 1e-3);
-        let value = if way.prismatic[i] { [length * x, 0.0] } else { [(1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t)] };
+        let value = match way.prismatic[i] {
+            _ if i + still >= 6 => way.offsets[i],
+            true => [length * x, 0.0],
+            false => [(1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t)],
+        };
         let link = if i == 5 { way.before } else { way.links[i] };
         chain = block::compose(&chain, &block::joint_then(way.prismatic[i], value, &link));
     }
@@ -50,7 +54,7 @@ fn pose(way: &block::Arrangement<6>, length: f64, number: u64) -> block::Frame {
 pub(super) fn reaches(chain: &Chain, way: &Arrangement, slides: [usize; 2], length: &Number) -> bool {
     let (length, forward, floats) = (length.to_f64(), chain.arranged(0, false).rounded(), way.rounded());
     (0..8).all(|number| {
-        let found = block::two_slides(&floats.links_at(&pose(&forward, length, number)), slides, length);
+        let found = block::two_slides(&floats.links_at(&pose(&forward, chain.still, length, number)), slides, length);
         found.count > 0 && !found.continuum
     })
 }
@@ -59,7 +63,7 @@ pub(super) fn reaches(chain: &Chain, way: &Arrangement, slides: [usize; 2], leng
 pub(super) fn choose(chain: &Chain, length: &Number) -> Option<[Arrangement; 2]> {
     let length = length.to_f64();
     let forward = chain.arranged(0, false).rounded();
-    let poses: Vec<block::Frame> = (0..POSES).map(|number| pose(&forward, length, number)).collect();
+    let poses: Vec<block::Frame> = (0..POSES).map(|number| pose(&forward, chain.still, length, number)).collect();
     // The best two, the better one first; of equals the first in the order of arrangements.
     let mut best: Vec<(usize, f64, Arrangement)> = Vec::new();
     'arrangements: for way in chain.arrangements() {

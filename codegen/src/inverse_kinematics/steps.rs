@@ -145,6 +145,16 @@ impl InverseKinematics {
                 ));
             }
         }
+        if self.own.is_some() {
+            let way = &self.loops()[0];
+            let last = way.order.len();
+            let own = last - way.still;
+            let dropped = if own + 1 == last { format!("q{last} has") } else { format!("q{} to q{last} have", own + 1) };
+            add((
+                vec![format!("{dropped} to be 0 up to rounding: Gauss and Newton's method on the other joints alone, by all six rows; what does not meet them is dropped")],
+                vec![],
+            ));
+        }
         (steps, singular)
     }
 }

@@ -226,3 +226,92 @@ macro_rules! reference {
     }};
 }
 
+
+/// Fewer joints than the pose has rows: the posture itself at the poses of random postures and of those with joints at right angles, every posture
+/// that is found meets all rows, and none is found beside such a pose.
+macro_rules! few {
+    ($module:ident, $ik:ident) => {{
+        use $ik::{Real, Verdict, DOF};
+        let single = Real::EPSILON > 1e-10;
+        let random = &mut Random(11);
+        let poses = if $ik::BRANCHES.is_empty() { 400 } else { 4000 };
+        let (mut complete, mut special, mut lost, mut none, mut beside, mut most, mut worst) = (0, 0, 0, 0, 0, 0, 0.0f64);
+        for number in 0..poses {
+            let right = number % 4 == 3;
+            let q: [Real; DOF] = std::array::from_fn(|i| {
+                let turns = $module::JOINT_IS_REVOLUTE[i];
+                if right && random.between(0.0, 1.0) < 0.5 {
+                    let quarters = random.between(-1.5, 2.5).round();
+                    return if turns { (0.5 * quarters * std::f64::consts::PI) as Real } else { 0.0 };
+                }
+                (if turns { random.between(-3.14, 3.14) } else { random.between(-0.5, 0.5) }) as Real
+            });
+            let t = $module::direct_kinematics(&q);
+            let found = $ik::inverse_kinematics(&t);
+            if found.verdict == Verdict::Invalid || found.verdict == Verdict::Unreachable {
+                none += 1;
+                println!("{}: none at {q:?}, {:?} {:e}", stringify!($module), found.verdict, found.miss);
+            }
+            for solution in found.as_slice() {
+                let reached = $module::direct_kinematics(&solution.q);
+                for (x, y) in reached.iter().flatten().zip(t.iter().flatten()) {
+                    worst = worst.max((f64::from(*x) - f64::from(*y)).abs());
+                }
+            }
+            if found.verdict == Verdict::Complete {
+                complete += usize::from(!right);
+                special += usize::from(right);
+                most = most.max(found.count);
+                let nearest = found.nearest_to(&q).expect("a complete set has a posture");
+                let turn = std::f64::consts::TAU;
+                let apart = |(i, (x, y)): (usize, (&Real, &Real))| {
+                    let d = (f64::from(*x) - f64::from(*y)).abs();
+                    if $module::JOINT_IS_REVOLUTE[i] { (d % turn).min(turn - d % turn) } else { d }
+                };
+                let distance = nearest.q.iter().zip(&q).enumerate().map(apart).fold(0.0, f64::max);
+                lost += usize::from(distance > if single { 0.02 } else { 1e-6 });
+            }
+            // Moved and turned by a little: Cayley's rotation, v + (w × v + w × (w × v)/2)/(1 + w²/4).
+            let mut off = t;
+            let by = if single { 1e-2 } else { 1e-4 };
+            let w = [0; 3].map(|_| random.between(-1.0, 1.0));
+            let size = w.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let w = w.map(|x| x * by / size);
+            let cross = |v: [f64; 3]| [w[1] * v[2] - w[2] * v[1], w[2] * v[0] - w[0] * v[2], w[0] * v[1] - w[1] * v[0]];
+            for j in 0..3 {
+                let v = [0, 1, 2].map(|i| f64::from(t[i][j]));
+                let (once, twice) = (cross(v), cross(cross(v)));
+                for i in 0..3 {
+                    off[i][j] = (v[i] + (once[i] + 0.5 * twice[i]) / (1.0 + 0.25 * by * by)) as Real;
+                }
+                off[j][3] = (f64::from(t[j][3]) + random.between(-by, by)) as Real;
+            }
+            let found = $ik::inverse_kinematics(&off);
+            // Of five joints one pose in some hundreds is within the rounding of single precision by chance.
+            assert!(found.count == 0 || single, "{}: {found:?} beside {q:?}", stringify!($module));
+            beside += usize::from(found.verdict == Verdict::Unreachable && found.miss > 0.0);
+        }
+        println!(
+            "{}: {complete} of {} complete, {special} of {} with right angles, lost {lost}, none {none}, {beside} unreachable beside, most {most}, T right to {worst:.1e}",
+            stringify!($module),
+            poses - poses / 4,
+            poses / 4
+        );
+        // Next to folds of the completed arm single precision loses some.
+        let few = if single { poses / 100 } else { 0 };
+        assert!(lost <= few && none <= few, "{}: lost {lost}, none {none}", stringify!($module));
+        assert!(worst < if single { 1e-4 } else { 1e-11 }, "{}: {worst:e}", stringify!($module));
+        assert!(complete * 100 >= (poses - poses / 4) * if single { 97 } else { 99 }, "{}: {complete}", stringify!($module));
+        assert!(beside * 100 >= poses * if single { 95 } else { 99 }, "{}: {beside} beside", stringify!($module));
+        let mut t = $module::direct_kinematics(&[0.3; DOF]);
+        t[0][3] = Real::NAN;
+        assert_eq!($ik::inverse_kinematics(&t).verdict, Verdict::Invalid);
+        let mut t = $module::direct_kinematics(&[0.3; DOF]);
+        (t[0][3], t[1][3], t[2][3]) = (1e3, 1e3, -1e3);
+        let far = $ik::inverse_kinematics(&t);
+        // Slides have no end.
+        if $module::JOINT_IS_REVOLUTE.iter().all(|turns| *turns) {
+            assert!(far.verdict == Verdict::Unreachable && far.count == 0 && far.miss > 100.0, "{}: {far:?}", stringify!($module));
+        }
+    }};
+}

@@ -76,8 +76,9 @@ fn is_rough(case: &str) -> bool {
     matches!(case, "regional_general" | "regional_slide" | "regional_mid_slide")
 }
 
-/// The most solutions of a construction with this loop, or why it may not be called with it.
-pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop) -> Result<usize, String> {
+/// The most solutions of a construction with this loop, or why it may not be called with it. `refined`: its solutions are brought to the last
+/// digits later.
+pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop, refined: bool) -> Result<usize, String> {
     let link = |place: usize| Link { frame: &closed.links[place], one: closed.modulus.one };
     let joints = way.order.len();
     let fail = |what: &str| Err(format!("the class is wrong: {what}"));
@@ -104,7 +105,7 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
             if !crosses(3) || !crosses(4) || closed.links[4][2][3] != 0 {
                 return fail("the last three axes do not meet in a point");
             }
-            if *polished != is_rough(case) {
+            if *polished != (is_rough(case) && !refined) {
                 return fail("Newton's method is called where it should not be, or is not");
             }
             Ok(2 * of_case(case, kinds)?)
@@ -116,7 +117,7 @@ pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop
                 return fail("there are no three parallel axes");
             }
             let related = |place| way.is_constant(place) && (link(place).meets() || link(place).is_parallel());
-            if *polished == (related(4) || related(5)) {
+            if *polished == (related(4) || related(5) || refined) {
                 return fail("Newton's method is called where it should not be, or is not");
             }
             Ok(8)

@@ -135,8 +135,9 @@ pub(super) struct RationalPose {
 }
 
 impl RationalPose {
-    /// Poses that random postures reach, every fourth with joints at 0, half turns and the like, every eighth out of reach.
-    pub(super) fn some(joints: usize, count: usize, length: f64, stream: &mut Stream) -> Vec<RationalPose> {
+    /// Poses that random postures reach, every fourth with joints at 0, half turns and the like, every eighth out of reach; of arms with `few` joints
+    /// another eighth beside a pose that they reach.
+    pub(super) fn some(joints: usize, count: usize, (length, few): (f64, bool), stream: &mut Stream) -> Vec<RationalPose> {
         let mut poses = Vec::new();
         for number in 0..count {
             let mut value = || {
@@ -147,7 +148,11 @@ impl RationalPose {
                 (stream.below(12 * denominator as u64) as i64 - 6 * denominator, denominator)
             };
             let values = (0..joints).map(|_| value()).collect();
-            let away = if number % 8 == 5 { (20.0 * length).ceil() as i64 + 100 } else { 0 };
+            let away = match number % 8 {
+                5 => (20.0 * length).ceil() as i64 + 100,
+                1 if few => 1,
+                _ => 0,
+            };
             poses.push(RationalPose { values, away });
         }
         poses

@@ -97,14 +97,19 @@ fn of_line(m: Modulus, p: [u64; 3], l: [u64; 3]) -> [u64; 14] {
     all
 }
 
-/// The loop read from `start` on, its first joints (two of six, else one) eliminated with the last one, which has to turn; with a point as the
+/// The loop read from `start` on, its first joints (two of six, none of one, else one) eliminated with the last one, which has to turn; with a point as the
 /// target, of which nothing turns, none but the first. `None` if the products of the first joints' variables are not determined.
 pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) -> Option<System> {
     let m = chain.modulus;
     let n = chain.joints();
     let joint = |place: usize| (start + place) % n;
-    let (first, last) = (if n == 6 { 2 } else { 1 }, if point { n } else { n - 1 });
-    if last <= first || (!point && chain.slides[joint(n - 1)]) {
+    let first = match n {
+        6 => 2,
+        1 => 0,
+        _ => 1,
+    };
+    let last = if point { n } else { n - 1 };
+    if last < first || (!point && chain.slides[joint(n - 1)]) {
         return None;
     }
     let closing = m.compose(&m.compose(&chain.links[n], &m.inverse_frame(pose)), &chain.links[0]);

@@ -24,10 +24,9 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    /// Of the arm, and others.
+    /// Of an arm without bodies, and others.
     pub(super) fn of(manipulator: &Manipulator, others: &[Formula]) -> Result<Constants, String> {
-        let manipulator = without_bodies(manipulator);
-        let arm = Arm::nominal(&Plain, &manipulator).and_then(|nominal| Arm::new(&Plain, &manipulator, &nominal));
+        let arm = Arm::nominal(&Plain, manipulator).and_then(|nominal| Arm::new(&Plain, manipulator, &nominal));
         let arm = arm.ok_or("the description divides by zero")?;
         let all = RefCell::new(others.to_vec());
         arm.map(&|number| {
@@ -51,7 +50,7 @@ impl Constants {
 }
 
 /// The arm and nothing that has mass: no solution depends on bodies, whose formulas can be long.
-fn without_bodies(manipulator: &Manipulator) -> Manipulator {
+pub(super) fn without_bodies(manipulator: &Manipulator) -> Manipulator {
     let mut arm = manipulator.clone();
     arm.payload = None;
     for joint in &mut arm.joints {
@@ -134,12 +133,17 @@ impl Loop {
 
     /// Whether J1 L1 ... Jn Ln = 1 at a posture of the arm and its pose. Joints that the arm has not are at 0.
     pub(super) fn closes(&self, way: &Arrangement, kinds: &[bool], posture: &[[u64; 2]], pose: &Frame) -> bool {
+        self.values(way, kinds, posture).is_some_and(|values| self.is_met(&way.prismatic, &self.links_at(way, pose), &values))
+    }
+
+    /// The values of the loop's joints at a posture of the arm, with the joints that it has not at 0; none if the kinds are others.
+    pub(super) fn values(&self, way: &Arrangement, kinds: &[bool], posture: &[[u64; 2]]) -> Option<Vec<[u64; 2]>> {
         let m = self.modulus;
         let mut values = Vec::new();
         for (place, joint) in way.order.iter().enumerate() {
             let slides = way.prismatic[place];
             if kinds.get(*joint).is_some_and(|kind| *kind != slides) {
-                return false;
+                return None;
             }
             let [c, s] = posture.get(*joint).copied().unwrap_or(if slides { [0, 0] } else { [m.one, 0] });
             let [a, b] = self.offsets[place];
@@ -150,7 +154,32 @@ impl Loop {
             };
             values.push(value);
         }
-        self.is_met(&way.prismatic, &self.links_at(way, pose), &values)
+        Some(values)
+    }
+
+    /// Whether the axes of the loop's joints are independent, as lines of motion, at values that close it: its solution there stands alone.
+    pub(super) fn is_regular(&self, prismatic: &[bool], links: &[Frame], values: &[[u64; 2]]) -> bool {
+        let m = self.modulus;
+        let mut at = m.identity();
+        let mut rows: Vec<[u64; 6]> = Vec::new();
+        for ((slides, link), value) in prismatic.iter().zip(links).zip(values) {
+            let (z, p) = (at.map(|row| row[2]), at.map(|row| row[3]));
+            let (moment, turn) = if *slides { (z, [0; 3]) } else { (m.cross(p, z), z) };
+            rows.push(std::array::from_fn(|i| if i < 3 { moment[i] } else { turn[i - 3] }));
+            at = m.compose(&m.compose(&at, &m.joint(*slides, [0, 0, m.one], *value)), link);
+        }
+        let mut rank = 0;
+        for entry in 0..6 {
+            let Some(pivot) = (rank..rows.len()).find(|row| rows[*row][entry] != 0) else { continue };
+            rows.swap(rank, pivot);
+            let (over, pivot) = (m.inverse(rows[rank][entry]), rows[rank]);
+            for row in rows.iter_mut().skip(rank + 1) {
+                let factor = m.negated(m.times(row[entry], over));
+                m.add_multiple(row, factor, &pivot);
+            }
+            rank += 1;
+        }
+        rank == prismatic.len()
     }
 
     /// The links at a pose.

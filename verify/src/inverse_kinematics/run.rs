@@ -57,8 +57,22 @@ fn arrangement<const J: usize>(way: &text::Arrangement) -> Option<block::Arrange
     })
 }
 
-/// As the text `solutions` concludes.
-fn concluded<const J: usize, const N: usize>(text: &Text, found: &block::Branches<J, N>) -> Outcome {
+/// As the text `solutions` concludes, after virtual joints that have to come out 0, where there are any.
+fn concluded<const J: usize, const N: usize>(text: &Text, t: &block::Frame, found: &block::Branches<J, N>) -> Option<Outcome> {
+    let Some(own) = &text.own else { return Some(listed(text, found)) };
+    let (arm, length) = (arrangement::<6>(own)?, text.length.parse().ok()?);
+    let rows = if text.construction == Construction::General { block::GENERAL_ROWS } else { block::ROUNDING };
+    Some(match text.dof {
+        1 => listed(text, &block::without_virtual_joints::<J, 1, N>(&arm, found, t, length, rows)),
+        2 => listed(text, &block::without_virtual_joints::<J, 2, N>(&arm, found, t, length, rows)),
+        3 => listed(text, &block::without_virtual_joints::<J, 3, N>(&arm, found, t, length, rows)),
+        4 => listed(text, &block::without_virtual_joints::<J, 4, N>(&arm, found, t, length, rows)),
+        5 => listed(text, &block::without_virtual_joints::<J, 5, N>(&arm, found, t, length, rows)),
+        _ => return None,
+    })
+}
+
+fn listed<const J: usize, const N: usize>(text: &Text, found: &block::Branches<J, N>) -> Outcome {
     let dof = text.dof - usize::from(text.given.is_some());
     let (mut near, mut continuum) = (found.near, found.continuum);
     let mut solutions = Vec::new();
@@ -83,14 +97,15 @@ fn concluded<const J: usize, const N: usize>(text: &Text, found: &block::Branche
 
 fn in_order<const J: usize, const N: usize>(
     text: &Text,
+    t: &block::Frame,
     way: &block::Arrangement<J>,
     mut found: block::Branches<J, N>,
-) -> Outcome {
+) -> Option<Outcome> {
     let count = found.count;
     for branch in found.all.iter_mut().take(count) {
         *branch = way.of_arm(branch);
     }
-    concluded(text, &found)
+    concluded(text, t, &found)
 }
 
 /// What the function returns at a pose; `None` if its text cannot be run.
@@ -101,7 +116,7 @@ pub(super) fn run(text: &Text, t: &block::Frame, redundancy: f64) -> Option<Outc
         return match text.construction {
             Construction::ShoulderElbowWrist => {
                 let way = arrangement::<7>(&text.loops[0])?;
-                Some(in_order(text, &way, block::shoulder_elbow_wrist(&way, t, redundancy)))
+                in_order(text, t, &way, block::shoulder_elbow_wrist(&way, t, redundancy))
             }
             _ => of_rest(text, t, None, [0.0; 3]),
         };
@@ -135,11 +150,11 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
     let links_at = |way: &block::Arrangement<6>| with_moved(way.links_at(t), moved);
     let length: f64 = text.length.parse().ok()?;
     let first = &text.loops[0];
-    Some(match &text.construction {
-        Construction::ShoulderElbowWrist => return None,
+    match &text.construction {
+        Construction::ShoulderElbowWrist => None,
         Construction::General => {
             let ways = [arrangement::<6>(first)?, arrangement::<6>(&text.loops[1])?];
-            concluded(text, &block::general_arm(&ways, t, length))
+            concluded(text, t, &block::general_arm(&ways, t, length))
         }
         Construction::SphericalTriple { kinds, case: name, polished } => {
             let (way, kinds) = (arrangement::<6>(first)?, [kinds[0], kinds[1], kinds[2]]);
@@ -148,7 +163,7 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
             if *polished {
                 block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length });
             }
-            in_order(text, &way, found)
+            in_order(text, t, &way, found)
         }
         Construction::ThreeParallel { polished } => {
             let way = arrangement::<6>(first)?;
@@ -157,20 +172,20 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
             if *polished {
                 block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length });
             }
-            in_order(text, &way, found)
+            in_order(text, t, &way, found)
         }
         Construction::ParallelTurns { kinds, case: name } => {
             let way = arrangement::<4>(first)?;
             let links = with_moved(way.links_at(t), moved);
-            in_order(text, &way, block::parallel_turns(&links, [kinds[0], kinds[1], kinds[2]], case(name)?))
+            in_order(text, t, &way, block::parallel_turns(&links, [kinds[0], kinds[1], kinds[2]], case(name)?))
         }
         Construction::ThreePrismatic { turning } => {
             let way = arrangement::<6>(first)?;
-            in_order(text, &way, block::three_prismatic(&way.links_at(t), [turning[0], turning[1], turning[2]]))
+            in_order(text, t, &way, block::three_prismatic(&way.links_at(t), [turning[0], turning[1], turning[2]]))
         }
         Construction::TwoSlides { slides } => {
             let way = arrangement::<6>(first)?;
-            in_order(text, &way, block::two_slides(&way.links_at(t), [slides[0], slides[1]], length))
+            in_order(text, t, &way, block::two_slides(&way.links_at(t), [slides[0], slides[1]], length))
         }
         Construction::Position { case: name, polished } => {
             let way = arrangement::<3>(first)?;
@@ -186,7 +201,7 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
                 let links = [a, b, block::displaced(from)];
                 block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: to, length });
             }
-            in_order(text, &way, found)
+            in_order(text, t, &way, found)
         }
-    })
+    }
 }

@@ -301,17 +301,21 @@ fn case(name: &str) -> Option<Case> {
 /// Whether the construction of a module is one of closed forms.
 pub(super) fn is_closed(construction: &Construction) -> bool {
     match construction {
-        Construction::SphericalTriple { polished, .. }
-        | Construction::ThreeParallel { polished }
-        | Construction::Position { polished, .. } => !polished,
+        Construction::SphericalTriple { polished, case: name, .. } => !polished && case(name).is_some(),
+        Construction::ThreeParallel { polished } | Construction::Position { polished, .. } => !polished,
         Construction::General | Construction::TwoSlides { .. } => false,
         _ => true,
     }
 }
 
-/// Runs the construction of a module at a pose of a field. Notes the branches that close the loop. The first that does not is the error, unless
-/// something that is no number was compared on the way.
-pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<(), u16> {
+/// Runs the construction of a module at a pose of a field. Notes the branches that close the loop; of these the number with all virtual joints at
+/// 0 is returned. The first that does not is the error, unless something that is no number was compared on the way.
+pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<usize, u16> {
+    let own = Cell::new(0);
+    branches(module, at, sound, &own).map(|()| own.get())
+}
+
+fn branches(module: &Text, at: &At<'_>, sound: &mut [bool], own: &Cell<usize>) -> Result<(), u16> {
     FIELD.set(Some(Field::new(at.closed.modulus)));
     UNKNOWN.set(false);
     let wrong = |signs: u16| if UNKNOWN.get() { Ok(()) } else { Err(signs) };
@@ -326,6 +330,12 @@ pub(super) fn run(module: &Text, at: &At<'_>, sound: &mut [bool]) -> Result<(), 
         if let Some(seen) = sound.get_mut(usize::from(signs)) {
             *seen = true;
         }
+        let way = &module.loops[0];
+        let places = way.order.iter().zip(&way.prismatic).zip(numbers.iter().zip(&at.closed.offsets));
+        let mut virtual_joints = places.filter(|((joint, _), _)| **joint >= module.dof);
+        let at_zero =
+            virtual_joints.all(|((_, slides), (value, offset))| if *slides { value[0] == offset[0] } else { value == offset });
+        own.set(own.get() + usize::from(at_zero));
         Ok(())
     };
     let six = || -> Option<[blocks::Frame; 6]> { (joints == 6).then(|| std::array::from_fn(|i| frame(&links[i]))) };

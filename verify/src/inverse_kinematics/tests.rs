@@ -288,6 +288,22 @@ fn a_swivel_angle_is_verified_and_not_counted() {
     }
 }
 
+/// An axis twice stands in for a joint that the others make superfluous.
+#[test]
+fn axes_that_are_dependent_are_seen() {
+    let m = modular::Modulus::new((1 << 61) - 1);
+    let shifted = |x: i64| {
+        let mut link = m.identity();
+        link[0][3] = m.integer(x);
+        link
+    };
+    let still = Loop { modulus: m, links: vec![], before: m.identity(), after: m.identity(), offsets: vec![] };
+    let regular = |links: &[modular::Frame]| still.is_regular(&vec![false; links.len()], links, &vec![[m.one, 0]; links.len()]);
+    assert!(regular(&[shifted(1), shifted(2)]) && !regular(&[shifted(0), shifted(2)]));
+    // Four parallel axes.
+    assert!(!regular(&[shifted(1), shifted(2), shifted(3), shifted(1)]));
+}
+
 #[test]
 fn arms_of_each_class_are_verified() {
     for (name, solutions, text) in made_up().into_iter().chain(redundant()) {
@@ -419,7 +435,7 @@ fn what_is_not_armgens_is_refused() {
     let [one, other] = [&text, &renamed].map(|text| verify(&source, text, 8));
     assert!(one.passed() && other.passed() && one.to_string() == other.to_string(), "{one}\n{other}");
     // An arm without a construction.
-    let (source, text) = module(&description("", &[["R", "1", "0", "0", "0"]]));
+    let (source, text) = module(&description("", &[["P", "0", "0", "0", "0"]; 2]));
     let absent = verify(&source, &text, 0);
     assert!(absent.passed() && absent.absent, "{absent}\n{text}");
     assert!(!verify(&source, &(text + "pub static X: u8 = 0;\n"), 0).passed());
@@ -449,7 +465,7 @@ fn modules_in_c_are_verified() {
         assert!(fault(" < 4; ++i", " < 3; ++i").contains(writes));
         assert!(fault("UNFUSED", "FUSED").contains(writes));
     }
-    let source = Source::new("robot.yaml", description("", &[["R", "1", "0", "0", "0"]]));
+    let source = Source::new("robot.yaml", description("", &[["P", "0", "0", "0", "0"]; 2]));
     let options = Options { functions, ..Options::default() };
     let generated = armgen_codegen::generate(&source, &options).0.expect("a valid robot");
     let report = verify(&source, &generated.inverse_kinematics_in_c().expect("a comment"), 0);

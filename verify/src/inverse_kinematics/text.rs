@@ -67,6 +67,8 @@ pub(super) struct Text {
     pub(super) loops: Vec<Arrangement>,
     pub(super) construction: Construction,
     pub(super) given: Option<Given>,
+    /// The loop of the arm's own joints, where there are virtual ones that have to come out 0.
+    pub(super) own: Option<Arrangement>,
     /// Whether the function asks for a rotation, not for a position alone.
     pub(super) rotation: bool,
 }
@@ -82,7 +84,7 @@ fn squeezed(text: &str) -> String {
         for c in line.chars() {
             quoted ^= c == '"';
             if quoted || !c.is_whitespace() {
-                if matches!(c, ')' | ']' | '}') && !quoted && all.ends_with(',') {
+                if matches!(c, ')' | ']' | '}' | '>') && !quoted && all.ends_with(',') {
                     all.pop();
                 }
                 all.push(c);
@@ -279,10 +281,12 @@ const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().tak
 fn body(
     reader: &mut Reader<'_>,
     loops: &[Arrangement],
-    (dof, given, tip): (usize, bool, bool),
+    (dof, given, tip, own): (usize, bool, bool, bool),
 ) -> Result<(Construction, Option<usize>), String> {
     let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
-    if reader.take(if given {
+    if reader.take(if own {
+        "conclude(&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS),true)}"
+    } else if given {
         "conclude(&GIVEN.with::<6,DOF,16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}"
     } else {
         "conclude(&general_arm(&LOOPS,&t,LENGTH),true)}"
@@ -297,7 +301,7 @@ fn body(
     }
     if point {
         let construction = position(reader, loops, (tip, true))?;
-        return conclusion(reader, loops, (dof, given), construction).map(|construction| (construction, moved));
+        return conclusion(reader, loops, (dof, given, own), construction).map(|construction| (construction, moved));
     }
     let links = moved.is_some() || reader.take(LINKS);
     let construction = if links && reader.take("letmutfound=spherical_triple(&links,") {
@@ -334,7 +338,7 @@ fn body(
     } else {
         position(reader, loops, (tip, false))?
     };
-    conclusion(reader, loops, (dof, given), construction).map(|construction| (construction, moved))
+    conclusion(reader, loops, (dof, given, own), construction).map(|construction| (construction, moved))
 }
 
 /// A position, from where its links are known, or already `moved` by a joint that is given.
@@ -364,7 +368,7 @@ fn position(reader: &mut Reader<'_>, loops: &[Arrangement], (tip, moved): (bool,
 fn conclusion(
     reader: &mut Reader<'_>,
     loops: &[Arrangement],
-    (dof, given): (usize, bool),
+    (dof, given, own): (usize, bool, bool),
     construction: Construction,
 ) -> Result<Construction, String> {
     reader.expect(IN_ORDER)?;
@@ -375,6 +379,9 @@ fn conclusion(
         let all = if others + 1 == dof { "DOF".to_owned() } else { (others + 1).to_string() };
         let most = if others == 6 { 8 } else { 4 };
         reader.expect(&format!("conclude(&GIVEN.with::<{others},{all},{most}>(&found,value),"))?;
+    } else if own {
+        let sizes = if matches!(construction, Construction::ParallelTurns { .. }) { "4,DOF,4" } else { "6,DOF,8" };
+        reader.expect(&format!("conclude(&without_virtual_joints::<{sizes}>(&ARM,&found,&t,LENGTH,ROUNDING),"))?;
     } else {
         reader.expect("conclude(&found,")?;
     }
@@ -434,6 +441,11 @@ impl Text {
             vec![way]
         };
         reader.expect(";")?;
+        let mut own = None;
+        if !redundant && reader.take("constARM:Arrangement<6>=") {
+            own = Some(arrangement(&reader.value()?)?);
+            reader.expect(";")?;
+        }
         let mut joint = None;
         if redundant && reader.take("constGIVEN:Given=Given") {
             joint = Some(given(&reader.value()?)?);
@@ -460,7 +472,7 @@ impl Text {
                 reader.expect(POSE)?;
             }
         }
-        let (construction, moved) = body(&mut reader, &loops, (dof, joint.is_some(), tip))?;
+        let (construction, moved) = body(&mut reader, &loops, (dof, joint.is_some(), tip, own.is_some()))?;
         let first = loops.first_mut().ok_or("there is no loop")?;
         if moved.is_some_and(|place| place >= first.order.len() || place == first.open) {
             return Err("the place of the joint that is given is none".into());
@@ -482,6 +494,13 @@ impl Text {
         }
         if (construction == Construction::ShoulderElbowWrist) != (redundant && joint.is_none()) {
             return Err("what is given is not what the construction asks for".into());
+        }
+        // Its six places are those of the arm's joints and what stays at 0 behind them.
+        if own
+            .as_ref()
+            .is_some_and(|way| way.order != [0, 1, 2, 3, 4, 5] || way.backward || way.open != 5 || dof >= 6 || !rotation)
+        {
+            return Err("ARM: it is not the loop of the arm's own joints, from the base on".into());
         }
         if !reader.rest.is_empty() {
             return Err("something stands behind the function".into());
@@ -505,6 +524,7 @@ impl Text {
             loops,
             construction,
             given: joint,
+            own,
             rotation,
         }))
     }

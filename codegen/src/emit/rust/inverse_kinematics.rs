@@ -168,6 +168,7 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
     };
     let mut names = vec![scalar, "arrangement", "solutions"];
     names.extend(found.given().map(|_| "given"));
+    names.extend(found.own.as_ref().map(|_| "virtual_joints"));
     match &found.construction {
         Construction::SphericalTriple(_, case) => {
             names.extend(["spherical_triple", case.text]);
@@ -227,6 +228,13 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
             }
         }
     };
+    let own = found.own.as_ref().map(|way| {
+        let way = arrangement(way, scalar);
+        quote! {
+            /// The loop of the arm's own joints, from joint 1 on; those behind them stay at 0.
+            const ARM: Arrangement<6> = #way;
+        }
+    });
     let length = literal(&found.length, scalar);
     let given = found.given().map(|given| {
         let (joint, prismatic) = (usize_literal(given.joint), given.prismatic);
@@ -250,6 +258,7 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
         /// The arm's largest length, m.
         const LENGTH: Real = #length;
         #loops
+        #own
         #given
     }
 }
@@ -349,14 +358,23 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         let kinds = way.prismatic.iter().take(count);
         quote!([#(#kinds),*])
     };
-    let polish = quote! {
+    // Solutions of the arm's own joints are refined on their own.
+    let polish = found.own.is_none().then_some(quote! {
         polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
-    };
+    });
     // Solutions without branches come in the order of their joint variables.
     let by_angle = matches!(found.construction, Construction::TwoSlides(..));
-    let conclusion = match found.given() {
-        None => quote!(conclude(&found, #by_angle)),
-        Some(_) => {
+    let conclusion = match (found.given(), &found.own) {
+        (None, None) => quote!(conclude(&found, #by_angle)),
+        (None, Some(_)) => {
+            let (joints, most) = match &found.construction {
+                Construction::ParallelTurns(..) => (4, 4),
+                _ => (6, 8),
+            };
+            let (joints, most) = (usize_literal(joints), usize_literal(most));
+            quote!(conclude(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING), #by_angle))
+        }
+        (Some(_), _) => {
             let others = found.loops().first().map_or(0, |way| way.order.len());
             // With a virtual joint they are more than the arm has.
             let all = match others + 1 {
@@ -387,7 +405,7 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
     let body = match &found.construction {
         Construction::SphericalTriple(way, case) => {
             let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
-            let polish = (!case.closed).then_some(polish);
+            let polish = (!case.closed).then_some(polish).flatten();
             quote! {
                 #links
                 let mut found = spherical_triple(&links, #kinds, #block);
@@ -396,7 +414,7 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
             }
         }
         Construction::ThreeParallel(_, polished) => {
-            let polish = polished.then_some(polish);
+            let polish = polished.then_some(polish).flatten();
             quote! {
                 #links
                 let mut found = three_parallel(&links);
@@ -474,6 +492,9 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         Construction::General(_) if found.given().is_some() => quote! {
             conclude(&GIVEN.with::<6, DOF, 16>(&general_arm(&LOOPS, &t, LENGTH), value), true)
         },
+        Construction::General(_) if found.own.is_some() => quote! {
+            conclude(&without_virtual_joints::<6, DOF, 16>(&ARM, &general_arm(&LOOPS, &t, LENGTH), &t, LENGTH, GENERAL_ROWS), true)
+        },
         Construction::General(_) => quote! {
             conclude(&general_arm(&LOOPS, &t, LENGTH), true)
         },
@@ -541,6 +562,15 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
             (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6.")
         }
     };
+    let rows = found.own.as_ref().map(|_| {
+        let tolerance = if matches!(found.construction, Construction::General(_)) { "`GENERAL_ROWS`" } else { "`ROUNDING`" };
+        let lines = [
+            " The arm has fewer joints than a pose has rows: a pose is reached where all rows are met,".to_owned(),
+            format!(" to {tolerance} times the sum of the lengths in the arm's loop."),
+            String::new(),
+        ];
+        quote!(#(#[doc = #lines])*)
+    });
     let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
     let argument = found.redundancy.as_ref().map(|_| quote!(redundancy: Real));
     let about = about_redundancy(found).map(|about| {
@@ -577,6 +607,7 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         /// units times the arm's length; q itself by that over the smallest singular value of the Jacobian, near a double solution by
         /// its root.
         ///
+        #rows
         #[doc = #class]
         pub fn inverse_kinematics(t: &[[Real; 4]; 4], #argument) -> Solutions {
             let [x, y, z, _] = *t;

@@ -61,6 +61,16 @@ macro_rules! every_block {
                 keep((solutions.within_limits(), solutions.nearest_to(&[number(); DOF]), solutions.as_slice().len()));
             }
 
+            /// Solutions of an arm of J joints, completed by virtual ones.
+            fn few<const J: usize>(links: &[Frame; 6]) {
+                let (arm, t) = (way::<6>(), frame());
+                let flat = parallel_turns(&way::<4>().links_at(&t), [false; 3], regional_elbow);
+                keep(without_virtual_joints::<4, J, 4>(&arm, &flat, &t, number(), ROUNDING));
+                keep(without_virtual_joints::<6, J, 8>(&arm, &three_parallel(links), &t, number(), ROUNDING));
+                let general = general_arm(&[way(), way()], &t, number());
+                keep(without_virtual_joints::<6, J, 16>(&arm, &general, &t, number(), GENERAL_ROWS));
+            }
+
             #[inline(never)]
             pub(crate) fn call() {
                 keep(line_and_circle(number(), number(), number(), number(), number()));
@@ -97,6 +107,11 @@ macro_rules! every_block {
                 whole(three_prismatic(&links, black_box([0, 2, 4])), &links);
                 whole(two_slides(&links, black_box([1, 3]), number()), &links);
                 solutions(&general_arm(&[way(), way()], &frame(), number()));
+                few::<1>(&links);
+                few::<2>(&links);
+                few::<3>(&links);
+                few::<4>(&links);
+                few::<5>(&links);
                 keep((is_pose(&black_box([[number(); 4]; 4])), Solutions::none(Verdict::Invalid)));
             }
         }
