@@ -6,7 +6,7 @@ pub use crate::derive::model::Sizes;
 pub use crate::derive::parameters::Parameter;
 pub use crate::derive::quantities;
 pub use crate::derive::quantity::{
-    Absent, Argument, Documentation, Element, Length, Quantity, Recursion, ResultPart, Setting, Structure, Typeset,
+    Absent, Argument, DerivationInput, Documentation, Element, Length, Quantity, Recursion, ResultPart, Structure, Typeset,
 };
 
 use quantities::DECLARED;

@@ -16,7 +16,7 @@ pub use experiment::{
     Algorithm, AlgorithmKind, Body, BranchRun, ClikRun, ControlRun, Experiment, Noise, Posture, Postures, ReferenceGains,
     Sampling, Start,
 };
-pub use law::{Adaptation, EstimateBounds, Gain, Law, LawKind, Per};
+pub use law::{Adaptation, ControlLaw, ControlLawKind, EstimateBounds, Gain, Per};
 pub use motion::{Motion, Sheet, Trajectory};
 pub use number::{digits, number};
 pub use record::{Peak, Record, Shape, Shapes, Speed};

@@ -39,7 +39,7 @@ pub(crate) fn main() -> Result<(), Box<dyn Error>> {
         report.motion = Some(analysis.of(&model, &controller, &joints)?);
         println!(
             "K_D = {k_d} 1/s at {period} s: radius {:.4} at rest, holds: {}; {:?}",
-            report.radius,
+            report.spectral_radius,
             report.holds(),
             report.period
         );

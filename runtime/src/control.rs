@@ -12,12 +12,12 @@
 //!
 //! with e = q_d - q (or the pose error of the task), de its derivative. Gains are diagonal, hence positive definite where every
 //! element is positive; the constructors check it. A controller holds gains, no robot and no clock: the caller owns the loop and
-//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a memory,
+//! passes the model, the reference and the measurement of each sample. Only [`Adaptive`] and [`OperationalSpace`] have a controller state,
 //! advanced by forward Euler after the torque is computed.
 //!
 //! Each has a method `torque`; the trait [`Controller`] is what they have in common, for a loop that runs any of them.
 //!
-//! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the memory as it was.
+//! A measurement that is not finite gives [`ControlError::MeasurementNotFinite`], never a torque, and leaves the controller state as it was.
 //!
 //! The robot is whatever implements the traits: `Nominal` of an emitted module, say.
 //!
@@ -110,10 +110,10 @@ pub trait Controller<R: Kinematics<N>, const N: usize> {
     /// What is desired: a [`JointReference`], or an [`OperationalReference`] of the end effector.
     type Reference;
 
-    /// Torque for one sample, then the step of the memory where the controller has one.
+    /// Torque for one sample, then the step of the controller state, if there is one.
     ///
     /// # Errors
-    /// Where there is no torque; the memory stays as it was.
+    /// Where there is no torque; the controller state stays as it was.
     fn torque(
         &mut self,
         model: &R,

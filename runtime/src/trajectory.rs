@@ -9,7 +9,7 @@
 //! With dt = 0 the point between two segments is a stop. With an anticipation dt > 0 the next segment starts before the previous one
 //! has ended, their displacements add, and the point becomes a via point that is passed at a distance.
 //!
-//! - [`Law`]: how s runs: trapezoidal speed (by duration or by limits), cubic, quintic.
+//! - [`TimeLaw`]: how s runs: trapezoidal speed (by duration or by limits), cubic, quintic.
 //! - [`Path`]: positions in space. [`OrientationProfile`]: turns. [`OperationalTrajectory`]: both.
 //! - [`JointTrajectory`]: the same in joint space.
 //!
@@ -39,7 +39,7 @@ mod path;
 mod reach;
 
 pub use joint::{JointSegment, JointTrajectory};
-pub use law::{Law, Profile, Progress};
+pub use law::{Profile, Progress, TimeLaw};
 pub use operational::OperationalTrajectory;
 pub use orientation::{OrientationProfile, OrientationSample, Turn};
 pub use path::{Path, PathSample, Segment};

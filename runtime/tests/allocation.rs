@@ -16,7 +16,7 @@ use armgen_runtime::{
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Kinematics,
     task::{Row, Task},
-    trajectory::{JointSegment, JointTrajectory, Law, Path, Segment},
+    trajectory::{JointSegment, JointTrajectory, Path, Segment, TimeLaw},
 };
 use common::{ghost, scara::NOMINAL};
 use nalgebra::vector;
@@ -150,7 +150,7 @@ fn trajectories_manipulability_and_plans() {
     for k in (0..22_000).step_by(37) {
         none("sampling", || trajectory.sample(Duration::from_millis(k)));
     }
-    let law = Law::Quintic { duration: Duration::from_secs(1) };
+    let law = TimeLaw::Quintic { duration: Duration::from_secs(1) };
     let joints = JointTrajectory::plan(
         [0.0; 4],
         [JointSegment::to([1.0; 4], law), JointSegment::within_limits([0.0; 4], [1.0; 4], [2.0; 4])],

@@ -218,7 +218,7 @@ fn adaptive_as_reported_is_stable_in_continuous_time() {
         },
         |sample| {
             e_z = e_z.max((z(&reference[sample.index as usize].q) - z(&sample.state.q)).abs());
-            mass.push(sample.memory[2]);
+            mass.push(sample.controller_state[2]);
         },
     )
     .unwrap();

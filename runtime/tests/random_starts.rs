@@ -11,7 +11,7 @@ use armgen_runtime::{
     reference::{OperationalReference, Pose, State},
     robot::Kinematics,
     simulation::{Integrator, Plant},
-    trajectory::Law,
+    trajectory::TimeLaw,
 };
 use common::ghost;
 use nalgebra::{vector, SMatrix, Unit, Vector3, Vector4};
@@ -168,7 +168,7 @@ proptest! {
 
     #[test]
     fn laws_run_from_0_to_1_and_keep_their_limits(length in 1e-4..10.0f64, v in 0.01..5.0f64, a in 0.01..20.0f64) {
-        let profile = Law::TrapezoidalByLimits { velocity: v, acceleration: a }.resolve(length).unwrap();
+        let profile = TimeLaw::TrapezoidalByLimits { velocity: v, acceleration: a }.resolve(length).unwrap();
         let mut before = 0.0;
         for k in 0..=200u32 {
             let p = profile.at(profile.duration() * k / 200);

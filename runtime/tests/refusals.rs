@@ -116,7 +116,7 @@ fn a_broken_measurement_gives_an_error_and_never_a_torque() {
     let robust = Robust::new([1e3; 4], [10.0; 4], [1.0; 4], [1.0; 4], BoundaryLayer { rho: 10.0, epsilon: 0.2 }).unwrap();
     let mut adaptive = Adaptive::new([500.0; 4], [10.0; 4], [10.0; 14], NOMINAL, 1e-3).unwrap();
     let mut operational = OperationalSpace::new(ghost::task(), [1e3; 4], [10.0; 4], [10.0; 4], 1e-3).unwrap();
-    let (memory, integral) = (*adaptive.estimate(), *operational.integral());
+    let (controller_state, integral) = (*adaptive.estimate(), *operational.integral());
     let lost = Some(ControlError::MeasurementNotFinite);
     for measured in broken() {
         assert_eq!(pd.torque(&model, &rest, &measured).err(), lost);
@@ -130,8 +130,8 @@ fn a_broken_measurement_gives_an_error_and_never_a_torque() {
     assert_eq!(inverse.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
     assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::MemoryNotFinite));
     assert_eq!(operational.torque(&model, &pose, &wild).err(), Some(ControlError::TorqueNotFinite));
-    // Nothing of it stays in the memory.
-    assert_eq!(adaptive.estimate(), &memory);
+    // Nothing of it stays in the controller state.
+    assert_eq!(adaptive.estimate(), &controller_state);
     assert_eq!(operational.integral(), &integral);
     let nowhere = JointReference { dq: Vector4::repeat(NAN), ..rest };
     assert_eq!(robust.torque(&model, &nowhere, &State::at_rest(ghost::start())).err(), Some(ControlError::ReferenceNotFinite));

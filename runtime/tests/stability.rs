@@ -27,7 +27,7 @@ fn report<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, delay: 
 #[track_caller]
 fn check<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64, period: f64, percent: f64) {
     let report = report(controller, Delay::NONE);
-    close("radius", report.radius, radius, 1e-4);
+    close("spectral radius", report.spectral_radius, radius, 1e-4);
     assert!(report.is_stable());
     let StablePeriod::UpTo(found) = report.period else { panic!("{report:?}") };
     close_percent("largest stable period", found, period, percent);
@@ -36,7 +36,7 @@ fn check<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: 
 #[track_caller]
 fn check_delayed<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, radius: f64) {
     let report = report(controller, Delay::samples(1));
-    close("radius with one sample of delay", report.radius, radius, 1e-4);
+    close("spectral radius with one sample of delay", report.spectral_radius, radius, 1e-4);
     assert!(!report.is_stable());
 }
 
@@ -67,7 +67,7 @@ fn robust_tuned() -> Robust<f64, 4> {
 #[test]
 fn robust_with_tuned_gains() {
     let report = report(&robust_tuned(), Delay::NONE);
-    close("radius", report.radius, 0.84131, 1e-4);
+    close("spectral radius", report.spectral_radius, 0.84131, 1e-4);
     check_delayed(&robust_tuned(), 1.0459);
 }
 
@@ -83,7 +83,7 @@ fn operational_space_as_reported() -> OperationalSpace<f64, 4, 4> {
 fn operational_space_reported_and_tuned() {
     let controller = operational_space_as_reported();
     check(&controller, 0.9999960, 20e-3, 2.0);
-    close("radius", report(&controller, Delay::NONE).radius, 0.9999960, 1e-7);
+    close("radius", report(&controller, Delay::NONE).spectral_radius, 0.9999960, 1e-7);
     let tuned = report(&operational_space([1e4; 4], [1e5; 4], [200.0; 4]), Delay::NONE);
     assert!(tuned.is_stable());
 }
@@ -109,7 +109,7 @@ fn adaptive_b() {
     // With the estimate that it begins with, and with the load that it has: a little less.
     let controller = adaptive_scaled(100.0, [1000.0, 500.0, 2000.0, 100.0]);
     let found = analyse_start(&ghost::loaded(), &ghost::nominal(), &controller, &ghost::postures(), 1e-3, Delay::NONE).unwrap();
-    close("radius at the start", found.radius, 0.99497, 1e-4);
+    close("spectral radius at the start", found.spectral_radius, 0.99497, 1e-4);
     let StablePeriod::UpTo(limit) = found.period else { panic!("{found:?}") };
     close_percent("largest stable period at the start", limit, 8.60e-3, 0.5);
     check(&controller, 0.99489, 8.26e-3, 0.5);
@@ -123,15 +123,15 @@ fn adaptive_as_reported_is_unstable() {
             analyse_start(&ghost::loaded(), &ghost::nominal(), controller, &ghost::postures(), 1e-3, Delay::NONE).unwrap()
         };
         let found = at_start(&controller);
-        close_percent("radius", found.radius, radius, 1.0);
+        close_percent("spectral radius", found.spectral_radius, radius, 1.0);
         let StablePeriod::UpTo(limit) = found.period else { panic!("{found:?}") };
         close("largest stable period", limit, period, 0.5e-7);
         assert!(!found.is_stable());
         // Adaptation does not matter for it.
         let frozen = at_start(&controller.with_frozen([true; 14]));
-        close_percent("radius without adaptation", frozen.radius, radius, 1.0);
+        close_percent("radius without adaptation", frozen.spectral_radius, radius, 1.0);
         // The arm rests with the true load alone, wherever the estimate begins.
-        close_percent("radius at rest", report(&controller, Delay::NONE).radius, 9.01, 1.0);
+        close_percent("radius at rest", report(&controller, Delay::NONE).spectral_radius, 9.01, 1.0);
     }
 }
 
@@ -191,9 +191,9 @@ fn a_null_space_without_a_spring_may_drift() {
 fn memories_are_excited_ones_only() {
     let q = ghost::start();
     let feedback = adaptive_scaled(500.0, K_D).linearise(&ghost::nominal(), &q).unwrap();
-    assert_eq!(feedback.memory.ncols(), 1, "m_l3 alone is excited at rest");
+    assert_eq!(feedback.controller_state.ncols(), 1, "m_l3 alone is excited at rest");
     let operational = operational_space([1e4; 4], [0.0, 0.0, 1e5, 0.0], [200.0; 4]).linearise(&ghost::nominal(), &q).unwrap();
-    assert_eq!(operational.memory.ncols(), 1);
+    assert_eq!(operational.controller_state.ncols(), 1);
 }
 
 /// The analysis against the thing itself: the error of the simulated loop shrinks by the spectral radius, sample by sample.
@@ -354,7 +354,7 @@ fn a_law_without_an_integral_rests_off_its_reference() {
     let robust = Robust::new(k_p, k_d, [1.0], [1.0], BoundaryLayer { rho, epsilon: 1e-6 }).unwrap();
     let report = analyse(&Mass { force, stiffness: 0.0 }, &FREE, &robust, &[vector![0.3]], 1e-3, Delay::NONE).unwrap();
     close("offset beyond the layer", report.offset, (force / 2.0 - rho) / k_p[0], 1e-8);
-    close("radius beyond the layer", report.radius, of(&Mass { force, stiffness: 0.0 }).radius, 1e-7);
+    close("spectral radius beyond the layer", report.spectral_radius, of(&Mass { force, stiffness: 0.0 }).spectral_radius, 1e-7);
 }
 
 #[test]

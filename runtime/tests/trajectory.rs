@@ -4,7 +4,7 @@ mod common;
 
 use armgen_runtime::{
     robot::Kinematics,
-    trajectory::{Law, Path, PlanFault, Reach, Segment},
+    trajectory::{Path, PlanFault, Reach, Segment, TimeLaw},
 };
 use common::{below, close, ghost};
 use std::{f64::consts::PI, time::Duration};
@@ -147,7 +147,7 @@ fn single_precision_follows() {
 
 #[test]
 fn arcs_in_space_through_three_points() {
-    let law = Law::Quintic { duration: ms(1000) };
+    let law = TimeLaw::Quintic { duration: ms(1000) };
     // A quarter of a circle of radius 2 about (1, 0, 0) in the plane x = 1, from (1, 2, 0) over 45 degrees to (1, 0, 2).
     let r = 2f64.sqrt();
     let path = Path::plan([1.0, 2.0, 0.0], [Segment::arc_through([1.0, r, r], [1.0, 0.0, 2.0], law)]).unwrap();

@@ -10,7 +10,7 @@ use armgen_runtime::robot::Kinematics;
 use armgen_runtime::simulation::{run, RunOptions};
 use armgen_runtime::stability::{analyse, Delay};
 use armgen_runtime::task::Task;
-use armgen_runtime::trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, Segment, Turn};
+use armgen_runtime::trajectory::{OperationalTrajectory, OrientationProfile, Path, Segment, TimeLaw, Turn};
 use armgen_tests::emitted::panda7;
 
 const PERIOD: Duration = Duration::from_millis(1);
@@ -23,7 +23,8 @@ type Trajectory = OperationalTrajectory<f64, [Segment<f64>; 2], [Turn<f64>; 2]>;
 /// A line of 2 s, then half a circle of 3 s in a tilted plane, turning about two axes meanwhile; 1 s of rest.
 fn trajectory() -> Trajectory {
     let seconds = Duration::from_secs;
-    let trapezoid = |duration| Law::Trapezoidal { duration: seconds(duration), acceleration_time: Duration::from_millis(400) };
+    let trapezoid =
+        |duration| TimeLaw::Trapezoidal { duration: seconds(duration), acceleration_time: Duration::from_millis(400) };
     let start = Pose::of(&ROBOT, &POSTURE.into());
     let [x, y, z] = start.position.into();
     let path = Path::plan(

@@ -174,7 +174,7 @@ pub struct Documentation {
 /// The derivation of a quantity by recursion over the links.
 pub struct Recursion {
     /// The entries of all parts, row by row, for an arm in a pool.
-    pub entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>,
+    pub entries: fn(&mut Pool, &Arm, &mut Plan, &DerivationInput<'_>) -> Vec<ExprId>,
     /// What the derivation may do to the arm where its parameters are numbers.
     pub rewriting: RewriteScope,
     /// How the parameters enter, where the quantity decides that.
@@ -189,7 +189,7 @@ pub struct Recursion {
 
 /// The arm that a derivation is for, and how its parameters enter.
 #[derive(Clone, Copy)]
-pub struct Setting<'a> {
+pub struct DerivationInput<'a> {
     /// The arm and its parameters.
     pub model: &'a Model,
     /// How the parameters enter.
@@ -239,7 +239,10 @@ impl Documentation {
 
 impl Recursion {
     /// A derivation without anything out of the ordinary.
-    pub const fn new(rewriting: RewriteScope, entries: fn(&mut Pool, &Arm, &mut Plan, &Setting<'_>) -> Vec<ExprId>) -> Recursion {
+    pub const fn new(
+        rewriting: RewriteScope,
+        entries: fn(&mut Pool, &Arm, &mut Plan, &DerivationInput<'_>) -> Vec<ExprId>,
+    ) -> Recursion {
         fn as_asked<'a>(_: &'a Model, view: View<'a>) -> View<'a> {
             view
         }
@@ -406,7 +409,7 @@ impl Quantity {
 
     pub(crate) fn by_plan(&self, model: &Model, view: View<'_>, mut plan: Plan, effort: usize) -> Derivation {
         let Recursion { entries, rewriting, view: own_view, prepare, without, starts } = self.recursion;
-        let setting = Setting { model, view: own_view(model, view) };
+        let setting = DerivationInput { model, view: own_view(model, view) };
         let rewriting = match (rewriting, setting.view) {
             (RewriteScope::Dynamics, View::Nominal) => RewriteScope::Dynamics,
             (RewriteScope::Dynamics, _) => RewriteScope::Plain,

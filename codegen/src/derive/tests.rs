@@ -18,7 +18,7 @@ use super::quantities::{
     coriolis, derivatives, first_moment, forward_dynamics, gravity, inertia, kinematics, kinetic_energy, momentum,
     operational_inertia,
 };
-use super::quantity::Setting;
+use super::quantity::DerivationInput;
 use super::*;
 use crate::catalogue;
 use crate::manipulator::Manipulator;
@@ -234,7 +234,7 @@ fn every_way_of_a_plan_leads_to_the_same_expressions() {
         for quantity in catalogue::quantities().filter(|quantity| !of_parameters.contains(quantity)).filter(there) {
             let mut pool = Pool::new(model.field.clone());
             let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
-            let setting = Setting { model: &model, view: View::Nominal };
+            let setting = DerivationInput { model: &model, view: View::Nominal };
             let plain = (quantity.recursion.entries)(&mut pool, &arm, &mut Plan::default(), &setting);
             for seed in 0..8 {
                 let found = quantity.by_plan(&model, View::Nominal, Plan::scattered(seed), 0);

@@ -5,7 +5,7 @@ use std::time::Duration;
 use armgen_runtime::clik::Integration;
 use armgen_runtime::task::Row;
 
-use super::{Channel, Expectation, JointQuantity, Law, Motion, PostureQuantity, Quantity, Robot};
+use super::{Channel, ControlLaw, Expectation, JointQuantity, Motion, PostureQuantity, Quantity, Robot};
 
 /// A valid experiment.
 #[derive(Clone, Debug)]
@@ -199,7 +199,7 @@ pub struct ControlRun {
     /// Of the second-order inverse kinematics that makes the joint reference.
     pub reference: ReferenceGains,
     /// The controller.
-    pub law: Law,
+    pub law: ControlLaw,
     /// Samples between measurement and torque.
     pub delay: usize,
     /// Of the measurement.

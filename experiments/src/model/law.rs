@@ -6,7 +6,7 @@ use super::{Quantity, Robot};
 
 /// Which controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LawKind {
+pub enum ControlLawKind {
     /// u = g(q) + K_P e + K_D de.
     PdGravity,
     /// u = B (ddq_d + K_D de + K_P e) + n.
@@ -51,19 +51,24 @@ const fn or_zero(key: &'static str, per: Per) -> Gain {
     Gain { key, per, may_be_zero: true }
 }
 
-impl LawKind {
+impl ControlLawKind {
     /// All of them.
-    pub const ALL: [LawKind; 5] =
-        [LawKind::PdGravity, LawKind::InverseDynamics, LawKind::Robust, LawKind::Adaptive, LawKind::OperationalSpace];
+    pub const ALL: [ControlLawKind; 5] = [
+        ControlLawKind::PdGravity,
+        ControlLawKind::InverseDynamics,
+        ControlLawKind::Robust,
+        ControlLawKind::Adaptive,
+        ControlLawKind::OperationalSpace,
+    ];
 
     /// Its name in the file.
     pub const fn name(self) -> &'static str {
         match self {
-            LawKind::PdGravity => "pd_gravity",
-            LawKind::InverseDynamics => "inverse_dynamics",
-            LawKind::Robust => "robust",
-            LawKind::Adaptive => "adaptive",
-            LawKind::OperationalSpace => "operational_space",
+            ControlLawKind::PdGravity => "pd_gravity",
+            ControlLawKind::InverseDynamics => "inverse_dynamics",
+            ControlLawKind::Robust => "robust",
+            ControlLawKind::Adaptive => "adaptive",
+            ControlLawKind::OperationalSpace => "operational_space",
         }
     }
 
@@ -81,31 +86,31 @@ impl LawKind {
         const ADAPTIVE: &[Gain] = &[gain("lambda", Per::Joint), gain("k_d", Per::Joint), gain("k_pi", Per::Parameter)];
         const OPERATIONAL_SPACE: &[Gain] = &[gain("k_p", Per::Row), gain("k_d", Per::Row), or_zero("k_i", Per::Row)];
         match self {
-            LawKind::PdGravity | LawKind::InverseDynamics => JOINT_SPACE,
-            LawKind::Robust => ROBUST,
-            LawKind::Adaptive => ADAPTIVE,
-            LawKind::OperationalSpace => OPERATIONAL_SPACE,
+            ControlLawKind::PdGravity | ControlLawKind::InverseDynamics => JOINT_SPACE,
+            ControlLawKind::Robust => ROBUST,
+            ControlLawKind::Adaptive => ADAPTIVE,
+            ControlLawKind::OperationalSpace => OPERATIONAL_SPACE,
         }
     }
 
     /// The keys that it may be given.
     pub const fn optional(self) -> &'static [&'static str] {
         match self {
-            LawKind::Adaptive => &["torque_limits", "estimate", "lowest", "highest", "adaptation"],
+            ControlLawKind::Adaptive => &["torque_limits", "estimate", "lowest", "highest", "adaptation"],
             _ => &["torque_limits"],
         }
     }
 
     /// Whether it can run in continuous time.
     pub const fn is_continuous(self) -> bool {
-        matches!(self, LawKind::Adaptive)
+        matches!(self, ControlLawKind::Adaptive)
     }
 
     /// The quantities that it logs at every sample, beside the torque.
     pub fn watched(self, robot: &Robot) -> Vec<Quantity> {
         match self {
-            LawKind::Robust => vec![Quantity::ZNorm],
-            LawKind::Adaptive => (0..robot.parameters.len()).map(Quantity::Estimate).collect(),
+            ControlLawKind::Robust => vec![Quantity::ZNorm],
+            ControlLawKind::Adaptive => (0..robot.parameters.len()).map(Quantity::Estimate).collect(),
             _ => Vec::new(),
         }
     }
@@ -113,10 +118,10 @@ impl LawKind {
 
 /// A controller with its gains.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Law {
+pub struct ControlLaw {
     /// Which controller.
-    pub kind: LawKind,
-    /// By the keys of [`LawKind::gains`]; as many numbers as these say.
+    pub kind: ControlLawKind,
+    /// By the keys of [`ControlLawKind::gains`]; as many numbers as these say.
     pub gains: BTreeMap<&'static str, Vec<f64>>,
     /// One per joint, N m or N.
     pub torque_limits: Option<Vec<f64>>,
@@ -144,7 +149,7 @@ pub struct Adaptation {
     pub is_on: bool,
 }
 
-impl Law {
+impl ControlLaw {
     /// The numbers of a gain; none for a key that the law does not have.
     pub fn gain(&self, key: &str) -> &[f64] {
         self.gains.get(key).map_or(&[], Vec::as_slice)

@@ -8,7 +8,7 @@ use armgen_codegen::source::Span;
 
 use super::values::{optionals, Allowed, Numbers, Reader};
 use super::Code;
-use crate::model::{Adaptation, ControlRun, EstimateBounds, Law, LawKind, Noise, Per, ReferenceGains, Sampling};
+use crate::model::{Adaptation, ControlLaw, ControlLawKind, ControlRun, EstimateBounds, Noise, Per, ReferenceGains, Sampling};
 
 /// Integration steps of a run: some seconds of work each million.
 const MAX_STEPS: u128 = 20_000_000;
@@ -84,11 +84,11 @@ impl Reader<'_> {
         (self.count(&keys, "substeps", 1, 1000).unwrap_or(1), self.switch(&keys, "continuous").unwrap_or(false))
     }
 
-    fn law(&mut self, fields: &Fields<'_>) -> Option<Law> {
+    fn law(&mut self, fields: &Fields<'_>) -> Option<ControlLaw> {
         let (at, node) = fields.get("controller")?;
-        let keys_of = |kind: LawKind| kind.gains().iter().map(|gain| gain.key).chain(kind.optional().iter().copied());
+        let keys_of = |kind: ControlLawKind| kind.gains().iter().map(|gain| gain.key).chain(kind.optional().iter().copied());
         let mut all: Vec<&'static str> = Vec::new();
-        for key in LawKind::ALL.into_iter().flat_map(keys_of) {
+        for key in ControlLawKind::ALL.into_iter().flat_map(keys_of) {
             if !all.contains(&key) {
                 all.push(key);
             }
@@ -96,7 +96,7 @@ impl Reader<'_> {
         let mut known = vec![required("law", "law: inverse_dynamics")];
         known.extend(optionals(&all));
         let keys = self.mapping(node, "`controller`", at, &known)?;
-        let kind = self.choice(&keys, "law", &LawKind::ALL.map(|kind| (kind.name(), kind)))?.value;
+        let kind = self.choice(&keys, "law", &ControlLawKind::ALL.map(|kind| (kind.name(), kind)))?.value;
         let what = format!("the law `{}`", kind.name());
         let others: Vec<&str> = all.into_iter().filter(|name| !keys_of(kind).any(|own| own == *name)).collect();
         self.out_of_place(&keys, &others, &format!("{what} does not use it"));
@@ -133,7 +133,7 @@ impl Reader<'_> {
         let per_joint = Numbers { len: self.robot.dof(), each: "one per joint", allowed: Allowed::Positive };
         let torque_limits = self.numbers(&keys, "torque_limits", per_joint);
         let adaptation = self.adaptation(&keys);
-        (gains.len() == kind.gains().len()).then_some(Law { kind, gains, torque_limits, adaptation })
+        (gains.len() == kind.gains().len()).then_some(ControlLaw { kind, gains, torque_limits, adaptation })
     }
 
     fn adaptation(&mut self, keys: &Fields<'_>) -> Adaptation {

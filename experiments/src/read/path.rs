@@ -7,7 +7,7 @@ use armgen_codegen::document::reader::{self, first_key, optional, required, Fiel
 use armgen_codegen::document::yaml::{self, Node};
 use armgen_codegen::source::{Source, Span};
 use armgen_runtime::nalgebra::Matrix3;
-use armgen_runtime::trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, PlanFault, Segment, Turn};
+use armgen_runtime::trajectory::{OperationalTrajectory, OrientationProfile, Path, PlanFault, Segment, TimeLaw, Turn};
 
 use super::values::{optionals, Allowed, Numbers, Reader};
 use super::Code;
@@ -72,7 +72,7 @@ fn explain(fault: PlanFault) -> (&'static str, &'static str) {
 
 /// The time laws that have a name.
 #[derive(Clone, Copy, PartialEq)]
-enum LawKind {
+enum TimeLawKind {
     Trapezoidal,
     Cubic,
     Quintic,
@@ -161,31 +161,31 @@ impl Reader<'_> {
         all
     }
 
-    fn time_law(&mut self, fields: &Fields<'_>) -> Option<Law<f64>> {
+    fn time_law(&mut self, fields: &Fields<'_>) -> Option<TimeLaw<f64>> {
         let duration = self.seconds(fields, "duration", Allowed::Positive);
-        let words = [("trapezoidal", LawKind::Trapezoidal), ("cubic", LawKind::Cubic), ("quintic", LawKind::Quintic)];
+        let words = [("trapezoidal", TimeLawKind::Trapezoidal), ("cubic", TimeLawKind::Cubic), ("quintic", TimeLawKind::Quintic)];
         let kind = match fields.has("law") {
             true => self.choice(fields, "law", &words)?.value,
-            false => LawKind::Trapezoidal,
+            false => TimeLawKind::Trapezoidal,
         };
         let rise = self.seconds(fields, "acceleration_time", Allowed::Positive);
         let velocity = self.number(fields, "velocity", Allowed::Positive);
         let acceleration = self.number(fields, "acceleration", Allowed::Positive);
         match (kind, duration, rise, velocity, acceleration) {
-            (LawKind::Trapezoidal, Some(duration), Some(acceleration_time), None, None) => {
-                Some(Law::Trapezoidal { duration, acceleration_time })
+            (TimeLawKind::Trapezoidal, Some(duration), Some(acceleration_time), None, None) => {
+                Some(TimeLaw::Trapezoidal { duration, acceleration_time })
             }
-            (LawKind::Trapezoidal, Some(duration), None, None, Some(acceleration)) => {
-                Some(Law::TrapezoidalByAcceleration { duration, acceleration })
+            (TimeLawKind::Trapezoidal, Some(duration), None, None, Some(acceleration)) => {
+                Some(TimeLaw::TrapezoidalByAcceleration { duration, acceleration })
             }
-            (LawKind::Trapezoidal, Some(duration), None, Some(velocity), None) => {
-                Some(Law::TrapezoidalByVelocity { duration, velocity })
+            (TimeLawKind::Trapezoidal, Some(duration), None, Some(velocity), None) => {
+                Some(TimeLaw::TrapezoidalByVelocity { duration, velocity })
             }
-            (LawKind::Trapezoidal, None, None, Some(velocity), Some(acceleration)) => {
-                Some(Law::TrapezoidalByLimits { velocity, acceleration })
+            (TimeLawKind::Trapezoidal, None, None, Some(velocity), Some(acceleration)) => {
+                Some(TimeLaw::TrapezoidalByLimits { velocity, acceleration })
             }
-            (LawKind::Cubic, Some(duration), None, None, None) => Some(Law::Cubic { duration }),
-            (LawKind::Quintic, Some(duration), None, None, None) => Some(Law::Quintic { duration }),
+            (TimeLawKind::Cubic, Some(duration), None, None, None) => Some(TimeLaw::Cubic { duration }),
+            (TimeLawKind::Quintic, Some(duration), None, None, None) => Some(TimeLaw::Quintic { duration }),
             _ => {
                 let help = "`duration` with `acceleration_time`, `velocity` or `acceleration`; `velocity` with `acceleration`; or `duration` with `law: cubic` or `law: quintic`";
                 self.report(Code::TimeLaw, fields.at(), "these keys make no time law", "no law", help);

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use armgen_runtime::clik::{
-    Algorithm as Law, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
-    Objective, Outcome, PseudoInverse, SecondOrder,
+    Algorithm as ClikAlgorithm, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose,
+    JointLimits, Objective, Outcome, PseudoInverse, SecondOrder,
 };
 use armgen_runtime::linalg::Damping;
 use armgen_runtime::manipulability::{manipulability, manipulability_gradient};
@@ -142,7 +142,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let transpose = JacobianTranspose::new(gains).map_err(refused)?;
         let is_transpose = run.algorithm == Algorithm::Transpose;
         // Behind a pointer: the loop below is compiled once for each number of rows.
-        let algorithm: Box<dyn Law<R, N, K> + '_> = match &run.algorithm {
+        let algorithm: Box<dyn ClikAlgorithm<R, N, K> + '_> = match &run.algorithm {
             Algorithm::Inverse | Algorithm::SecondOrder { .. } => Box::new(JacobianInverse::new(gains).map_err(refused)?),
             Algorithm::Transpose => Box::new(transpose),
             Algorithm::PseudoInverse { k_0, objective } => {

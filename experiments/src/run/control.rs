@@ -21,8 +21,8 @@ use armgen_runtime::stability::{
 use super::instance::{sized, Functions};
 use super::{Instance, Run};
 use crate::model::{
-    number, Body, ControlRun, EstimateBounds, Experiment, JointQuantity, Law, LawKind, Peak, Quantity, Record, ReferenceGains,
-    Robot, Speed,
+    number, Body, ControlLaw, ControlLawKind, ControlRun, EstimateBounds, Experiment, JointQuantity, Peak, Quantity, Record,
+    ReferenceGains, Robot, Speed,
 };
 
 /// Distance between the postures at which the loop is linearised.
@@ -42,11 +42,11 @@ trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P
         &mut self,
         model: &R,
         joints: &JointReference<f64, N>,
-        tip: &OperationalReference<f64>,
+        operational: &OperationalReference<f64>,
         measured: &State<f64, N>,
     ) -> Result<SVector<f64, N>, ControlError>;
 
-    /// What it told before the last torque, in the order of [`LawKind::watched`].
+    /// What it told before the last torque, in the order of [`ControlLawKind::watched`].
     fn watched(&self) -> &[f64];
 
     /// The controller, to be linearised.
@@ -57,13 +57,13 @@ trait SampledLaw<R: Functions<N, P>, W: Functions<N, P>, const N: usize, const P
         &self,
         analysis: &MotionAnalysis<'_, W, f64, N>,
         model: &R,
-        tip: &[OperationalReference<f64>],
+        operational: &[OperationalReference<f64>],
     ) -> Result<MotionReport<f64>, StabilityError>;
 }
 
 /// References of one of the two kinds.
 trait OfKind<const N: usize>: Sized {
-    fn of<'s>(joints: &'s [JointReference<f64, N>], tip: &'s [OperationalReference<f64>]) -> &'s [Self];
+    fn of<'s>(joints: &'s [JointReference<f64, N>], operational: &'s [OperationalReference<f64>]) -> &'s [Self];
 }
 
 impl<const N: usize> OfKind<N> for JointReference<f64, N> {
@@ -73,8 +73,8 @@ impl<const N: usize> OfKind<N> for JointReference<f64, N> {
 }
 
 impl<const N: usize> OfKind<N> for OperationalReference<f64> {
-    fn of<'s>(_: &'s [JointReference<f64, N>], tip: &'s [OperationalReference<f64>]) -> &'s [Self] {
-        tip
+    fn of<'s>(_: &'s [JointReference<f64, N>], operational: &'s [OperationalReference<f64>]) -> &'s [Self] {
+        operational
     }
 }
 
@@ -97,10 +97,10 @@ where
         &mut self,
         model: &R,
         joints: &JointReference<f64, N>,
-        tip: &OperationalReference<f64>,
+        operational: &OperationalReference<f64>,
         measured: &State<f64, N>,
     ) -> Result<SVector<f64, N>, ControlError> {
-        let reference = &C::Reference::of(from_ref(joints), from_ref(tip))[0];
+        let reference = &C::Reference::of(from_ref(joints), from_ref(operational))[0];
         self.watched.clear();
         (self.watch)(&self.controller, reference, measured, &mut self.watched);
         self.controller.torque(model, reference, measured).map(|torque| torque.tau)
@@ -118,9 +118,9 @@ where
         &self,
         analysis: &MotionAnalysis<'_, W, f64, N>,
         model: &R,
-        tip: &[OperationalReference<f64>],
+        operational: &[OperationalReference<f64>],
     ) -> Result<MotionReport<f64>, StabilityError> {
-        analysis.of(model, &self.controller, C::Reference::of(analysis.joints, tip))
+        analysis.of(model, &self.controller, C::Reference::of(analysis.joints, operational))
     }
 }
 
@@ -140,7 +140,7 @@ struct Prepared<'a, R, W, const N: usize, const M: usize, const P: usize> {
     drive: Drive<'a, R, W, N, P>,
     /// What is desired at each sample.
     joints: Vec<JointReference<f64, N>>,
-    tip: Vec<OperationalReference<f64>>,
+    operational: Vec<OperationalReference<f64>>,
     analysis: Analysis,
     /// The radius with one sample of delay, where it is asked for.
     delayed: Option<f64>,
@@ -151,7 +151,7 @@ struct Analysis {
     /// At rest and in motion.
     report: Report<f64>,
     /// About the estimate from which it begins.
-    start: Report<f64>,
+    at_start: Report<f64>,
     /// Where it does not hold: the largest period of [`SHORTER`] at which it does, if any, s; and the shortest one tried.
     holds_at: Option<(Option<f64>, f64)>,
 }
@@ -171,7 +171,7 @@ where
         experiment: &'a Experiment,
     ) -> Result<Box<dyn Run + 'a>, String> {
         let begins = self.start(&run.start, &run.sampling)?;
-        let (joints, tip, postures) = self.desired(run, begins, run.sampling.period)?;
+        let (joints, operational, postures) = self.desired(run, begins, run.sampling.period)?;
         let period = run.sampling.period.as_secs_f64();
         let refused = |error: SettingError| format!("the controller is refused: {error}");
         let drive = match run.continuous {
@@ -186,12 +186,12 @@ where
         };
         let rest =
             |delay: usize| analyse(&plant, &self.nominal, at_rest, &postures, period, Delay::samples(delay)).map_err(no_answer);
-        let start =
+        let at_start =
             analyse_start(&plant, &self.nominal, at_rest, &postures, period, Delay::samples(run.delay)).map_err(no_answer)?;
         let asked = experiment.expect.iter().any(|e| e.channel.quantity == Quantity::DelayedSpectralRadius);
         let delayed = if asked {
             let delay = Delay::samples(1);
-            Some(analyse_start(&plant, &self.nominal, at_rest, &postures, period, delay).map_err(no_answer)?.radius)
+            Some(analyse_start(&plant, &self.nominal, at_rest, &postures, period, delay).map_err(no_answer)?.spectral_radius)
         } else {
             None
         };
@@ -199,11 +199,21 @@ where
         if let Drive::Sampled(law) = &drive {
             let analysis = Self::motion_analysis(run, begins, &plant, &joints, period);
             // An analysis in motion that fails is left out; the one at rest is still reported.
-            report.motion = law.analyse_motion(&analysis, &self.nominal, &tip).ok();
+            report.motion = law.analyse_motion(&analysis, &self.nominal, &operational).ok();
         }
         let holds_at = if report.holds() || run.continuous { None } else { Some(self.shorter(run, begins, &plant, &postures)) };
-        let analysis = Analysis { report, start, holds_at };
-        Ok(Box::new(Prepared { arm: self, run, body: &experiment.body, start: begins, drive, joints, tip, analysis, delayed }))
+        let analysis = Analysis { report, at_start, holds_at };
+        Ok(Box::new(Prepared {
+            arm: self,
+            run,
+            body: &experiment.body,
+            start: begins,
+            drive,
+            joints,
+            operational,
+            analysis,
+            delayed,
+        }))
     }
 
     fn motion_analysis<'r>(
@@ -230,9 +240,9 @@ where
                 let law = self.sampled_law(&run.law, shortest).ok()?;
                 let mut report = analyse(plant, &self.nominal, law.as_linearised_at_rest(), postures, shortest, delay).ok()?;
                 if report.is_stable() {
-                    let (joints, tip, _) = self.desired(run, begins, period).ok()?;
+                    let (joints, operational, _) = self.desired(run, begins, period).ok()?;
                     let analysis = Self::motion_analysis(run, begins, plant, &joints, shortest);
-                    report.motion = Some(law.analyse_motion(&analysis, &self.nominal, &tip).ok()?);
+                    report.motion = Some(law.analyse_motion(&analysis, &self.nominal, &operational).ok()?);
                 }
                 Some(report.holds())
             };
@@ -249,14 +259,14 @@ where
         let clik = self.second_order((proportional, derivative), period.as_secs_f64(), Integration::HoldConsistent);
         let clik = clik.map_err(|error| format!("the gains of the reference are refused: {error}"))?;
         let mut state = State::at_rest(begins);
-        let (mut joints, mut tip, mut postures) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut joints, mut operational, mut postures) = (Vec::new(), Vec::new(), Vec::new());
         let (mut t, mut next_posture) = (Duration::ZERO, Duration::ZERO);
         while t <= run.sampling.duration {
             let sample = trajectory.sample(t);
             let step = clik.step(&self.nominal, &state, &sample);
             let step = step.map_err(|error| format!("the joint reference ends at {} s: {error}", t.as_secs_f64()))?;
             joints.push(step.reference);
-            tip.push(sample);
+            operational.push(sample);
             if t >= next_posture && t <= trajectory.duration() {
                 postures.push(state.q);
                 next_posture += POSTURE_STEP;
@@ -264,11 +274,11 @@ where
             state = step.next;
             t += period;
         }
-        Ok((joints, tip, postures))
+        Ok((joints, operational, postures))
     }
 
-    /// The controller of a law. A new one also needs `LawKind` (model/law.rs), and `Linearise`, `LineariseAtRest` and `LineariseInMotion` in the runtime.
-    fn sampled_law<'a>(&self, law: &Law, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, SettingError>
+    /// The controller of a law. A new one also needs `ControlLawKind` (model/law.rs), and `Linearise`, `LineariseAtRest` and `LineariseInMotion` in the runtime.
+    fn sampled_law<'a>(&self, law: &ControlLaw, period: f64) -> Result<Box<dyn SampledLaw<R, W, N, P> + 'a>, SettingError>
     where
         R: 'a,
         W: 'a,
@@ -276,15 +286,15 @@ where
         let limits = limits(law)?;
         let scalar = |key: &str| law.gain(key).first().copied().unwrap_or(f64::NAN);
         Ok(match law.kind {
-            LawKind::PdGravity => {
+            ControlLawKind::PdGravity => {
                 let controller = PdGravity::new(sized(law.gain("k_p")), sized(law.gain("k_d")))?;
                 unwatched(limits.map_or(controller, |l| controller.with_torque_limits(l)))
             }
-            LawKind::InverseDynamics => {
+            ControlLawKind::InverseDynamics => {
                 let controller = InverseDynamics::new(sized(law.gain("k_p")), sized(law.gain("k_d")))?;
                 unwatched(limits.map_or(controller, |l| controller.with_torque_limits(l)))
             }
-            LawKind::Robust => {
+            ControlLawKind::Robust => {
                 let [k_p, k_d, p_position, p_velocity] =
                     ["k_p", "k_d", "p_position", "p_velocity"].map(|key| sized(law.gain(key)));
                 let layer = BoundaryLayer { rho: scalar("rho"), epsilon: scalar("epsilon") };
@@ -295,13 +305,13 @@ where
                 };
                 Box::new(Watched { controller, watch: z_norm, watched: Vec::new() })
             }
-            LawKind::Adaptive => {
+            ControlLawKind::Adaptive => {
                 let estimate = |c: &Adaptive<f64, N, P>, _: &_, _: &State<f64, N>, watched: &mut Vec<f64>| {
                     watched.extend(c.estimate().iter());
                 };
                 Box::new(Watched { controller: adaptive(law, period)?, watch: estimate, watched: Vec::new() })
             }
-            LawKind::OperationalSpace => {
+            ControlLawKind::OperationalSpace => {
                 let [k_p, k_d, k_i] = ["k_p", "k_d", "k_i"].map(|key| sized(law.gain(key)));
                 let controller = OperationalSpace::new(self.task, k_p, k_d, k_i, period)?;
                 unwatched(limits.map_or(controller, |l| controller.with_torque_limits(l)))
@@ -322,11 +332,11 @@ where
     Box::new(Watched { controller, watch: nothing, watched: Vec::new() })
 }
 
-fn limits<const N: usize>(law: &Law) -> Result<Option<TorqueLimits<f64, N>>, SettingError> {
+fn limits<const N: usize>(law: &ControlLaw) -> Result<Option<TorqueLimits<f64, N>>, SettingError> {
     law.torque_limits.as_deref().map(|bound| TorqueLimits::new(sized(bound))).transpose()
 }
 
-fn adaptive<const N: usize, const P: usize>(law: &Law, period: f64) -> Result<Adaptive<f64, N, P>, SettingError> {
+fn adaptive<const N: usize, const P: usize>(law: &ControlLaw, period: f64) -> Result<Adaptive<f64, N, P>, SettingError> {
     let [lambda, k_d] = ["lambda", "k_d"].map(|key| sized(law.gain(key)));
     let adaptation = &law.adaptation;
     let mut controller = Adaptive::new(lambda, k_d, sized(law.gain("k_pi")), sized(&adaptation.estimate), period)?;
@@ -372,7 +382,7 @@ fn explain(error: RunError<Stop>, robot: &Robot) -> String {
             let divergence = match divergence {
                 Divergence::Rate(i) => format!("{} passed {DIVERGENCE_BOUND:e} {}", joint(i).0, joint(i).1.rate_unit()),
                 Divergence::Position(i) => format!("{} passed {DIVERGENCE_BOUND:e} {}", joint(i).0, joint(i).1.unit()),
-                Divergence::Memory => divergence.to_string(),
+                Divergence::ControllerState => divergence.to_string(),
             };
             format!("diverged at {}: {divergence}", s(time))
         }
@@ -402,7 +412,7 @@ where
                 StablePeriod::NotEvenAt(limit) => format!("not even {} ms would hold", number((limit * 1e7).round() / 1e4)),
             };
             // Two decimals, more where these would say 1.00.
-            let radius = report.radius;
+            let radius = report.spectral_radius;
             let radius = if radius < 1.005 { format!("{radius:.6}") } else { format!("{radius:.2}") };
             said.push(match report.without_rest {
                 Some(_) => "cannot rest on its path: the gains do not hold what the model leaves out".to_owned(),
@@ -438,13 +448,22 @@ where
     }
 
     fn run(self: Box<Self>) -> Record {
-        let Prepared { arm, run, body, start: begins, drive, joints, tip, analysis: Analysis { report, start, .. }, delayed } =
-            *self;
+        let Prepared {
+            arm,
+            run,
+            body,
+            start: begins,
+            drive,
+            joints,
+            operational,
+            analysis: Analysis { report, at_start, .. },
+            delayed,
+        } = *self;
         let mut writer = Writer {
             arm,
             begins,
             joints: &joints,
-            tip: &tip,
+            operational: &operational,
             record: Record::new(body.channels(&arm.robot)),
             lost_at: f64::INFINITY,
         };
@@ -462,9 +481,9 @@ where
         };
         let motion = |of: fn(MotionReport<f64>) -> f64| report.motion.map_or(f64::NAN, of);
         let value = |quantity: Quantity| match quantity {
-            Quantity::SpectralRadius => start.radius,
-            Quantity::StablePeriod => limit(&start),
-            Quantity::RestRadius => report.radius,
+            Quantity::SpectralRadius => at_start.spectral_radius,
+            Quantity::StablePeriod => limit(&at_start),
+            Quantity::RestRadius => report.spectral_radius,
             Quantity::RestPeriod => limit(&report),
             Quantity::MotionGrowth => motion(|motion| motion.growth.largest),
             Quantity::MotionRate => motion(|motion| motion.growth.rate),
@@ -487,7 +506,7 @@ struct Writer<'a, R, W, const N: usize, const M: usize, const P: usize> {
     arm: &'a Instance<R, W, N, M, P>,
     begins: SVector<f64, N>,
     joints: &'a [JointReference<f64, N>],
-    tip: &'a [OperationalReference<f64>],
+    operational: &'a [OperationalReference<f64>],
     record: Record,
     lost_at: f64,
 }
@@ -498,7 +517,7 @@ where
     W: Functions<N, P>,
 {
     fn write(&mut self, index: usize, t: Duration, state: &State<f64, N>, tau: &SVector<f64, N>, watched: &[f64]) {
-        let Writer { arm, joints, tip, record, lost_at, .. } = self;
+        let Writer { arm, joints, operational, record, lost_at, .. } = self;
         for (i, peak) in record.peaks.iter_mut().enumerate() {
             *peak = Peak { rate: peak.rate.max(state.dq[i].abs()), effort: peak.effort.max(tau[i].abs()) };
         }
@@ -507,13 +526,13 @@ where
             *lost_at = t.as_secs_f64();
         }
         let pose = Pose::of(&arm.nominal, &state.q);
-        let tip_error = arm.task.error(&tip[index].pose, &pose);
+        let task_error = arm.task.error(&operational[index].pose, &pose);
         record.sample(|quantity| match quantity {
             Quantity::Time => t.as_secs_f64(),
             Quantity::Joint(JointQuantity::Position, i) => state.q[i],
             Quantity::Joint(JointQuantity::Error, i) => e[i],
             Quantity::Joint(JointQuantity::Effort, i) => tau[i],
-            Quantity::TaskError(row) => arm.robot.task.iter().position(|r| *r == row).map_or(f64::NAN, |i| tip_error[i]),
+            Quantity::TaskError(row) => arm.robot.task.iter().position(|r| *r == row).map_or(f64::NAN, |i| task_error[i]),
             Quantity::Tip(axis) => pose.position[axis],
             Quantity::ZNorm => watched.first().copied().unwrap_or(f64::NAN),
             Quantity::Estimate(i) => watched.get(i).copied().unwrap_or(f64::NAN),
@@ -528,12 +547,12 @@ where
         options.sensor = Sensor::new(run.delay, run.noise.position, run.noise.rate, u64::from(run.noise.seed));
         // Both the controller and the log look at it, one after the other.
         let law = std::cell::RefCell::new(law);
-        let (model, joints, tip, mut index) = (&self.arm.nominal, self.joints, self.tip, 0);
+        let (model, joints, operational, mut index) = (&self.arm.nominal, self.joints, self.operational, 0);
         let controller = |_: Duration, measured: &State<f64, N>| {
-            let (joints, tip) = (&joints[index], &tip[index]);
+            let (joints, operational) = (&joints[index], &operational[index]);
             off(&joints.q, &measured.q)?;
             index += 1;
-            law.borrow_mut().torque(model, joints, tip, measured).map_err(Stop::Control)
+            law.borrow_mut().torque(model, joints, operational, measured).map_err(Stop::Control)
         };
         let end = simulate(&plant, State::at_rest(self.begins), options, controller, |sample| {
             self.write(sample.index as usize, sample.time, &sample.state, &sample.tau, law.borrow().watched());
@@ -553,8 +572,8 @@ where
         };
         let start = State::at_rest(self.begins);
         let end = run_continuous(&plant, start, *controller.estimate(), options, law, |sample| {
-            let tau = law(sample.index, 0.0, &sample.state, &sample.memory).map_or(SVector::zeros(), |(tau, _)| tau);
-            self.write(sample.index as usize, sample.time, &sample.state, &tau, sample.memory.as_slice());
+            let tau = law(sample.index, 0.0, &sample.state, &sample.controller_state).map_or(SVector::zeros(), |(tau, _)| tau);
+            self.write(sample.index as usize, sample.time, &sample.state, &tau, sample.controller_state.as_slice());
         });
         end.map(|_| ())
     }

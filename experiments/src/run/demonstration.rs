@@ -127,7 +127,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     fn stability(&self, controller: &dyn LineariseAtRest<R, R, N>, postures: &[SVector<f64, N>]) -> Result<String, String> {
         let report = analyse(&self.nominal, &self.nominal, controller, postures, PERIOD.as_secs_f64(), Delay::NONE)
             .map_err(|error| format!("the sampled loop has no spectral radius: {error}"))?;
-        let Report { radius, period, .. } = report;
+        let Report { spectral_radius: radius, period, .. } = report;
         let milliseconds = |seconds: f64| format!("{:.3} ms", seconds * 1e3);
         let limit = match period {
             StablePeriod::UpTo(limit) => format!("stable up to {}", milliseconds(limit)),

@@ -55,8 +55,8 @@ pub enum Divergence {
     Rate(usize),
     /// The variable of this joint.
     Position(usize),
-    /// The memory of a law in continuous time.
-    Memory,
+    /// The controller state, in continuous time.
+    ControllerState,
 }
 
 impl fmt::Display for Divergence {
@@ -64,7 +64,7 @@ impl fmt::Display for Divergence {
         match self {
             Divergence::Rate(joint) => write!(f, "joint {joint} (from 0) passed {DIVERGENCE_BOUND:e} rad/s or m/s"),
             Divergence::Position(joint) => write!(f, "joint {joint} (from 0) passed {DIVERGENCE_BOUND:e} rad or m"),
-            Divergence::Memory => write!(f, "the memory of the law is no longer finite"),
+            Divergence::ControllerState => write!(f, "the controller state is no longer finite"),
         }
     }
 }
@@ -131,7 +131,7 @@ impl<E: Error + 'static> Error for RunError<E> {
 
 /// Runs `controller` on the arm `robot` from `start`; calls `log` at every sample.
 ///
-/// `controller(t, measured)` returns the torque to hold from the sample at `t` on; it owns references and memory.
+/// `controller(t, measured)` returns the torque to hold from the sample at `t` on; it owns references and controller state.
 /// The torque of the last sample is computed and logged, but moves nothing any more.
 ///
 /// # Errors

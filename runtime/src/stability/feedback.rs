@@ -12,29 +12,29 @@ use crate::{
 };
 use nalgebra::{DMatrix, RealField, SMatrix, SVector};
 
-/// A linear feedback with memory.
+/// A linear feedback with states m of the controller (estimate or integral).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback<T, const N: usize> {
     /// K_q = du/dq.
     pub position: SMatrix<T, N, N>,
     /// K_v = du/dv, v the rates.
     pub velocity: SMatrix<T, N, N>,
-    /// L = du/dm, `N` rows, one column a memory.
-    pub memory: DMatrix<T>,
-    /// E_q, one row a memory.
-    pub memory_position: DMatrix<T>,
-    /// E_v, one row a memory.
-    pub memory_velocity: DMatrix<T>,
+    /// L = du/dm, `N` rows, one column for each state of the controller.
+    pub controller_state: DMatrix<T>,
+    /// E_q, one row for each state of the controller.
+    pub state_by_position: DMatrix<T>,
+    /// E_v, one row for each state of the controller.
+    pub state_by_velocity: DMatrix<T>,
 }
 
 impl<T: RealField + Copy, const N: usize> Feedback<T, N> {
-    fn without_memory(position: SMatrix<T, N, N>, velocity: SMatrix<T, N, N>) -> Self {
+    fn without_state(position: SMatrix<T, N, N>, velocity: SMatrix<T, N, N>) -> Self {
         Self {
             position,
             velocity,
-            memory: DMatrix::zeros(N, 0),
-            memory_position: DMatrix::zeros(0, N),
-            memory_velocity: DMatrix::zeros(0, N),
+            controller_state: DMatrix::zeros(N, 0),
+            state_by_position: DMatrix::zeros(0, N),
+            state_by_velocity: DMatrix::zeros(0, N),
         }
     }
 }
@@ -112,7 +112,7 @@ fn inverse_dynamics<R: Dynamics<N>, const N: usize>(
 ) -> Feedback<R::Real, N> {
     let b = model.inertia_matrix(q);
     let dg = derivative(q, |q| model.gravity(q) + model.inertia_matrix(q) * y);
-    Feedback::without_memory(dg - b * k_p, viscous(model) - b * k_d)
+    Feedback::without_state(dg - b * k_p, viscous(model) - b * k_d)
 }
 
 /// Where a law rests whose torque at rest is g^ + `held`, and its feedback there.
@@ -131,7 +131,7 @@ fn rest_off<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
 impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for PdGravity<R::Real, N> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         let dg = derivative(q, |q| model.gravity(q));
-        Some(Feedback::without_memory(dg - SMatrix::from_diagonal(&self.k_p), -SMatrix::from_diagonal(&self.k_d)))
+        Some(Feedback::without_state(dg - SMatrix::from_diagonal(&self.k_p), -SMatrix::from_diagonal(&self.k_d)))
     }
 }
 
@@ -224,7 +224,13 @@ impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Ada
         let l = excited(&(columns_scaled(&y, &self.rate) * y.transpose()));
         let transpose = l.transpose();
         let lambda = DMatrix::from_fn(N, N, |i, j| if i == j { self.lambda[i] } else { nalgebra::zero() });
-        Some(Feedback { position, velocity, memory_position: -(&transpose * lambda), memory_velocity: -transpose, memory: l })
+        Some(Feedback {
+            position,
+            velocity,
+            state_by_position: -(&transpose * lambda),
+            state_by_velocity: -transpose,
+            controller_state: l,
+        })
     }
 }
 
@@ -257,7 +263,7 @@ fn excited<T: RealField + Copy, const N: usize>(g: &SMatrix<T, N, N>) -> DMatrix
 }
 
 /// y = J^+ (-K_P J δq - K_D J δv + K_I int) + (I - J^+ J)(-K_N δq - D_N δv), u = B y + F δv + dg/dq δq; the rows with an integral are
-/// memories, dm/dt = -J δq. The posture of the null space counts as that of the linearisation.
+/// states of the controller, dm/dt = -J δq. The posture of the null space counts as that of the linearisation.
 impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for OperationalSpace<R::Real, N, M> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         let j = self.task.jacobian(&model.geometric_jacobian(q));
@@ -276,9 +282,9 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
         Some(Feedback {
             position,
             velocity,
-            memory: DMatrix::from_fn(N, rows.len(), |i, k| gain[(i, rows[k])] * self.k_i[rows[k]]),
-            memory_position: DMatrix::from_fn(rows.len(), N, |k, i| -j[(rows[k], i)]),
-            memory_velocity: DMatrix::zeros(rows.len(), N),
+            controller_state: DMatrix::from_fn(N, rows.len(), |i, k| gain[(i, rows[k])] * self.k_i[rows[k]]),
+            state_by_position: DMatrix::from_fn(rows.len(), N, |k, i| -j[(rows[k], i)]),
+            state_by_velocity: DMatrix::zeros(rows.len(), N),
         })
     }
 }

@@ -1,10 +1,10 @@
 //! The loop in motion: small deviations along the reference, and the run simulated.
 //!
 //! At rest only those directions of an estimate count that gravity excites, and C dq is of second order. In motion neither holds. So small
-//! deviations x = (δq, δv, δm) of joint variables, rates and memories are carried along the reference as it will be run, sample by sample:
+//! deviations x = (δq, δv, δm) of joint variables, rates and controller states m are carried along the reference as it will be run, sample by sample:
 //!
 //! ```text
-//! x_{k+1} = A_k x_k,     A_k = d(q, dq, m)_{k+1} / d(q, dq, m)_k     at the reference of sample k, with the memory where the arm can rest
+//! x_{k+1} = A_k x_k,     A_k = d(q, dq, m)_{k+1} / d(q, dq, m)_k     at the reference of sample k, with m where the arm can rest
 //! ```
 //!
 //! the discrete linear time-varying loop. A_k is never formed: each deviation asks law and plant twice a sample, at the reference plus and
@@ -34,11 +34,11 @@ use std::collections::VecDeque;
 pub struct Weights<T, const N: usize> {
     /// Stiffness of each joint, N m/rad or N/m.
     pub stiffness: SVector<T, N>,
-    /// Of each memory, J per squared unit; zero for what does not move.
-    pub memory: Vec<T>,
+    /// Of each controller state, J per squared unit; zero for what does not move.
+    pub controller_state: Vec<T>,
 }
 
-/// A controller whose memory can be read and set: what the analysis of a motion asks of it.
+/// A controller whose state can be read and set: what the analysis of a motion asks of it.
 pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N> + Clone {
     /// Weights of deviations about the posture `q`.
     fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N>;
@@ -48,13 +48,13 @@ pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N>
     fn converged(&self, plant: &P) -> Self;
 
     /// The estimate or the integral.
-    fn memory(&self) -> Vec<R::Real> {
+    fn controller_state(&self) -> Vec<R::Real> {
         Vec::new()
     }
 
-    /// The same with this memory.
+    /// The same with this controller state.
     #[must_use]
-    fn with_memory(&self, _: &[R::Real]) -> Self {
+    fn with_controller_state(&self, _: &[R::Real]) -> Self {
         self.clone()
     }
 }
@@ -65,7 +65,7 @@ impl<P, R: Dynamics<N>, const N: usize> LineariseInMotion<P, R, N> for PdGravity
     }
 
     fn weights(&self, _: &R, _: &SVector<R::Real, N>) -> Weights<R::Real, N> {
-        Weights { stiffness: self.k_p, memory: Vec::new() }
+        Weights { stiffness: self.k_p, controller_state: Vec::new() }
     }
 }
 
@@ -75,7 +75,7 @@ impl<P, R: Dynamics<N>, const N: usize> LineariseInMotion<P, R, N> for InverseDy
     }
 
     fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N> {
-        Weights { stiffness: self.k_p.component_mul(&model.inertia_matrix(q).diagonal()), memory: Vec::new() }
+        Weights { stiffness: self.k_p.component_mul(&model.inertia_matrix(q).diagonal()), controller_state: Vec::new() }
     }
 }
 
@@ -85,7 +85,7 @@ impl<P, R: Dynamics<N>, const N: usize> LineariseInMotion<P, R, N> for Robust<R:
     }
 
     fn weights(&self, model: &R, q: &SVector<R::Real, N>) -> Weights<R::Real, N> {
-        Weights { stiffness: self.k_p.component_mul(&model.inertia_matrix(q).diagonal()), memory: Vec::new() }
+        Weights { stiffness: self.k_p.component_mul(&model.inertia_matrix(q).diagonal()), controller_state: Vec::new() }
     }
 }
 
@@ -103,15 +103,15 @@ where
         let weight =
             |rate: &R::Real| if *rate > nalgebra::zero() { nalgebra::one::<R::Real>() / *rate } else { nalgebra::zero() };
         let stiffness = self.lambda.component_mul(&self.k_d) * lit::<R::Real>(2.0);
-        Weights { stiffness, memory: self.rate.iter().map(weight).collect() }
+        Weights { stiffness, controller_state: self.rate.iter().map(weight).collect() }
     }
 
-    fn memory(&self) -> Vec<R::Real> {
+    fn controller_state(&self) -> Vec<R::Real> {
         self.estimate.as_slice().to_vec()
     }
 
-    fn with_memory(&self, memory: &[R::Real]) -> Self {
-        Self { estimate: SVector::from_column_slice(memory), ..*self }
+    fn with_controller_state(&self, controller_state: &[R::Real]) -> Self {
+        Self { estimate: SVector::from_column_slice(controller_state), ..*self }
     }
 }
 
@@ -126,16 +126,16 @@ impl<P, R: Dynamics<N>, const N: usize, const M: usize> LineariseInMotion<P, R, 
         let b = model.inertia_matrix(q).diagonal();
         let size = (j.transpose() * j).diagonal().max();
         let mass = b.max() / if size > nalgebra::zero() { size } else { nalgebra::one() };
-        let memory = (0..M).map(|i| mass * self.k_i[i] * self.k_i[i] / self.k_p[i]).collect();
-        Weights { stiffness: b * self.k_p.max(), memory }
+        let controller_state = (0..M).map(|i| mass * self.k_i[i] * self.k_i[i] / self.k_p[i]).collect();
+        Weights { stiffness: b * self.k_p.max(), controller_state }
     }
 
-    fn memory(&self) -> Vec<R::Real> {
+    fn controller_state(&self) -> Vec<R::Real> {
         self.integral.as_slice().to_vec()
     }
 
-    fn with_memory(&self, memory: &[R::Real]) -> Self {
-        Self { integral: SVector::from_column_slice(memory), ..*self }
+    fn with_controller_state(&self, controller_state: &[R::Real]) -> Self {
+        Self { integral: SVector::from_column_slice(controller_state), ..*self }
     }
 }
 
@@ -188,8 +188,8 @@ const LOST_GROWTH: f64 = 1e6;
 const TRANSIENT_GROWTH: f64 = 10.0;
 /// What the rate adds up to over the motion, at least, where growth counts as going on: a factor of e.
 const LASTING_GROWTH: f64 = 1.0;
-/// Part of a memory's deviation that counts for the length of a difference.
-const MEMORY: f64 = 1e-6;
+/// Part of a controller state's deviation that counts for the length of a difference.
+const CONTROLLER_STATE: f64 = 1e-6;
 /// In place of a size of zero, where that divides.
 const TINY: f64 = 1e-30;
 
@@ -208,17 +208,17 @@ pub struct MotionAnalysis<'a, P, T, const N: usize> {
     pub delay: Delay,
 }
 
-/// What a law answers: torque, and the memory of the next sample.
+/// What a law answers: torque, and the controller state of the next sample.
 type Answer<T, const N: usize> = (SVector<T, N>, Vec<T>);
 
-/// The law of sample k as a function of measurement and memory; `None` where it refuses.
+/// The law of sample k as a function of measurement and controller state; `None` where it refuses.
 type AnyLaw<'l, T, const N: usize> = dyn Fn(usize, &State<T, N>, &[T]) -> Option<Answer<T, N>> + 'l;
 
-/// A deviation of state and memory; those of the states that are still to be measured, the oldest first.
+/// A deviation of state and controller state; those of the states that are still to be measured, the oldest first.
 #[derive(Clone, Debug)]
 struct Deviation<T, const N: usize> {
     state: State<T, N>,
-    memory: Vec<T>,
+    controller_state: Vec<T>,
     unseen: VecDeque<State<T, N>>,
 }
 
@@ -241,27 +241,28 @@ where
             return Err(StabilityError::Period);
         }
         let first = references.first().and(self.joints.first()).ok_or(StabilityError::NoSample)?;
-        let law = |controller: &C, k: usize, measured: &State<T, N>, memory: &[T]| {
-            let mut controller = controller.with_memory(memory);
+        let law = |controller: &C, k: usize, measured: &State<T, N>, controller_state: &[T]| {
+            let mut controller = controller.with_controller_state(controller_state);
             let torque = controller.torque(model, references.get(k)?, measured).ok()?;
-            Some((torque.tau, controller.memory()))
+            Some((torque.tau, controller.controller_state()))
         };
-        let lost = self.run(controller.memory(), &|k, measured, memory| law(controller, k, measured, memory));
+        let lost = self
+            .run(controller.controller_state(), &|k, measured, controller_state| law(controller, k, measured, controller_state));
         let converged = controller.converged(self.plant);
         let loop_ = Linear {
             analysis: self,
             weights: converged.weights(model, &first.q),
             inertia: self.plant.inertia_matrix(&first.q).diagonal(),
-            memory: converged.memory(),
+            controller_state: converged.controller_state(),
         };
         // Where the run is lost, nothing after it counts.
         let samples = lost.map_or(self.joints.len(), |lost| lost.sample + 1);
-        let growth = loop_.growth(samples, &|k, measured, memory| law(&converged, k, measured, memory))?;
+        let growth = loop_.growth(samples, &|k, measured, controller_state| law(&converged, k, measured, controller_state))?;
         Ok(MotionReport { growth, lost })
     }
 
     /// The run from its start, without noise.
-    fn run(&self, mut memory: Vec<T>, law: &AnyLaw<'_, T, N>) -> Option<ReferenceLost<T>> {
+    fn run(&self, mut controller_state: Vec<T>, law: &AnyLaw<'_, T, N>) -> Option<ReferenceLost<T>> {
         let mut plant = Plant::new(self.plant, self.start, Integrator::RungeKutta4 { substeps: 1 });
         let mut unseen: VecDeque<State<T, N>> = vec![self.start; self.delay.count()].into();
         let mut joint = 0;
@@ -279,8 +280,8 @@ where
             }
             unseen.push_back(state);
             let measured = unseen.pop_front()?;
-            let Some((tau, next)) = law(k, &measured, &memory) else { return Some(lost) };
-            memory = next;
+            let Some((tau, next)) = law(k, &measured, &controller_state) else { return Some(lost) };
+            controller_state = next;
             if plant.advance(&tau, self.period).is_err() {
                 return Some(lost);
             }
@@ -295,7 +296,7 @@ struct Linear<'a, P, T, const N: usize> {
     weights: Weights<T, N>,
     /// Diagonal of B at the start.
     inertia: SVector<T, N>,
-    memory: Vec<T>,
+    controller_state: Vec<T>,
 }
 
 impl<P, T, const N: usize> Linear<'_, P, T, N>
@@ -338,7 +339,7 @@ where
         Ok(Growth { largest: largest.exp(), at, rate, unbounded })
     }
 
-    /// Deviations of all joint variables, of all rates, of all of these with the memory, and of the memory alone. Signs alternate in another
+    /// Deviations of all joint variables, of all rates, of all of these with the controller state, and of the controller state alone. Signs alternate in another
     /// way in each, so that no two joints move as one.
     fn deviations(&self) -> Vec<Deviation<T, N>> {
         let sign =
@@ -347,13 +348,13 @@ where
         let q = SVector::from_fn(|i, _| sign(i, 0) / self.weights.stiffness[i].sqrt());
         let v = SVector::from_fn(|i, _| sign(i, 1) / self.inertia[i].sqrt());
         let of = |(i, w): (usize, &T)| if *w > T::zero() { sign(i, 2) / w.sqrt() } else { T::zero() };
-        let m: Vec<T> = self.weights.memory.iter().enumerate().map(of).collect();
+        let m: Vec<T> = self.weights.controller_state.iter().enumerate().map(of).collect();
         let none = vec![T::zero(); m.len()];
         let moves = m.iter().any(|m| *m != T::zero());
         let all = [(q, zeros(), none.clone()), (zeros(), v, none), (q, -v, m.clone()), (zeros(), zeros(), m)];
-        let deviation = |(q, dq, memory)| {
+        let deviation = |(q, dq, controller_state)| {
             let unseen = vec![State::at_rest(zeros()); self.analysis.delay.count()].into();
-            let mut deviation = Deviation { state: State { q, dq }, memory, unseen };
+            let mut deviation = Deviation { state: State { q, dq }, controller_state, unseen };
             deviation.scale(T::one() / self.size(&deviation));
             deviation
         };
@@ -363,8 +364,9 @@ where
     fn size(&self, deviation: &Deviation<T, N>) -> T {
         let State { q, dq } = &deviation.state;
         let state = (0..N).map(|i| self.weights.stiffness[i] * q[i] * q[i] + self.inertia[i] * dq[i] * dq[i]);
-        let memory = deviation.memory.iter().zip(&self.weights.memory).map(|(m, weight)| *weight * *m * *m);
-        state.chain(memory).fold(T::zero(), |a, b| a + b).sqrt()
+        let controller_state =
+            deviation.controller_state.iter().zip(&self.weights.controller_state).map(|(m, weight)| *weight * *m * *m);
+        state.chain(controller_state).fold(T::zero(), |a, b| a + b).sqrt()
     }
 
     /// Carries a deviation from sample k to the next one; `None` where the law refuses.
@@ -374,17 +376,18 @@ where
         deviation.unseen.push_back(deviation.state);
         let seen_deviation = deviation.unseen.pop_front()?;
         let (reference, seen) = (&joints[k], &joints[k.saturating_sub(delay.count())]);
-        // The largest element of the state is moved by the cube root of epsilon. Torques are linear in a memory, which may be moved more.
+        // The largest element of the state is moved by the cube root of epsilon. Torques are linear in a controller state, which may be moved more.
         let largest = [seen_deviation, deviation.state].iter().fold(T::zero(), |a, x| a.max(x.q.amax()).max(x.dq.amax()));
-        let memory = deviation.memory.iter().fold(T::zero(), |a, b| a.max(b.abs()));
-        let h = T::default_epsilon().cbrt() / largest.max(memory * lit(MEMORY)).max(lit(TINY));
+        let controller_state = deviation.controller_state.iter().fold(T::zero(), |a, b| a.max(b.abs()));
+        let h = T::default_epsilon().cbrt() / largest.max(controller_state * lit(CONTROLLER_STATE)).max(lit(TINY));
         let at = |reference: &JointReference<T, N>, by: &State<T, N>, h: T| State {
             q: reference.q + by.q * h,
             dq: moving(&reference.dq) + by.dq * h,
         };
         let answer = |h: T| {
-            let memory: Vec<T> = self.memory.iter().zip(&deviation.memory).map(|(m, by)| *m + *by * h).collect();
-            law(k, &at(seen, &seen_deviation, h), &memory)
+            let controller_state: Vec<T> =
+                self.controller_state.iter().zip(&deviation.controller_state).map(|(m, by)| *m + *by * h).collect();
+            law(k, &at(seen, &seen_deviation, h), &controller_state)
         };
         let ((high, high_memory), (low, low_memory)) = (answer(h)?, answer(-h)?);
         let answered = (high - low) * half;
@@ -392,8 +395,8 @@ where
         let next = |sign: T| self.advance(at(reference, &deviation.state, h * sign), &(held + answered * sign));
         let (high, low) = (next(T::one()), next(-T::one()));
         deviation.state = State { q: (high.q - low.q) * (half / h), dq: (high.dq - low.dq) * (half / h) };
-        for (i, m) in deviation.memory.iter_mut().enumerate() {
-            if self.weights.memory[i] > T::zero() {
+        for (i, m) in deviation.controller_state.iter_mut().enumerate() {
+            if self.weights.controller_state[i] > T::zero() {
                 *m = (high_memory[i] - low_memory[i]) * (half / h);
             }
         }
@@ -419,7 +422,7 @@ impl<T: RealField + Copy, const N: usize> Deviation<T, N> {
         };
         scale(&mut self.state);
         self.unseen.iter_mut().for_each(scale);
-        self.memory.iter_mut().for_each(|m| *m *= by);
+        self.controller_state.iter_mut().for_each(|m| *m *= by);
     }
 }
 

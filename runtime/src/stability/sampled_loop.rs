@@ -27,7 +27,7 @@ pub enum StablePeriod<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report<T> {
     /// The largest spectral radius of all postures; stable below 1.
-    pub radius: T,
+    pub spectral_radius: T,
     /// Index of the posture where it is found.
     pub posture: usize,
     /// Up to which sampling period the loop is stable at all postures.
@@ -43,7 +43,7 @@ pub struct Report<T> {
 impl<T: RealField + Copy> Report<T> {
     /// Whether the arm can rest at all postures, and the loop is stable there.
     pub fn is_stable(&self) -> bool {
-        self.radius < T::one() && self.without_rest.is_none()
+        self.spectral_radius < T::one() && self.without_rest.is_none()
     }
 
     /// Whether it is stable at rest and, where that is known, does not diverge in motion.
@@ -68,7 +68,7 @@ pub struct SampledLoop<T, const N: usize> {
 const TRIALS: usize = 30;
 
 impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
-    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest under the reference `q`: with the memories of
+    /// `plant`, the arm as it is, under `controller`, which knows it as `model`, about rest under the reference `q`: with the states of
     /// the controller where the arm can rest, and off the reference where the law has none.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         Ok(Self { offset, ..Self::with_feedback(plant, rest.feedback, &rest.q)? })
     }
 
-    /// The same about the memories that the controller has at present, from which the arm may set out: what the loop does until its
+    /// The same about the states that the controller has at present, from which the arm may set out: what the loop does until its
     /// estimates have moved. This is no verdict, since the arm cannot rest there.
     ///
     /// # Errors
@@ -132,25 +132,25 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         }
         let held = exponential(&generator);
         let (a, b) = (held.view((0, 0), (2 * N, 2 * N)), held.view((0, 2 * N), (2 * N, N)));
-        let memories = self.feedback.memory.ncols();
-        let law = DMatrix::from_fn(N, 2 * N + memories, |i, k| {
+        let controller_states = self.feedback.controller_state.ncols();
+        let law = DMatrix::from_fn(N, 2 * N + controller_states, |i, k| {
             if k < N {
                 self.feedback.position[(i, k)]
             } else if k < 2 * N {
                 self.feedback.velocity[(i, k - N)] / h
             } else {
-                self.feedback.memory[(i, k - 2 * N)]
+                self.feedback.controller_state[(i, k - 2 * N)]
             }
         });
-        let (size, samples) = (2 * N + memories, delay.count());
+        let (size, samples) = (2 * N + controller_states, delay.count());
         let all = size + samples * N;
         let mut whole = DMatrix::zeros(all, all);
         whole.view_mut((0, 0), (2 * N, 2 * N)).copy_from(&a);
-        for k in 0..memories {
+        for k in 0..controller_states {
             whole[(2 * N + k, 2 * N + k)] = T::one();
             for i in 0..N {
-                whole[(2 * N + k, i)] = self.feedback.memory_position[(k, i)] * h;
-                whole[(2 * N + k, N + i)] = self.feedback.memory_velocity[(k, i)];
+                whole[(2 * N + k, i)] = self.feedback.state_by_position[(k, i)] * h;
+                whole[(2 * N + k, N + i)] = self.feedback.state_by_velocity[(k, i)];
             }
         }
         if samples == 0 {
@@ -233,7 +233,7 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
 }
 
 /// Spectral radius and largest stable period of `controller` at all `postures`, at the sampling period `period`, s: about rest, with the
-/// memories of the controller where the arm can rest.
+/// states of the controller where the arm can rest.
 ///
 /// # Errors
 /// With the index of the posture that has no answer; [`StabilityError::NoPosture`] without any.
@@ -254,7 +254,7 @@ where
     worst_of(postures, |q| SampledLoop::new(plant, model, controller, q), period, delay)
 }
 
-/// The same about the memories that the controller has at present: see [`SampledLoop::at_start`].
+/// The same about the states that the controller has at present: see [`SampledLoop::at_start`].
 ///
 /// # Errors
 /// Those of [`analyse`].
@@ -290,9 +290,9 @@ fn worst_of<T: RealField + Copy, const N: usize>(
             StabilityError::Inertia { .. } => StabilityError::Inertia { posture },
             other => other,
         })?;
-        let radius = sampled.spectral_radius(period, delay)?;
-        if worst.is_none_or(|(before, _)| radius > before) {
-            worst = Some((radius, posture));
+        let spectral_radius = sampled.spectral_radius(period, delay)?;
+        if worst.is_none_or(|(before, _)| spectral_radius > before) {
+            worst = Some((spectral_radius, posture));
         }
         match sampled.offset {
             Some(distance) => offset = offset.max(distance),
@@ -300,7 +300,7 @@ fn worst_of<T: RealField + Copy, const N: usize>(
         }
         loops.push(sampled);
     }
-    let (radius, posture) = worst.ok_or(StabilityError::NoPosture)?;
+    let (spectral_radius, posture) = worst.ok_or(StabilityError::NoPosture)?;
     // The worst posture first; then only those that are unstable where the others are not.
     let mut limit = loops[posture].largest_stable_period(period, delay)?;
     for sampled in &loops {
@@ -312,5 +312,5 @@ fn worst_of<T: RealField + Copy, const N: usize>(
             limit = sampled.largest_stable_period(bound, delay)?;
         }
     }
-    Ok(Report { radius, posture, period: limit, offset, without_rest, motion: None })
+    Ok(Report { spectral_radius, posture, period: limit, offset, without_rest, motion: None })
 }

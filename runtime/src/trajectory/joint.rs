@@ -5,7 +5,7 @@
 
 use super::{
     chain::{last_started, next_slot, span, Slot},
-    law::{Law, Profile},
+    law::{Profile, TimeLaw},
     PlanError, PlanFault,
 };
 use crate::{linalg::is_finite, reference::JointReference};
@@ -25,7 +25,7 @@ pub struct JointSegment<T, const N: usize> {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Pace<T, const N: usize> {
-    Law(Law<T>),
+    Law(TimeLaw<T>),
     Limits { velocity: SVector<T, N>, acceleration: SVector<T, N> },
     Pause(Duration),
 }
@@ -43,7 +43,7 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
     }
 
     /// To `to`, rad or m, under a law; its length, velocity and acceleration are those of the joint that moves farthest.
-    pub fn to(to: [T; N], law: Law<T>) -> Self {
+    pub fn to(to: [T; N], law: TimeLaw<T>) -> Self {
         Self::with(to.into(), Pace::Law(law))
     }
 
@@ -98,7 +98,7 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
                     }
                 }
                 match limits {
-                    Some((velocity, acceleration)) => Law::TrapezoidalByLimits { velocity, acceleration }.resolve(T::one())?,
+                    Some((velocity, acceleration)) => TimeLaw::TrapezoidalByLimits { velocity, acceleration }.resolve(T::one())?,
                     None => Profile::rest(Duration::ZERO),
                 }
             }
@@ -185,7 +185,7 @@ mod tests {
         let segments = [
             JointSegment::within_limits([1.0, -0.1, 0.0], [2.0, 0.05, 1.0], [1.0, 1.0, 1.0]),
             JointSegment::pause(SECOND),
-            JointSegment::to([0.0, 0.0, 0.5], Law::Quintic { duration: SECOND }),
+            JointSegment::to([0.0, 0.0, 0.5], TimeLaw::Quintic { duration: SECOND }),
         ];
         let trajectory = JointTrajectory::plan([0.0f64; 3], segments).unwrap();
         let first = trajectory.segments()[0].end();
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn via_points_add_displacements() {
-        let law = Law::Trapezoidal { duration: SECOND, acceleration_time: SECOND / 5 };
+        let law = TimeLaw::Trapezoidal { duration: SECOND, acceleration_time: SECOND / 5 };
         let segments = [JointSegment::to([1.0], law), JointSegment::to([3.0], law).anticipating(SECOND / 5)];
         let trajectory = JointTrajectory::plan([0.0f64], segments).unwrap();
         assert_eq!(trajectory.duration(), 9 * SECOND / 5);
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_names_its_segment() {
-        let law = Law::Trapezoidal { duration: SECOND, acceleration_time: SECOND / 5 };
+        let law = TimeLaw::Trapezoidal { duration: SECOND, acceleration_time: SECOND / 5 };
         let fault = |third: JointSegment<f64, 1>| {
             JointTrajectory::plan([0.0], [JointSegment::to([1.0], law), JointSegment::pause(SECOND / 10), third]).unwrap_err()
         };
@@ -228,7 +228,7 @@ mod tests {
         assert_eq!(fault(third.anticipating(SECOND / 5)), PlanFault::AnticipationTooLong.at(2));
         assert_eq!(fault(JointSegment::to([f64::NAN], law)), PlanFault::NotFinite.at(2));
         assert_eq!(fault(JointSegment::within_limits([2.0], [0.0], [1.0])), PlanFault::LimitNotPositive.at(2));
-        let long = Law::Trapezoidal { duration: SECOND, acceleration_time: SECOND };
+        let long = TimeLaw::Trapezoidal { duration: SECOND, acceleration_time: SECOND };
         assert_eq!(fault(JointSegment::to([2.0], long)), PlanFault::CruiseTimeNegative.at(2));
         let first = JointTrajectory::plan([0.0], [third.anticipating(SECOND / 5)]).unwrap_err();
         assert_eq!(first, PlanFault::NothingToAnticipate.at(0));

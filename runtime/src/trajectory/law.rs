@@ -20,7 +20,7 @@ use nalgebra::RealField;
 
 /// A time law as requested; lengths in m for paths, rad for turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law<T> {
+pub enum TimeLaw<T> {
     /// Trapezoidal speed of this duration and acceleration time (the deceleration takes as long).
     Trapezoidal {
         /// Duration T.
@@ -61,7 +61,7 @@ pub enum Law<T> {
     },
 }
 
-/// A time law that can be run: what [`Law::resolve`] makes of a request.
+/// A time law that can be run: what [`TimeLaw::resolve`] makes of a request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Profile<T> {
     duration: Duration,
@@ -95,7 +95,7 @@ pub struct Progress<T> {
     pub dds: T,
 }
 
-impl<T: RealField + Copy> Law<T> {
+impl<T: RealField + Copy> TimeLaw<T> {
     /// The law for a path of this length, which may be zero.
     ///
     /// # Errors
@@ -112,8 +112,8 @@ impl<T: RealField + Copy> Law<T> {
             true => Err(fault),
         };
         match *self {
-            Law::Trapezoidal { duration, acceleration_time } => trapezoid(duration, acceleration_time),
-            Law::TrapezoidalByAcceleration { duration: t, acceleration } => {
+            TimeLaw::Trapezoidal { duration, acceleration_time } => trapezoid(duration, acceleration_time),
+            TimeLaw::TrapezoidalByAcceleration { duration: t, acceleration } => {
                 let a = positive(acceleration.abs(), PlanFault::AccelerationTooSmall)?;
                 let half = seconds::<T>(t) * lit(0.5);
                 // A margin of a few roundings: a = 4 L / T^2 itself, the triangle, is allowed.
@@ -128,7 +128,7 @@ impl<T: RealField + Copy> Law<T> {
                 let t_c = duration(half - under_root.sqrt()).ok_or(PlanFault::AccelerationTooSmall)?;
                 trapezoid(t, t_c.min(t / 2))
             }
-            Law::TrapezoidalByVelocity { duration: t, velocity } => {
+            TimeLaw::TrapezoidalByVelocity { duration: t, velocity } => {
                 if still {
                     return Ok(Profile { duration: t, shape: Shape::Rest });
                 }
@@ -142,7 +142,7 @@ impl<T: RealField + Copy> Law<T> {
                 let t_c = duration(whole - length / v).ok_or(PlanFault::VelocityOutOfRange)?;
                 trapezoid(t, t_c.min(t / 2))
             }
-            Law::TrapezoidalByLimits { velocity, acceleration } => {
+            TimeLaw::TrapezoidalByLimits { velocity, acceleration } => {
                 // No limit of velocity is no fault: the law is then a triangle.
                 let v = if velocity > T::one() { velocity } else { positive(velocity, PlanFault::LimitNotPositive)? };
                 let a = positive(acceleration, PlanFault::LimitNotPositive)?;
@@ -160,13 +160,13 @@ impl<T: RealField + Copy> Law<T> {
                 let (t_c, cover) = (up(t_c)?, up(cover)?);
                 trapezoid(t_c.checked_add(cover).ok_or(PlanFault::TooLong)?, t_c)
             }
-            Law::Cubic { duration } if duration > Duration::ZERO => {
+            TimeLaw::Cubic { duration } if duration > Duration::ZERO => {
                 Ok(Profile { duration, shape: Shape::Cubic(seconds(duration)) })
             }
-            Law::Quintic { duration } if duration > Duration::ZERO => {
+            TimeLaw::Quintic { duration } if duration > Duration::ZERO => {
                 Ok(Profile { duration, shape: Shape::Quintic(seconds(duration)) })
             }
-            Law::Cubic { .. } | Law::Quintic { .. } => Err(PlanFault::NoDuration),
+            TimeLaw::Cubic { .. } | TimeLaw::Quintic { .. } => Err(PlanFault::NoDuration),
         }
     }
 }
@@ -252,14 +252,14 @@ mod tests {
 
     const T: Duration = Duration::from_millis(1500);
 
-    fn laws() -> [Law<f64>; 6] {
+    fn laws() -> [TimeLaw<f64>; 6] {
         [
-            Law::Trapezoidal { duration: T, acceleration_time: Duration::from_millis(200) },
-            Law::TrapezoidalByAcceleration { duration: T, acceleration: 1.5 },
-            Law::TrapezoidalByVelocity { duration: T, velocity: 0.4 },
-            Law::TrapezoidalByLimits { velocity: 0.3, acceleration: 0.7 },
-            Law::Cubic { duration: T },
-            Law::Quintic { duration: T },
+            TimeLaw::Trapezoidal { duration: T, acceleration_time: Duration::from_millis(200) },
+            TimeLaw::TrapezoidalByAcceleration { duration: T, acceleration: 1.5 },
+            TimeLaw::TrapezoidalByVelocity { duration: T, velocity: 0.4 },
+            TimeLaw::TrapezoidalByLimits { velocity: 0.3, acceleration: 0.7 },
+            TimeLaw::Cubic { duration: T },
+            TimeLaw::Quintic { duration: T },
         ]
     }
 
@@ -285,7 +285,7 @@ mod tests {
     #[test]
     fn limits_are_kept_and_reached() {
         for (length, v, a) in [(0.5, 0.3, 0.7), (0.01, 0.3, 0.7), (3.0, 1.0, 10.0), (1e-6, 2.0, 5.0)] {
-            let p = Law::TrapezoidalByLimits { velocity: v, acceleration: a }.resolve(length).unwrap();
+            let p = TimeLaw::TrapezoidalByLimits { velocity: v, acceleration: a }.resolve(length).unwrap();
             let peak = (0..=1000u32).map(|k| p.at(p.duration() * k / 1000).ds * length).fold(0.0, f64::max);
             assert!(peak <= v && p.at(Duration::ZERO).dds * length <= a);
             let triangle = length * a < v * v;
@@ -296,31 +296,31 @@ mod tests {
 
     #[test]
     fn the_parameters_asked_for_are_the_ones_found() {
-        let by_acceleration = Law::TrapezoidalByAcceleration { duration: T, acceleration: 1.5 }.resolve(0.5).unwrap();
+        let by_acceleration = TimeLaw::TrapezoidalByAcceleration { duration: T, acceleration: 1.5 }.resolve(0.5).unwrap();
         assert!((by_acceleration.at(Duration::ZERO).dds * 0.5 - 1.5f64).abs() < 1e-7);
-        let by_velocity = Law::TrapezoidalByVelocity { duration: T, velocity: 0.4 }.resolve(0.5).unwrap();
+        let by_velocity = TimeLaw::TrapezoidalByVelocity { duration: T, velocity: 0.4 }.resolve(0.5).unwrap();
         assert!((by_velocity.at(T / 2).ds * 0.5 - 0.4f64).abs() < 1e-9);
     }
 
     #[test]
     fn what_cannot_be_is_refused() {
         let ms = Duration::from_millis;
-        let fault = |law: Law<f64>| law.resolve(0.5).unwrap_err();
+        let fault = |law: TimeLaw<f64>| law.resolve(0.5).unwrap_err();
         use PlanFault::*;
-        assert_eq!(fault(Law::Trapezoidal { duration: T, acceleration_time: ms(751) }), CruiseTimeNegative);
-        assert_eq!(fault(Law::Trapezoidal { duration: T, acceleration_time: ms(2000) }), CruiseTimeNegative);
-        assert_eq!(fault(Law::Trapezoidal { duration: T, acceleration_time: ms(0) }), NoAccelerationTime);
-        assert_eq!(fault(Law::Trapezoidal { duration: ms(0), acceleration_time: ms(0) }), NoDuration);
-        assert_eq!(fault(Law::TrapezoidalByAcceleration { duration: T, acceleration: 0.88 }), AccelerationTooSmall);
-        assert_eq!(fault(Law::TrapezoidalByVelocity { duration: T, velocity: 0.33 }), VelocityOutOfRange);
-        assert_eq!(fault(Law::TrapezoidalByVelocity { duration: T, velocity: 0.67 }), VelocityOutOfRange);
-        assert_eq!(fault(Law::TrapezoidalByLimits { velocity: -1.0, acceleration: 1.0 }), LimitNotPositive);
-        assert_eq!(fault(Law::TrapezoidalByLimits { velocity: f64::NAN, acceleration: 1.0 }), NotFinite);
-        assert_eq!(fault(Law::TrapezoidalByLimits { velocity: 1e-300, acceleration: 1.0 }), TooLong);
-        assert_eq!(fault(Law::Cubic { duration: ms(0) }), NoDuration);
+        assert_eq!(fault(TimeLaw::Trapezoidal { duration: T, acceleration_time: ms(751) }), CruiseTimeNegative);
+        assert_eq!(fault(TimeLaw::Trapezoidal { duration: T, acceleration_time: ms(2000) }), CruiseTimeNegative);
+        assert_eq!(fault(TimeLaw::Trapezoidal { duration: T, acceleration_time: ms(0) }), NoAccelerationTime);
+        assert_eq!(fault(TimeLaw::Trapezoidal { duration: ms(0), acceleration_time: ms(0) }), NoDuration);
+        assert_eq!(fault(TimeLaw::TrapezoidalByAcceleration { duration: T, acceleration: 0.88 }), AccelerationTooSmall);
+        assert_eq!(fault(TimeLaw::TrapezoidalByVelocity { duration: T, velocity: 0.33 }), VelocityOutOfRange);
+        assert_eq!(fault(TimeLaw::TrapezoidalByVelocity { duration: T, velocity: 0.67 }), VelocityOutOfRange);
+        assert_eq!(fault(TimeLaw::TrapezoidalByLimits { velocity: -1.0, acceleration: 1.0 }), LimitNotPositive);
+        assert_eq!(fault(TimeLaw::TrapezoidalByLimits { velocity: f64::NAN, acceleration: 1.0 }), NotFinite);
+        assert_eq!(fault(TimeLaw::TrapezoidalByLimits { velocity: 1e-300, acceleration: 1.0 }), TooLong);
+        assert_eq!(fault(TimeLaw::Cubic { duration: ms(0) }), NoDuration);
         // The bounds themselves are allowed.
-        assert!(Law::TrapezoidalByVelocity { duration: T, velocity: 2.0 / 3.0 }.resolve(0.5).is_ok());
-        assert!(Law::<f64>::Trapezoidal { duration: T, acceleration_time: ms(750) }.resolve(0.5).is_ok());
+        assert!(TimeLaw::TrapezoidalByVelocity { duration: T, velocity: 2.0 / 3.0 }.resolve(0.5).is_ok());
+        assert!(TimeLaw::<f64>::Trapezoidal { duration: T, acceleration_time: ms(750) }.resolve(0.5).is_ok());
     }
 
     #[test]
@@ -329,7 +329,7 @@ mod tests {
             let (length, seconds) = (0.01 * f64::from(k % 173 + 1), 0.1 * f64::from(k % 97 + 1));
             let duration = Duration::from_secs_f64(seconds);
             let least = 4.0 * length / (seconds * seconds);
-            let law = |acceleration| Law::TrapezoidalByAcceleration { duration, acceleration }.resolve(length);
+            let law = |acceleration| TimeLaw::TrapezoidalByAcceleration { duration, acceleration }.resolve(length);
             assert_eq!(law(least).map(|profile| profile.duration()), Ok(duration), "{length} m in {seconds} s");
             assert_eq!(law(least * 0.999), Err(PlanFault::AccelerationTooSmall));
         }
@@ -337,8 +337,9 @@ mod tests {
 
     #[test]
     fn without_a_limit_of_velocity_the_law_is_a_triangle() {
-        let law =
-            |velocity| Law::TrapezoidalByLimits { velocity, acceleration: 4.0 }.resolve(1.0).map(|p| p.duration().as_millis());
+        let law = |velocity| {
+            TimeLaw::TrapezoidalByLimits { velocity, acceleration: 4.0 }.resolve(1.0).map(|p| p.duration().as_millis())
+        };
         assert_eq!(law(f64::INFINITY), Ok(1000));
         assert_eq!(law(f64::NAN), Err(PlanFault::NotFinite));
     }

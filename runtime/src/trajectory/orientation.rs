@@ -5,7 +5,7 @@
 
 use super::{
     chain::{last_started, next_slot, span, Slot},
-    law::{Law, Profile},
+    law::{Profile, TimeLaw},
     PlanError, PlanFault,
 };
 use crate::{
@@ -19,7 +19,7 @@ use nalgebra::{Matrix3, RealField, Unit, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn<T> {
     goal: Goal<T>,
-    law: Law<T>,
+    law: TimeLaw<T>,
     slot: Slot,
     profile: Profile<T>,
     from: Matrix3<T>,
@@ -47,7 +47,7 @@ pub struct OrientationSample<T> {
 }
 
 impl<T: RealField + Copy> Turn<T> {
-    fn new(goal: Goal<T>, law: Law<T>) -> Self {
+    fn new(goal: Goal<T>, law: TimeLaw<T>) -> Self {
         Self {
             goal,
             law,
@@ -60,18 +60,18 @@ impl<T: RealField + Copy> Turn<T> {
     }
 
     /// A turn by `angle`, rad, of any size, about `axis` of the base frame.
-    pub fn about(axis: [T; 3], angle: T, law: Law<T>) -> Self {
+    pub fn about(axis: [T; 3], angle: T, law: TimeLaw<T>) -> Self {
         Self::new(Goal::About { axis: axis.into(), angle }, law)
     }
 
     /// The shortest turn to this rotation matrix.
-    pub fn toward(rotation: Matrix3<T>, law: Law<T>) -> Self {
+    pub fn toward(rotation: Matrix3<T>, law: TimeLaw<T>) -> Self {
         Self::new(Goal::Toward(rotation), law)
     }
 
     /// An orientation held for a while.
     pub fn pause(duration: Duration) -> Self {
-        Self::new(Goal::Pause, Law::Cubic { duration })
+        Self::new(Goal::Pause, TimeLaw::Cubic { duration })
     }
 
     /// When it starts, in a planned profile.
@@ -101,7 +101,7 @@ impl<T: RealField + Copy> Turn<T> {
             Goal::Pause => (Vector3::z_axis(), T::zero()),
         };
         self.profile = match (self.goal, self.law) {
-            (Goal::Pause, Law::Cubic { duration }) => Profile::rest(duration),
+            (Goal::Pause, TimeLaw::Cubic { duration }) => Profile::rest(duration),
             _ => self.law.resolve(angle)?,
         };
         self.slot = next_slot(earlier, None, Duration::ZERO, self.profile.duration())?;
@@ -179,7 +179,7 @@ impl<T: RealField + Copy, S: AsRef<[Turn<T>]>> OrientationProfile<T, S> {
 mod tests {
     use super::*;
 
-    const LAW: Law<f64> = Law::Quintic { duration: Duration::from_secs(1) };
+    const LAW: TimeLaw<f64> = TimeLaw::Quintic { duration: Duration::from_secs(1) };
 
     #[test]
     fn turns_follow_one_another() {

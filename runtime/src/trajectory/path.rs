@@ -6,7 +6,7 @@
 
 use super::{
     chain::{last_started, next_slot, span, Slot},
-    law::{Law, Profile},
+    law::{Profile, TimeLaw},
     PlanError, PlanFault,
 };
 use crate::{
@@ -22,7 +22,7 @@ use nalgebra::{RealField, Vector3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment<T> {
     shape: Shape<T>,
-    law: Law<T>,
+    law: TimeLaw<T>,
     anticipation: Duration,
     run: Run<T>,
 }
@@ -67,7 +67,7 @@ pub struct PathSample<T> {
 }
 
 impl<T: RealField + Copy> Segment<T> {
-    fn new(shape: Shape<T>, law: Law<T>) -> Self {
+    fn new(shape: Shape<T>, law: TimeLaw<T>) -> Self {
         let run = Run {
             slot: Slot::default(),
             profile: Profile::rest(Duration::ZERO),
@@ -80,30 +80,30 @@ impl<T: RealField + Copy> Segment<T> {
     }
 
     /// A straight line to `to`, m.
-    pub fn line(to: [T; 3], law: Law<T>) -> Self {
+    pub fn line(to: [T; 3], law: TimeLaw<T>) -> Self {
         Self::new(Shape::Line { to: to.into() }, law)
     }
 
     /// An arc about `centre`, m, in the plane at right angles to `axis`, through `sweep`, rad, right-handed about the axis.
     ///
     /// A sweep of 2 pi is a full circle.
-    pub fn arc(centre: [T; 3], axis: [T; 3], sweep: T, law: Law<T>) -> Self {
+    pub fn arc(centre: [T; 3], axis: [T; 3], sweep: T, law: TimeLaw<T>) -> Self {
         Self::new(Shape::Arc { centre: centre.into(), axis: axis.into(), sweep, to: None }, law)
     }
 
     /// The same arc, with its end stated: it is an error if centre, sweep and points do not fit within a millionth of the radius.
-    pub fn arc_to(centre: [T; 3], axis: [T; 3], sweep: T, to: [T; 3], law: Law<T>) -> Self {
+    pub fn arc_to(centre: [T; 3], axis: [T; 3], sweep: T, to: [T; 3], law: TimeLaw<T>) -> Self {
         Self::new(Shape::Arc { centre: centre.into(), axis: axis.into(), sweep, to: Some(to.into()) }, law)
     }
 
     /// The arc through `via` to `to`, on the circle through the start and both.
-    pub fn arc_through(via: [T; 3], to: [T; 3], law: Law<T>) -> Self {
+    pub fn arc_through(via: [T; 3], to: [T; 3], law: TimeLaw<T>) -> Self {
         Self::new(Shape::ArcThrough { via: via.into(), to: to.into() }, law)
     }
 
     /// A stop that lasts.
     pub fn pause(duration: Duration) -> Self {
-        Self::new(Shape::Pause, Law::Cubic { duration })
+        Self::new(Shape::Pause, TimeLaw::Cubic { duration })
     }
 
     /// The same segment, starting `anticipation` before the previous one ends: the point between them becomes a via point.
@@ -159,7 +159,7 @@ impl<T: RealField + Copy> Segment<T> {
             return Err(PlanFault::NotFinite);
         }
         let profile = match (self.shape, self.law) {
-            (Shape::Pause, Law::Cubic { duration }) => Profile::rest(duration),
+            (Shape::Pause, TimeLaw::Cubic { duration }) => Profile::rest(duration),
             _ => self.law.resolve(length)?,
         };
         let slot = next_slot(earlier, before_earlier, self.anticipation, profile.duration())?;

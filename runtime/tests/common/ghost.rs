@@ -5,7 +5,7 @@ use armgen_runtime::{
     clik::{Integration, JointLimits, SecondOrder},
     reference::{JointReference, Pose, State},
     task::{Row, Task},
-    trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, Reach, Segment, Turn},
+    trajectory::{OperationalTrajectory, OrientationProfile, Path, Reach, Segment, TimeLaw, Turn},
 };
 use nalgebra::{convert, matrix, vector, Matrix3, RealField, Vector4};
 use std::{f64::consts::PI, time::Duration};
@@ -36,9 +36,9 @@ pub fn start() -> Vector4<f64> {
     vector![-1.3913099976180494, 2.0650786546949544, 0.4, 0.673768657076905]
 }
 
-pub fn law<T: RealField>(duration: f64, acceleration_time: f64) -> Law<T> {
+pub fn law<T: RealField>(duration: f64, acceleration_time: f64) -> TimeLaw<T> {
     let seconds = Duration::from_secs_f64;
-    Law::Trapezoidal { duration: seconds(duration), acceleration_time: seconds(acceleration_time) }
+    TimeLaw::Trapezoidal { duration: seconds(duration), acceleration_time: seconds(acceleration_time) }
 }
 
 pub fn reach() -> Reach<f64> {

@@ -85,7 +85,7 @@ where
         |sample| largest = largest.max((swing.at(sample.time.as_secs_f64()).q - sample.state.q).amax()),
     );
     let grows = report.motion.is_some_and(|motion| motion.diverges());
-    Found { rest: report.radius, stable: report.is_stable(), grows, lost: end.is_err() || largest > LOST, largest }
+    Found { rest: report.spectral_radius, stable: report.is_stable(), grows, lost: end.is_err() || largest > LOST, largest }
 }
 
 fn main() {

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use armgen_codegen::diagnostic::AnyCode;
-use armgen_experiments::model::{AlgorithmKind, LawKind};
+use armgen_experiments::model::{AlgorithmKind, ControlLawKind};
 use armgen_experiments::read::{Code, Parsed, SHARED};
 use common::{files, parse, root, said, text_of};
 
@@ -78,7 +78,7 @@ fn an_experiment_for_another_robot_is_left_alone() {
 #[test]
 fn the_page_names_every_code_and_every_key_of_a_law() {
     let page = text_of(&root(), "docs/experiments.md");
-    let laws = LawKind::ALL.into_iter().flat_map(|kind| {
+    let laws = ControlLawKind::ALL.into_iter().flat_map(|kind| {
         let gains = kind.gains().iter().map(|gain| gain.key);
         [kind.name()].into_iter().chain(gains).chain(kind.optional().iter().copied())
     });

@@ -4,7 +4,7 @@ mod common;
 
 use armgen_experiments::campaign::{in_parallel, Job};
 use armgen_experiments::draw::OutputFile;
-use armgen_experiments::model::{Experiment, JointQuantity, LawKind, Quantity};
+use armgen_experiments::model::{ControlLawKind, Experiment, JointQuantity, Quantity};
 use armgen_experiments::run::Arm;
 use common::{experiment, files, folder, text_of};
 
@@ -124,20 +124,20 @@ fn every_law_moves_the_arm() {
     let head = text_of(&folder(), "adaptive_a.yaml");
     let (head, _) = head.split_once("controller:").expect("a controller");
     let head = head.replace("duration: 22", "duration: 0.2");
-    let gains = |kind: LawKind| {
+    let gains = |kind: ControlLawKind| {
         match kind {
-        LawKind::PdGravity => "k_p: [1e5, 1e5, 1e5, 1e5]\n  k_d: [1e3, 1e3, 1e3, 1e3]",
-        LawKind::InverseDynamics => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]",
-        LawKind::Robust => {
+        ControlLawKind::PdGravity => "k_p: [1e5, 1e5, 1e5, 1e5]\n  k_d: [1e3, 1e3, 1e3, 1e3]",
+        ControlLawKind::InverseDynamics => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]",
+        ControlLawKind::Robust => {
             "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  p_position: [1, 1, 1, 1]\n  p_velocity: [1, 1, 1, 1]\n  rho: 1\n  epsilon: 0.2"
         }
-        LawKind::Adaptive => {
+        ControlLawKind::Adaptive => {
             "lambda: [100, 100, 100, 100]\n  k_d: [1000, 500, 2000, 100]\n  k_pi: [10, 10, 0.01, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10, 10]"
         }
-        LawKind::OperationalSpace => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  k_i: [0, 0, 0, 0]",
+        ControlLawKind::OperationalSpace => "k_p: [1e4, 1e4, 1e4, 1e4]\n  k_d: [200, 200, 200, 200]\n  k_i: [0, 0, 0, 0]",
     }
     };
-    for kind in LawKind::ALL {
+    for kind in ControlLawKind::ALL {
         let name = kind.name();
         let text = |more: &str| {
             let gains = gains(kind);

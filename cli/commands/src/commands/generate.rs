@@ -148,33 +148,16 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
         terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
         return UNREADABLE;
     }
-    let files = match files(&source, generated, (language, scalar), out, beside) {
+    let files = match files(&Requested { source: &source, generated: &generated, language, scalar, out, beside }) {
         Ok(files) => files,
         Err(error) => {
             terminal::error(&error);
             return FAULTY;
         }
     };
-    for (i, (path, _)) in files.iter().enumerate() {
-        if files[..i].iter().any(|(other, _)| other == path) || same_file(file, path) {
-            let path = path.display();
-            terminal::error(&format!(
-                "two of the files to write would both be {path}, or it is the description: choose another name for --out"
-            ));
-            return UNREADABLE;
-        }
-    }
-    if language == Language::Matlab && !out.is_dir() {
-        if let Err(error) = std::fs::create_dir(out) {
-            terminal::error(&format!("cannot make the folder {}: {error}", out.display()));
-            return UNREADABLE;
-        }
-    }
-    for (path, text) in &files {
-        if let Err(error) = write(path, text) {
-            terminal::error(&format!("cannot write {}: {error}", path.display()));
-            return UNREADABLE;
-        }
+    if let Err(error) = write_all(&files, file, (language == Language::Matlab).then_some(out)) {
+        terminal::error(&error);
+        return UNREADABLE;
     }
     if language == Language::Matlab {
         warn_of_others(out, &files);
@@ -189,6 +172,24 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     DONE
 }
 
+/// Writes files to different places, none of them the description's; into a `folder` that is made where there is none.
+fn write_all(files: &[Output], description: &Path, folder: Option<&Path>) -> Result<(), String> {
+    for (i, (path, _)) in files.iter().enumerate() {
+        if files[..i].iter().any(|(other, _)| other == path) || same_file(description, path) {
+            let path = path.display();
+            return Err(format!(
+                "two of the files to write would both be {path}, or it is the description: choose another name for --out"
+            ));
+        }
+    }
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        std::fs::create_dir(folder).map_err(|error| format!("cannot make the folder {}: {error}", folder.display()))?;
+    }
+    files
+        .iter()
+        .try_for_each(|(path, text)| write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display())))
+}
+
 /// The name of a file of a language, or of a folder.
 fn file_of(language: Language, stem: &str) -> String {
     match language {
@@ -198,7 +199,7 @@ fn file_of(language: Language, stem: &str) -> String {
 }
 
 /// What stands in the folder of a package and is not of it could hide a function.
-fn warn_of_others(folder: &Path, files: &[(PathBuf, String)]) {
+fn warn_of_others(folder: &Path, files: &[Output]) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut others: Vec<PathBuf> = entries.filter(|path| files.iter().all(|(own, _)| own != path)).collect();
     others.sort();
@@ -264,27 +265,76 @@ fn unfit(
     }
 }
 
-/// All files to write, or why none is written.
-fn files(
-    source: &Source,
-    generated: Generated,
-    (language, scalar): (Language, Scalar),
-    out: &Path,
-    beside: &Beside,
-) -> Result<Vec<(PathBuf, String)>, String> {
-    let stem = out.file_stem().unwrap_or_default().to_string_lossy();
-    let mut files = Vec::new();
-    if language == Language::JavaScript {
+/// A file to write.
+type Output = (PathBuf, String);
+
+/// A module and what is asked for beside it.
+struct Requested<'a> {
+    source: &'a Source,
+    generated: &'a Generated,
+    language: Language,
+    scalar: Scalar,
+    /// The file, or folder, of the module.
+    out: &'a Path,
+    beside: &'a Beside,
+}
+
+/// All files to write, the module first; or why none is written.
+fn files(requested: &Requested) -> Result<Vec<Output>, String> {
+    let Requested { generated, language, out, beside, .. } = requested;
+    let mut files = match language {
+        Language::Matlab => generated.package().into_iter().map(|file| (out.join(file.name), file.text)).collect(),
+        language => vec![(out.to_path_buf(), generated.in_language(*language))],
+    };
+    if *language == Language::JavaScript {
         let extension = if out.extension().is_some_and(|extension| extension == "js") { "d.ts" } else { "d.mts" };
         files.push((out.with_extension(extension), generated.declarations()));
     }
     if beside.verify {
-        let report = with_spinner("verifying", || armgen_verify::certify_in(source, &generated, language));
+        files.push(requested.certificate()?);
+    }
+    if beside.tests {
+        files.extend(requested.tests()?);
+    }
+    if beside.ik {
+        files.extend(requested.inverse_kinematics()?);
+    }
+    if beside.bounds {
+        files.push(requested.bounds()?);
+    }
+    if beside.runtime {
+        files.push(requested.runtime());
+    }
+    if beside.c_abi {
+        files.extend(requested.c_abi());
+    }
+    if beside.native {
+        let native = generated.native();
+        files.push(requested.file("_native.py", native.python));
+        files.push(requested.file("_native.c", native.c));
+    }
+    Ok(files)
+}
+
+impl Requested<'_> {
+    /// The name of the module's file without its extension.
+    fn stem(&self) -> String {
+        self.out.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
+    /// A file beside the module, named after it.
+    fn file(&self, ending: &str, text: String) -> Output {
+        (self.out.with_file_name(self.stem() + ending), text)
+    }
+
+    /// The certificate of the module, without which nothing is written.
+    fn certificate(&self) -> Result<Output, String> {
+        let report = with_spinner("verifying", || armgen_verify::certify_in(self.source, self.generated, self.language));
         if let Some(function) = report.beyond_the_scalar() {
-            let diagnostics = armgen_verify::beyond_the_scalar(source, function, scalar);
+            let diagnostics = armgen_verify::beyond_the_scalar(self.source, function, self.scalar);
             return Err(format!(
                 "nothing is written: its errors have no bound\n{}",
-                diagnostics.render(source, Colour::Never).trim_end()
+                diagnostics.render(self.source, Colour::Never).trim_end()
             ));
         }
         if let Some(fault) = report.first_fault() {
@@ -292,89 +342,97 @@ fn files(
                 "nothing is written: the module does not equal the equations, {fault}; this is a fault of armgen"
             ));
         }
-        let certificate = certificate_beside(out);
+        let certificate = certificate_beside(self.out);
         terminal::note(&format!("{}; {}", super::verify::summary(&report), certificate.display()));
-        files.push((certificate, Certificate::of(&report).to_json()));
+        Ok((certificate, Certificate::of(&report).to_json()))
     }
-    if beside.tests {
+
+    /// Tests of the module at reference values, and of postures.
+    fn tests(&self) -> Result<Vec<Output>, String> {
+        let Requested { source, generated, language, out, beside, .. } = self;
+        let stem = self.stem();
         let name = out.file_name().unwrap_or_default().to_string_lossy();
         let extension = out.extension().unwrap_or_default().to_string_lossy();
+        let package = stem.trim_start_matches('+');
         let (file, taken_in) = match language {
             Language::Rust => (format!("{stem}_test.rs"), format!("#[path = {name:?}]\nmod robot;")),
-            Language::C => (format!("{stem}_test.c"), name.into_owned()),
-            Language::JavaScript => (format!("{stem}.test.{extension}"), name.into_owned()),
-            Language::Python => (format!("test_{stem}.py"), stem.to_string()),
-            Language::Matlab => (format!("{}Test.m", stem.trim_start_matches('+')), stem.trim_start_matches('+').to_string()),
+            Language::C => (format!("{stem}_test.c"), name.to_string()),
+            Language::JavaScript => (format!("{stem}.test.{extension}"), name.to_string()),
+            Language::Python => (format!("test_{stem}.py"), stem.clone()),
+            Language::Matlab => (format!("{package}Test.m"), package.to_owned()),
         };
-        let tests = with_spinner("computing reference values", || match language {
+        let mut tests = with_spinner("computing reference values", || match *language {
             Language::Rust => armgen_verify::test_kit(source, &generated.module, &taken_in),
             language => {
                 let text = generated.in_language(language);
                 armgen_verify::test_kit_in(source, ModuleText { language, text: &text }, &taken_in)
             }
         })?;
-        let inverse_kinematics = match beside.ik && language == Language::Rust {
-            true => generated.inverse_kinematics_test(&format!("{stem}_ik.rs")),
-            false => String::new(),
-        };
-        files.push((out.with_file_name(file), tests + &inverse_kinematics));
-        if beside.ik && language == Language::C {
-            let name = out.file_name().unwrap_or_default().to_string_lossy();
-            if let Some(test) = generated.inverse_kinematics_test_in_c(&name, &format!("{stem}_ik.h")) {
-                files.push((out.with_file_name(format!("{stem}_ik_test.c")), test));
+        let mut files = Vec::new();
+        match language {
+            Language::Rust if beside.ik => tests += &generated.inverse_kinematics_test(&format!("{stem}_ik.rs")),
+            Language::C if beside.ik => {
+                let test = generated.inverse_kinematics_test_in_c(&name, &format!("{stem}_ik.h"));
+                files.extend(test.map(|test| self.file("_ik_test.c", test)));
             }
+            _ => {}
         }
+        files.push((out.with_file_name(file), tests));
+        Ok(files)
     }
-    let all_solutions = match (beside.ik, language) {
-        (false, _) => None,
-        (true, Language::C) => Some((out.with_file_name(format!("{stem}_ik.h")), generated.inverse_kinematics_in_c()?)),
-        (true, _) => Some((out.with_file_name(format!("{stem}_ik.rs")), generated.inverse_kinematics())),
-    };
-    if let Some((file, text)) = all_solutions.as_ref().filter(|_| beside.verify) {
-        let poses = armgen_verify::inverse_kinematics::POSES;
-        let report = with_spinner("verifying", || armgen_verify::inverse_kinematics::verify(source, text, poses));
-        if let Some(fault) = report.faults.first() {
-            return Err(format!(
-                "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
-            ));
-        }
-        let certificate = certificate_beside(file);
-        terminal::note(&format!("{}; {}", report.summary(), certificate.display()));
-        files.push((certificate, report.to_json()));
-    }
-    if beside.bounds {
-        let mut companion = armgen_verify::companion(&generated, &format!("use super::{}::*;", validate::module_name(&stem)))?;
-        if beside.ik && generated.has_inverse_kinematics_of_pose_alone() {
-            companion += &armgen_verify::companion_of_inverse_kinematics(&generated)?;
-        }
-        files.push((out.with_file_name(format!("{stem}_bounds.rs")), companion));
-    }
-    if beside.runtime {
-        let runtime = match beside.ik {
-            true => generated.runtime_with_inverse_kinematics(&validate::module_name(&format!("{stem}_ik"))),
-            false => generated.runtime.clone(),
+
+    /// The module of inverse kinematics, and its certificate where one is asked for.
+    fn inverse_kinematics(&self) -> Result<Vec<Output>, String> {
+        let (file, text) = match self.language {
+            Language::C => self.file("_ik.h", self.generated.inverse_kinematics_in_c()?),
+            _ => self.file("_ik.rs", self.generated.inverse_kinematics()),
         };
-        files.push((out.with_file_name(format!("{stem}_runtime.rs")), runtime));
-    }
-    if beside.c_abi {
-        files.push((out.with_extension("h"), generated.c.header.clone()));
-        files.push((out.with_file_name(format!("{stem}_c.rs")), generated.c.wrappers.clone()));
-        if let Some(face) = beside.ik.then(|| generated.inverse_kinematics_for_c()).flatten() {
-            files.push((out.with_file_name(format!("{stem}_ik.h")), face.header));
-            files.push((out.with_file_name(format!("{stem}_ik_c.rs")), face.wrappers));
+        let mut files = Vec::new();
+        if self.beside.verify {
+            let poses = armgen_verify::inverse_kinematics::POSES;
+            let report = with_spinner("verifying", || armgen_verify::inverse_kinematics::verify(self.source, &text, poses));
+            if let Some(fault) = report.faults.first() {
+                return Err(format!(
+                    "nothing is written: the module of inverse kinematics is not verified, {fault}; this is a fault of armgen"
+                ));
+            }
+            let certificate = certificate_beside(&file);
+            terminal::note(&format!("{}; {}", report.summary(), certificate.display()));
+            files.push((certificate, report.to_json()));
         }
+        files.push((file, text));
+        Ok(files)
     }
-    if beside.native {
-        let native = generated.native();
-        files.push((out.with_file_name(format!("{stem}_native.py")), native.python));
-        files.push((out.with_file_name(format!("{stem}_native.c")), native.c));
+
+    /// The error bounds at a state.
+    fn bounds(&self) -> Result<Output, String> {
+        let module = format!("use super::{}::*;", validate::module_name(&self.stem()));
+        let mut companion = armgen_verify::companion(self.generated, &module)?;
+        if self.beside.ik && self.generated.has_inverse_kinematics_of_pose_alone() {
+            companion += &armgen_verify::companion_of_inverse_kinematics(self.generated)?;
+        }
+        Ok(self.file("_bounds.rs", companion))
     }
-    files.extend(all_solutions);
-    // The module first.
-    let module = match language {
-        Language::Matlab => generated.package().into_iter().map(|file| (out.join(file.name), file.text)).collect(),
-        language => vec![(out.to_path_buf(), generated.in_language(language))],
-    };
-    files.splice(0..0, module);
-    Ok(files)
+
+    /// The traits of the runtime.
+    fn runtime(&self) -> Output {
+        let text = match self.beside.ik {
+            true => self.generated.runtime_with_inverse_kinematics(&validate::module_name(&format!("{}_ik", self.stem()))),
+            false => self.generated.runtime.clone(),
+        };
+        self.file("_runtime.rs", text)
+    }
+
+    /// Header and wrappers for calls from C into the module in Rust.
+    fn c_abi(&self) -> Vec<Output> {
+        let mut files = vec![
+            (self.out.with_extension("h"), self.generated.c.header.clone()),
+            self.file("_c.rs", self.generated.c.wrappers.clone()),
+        ];
+        if let Some(face) = self.beside.ik.then(|| self.generated.inverse_kinematics_for_c()).flatten() {
+            files.push(self.file("_ik.h", face.header));
+            files.push(self.file("_ik_c.rs", face.wrappers));
+        }
+        files
+    }
 }

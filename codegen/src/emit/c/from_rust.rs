@@ -8,12 +8,14 @@ mod iterators;
 mod lower;
 mod methods;
 mod program;
+mod scopes;
 mod statements;
 mod translator;
 mod typed_calls;
 mod typed_patterns;
 mod types;
 mod values;
+mod views;
 
 use program::Program;
 use translator::Translator;

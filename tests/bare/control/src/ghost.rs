@@ -2,14 +2,14 @@
 
 use armgen_runtime::{
     nalgebra::Matrix3,
-    trajectory::{Law, OperationalTrajectory, OrientationProfile, Path, PlanError, Segment, Turn},
+    trajectory::{TimeLaw, OperationalTrajectory, OrientationProfile, Path, PlanError, Segment, Turn},
 };
 use core::{f32::consts::PI, time::Duration};
 
 pub(crate) type Ghost = OperationalTrajectory<f32, [Segment<f32>; 15], [Turn<f32>; 2]>;
 
-const fn law(milliseconds: u64, acceleration_milliseconds: u64) -> Law<f32> {
-    Law::Trapezoidal {
+const fn law(milliseconds: u64, acceleration_milliseconds: u64) -> TimeLaw<f32> {
+    TimeLaw::Trapezoidal {
         duration: Duration::from_millis(milliseconds),
         acceleration_time: Duration::from_millis(acceleration_milliseconds),
     }

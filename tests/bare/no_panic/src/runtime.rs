@@ -23,7 +23,7 @@ use armgen_runtime::{
     },
     task::{Row, Task},
     trajectory::{
-        JointSegment, JointTrajectory, Law, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, Turn,
+        JointSegment, JointTrajectory, TimeLaw, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, Turn,
     },
 };
 use core::{hint::black_box, time::Duration};
@@ -164,16 +164,16 @@ fn turns<T: RealField + Copy>() {
 
 fn trajectories<T: RealField + Copy, const N: usize>() {
     let laws = black_box([
-        Law::Trapezoidal { duration: time(), acceleration_time: time() },
-        Law::TrapezoidalByAcceleration { duration: time(), acceleration: number() },
-        Law::TrapezoidalByVelocity { duration: time(), velocity: number() },
-        Law::TrapezoidalByLimits { velocity: number(), acceleration: number() },
-        Law::Cubic { duration: time() },
-        Law::Quintic { duration: time() },
+        TimeLaw::Trapezoidal { duration: time(), acceleration_time: time() },
+        TimeLaw::TrapezoidalByAcceleration { duration: time(), acceleration: number() },
+        TimeLaw::TrapezoidalByVelocity { duration: time(), velocity: number() },
+        TimeLaw::TrapezoidalByLimits { velocity: number(), acceleration: number() },
+        TimeLaw::Cubic { duration: time() },
+        TimeLaw::Quintic { duration: time() },
     ]);
     keep(Profile::<T>::rest(time()));
     for law in laws {
-        if let Ok(profile) = Law::resolve(&law, number::<T>()) {
+        if let Ok(profile) = TimeLaw::resolve(&law, number::<T>()) {
             keep((Profile::at(&profile, time()), Profile::duration(&profile)));
         }
         operational_space::<T>(law);
@@ -192,7 +192,7 @@ fn trajectories<T: RealField + Copy, const N: usize>() {
     }
 }
 
-fn operational_space<T: RealField + Copy>(law: Law<T>) {
+fn operational_space<T: RealField + Copy>(law: TimeLaw<T>) {
     let segments = [
         Segment::line(numbers(), law),
         Segment::arc(numbers(), numbers(), number(), law),

@@ -300,23 +300,11 @@ impl<'a, 'p> Inference<'a, 'p> {
     fn expression_of(&mut self, value: &'a syn::Expr, expected: Option<&Type>) -> Found<Type> {
         use syn::Expr;
         Ok(match value {
-            Expr::Lit(literal) => match &literal.lit {
-                syn::Lit::Float(_) => Type::Real,
-                syn::Lit::Bool(_) => Type::Bool,
-                syn::Lit::Str(_) => Type::to(Type::Text, false),
-                syn::Lit::Int(value) => Type::integer(value.suffix()).unwrap_or_else(|| self.unknowns.open()),
-                _ => return Err("a literal of another kind".into()),
-            },
+            Expr::Lit(literal) => self.literal(&literal.lit)?,
             Expr::Paren(inner) => self.expression(&inner.expr, expected)?,
             Expr::Group(inner) => self.expression(&inner.expr, expected)?,
             Expr::Path(path) => self.path(&path.path)?,
-            Expr::Unary(unary) => {
-                let found = self.expression(&unary.expr, None)?;
-                match (&unary.op, self.unknowns.resolve(&found)) {
-                    (syn::UnOp::Deref(_), Type::Reference(to, _)) => *to,
-                    (_, other) => other.behind().clone(),
-                }
-            }
+            Expr::Unary(unary) => self.unary(unary)?,
             Expr::Reference(reference) => {
                 let found = self.expression(&reference.expr, None)?;
                 match found {
@@ -352,24 +340,7 @@ impl<'a, 'p> Inference<'a, 'p> {
                 let of = self.expression(&repeat.expr, None)?;
                 Type::array(of, self.length(&repeat.len)?)
             }
-            Expr::Struct(of) => {
-                let ty = if names(&of.path).len() == 2 {
-                    Type::Named(names(&of.path)[0].clone(), Vec::new())
-                } else {
-                    self.type_of_path(&of.path)?
-                };
-                let fields = self.fields(&of.path, &ty)?;
-                for field in &of.fields {
-                    let wanted = field_type(&fields, &member(&field.member))?;
-                    let found = self.expression(&field.expr, Some(&wanted))?;
-                    self.unify(&wanted, &found)?;
-                }
-                if let Some(rest) = &of.rest {
-                    let found = self.expression(rest, Some(&ty))?;
-                    self.unify(&ty, &found)?;
-                }
-                ty
-            }
+            Expr::Struct(of) => self.structure(of)?,
             Expr::Range(range) => {
                 let of = self.unknowns.open();
                 for end in [&range.start, &range.end].into_iter().flatten() {
@@ -386,15 +357,7 @@ impl<'a, 'p> Inference<'a, 'p> {
             }
             Expr::Match(choice) => self.matched(choice, expected)?,
             Expr::Block(block) => self.block(&block.block, expected)?,
-            Expr::ForLoop(each) => {
-                let found = self.expression(&each.expr, None)?;
-                let item = self.item(&found)?;
-                self.scopes.push(HashMap::new());
-                self.pattern(&each.pat, &item, false)?;
-                self.block(&each.body, None)?;
-                self.scopes.pop();
-                Type::Unit
-            }
+            Expr::ForLoop(each) => self.for_each(each)?,
             Expr::While(each) => {
                 self.expression(&each.cond, None)?;
                 self.block(&each.body, None)?;
@@ -417,6 +380,53 @@ impl<'a, 'p> Inference<'a, 'p> {
             }
             _ => return Err("an expression of another kind".into()),
         })
+    }
+
+    fn literal(&mut self, literal: &syn::Lit) -> Found<Type> {
+        Ok(match literal {
+            syn::Lit::Float(_) => Type::Real,
+            syn::Lit::Bool(_) => Type::Bool,
+            syn::Lit::Str(_) => Type::to(Type::Text, false),
+            syn::Lit::Int(value) => Type::integer(value.suffix()).unwrap_or_else(|| self.unknowns.open()),
+            _ => return Err("a literal of another kind".into()),
+        })
+    }
+
+    fn unary(&mut self, unary: &'a syn::ExprUnary) -> Found<Type> {
+        let found = self.expression(&unary.expr, None)?;
+        Ok(match (&unary.op, self.unknowns.resolve(&found)) {
+            (syn::UnOp::Deref(_), Type::Reference(to, _)) => *to,
+            (_, other) => other.behind().clone(),
+        })
+    }
+
+    fn structure(&mut self, of: &'a syn::ExprStruct) -> Found<Type> {
+        let ty = if names(&of.path).len() == 2 {
+            Type::Named(names(&of.path)[0].clone(), Vec::new())
+        } else {
+            self.type_of_path(&of.path)?
+        };
+        let fields = self.fields(&of.path, &ty)?;
+        for field in &of.fields {
+            let wanted = field_type(&fields, &member(&field.member))?;
+            let found = self.expression(&field.expr, Some(&wanted))?;
+            self.unify(&wanted, &found)?;
+        }
+        if let Some(rest) = &of.rest {
+            let found = self.expression(rest, Some(&ty))?;
+            self.unify(&ty, &found)?;
+        }
+        Ok(ty)
+    }
+
+    fn for_each(&mut self, each: &'a syn::ExprForLoop) -> Found<Type> {
+        let found = self.expression(&each.expr, None)?;
+        let item = self.item(&found)?;
+        self.scopes.push(HashMap::new());
+        self.pattern(&each.pat, &item, false)?;
+        self.block(&each.body, None)?;
+        self.scopes.pop();
+        Ok(Type::Unit)
     }
 
     fn path(&mut self, path: &syn::Path) -> Found<Type> {

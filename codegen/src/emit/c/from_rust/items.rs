@@ -3,8 +3,9 @@
 use syn::Expr;
 
 use super::infer::{address, member};
-use super::lower::{Bound, Lower};
+use super::lower::Lower;
 use super::program::{guarded, last, names};
+use super::scopes::Bound;
 use super::translator::{c_name, has_fields, Found};
 use super::types::{Length, Type};
 use super::values::{sum, Binding, Count, Item, Kind, Value, View};

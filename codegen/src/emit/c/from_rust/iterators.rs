@@ -1,8 +1,9 @@
 //! Iterators as loops over indices.
 
 use super::infer::address;
-use super::lower::{Bound, Lower};
+use super::lower::Lower;
 use super::program::last;
+use super::scopes::Bound;
 use super::translator::Found;
 use super::types::Type;
 use super::values::{sum, Binding, Count, Item, Iter, Value, View};

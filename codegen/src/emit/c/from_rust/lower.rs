@@ -1,46 +1,21 @@
-//! A function of Rust as one of C: names, what closures capture, and expressions.
+//! A function of Rust as one of C: its arguments, what closures capture, and expressions.
 //!
 //! What C has no expression for is written into statements before it; their values are variables with names of their own.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use super::infer::{address, member, Inferred};
 use super::program::{last, names, Function};
+use super::scopes::{Bound, Frame};
 use super::translator::{c_name, comment, has_fields, Callable, Found, Translator};
 use super::typed_calls::callable_bounds;
 use super::types::{Integer, Length, Type};
-use super::values::{is_word, Binding, Count, Item, Iter, Kind, Value, View};
-
-/// What a name stands for.
-#[derive(Clone)]
-pub(super) enum Bound<'a> {
-    /// A variable or a place, and whether it may be changed.
-    Value(Value, Type, bool),
-    View(View),
-    /// An iterator, and the variable that counts what has been taken from it.
-    Iterator(Iter<'a>, Option<String>),
-    /// A closure, and a pointer to what it has captured.
-    Closure(usize, Option<String>),
-    Function(String),
-}
-
-/// What is known inside of one function of C.
-#[derive(Default)]
-struct Frame<'a> {
-    scopes: Vec<BTreeMap<String, Bound<'a>>>,
-    /// The names of variables by the blocks of C.
-    blocks: Vec<BTreeSet<String>>,
-    /// Of a closure: the fields of what it has captured, and their values where it is made.
-    fields: Vec<(String, String)>,
-    captured: BTreeMap<String, Bound<'a>>,
-}
+use super::values::{is_word, Binding, Item, Kind, Value};
 
 pub(super) struct Lower<'a, 't> {
     pub(super) tr: &'t mut Translator<'a>,
     pub(super) inferred: &'t Inferred,
     pub(super) text: String,
     pub(super) indent: usize,
-    frames: Vec<Frame<'a>>,
+    pub(super) frames: Vec<Frame<'a>>,
     owner: String,
 }
 
@@ -49,11 +24,6 @@ impl<'a, 't> Lower<'a, 't> {
         let mut this = Lower { tr, inferred, text: String::new(), indent: 1, frames: Vec::new(), owner: owner.into() };
         this.open_frame();
         this
-    }
-
-    fn open_frame(&mut self) {
-        let frame = Frame { scopes: vec![BTreeMap::new()], blocks: vec![BTreeSet::new()], ..Frame::default() };
-        self.frames.push(frame);
     }
 
     /// The value of a constant.
@@ -180,126 +150,6 @@ impl<'a, 't> Lower<'a, 't> {
         let values: Vec<String> = frame.fields.into_iter().map(|(_, value)| value).collect();
         self.line(&format!("const {captured} {variable} = {{{}}};", values.join(", ")));
         Ok(Bound::Closure(id, Some(format!("&{variable}"))))
-    }
-
-    pub(super) fn line(&mut self, line: &str) {
-        self.text += &"    ".repeat(self.indent);
-        self.text += line;
-        self.text += "\n";
-    }
-
-    /// A block of C.
-    pub(super) fn open(&mut self, head: &str) {
-        self.line(&format!("{head} {{"));
-        self.indent += 1;
-        if let Some(frame) = self.frames.last_mut() {
-            frame.blocks.push(BTreeSet::new());
-        }
-    }
-
-    pub(super) fn close(&mut self) {
-        self.indent -= 1;
-        self.line("}");
-        if let Some(frame) = self.frames.last_mut() {
-            frame.blocks.pop();
-        }
-    }
-
-    /// `} else {`, in whose place a block ends and another begins.
-    pub(super) fn otherwise(&mut self, head: &str) {
-        self.indent -= 1;
-        self.line(&format!("}} {head} {{"));
-        self.indent += 1;
-        if let Some(frame) = self.frames.last_mut() {
-            frame.blocks.pop();
-            frame.blocks.push(BTreeSet::new());
-        }
-    }
-
-    /// Names that are free again behind this.
-    pub(super) fn open_names(&mut self) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.blocks.push(BTreeSet::new());
-        }
-    }
-
-    /// A name that is taken from here on.
-    pub(super) fn reserve(&mut self, name: &str) {
-        if let Some(block) = self.frames.last_mut().and_then(|frame| frame.blocks.last_mut()) {
-            block.insert(name.into());
-        }
-    }
-
-    pub(super) fn close_names(&mut self) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.blocks.pop();
-        }
-    }
-
-    pub(super) fn open_scope(&mut self) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.scopes.push(BTreeMap::new());
-        }
-    }
-
-    pub(super) fn close_scope(&mut self) {
-        if let Some(frame) = self.frames.last_mut() {
-            frame.scopes.pop();
-        }
-    }
-
-    /// A name for a variable that no variable has that is seen here.
-    pub(super) fn variable(&mut self, wanted: &str) -> String {
-        let wanted = c_name(wanted);
-        let mut name = wanted.clone();
-        let Some(frame) = self.frames.last_mut() else { return name };
-        let mut number = 2;
-        while frame.blocks.iter().any(|block| block.contains(&name)) {
-            name = format!("{wanted}_{number}");
-            number += 1;
-        }
-        if let Some(block) = frame.blocks.last_mut() {
-            block.insert(name.clone());
-        }
-        name
-    }
-
-    pub(super) fn bind_name(&mut self, name: &str, bound: Bound<'a>) {
-        if let Some(scope) = self.frames.last_mut().and_then(|frame| frame.scopes.last_mut()) {
-            scope.insert(name.into(), bound);
-        }
-    }
-
-    pub(super) fn lookup(&mut self, name: &str) -> Found<Option<Bound<'a>>> {
-        self.lookup_in(self.frames.len() - 1, name)
-    }
-
-    fn lookup_in(&mut self, level: usize, name: &str) -> Found<Option<Bound<'a>>> {
-        let frame = &self.frames[level];
-        let found = frame.scopes.iter().rev().find_map(|scope| scope.get(name)).or_else(|| frame.captured.get(name)).cloned();
-        if found.is_some() || level == 0 {
-            return Ok(found);
-        }
-        let Some(outer) = self.lookup_in(level - 1, name)? else { return Ok(None) };
-        let field = c_name(name);
-        let inside = format!("captured->{field}");
-        let (declaration, value, bound) = match outer {
-            Bound::Value(value, ty, mutable) => {
-                let of = if matches!(ty.behind(), Type::Slice(_)) { ty.clone() } else { ty.behind().clone() };
-                let declaration = self.tr.declarator(&Type::to(of, mutable), &field)?;
-                (declaration, value.pointer(), Bound::Value(Value::behind(inside), ty, mutable))
-            }
-            Bound::Closure(id, Some(pointer)) => {
-                let declaration = self.tr.declarator(&Type::Closure(id), &field)?;
-                (declaration, pointer, Bound::Closure(id, Some(inside)))
-            }
-            Bound::Closure(_, None) | Bound::Function(_) => return Ok(Some(outer)),
-            Bound::View(_) | Bound::Iterator(..) => return Err(format!("`{name}` cannot be captured")),
-        };
-        let frame = &mut self.frames[level];
-        frame.fields.push((declaration, value));
-        frame.captured.insert(name.into(), bound.clone());
-        Ok(Some(bound))
     }
 
     pub(super) fn ty<T>(&self, node: &T) -> Found<Type> {
@@ -591,93 +441,6 @@ impl<'a, 't> Lower<'a, 't> {
             .map(|i| format!("{} {sign} {}", sides[0].element(&i.to_string()).text, sides[1].element(&i.to_string()).text))
             .collect();
         Ok(Value::new(all.join(between), binding))
-    }
-
-    /// The neighbours that an array, a slice or a part of one is.
-    pub(super) fn view(&mut self, value: &'a syn::Expr) -> Found<View> {
-        use syn::Expr;
-        match value {
-            Expr::Reference(inner) => return self.view(&inner.expr),
-            Expr::Paren(inner) => return self.view(&inner.expr),
-            Expr::Path(path) => {
-                if let Some(Bound::View(view)) = self.lookup(&last(&path.path))? {
-                    return Ok(view);
-                }
-            }
-            Expr::Index(index) => {
-                if let Expr::Range(range) = &*index.index {
-                    return self.part(&index.expr, range);
-                }
-            }
-            Expr::MethodCall(call) if call.method == "as_flattened" || call.method == "as_flattened_mut" => {
-                let outer = self.view(&call.receiver)?;
-                return match (&outer.of, &outer.count) {
-                    (Type::Array(of, Length::Known(size)), Count::Known(count)) => {
-                        let (of, count) = ((**of).clone(), Count::Known(count * size));
-                        Ok(View { of, count, within: Some(*size), ..outer })
-                    }
-                    _ => Err("what is flattened is of no known size".into()),
-                };
-            }
-            _ => {}
-        }
-        let ty = self.ty(value)?;
-        let found = self.expression(value)?;
-        let found = self.placed(found, &ty, "values")?;
-        match ty.behind() {
-            Type::Array(of, Length::Known(size)) => Ok(View {
-                pointer: found.member("at").text,
-                offset: None,
-                count: Count::Known(*size),
-                of: (**of).clone(),
-                within: None,
-            }),
-            Type::Slice(of) => {
-                let count = Count::Text(found.member("count").text);
-                Ok(View { pointer: found.member("at").text, offset: None, count, of: (**of).clone(), within: None })
-            }
-            other => Err(format!("{other:?} has no elements")),
-        }
-    }
-
-    fn part(&mut self, of: &'a syn::Expr, range: &'a syn::ExprRange) -> Found<View> {
-        let mut view = self.view(of)?;
-        let start = match &range.start {
-            Some(start) => self.stable(start)?,
-            None => "0".into(),
-        };
-        let end = match &range.end {
-            Some(end) => Some(self.stable(end)?),
-            None => None,
-        };
-        let known = |text: &str| text.parse::<usize>().ok();
-        view.count = match (end, &view.count, known(&start)) {
-            (Some(end), _, Some(start)) if known(&end).is_some() => Count::Known(known(&end).unwrap_or(0).saturating_sub(start)),
-            (Some(end), _, Some(0)) => Count::Text(end),
-            (None, Count::Known(count), Some(start)) => Count::Known(count.saturating_sub(start)),
-            _ => return Err("a part of an array whose length is not known".into()),
-        };
-        view.offset = Some(super::values::sum(view.offset.as_deref(), &start));
-        Ok(view)
-    }
-
-    /// An argument that is a slice.
-    pub(super) fn slice(&mut self, value: &'a syn::Expr, ty: &Type) -> Found<String> {
-        let view = match (value, ty.behind()) {
-            // C has no arrays without elements.
-            (syn::Expr::Reference(inner), Type::Slice(of)) if matches!(&*inner.expr, syn::Expr::Array(all) if all.elems.is_empty()) => {
-                View { pointer: String::new(), offset: None, count: Count::Known(0), of: (**of).clone(), within: None }
-            }
-            _ => self.view(value)?,
-        };
-        if let (None, Count::Text(_), Some(whole)) = (&view.offset, &view.count, view.pointer.strip_suffix(".at")) {
-            return Ok(whole.to_owned());
-        }
-        let variable = self.variable("slice");
-        let declaration = self.tr.declarator(ty, &variable)?;
-        let start = if view.count == Count::Known(0) { "NULL".into() } else { view.start() };
-        self.line(&format!("const {declaration} = {{{start}, {}}};", view.count.text()));
-        Ok(variable)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Statements, values that choices give, and values that are put together in a variable.
 
-use super::lower::{Bound, Lower};
+use super::lower::Lower;
 use super::program::{guarded, names};
+use super::scopes::Bound;
 use super::translator::{c_name, has_fields, Found};
 use super::types::{Integer, Length, Type};
 use super::values::{Binding, Item, Iter, Value};
