@@ -1,6 +1,6 @@
 //! A text with a name, and places in it.
 //!
-//! Places are byte ranges ([`Span`]) until somebody has to read them: only [`Source::place`] turns one into line and column.
+//! Places are byte ranges ([`Span`]) until somebody has to read them: [`Source::place`] turns one into line and column.
 
 use std::fmt;
 use std::ops::Range;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! instance.rs      one robot: its data, its functions, and the runs compiled for it
-//! look.rs          what can be seen before anything moves
+//! implausible_settings.rs      what can be seen before anything moves
 //! start.rs         where a run begins
 //! solver.rs        the inverse kinematics of a robot, where it has one
 //! postures.rs clik.rs branch.rs control.rs      one kind of run each; path.rs needs no robot

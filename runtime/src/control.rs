@@ -82,7 +82,7 @@ pub enum ControlError {
     /// The damped inverse gave no joint acceleration: Jacobian or gains are beyond the range of the scalar.
     AccelerationNotFinite,
     /// The next estimate or integral would be infinite or NaN: gains or model are beyond the range of the scalar.
-    MemoryNotFinite,
+    StateNotFinite,
 }
 
 messages! { ControlError,
@@ -91,7 +91,7 @@ messages! { ControlError,
     ControlError::Singular => "the Jacobian of the task has lost rank: allow damping, or keep away from singular postures";
     ControlError::TorqueNotFinite => "the torque is infinite or NaN: gains or model are beyond the range of the scalar";
     ControlError::AccelerationNotFinite => "the damped inverse gives no joint acceleration: Jacobian or gains are beyond the range of the scalar";
-    ControlError::MemoryNotFinite => "the next estimate or integral is infinite or NaN: gains or model are beyond the range of the scalar";
+    ControlError::StateNotFinite => "the next estimate or integral is infinite or NaN: gains or model are beyond the range of the scalar";
 }
 
 /// The torque for one sample.

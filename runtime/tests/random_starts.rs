@@ -136,7 +136,7 @@ proptest! {
                     // The work of bounded torques is bounded, and so are the rates.
                     prop_assert!(plant.state().dq.amax() < 100.0, "{:?}", plant.state());
                 }
-                Err(error) => prop_assert!(matches!(error, ControlError::TorqueNotFinite | ControlError::MemoryNotFinite | ControlError::AccelerationNotFinite), "{error}"),
+                Err(error) => prop_assert!(matches!(error, ControlError::TorqueNotFinite | ControlError::StateNotFinite | ControlError::AccelerationNotFinite), "{error}"),
             }
         }
     }

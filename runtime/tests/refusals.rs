@@ -128,7 +128,7 @@ fn a_broken_measurement_gives_an_error_and_never_a_torque() {
     // Beyond the range of the scalar: no torque either.
     let wild = State { q: ghost::start(), dq: Vector4::repeat(1e200) };
     assert_eq!(inverse.torque(&model, &rest, &wild).err(), Some(ControlError::TorqueNotFinite));
-    assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::MemoryNotFinite));
+    assert_eq!(adaptive.torque(&model, &rest, &wild).err(), Some(ControlError::StateNotFinite));
     assert_eq!(operational.torque(&model, &pose, &wild).err(), Some(ControlError::TorqueNotFinite));
     // Nothing of it stays in the controller state.
     assert_eq!(adaptive.estimate(), &controller_state);

@@ -191,9 +191,9 @@ fn a_null_space_without_a_spring_may_drift() {
 fn memories_are_excited_ones_only() {
     let q = ghost::start();
     let feedback = adaptive_scaled(500.0, K_D).linearise(&ghost::nominal(), &q).unwrap();
-    assert_eq!(feedback.controller_state.ncols(), 1, "m_l3 alone is excited at rest");
+    assert_eq!(feedback.torque_by_state.ncols(), 1, "m_l3 alone is excited at rest");
     let operational = operational_space([1e4; 4], [0.0, 0.0, 1e5, 0.0], [200.0; 4]).linearise(&ghost::nominal(), &q).unwrap();
-    assert_eq!(operational.controller_state.ncols(), 1);
+    assert_eq!(operational.torque_by_state.ncols(), 1);
 }
 
 /// The analysis against the thing itself: the error of the simulated loop shrinks by the spectral radius, sample by sample.

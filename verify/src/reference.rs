@@ -348,8 +348,8 @@ impl<E: Element> Reference<E> {
         mut state: State<E>,
         wanted: Wanted,
     ) -> Result<Reference<E>, String> {
-        let names = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
-        let arm = Arm::new(arithmetic, manipulator, &names).ok_or_else(divided)?;
+        let nominal_values = Arm::nominal(arithmetic, manipulator).ok_or_else(divided)?;
+        let arm = Arm::new(arithmetic, manipulator, &nominal_values).ok_or_else(divided)?;
         let n = arm.dof();
         state.stribeck_velocities = arm.joints.iter().map(|joint| joint.stribeck_velocity.clone()).collect();
         let mut values = Values::new();
@@ -365,7 +365,7 @@ impl<E: Element> Reference<E> {
         derivatives_and_task(&arm, &state, &task, &mut values).ok_or_else(singular)?;
 
         let Linear { columns, known, run_time, other, nominal, elsewhere } = match vector {
-            Vector::Names(ids) => of_names(arithmetic, manipulator, &arm, &names, ids, &mut state, wanted)?,
+            Vector::Names(ids) => of_names(arithmetic, manipulator, &arm, &nominal_values, ids, &mut state, wanted)?,
             Vector::Standard(all) => of_standard(arithmetic, &arm, all, &mut state, wanted)?,
             Vector::Base(base, all) => of_base(arithmetic, &arm, (base, all), &mut state, &mut values, wanted)?,
         };

@@ -129,7 +129,10 @@ impl Kit {
             let wanted = Wanted { base: BaseParameters::LeftOut, pivots: false };
             let equations = base::values_in_numbers(&mut fine, manipulator, &vector, None, state, wanted)?;
             for (name, entries) in equations.iter().filter(|(name, _)| present(name)) {
-                let Some((promise, with)) = Promise::of(name) else { continue };
+                // Forward dynamics is judged by its residual.
+                let Some((promise, with)) = Promise::of(name).filter(|(promise, _)| promise.name != "forward_dynamics") else {
+                    continue;
+                };
                 let entries = nearest(entries);
                 kit.values.push(Value { name: name.to_string(), promise, with, state: index, entries });
             }

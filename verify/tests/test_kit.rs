@@ -61,9 +61,11 @@ fn the_test_file_finds_a_planted_error() {
     let source = common::source("scara4");
     let module = common::generate(&source, Scalar::F64).module;
     let tests = test_kit(&source, &module, "use user_planted::robot;").expect("a test file");
-    let at = module.find("pub fn gravity(").expect("a function");
-    let broken = module[..at].to_string() + &module[at..].replacen("98.1", "98.2", 1);
-    assert_ne!(broken, module);
-    let (passed, text) = run(&project("planted", &broken, &tests));
-    assert!(!passed && text.contains("gravity at state 0"), "{text}");
+    for (function, good, bad) in [("gravity", "98.1", "98.2"), ("forward_dynamics_derivatives", " + ", " - ")] {
+        let at = module.find(&format!("pub fn {function}(")).expect("a function");
+        let broken = module[..at].to_string() + &module[at..].replacen(good, bad, 1);
+        assert_ne!(broken, module);
+        let (passed, text) = run(&project("planted", &broken, &tests));
+        assert!(!passed && text.contains(&format!("{function} at state 0")), "{text}");
+    }
 }

@@ -170,13 +170,13 @@ fn turn_second(pool: &mut Pool, rotation: &Matrix, second: &[ExprId; 6]) -> [Exp
 
 impl Joint {
     /// A vector of this joint frame in the parent's: R v.
-    pub fn outward(&self, pool: &mut Pool, v: &Vector) -> Vector {
+    pub fn to_parent(&self, pool: &mut Pool, v: &Vector) -> Vector {
         let turned = self.about_axis(pool, v);
         pool.transform(&self.fixed, &turned)
     }
 
     /// A vector of the parent's joint frame in this one: R' v.
-    pub fn inward(&self, pool: &mut Pool, v: &Vector) -> Vector {
+    pub fn from_parent(&self, pool: &mut Pool, v: &Vector) -> Vector {
         let turned = pool.transform_back(&self.fixed, v);
         self.about_axis_back(pool, &turned)
     }

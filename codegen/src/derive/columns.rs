@@ -39,14 +39,14 @@ pub(super) struct Rate {
     /// F, N.
     pub(super) coriolis: (Vector, Vector),
     /// E + n × Ω.
-    pub(super) transposed: Vector,
+    pub(super) transposed_moment: Vector,
 }
 
 /// Entries B_ij, C_ij and C_ji of an ancestor i.
 pub(super) struct Entries {
     pub(super) inertia: ExprId,
     pub(super) coriolis: ExprId,
-    pub(super) transposed: ExprId,
+    pub(super) coriolis_transposed: ExprId,
 }
 
 impl Column {
@@ -106,7 +106,7 @@ impl<'a> ColumnPropagator<'a> {
             if plan.way(Pass::RelativeMoment, Place::Joint(joint), 2) == 1 {
                 let turning = pool.transform_back(&self.arm.joints[joint].fixed, &omega[p]);
                 let transport = pool.cross(&turning, &column.inertial.1);
-                moving.transposed = pool.add_vectors(&moving.transposed, &transport);
+                moving.transposed_moment = pool.add_vectors(&moving.transposed_moment, &transport);
                 relative = None;
             }
         }
@@ -142,7 +142,7 @@ impl<'a> ColumnPropagator<'a> {
         let transport = pool.cross(&[ExprId::ZERO, ExprId::ZERO, joint.frame_rate], &beyond.d);
         beyond.relative = pool.add_vectors(&beyond.relative, &transport);
         let mut sum = |beyond: &Vector, step: &Vector| {
-            let turned = outward(pool, joint, beyond);
+            let turned = to_parent(pool, joint, beyond);
             pool.add_vectors(&turned, step)
         };
         let found = Offset {
@@ -177,7 +177,7 @@ impl<'a> ColumnPropagator<'a> {
                     t.relative = None;
                     pool.cross(&omega[from], &n)
                 };
-                moving.transposed = pool.add_vectors(&moving.transposed, &change);
+                moving.transposed_moment = pool.add_vectors(&moving.transposed_moment, &change);
             }
         }
         let way = plan.way(Pass::WrenchFrame, place, 3);
@@ -201,12 +201,13 @@ impl<'a> ColumnPropagator<'a> {
             t.about = parent;
         }
         let before_joint_rotation = t.before_joint_rotation;
-        let mut turn = |v: &Vector| if before_joint_rotation { pool.transform(&joint.fixed, v) } else { outward(pool, joint, v) };
+        let mut turn =
+            |v: &Vector| if before_joint_rotation { pool.transform(&joint.fixed, v) } else { to_parent(pool, joint, v) };
         t.column = Column {
             inertial: (turn(&t.column.inertial.0), turn(&t.column.inertial.1)),
             rate: t.column.rate.map(|rate| Rate {
                 coriolis: (turn(&rate.coriolis.0), turn(&rate.coriolis.1)),
-                transposed: turn(&rate.transposed),
+                transposed_moment: turn(&rate.transposed_moment),
             }),
         };
         if way == 0 {
@@ -242,22 +243,22 @@ impl<'a> ColumnPropagator<'a> {
         };
         let inertia = felt(pool, &f, &n);
         let (Some(moving), Some(omega)) = (t.column.rate, self.omega) else {
-            return Entries { inertia, coriolis: ExprId::ZERO, transposed: ExprId::ZERO };
+            return Entries { inertia, coriolis: ExprId::ZERO, coriolis_transposed: ExprId::ZERO };
         };
         let coriolis = felt(pool, &moving.coriolis.0, &moving.coriolis.1);
         // dz/dt = ω × z
         let z_rate = [omega[i][1], -omega[i][0], ExprId::ZERO];
-        let transposed = if revolute {
+        let coriolis_transposed = if revolute {
             let turned = if t.relative == Some(i) { ExprId::ZERO } else { pool.dot3(&z_rate, &n) };
             let lever = pool.cross(&z_rate, &d);
             let lever = pool.add_vectors(&lever, &[-rate[1], rate[0], ExprId::ZERO]);
             let pushed = pool.dot3(&lever, &f);
-            let sum = pool.add(moving.transposed[2], turned);
+            let sum = pool.add(moving.transposed_moment[2], turned);
             pool.add(sum, pushed)
         } else {
             pool.dot3(&z_rate, &f)
         };
-        Entries { inertia, coriolis, transposed }
+        Entries { inertia, coriolis, coriolis_transposed }
     }
 }
 
@@ -267,7 +268,7 @@ impl PropagatedColumn {
     pub(super) fn in_link_frame(&self) -> (Vector, Vector, Vector) {
         debug_assert!(self.about == self.link && self.relative == Some(self.link), "the plain way");
         let (f, n) = self.column.inertial;
-        (f, n, self.column.rate.map_or(ZERO, |rate| rate.transposed))
+        (f, n, self.column.rate.map_or(ZERO, |rate| rate.transposed_moment))
     }
 
     /// Adds the moment of a rotor, which is about no point, and its rate ½ ω × `moment`.
@@ -278,10 +279,10 @@ impl PropagatedColumn {
             let turning = pool.cross(omega, moment);
             let turning = pool.scale(half, &turning);
             moving.coriolis.1 = pool.add_vectors(&moving.coriolis.1, &turning);
-            moving.transposed = pool.add_vectors(&moving.transposed, &turning);
+            moving.transposed_moment = pool.add_vectors(&moving.transposed_moment, &turning);
             if self.relative.is_some() {
                 let seen = pool.cross(moment, frame);
-                moving.transposed = pool.add_vectors(&moving.transposed, &seen);
+                moving.transposed_moment = pool.add_vectors(&moving.transposed_moment, &seen);
             }
         }
     }
@@ -298,22 +299,22 @@ impl PropagatedColumn {
         if let Some(moving) = &mut self.column.rate {
             moving.coriolis.1 = moved(&offset.d, &moving.coriolis.0, &moving.coriolis.1);
             if self.relative.is_none() {
-                moving.transposed = moved(&offset.rate, &f, &moving.transposed);
+                moving.transposed_moment = moved(&offset.rate, &f, &moving.transposed_moment);
             } else {
-                moving.transposed = moved(&offset.relative, &f, &moving.transposed);
+                moving.transposed_moment = moved(&offset.relative, &f, &moving.transposed_moment);
                 let lagging = pool.cross(&f, outer);
                 let lever = pool.cross(&offset.d, &lagging);
-                moving.transposed = pool.add_vectors(&moving.transposed, &lever);
+                moving.transposed_moment = pool.add_vectors(&moving.transposed_moment, &lever);
             }
         }
     }
 }
 
-fn outward(pool: &mut Pool, joint: &Joint, v: &Vector) -> Vector {
+fn to_parent(pool: &mut Pool, joint: &Joint, v: &Vector) -> Vector {
     if *v == ZERO {
         ZERO
     } else {
-        joint.outward(pool, v)
+        joint.to_parent(pool, v)
     }
 }
 

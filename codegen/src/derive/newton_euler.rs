@@ -14,7 +14,7 @@
 //! parent, and feels I_m k (k ddq + z_m · domega_p) itself.
 
 use super::arm::Arm;
-use super::wrench::{along, wrench_outward};
+use super::wrench::{axis_component, wrench_to_parent};
 use crate::derive::arm::symmetric;
 use crate::ring::matrix::{Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -124,11 +124,11 @@ pub fn link_motions(pool: &mut Pool, arm: &Arm, motion: &Motion, gravity: bool) 
         let outer = joint.parent.map_or(base, |p| motions[p]);
         let carried = pool.transform(&outer.field, &joint.origin);
         let origin = pool.add_vectors(&outer.acceleration, &carried);
-        let mut acceleration = joint.inward(pool, &origin);
-        let [mut omega, mut omega_r] = [outer.omega, outer.omega_r].map(|v| joint.inward(pool, &v));
+        let mut acceleration = joint.from_parent(pool, &origin);
+        let [mut omega, mut omega_r] = [outer.omega, outer.omega_r].map(|v| joint.from_parent(pool, &v));
         let axis = [0, 1, 2].map(|row| joint.fixed[row][2]);
         let on_axis = pool.transform(&outer.field, &axis);
-        let column = joint.inward(pool, &on_axis);
+        let column = joint.from_parent(pool, &on_axis);
         let mut domega_z = pool.dot3(&axis, &outer.domega);
         if joint.is_revolute() {
             domega_z = pool.add(domega_z, motion.accelerations[i]);
@@ -177,7 +177,7 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
     let mut tau = vec![ExprId::ZERO; arm.dof()];
     for i in (0..arm.dof()).rev() {
         let (force, moment) = wrench[i];
-        tau[i] = along(arm, i, &force, &moment);
+        tau[i] = axis_component(arm, i, &force, &moment);
         let parent = arm.joints[i].parent;
         let mut gyroscopic = ZERO;
         if let Some(rotor) = arm.joints[i].rotor {
@@ -200,7 +200,7 @@ pub fn wrenches(pool: &mut Pool, arm: &Arm, motion: &Motion, motions: &[LinkMoti
         let felt = pool.mul(arm.joints[i].armature, motion.accelerations[i]);
         tau[i] = pool.add(tau[i], felt);
         if let Some(p) = parent {
-            let (force, moment) = wrench_outward(pool, arm, i, &force, &moment);
+            let (force, moment) = wrench_to_parent(pool, arm, i, &force, &moment);
             let moment = pool.add_vectors(&moment, &gyroscopic);
             wrench[p] = (pool.add_vectors(&wrench[p].0, &force), pool.add_vectors(&wrench[p].1, &moment));
         }

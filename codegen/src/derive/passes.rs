@@ -19,7 +19,7 @@ pub enum RewriteScope {
     /// Motion and forces; the parameters of the links are numbers and may be mixed.
     Dynamics,
     /// Motion and forces; the parameters of the links are symbols, or the potential energy is needed, whose constant grouping drops.
-    Plain,
+    KeepParameters,
     /// Frames, and columns of parameters that stay in them.
     Frames,
 }
@@ -58,7 +58,7 @@ pub fn rewrite(pool: &mut Pool, arm: &mut Arm, plan: &mut Plan, scope: RewriteSc
             unit::unit_of_length(pool, arm, plan);
         }
         RewriteScope::Frames => grouping::choose_origins(pool, arm, plan),
-        RewriteScope::Plain => {}
+        RewriteScope::KeepParameters => {}
     }
     orientation::parallel_axes(pool, arm, plan);
 }

@@ -412,7 +412,7 @@ impl Quantity {
         let setting = DerivationInput { model, view: own_view(model, view) };
         let rewriting = match (rewriting, setting.view) {
             (RewriteScope::Dynamics, View::Nominal) => RewriteScope::Dynamics,
-            (RewriteScope::Dynamics, _) => RewriteScope::Plain,
+            (RewriteScope::Dynamics, _) => RewriteScope::KeepParameters,
             (other, _) => other,
         };
         let mut pool = Pool::new(model.field.clone());

@@ -17,7 +17,7 @@ use super::arm::Arm;
 use super::newton_euler::{deflection, inverse_dynamics, link_motions, LinkMotion, Motion};
 use super::parameters::{Inertial, ParameterKind, ParameterVector, StandardParameter};
 use super::plan::{self, Place, Plan, Start};
-use super::wrench::{along, wrench_outward};
+use super::wrench::{axis_component, wrench_to_parent};
 use crate::pass::Pass;
 use crate::ring::matrix::{transpose, Matrix, Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
@@ -159,7 +159,7 @@ impl Twists<'_> {
             return known;
         }
         let outer = self.axis(pool, j, self.before(i));
-        let found = self.arm.joints[i].inward(pool, &outer);
+        let found = self.arm.joints[i].from_parent(pool, &outer);
         self.axes.insert((j, i), found);
         found
     }
@@ -178,7 +178,7 @@ impl Twists<'_> {
         let (z, v) = (self.axis(pool, j, p), self.velocity(pool, j, p));
         let swept = pool.cross(&z, &self.arm.joints[i].origin);
         let sum = pool.add_vectors(&v, &swept);
-        let found = self.arm.joints[i].inward(pool, &sum);
+        let found = self.arm.joints[i].from_parent(pool, &sum);
         self.velocities.insert((j, i), found);
         found
     }
@@ -192,7 +192,7 @@ impl Twists<'_> {
         }
         let outer = self.arm(pool, j, self.before(i));
         let sum = pool.add_vectors(&outer, &self.arm.joints[i].origin);
-        let found = self.arm.joints[i].inward(pool, &sum);
+        let found = self.arm.joints[i].from_parent(pool, &sum);
         self.arms.insert((j, i), found);
         found
     }
@@ -202,7 +202,7 @@ impl Twists<'_> {
     }
 
     /// What joint j feels of a wrench in frame i: z·n + v·f, or z·(n + (o_i - o_j) × f), where joints whose axes meet share the bracket.
-    fn felt(&mut self, pool: &mut Pool, j: usize, i: usize, wrench: &Wrench, by_moment: bool) -> ExprId {
+    fn reciprocal_product(&mut self, pool: &mut Pool, j: usize, i: usize, wrench: &Wrench, by_moment: bool) -> ExprId {
         let (f, n) = wrench;
         let z = self.axis(pool, j, i);
         if !self.arm.joints[j].is_revolute() {
@@ -262,12 +262,12 @@ fn link_columns(
         let mut wrench = (force, pool.add_vectors(&turned, &lever));
         for (step, &j) in path.iter().enumerate().take(stop + 1) {
             if step > 0 {
-                wrench = wrench_outward(pool, arm, path[step - 1], &wrench.0, &wrench.1);
+                wrench = wrench_to_parent(pool, arm, path[step - 1], &wrench.0, &wrench.1);
             }
-            columns[step].1[k] = along(arm, j, &wrench.0, &wrench.1);
+            columns[step].1[k] = axis_component(arm, j, &wrench.0, &wrench.1);
         }
         for (step, &j) in path.iter().enumerate().skip(stop + 1) {
-            columns[step].1[k] = twists.felt(pool, j, path[stop], &wrench, by_moment);
+            columns[step].1[k] = twists.reciprocal_product(pool, j, path[stop], &wrench, by_moment);
         }
     }
     columns
@@ -357,7 +357,7 @@ fn rotor_column(pool: &mut Pool, arm: &Arm, motions: &[LinkMotion], motion: &Mot
             column[link] = moment[2];
         }
         let Some(outer) = arm.joints[link].parent else { return column };
-        moment = arm.joints[link].outward(pool, &moment);
+        moment = arm.joints[link].to_parent(pool, &moment);
         link = outer;
     }
 }

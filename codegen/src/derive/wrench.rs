@@ -5,16 +5,16 @@ use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool};
 
 /// A wrench on link i, about its origin, in its joint frame, as one on the parent.
-pub(super) fn wrench_outward(pool: &mut Pool, arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> (Vector, Vector) {
+pub(super) fn wrench_to_parent(pool: &mut Pool, arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> (Vector, Vector) {
     let joint = &arm.joints[i];
-    let force = if *force == ZERO { ZERO } else { joint.outward(pool, force) };
-    let moment = joint.outward(pool, moment);
+    let force = if *force == ZERO { ZERO } else { joint.to_parent(pool, force) };
+    let moment = joint.to_parent(pool, moment);
     let lever = pool.cross(&joint.origin, &force);
     (force, pool.add_vectors(&moment, &lever))
 }
 
 /// What a joint feels of a wrench in its frame.
-pub(super) fn along(arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> ExprId {
+pub(super) fn axis_component(arm: &Arm, i: usize, force: &Vector, moment: &Vector) -> ExprId {
     if arm.joints[i].is_revolute() {
         moment[2]
     } else {

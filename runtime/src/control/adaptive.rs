@@ -47,7 +47,7 @@ pub struct Adaptive<T, const N: usize, const P: usize> {
     pub(crate) lambda: SVector<T, N>,
     pub(crate) k_d: SVector<T, N>,
     /// Diagonal of K_pi^-1, zero for frozen parameters.
-    pub(crate) rate: SVector<T, P>,
+    pub(crate) adaptation_gain: SVector<T, P>,
     pub(crate) estimate: SVector<T, P>,
     pub(crate) period: T,
     pub(crate) interval: Option<Interval<T, P>>,
@@ -67,8 +67,8 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         settings::positive(Setting::Adaptation, &k_pi)?;
         settings::finite(Setting::Estimate, &estimate)?;
         settings::positive_scalar(Setting::Period, period)?;
-        let rate = k_pi.map(|k| T::one() / k);
-        Ok(Self { lambda, k_d, rate, estimate, period, interval: None, limits: None })
+        let adaptation_gain = k_pi.map(|k| T::one() / k);
+        Ok(Self { lambda, k_d, adaptation_gain, estimate, period, interval: None, limits: None })
     }
 
     /// The same with the estimate kept in an interval: an adaptation that would leave it stops at its bound.
@@ -76,7 +76,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     /// The projection does not increase V where the true parameters lie in the interval. Frozen parameters stay where they are, in it or not.
     #[must_use]
     pub fn with_projection(mut self, interval: Interval<T, P>) -> Self {
-        self.estimate = project(&self.estimate, &interval, &self.rate);
+        self.estimate = project(&self.estimate, &interval, &self.adaptation_gain);
         self.interval = Some(interval);
         self
     }
@@ -84,9 +84,9 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     /// The same with the parameters marked `true` kept at their present estimate.
     #[must_use]
     pub fn with_frozen(mut self, frozen: [bool; P]) -> Self {
-        for (rate, frozen) in self.rate.iter_mut().zip(frozen) {
+        for (gain, frozen) in self.adaptation_gain.iter_mut().zip(frozen) {
             if frozen {
-                *rate = T::zero();
+                *gain = T::zero();
             }
         }
         self
@@ -104,13 +104,13 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     pub(crate) fn at_rest(&self, parameters: &SVector<T, P>) -> Self {
         let mut settled = *self;
         for i in 0..P {
-            if self.rate[i] > T::zero() {
+            if self.adaptation_gain[i] > T::zero() {
                 settled.estimate[i] = parameters[i];
                 if let Some(interval) = &self.interval {
                     settled.estimate[i] = parameters[i].max(interval.lower[i]).min(interval.upper[i]);
                 }
                 if settled.estimate[i] != parameters[i] {
-                    settled.rate[i] = T::zero();
+                    settled.adaptation_gain[i] = T::zero();
                 }
             }
         }
@@ -142,7 +142,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         let y = model.regressor(&measured.q, &measured.dq, &dqr, &ddqr);
         let known = model.known_torque(&measured.q, &measured.dq, &dqr, &ddqr);
         let torque = issue(y * estimate + known + self.k_d.component_mul(&sigma), &self.limits, false)?;
-        Ok((torque, y.tr_mul(&sigma).component_mul(&self.rate)))
+        Ok((torque, y.tr_mul(&sigma).component_mul(&self.adaptation_gain)))
     }
 
     /// Torque for one sample, then the step pi^ += T_s K_pi^-1 Y' sigma, projected.
@@ -159,10 +159,10 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         if !torque.limited {
             let next = self.estimate + rate * self.period;
             if !is_finite(&next) {
-                return Err(ControlError::MemoryNotFinite);
+                return Err(ControlError::StateNotFinite);
             }
             self.estimate = match &self.interval {
-                Some(interval) => project(&next, interval, &self.rate),
+                Some(interval) => project(&next, interval, &self.adaptation_gain),
                 None => next,
             };
         }
@@ -170,13 +170,13 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
     }
 }
 
-/// The estimate in the interval, but for what is frozen: what has the rate 0.
+/// The estimate in the interval, but for what is frozen: what has the gain 0.
 fn project<T: RealField + Copy, const P: usize>(
     estimate: &SVector<T, P>,
     interval: &Interval<T, P>,
-    rate: &SVector<T, P>,
+    gain: &SVector<T, P>,
 ) -> SVector<T, P> {
-    SVector::from_fn(|i, _| match rate[i] == T::zero() {
+    SVector::from_fn(|i, _| match gain[i] == T::zero() {
         true => estimate[i],
         false => estimate[i].max(interval.lower[i]).min(interval.upper[i]),
     })

@@ -174,7 +174,7 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
             self.integral[i] + if winds_up { T::zero() } else { step[i] }
         });
         if !is_finite(&next) {
-            return Err(ControlError::MemoryNotFinite);
+            return Err(ControlError::StateNotFinite);
         }
         self.integral = match &self.integral_limit {
             Some(limit) => saturate(&next, limit).value,

@@ -20,7 +20,7 @@ pub struct Feedback<T, const N: usize> {
     /// K_v = du/dv, v the rates.
     pub velocity: SMatrix<T, N, N>,
     /// L = du/dm, `N` rows, one column for each state of the controller.
-    pub controller_state: DMatrix<T>,
+    pub torque_by_state: DMatrix<T>,
     /// E_q, one row for each state of the controller.
     pub state_by_position: DMatrix<T>,
     /// E_v, one row for each state of the controller.
@@ -32,7 +32,7 @@ impl<T: RealField + Copy, const N: usize> Feedback<T, N> {
         Self {
             position,
             velocity,
-            controller_state: DMatrix::zeros(N, 0),
+            torque_by_state: DMatrix::zeros(N, 0),
             state_by_position: DMatrix::zeros(0, N),
             state_by_velocity: DMatrix::zeros(0, N),
         }
@@ -221,7 +221,7 @@ impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Ada
         let position = dg - columns_scaled(&(f + k_d), &self.lambda);
         let velocity = -columns_scaled(&b, &self.lambda) - k_d;
         let y = model.regressor(q, &still, &still, &still);
-        let l = excited(&(columns_scaled(&y, &self.rate) * y.transpose()));
+        let l = excited(&(columns_scaled(&y, &self.adaptation_gain) * y.transpose()));
         let transpose = l.transpose();
         let lambda = DMatrix::from_fn(N, N, |i, j| if i == j { self.lambda[i] } else { nalgebra::zero() });
         Some(Feedback {
@@ -229,7 +229,7 @@ impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Ada
             velocity,
             state_by_position: -(&transpose * lambda),
             state_by_velocity: -transpose,
-            controller_state: l,
+            torque_by_state: l,
         })
     }
 }
@@ -282,7 +282,7 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
         Some(Feedback {
             position,
             velocity,
-            controller_state: DMatrix::from_fn(N, rows.len(), |i, k| gain[(i, rows[k])] * self.k_i[rows[k]]),
+            torque_by_state: DMatrix::from_fn(N, rows.len(), |i, k| gain[(i, rows[k])] * self.k_i[rows[k]]),
             state_by_position: DMatrix::from_fn(rows.len(), N, |k, i| -j[(rows[k], i)]),
             state_by_velocity: DMatrix::zeros(rows.len(), N),
         })

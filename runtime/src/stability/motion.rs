@@ -101,9 +101,9 @@ where
 
     fn weights(&self, _: &R, _: &SVector<R::Real, N>) -> Weights<R::Real, N> {
         let weight =
-            |rate: &R::Real| if *rate > nalgebra::zero() { nalgebra::one::<R::Real>() / *rate } else { nalgebra::zero() };
+            |gain: &R::Real| if *gain > nalgebra::zero() { nalgebra::one::<R::Real>() / *gain } else { nalgebra::zero() };
         let stiffness = self.lambda.component_mul(&self.k_d) * lit::<R::Real>(2.0);
-        Weights { stiffness, controller_state: self.rate.iter().map(weight).collect() }
+        Weights { stiffness, controller_state: self.adaptation_gain.iter().map(weight).collect() }
     }
 
     fn controller_state(&self) -> Vec<R::Real> {
@@ -389,7 +389,7 @@ where
                 self.controller_state.iter().zip(&deviation.controller_state).map(|(m, by)| *m + *by * h).collect();
             law(k, &at(seen, &seen_deviation, h), &controller_state)
         };
-        let ((high, high_memory), (low, low_memory)) = (answer(h)?, answer(-h)?);
+        let ((high, high_state), (low, low_state)) = (answer(h)?, answer(-h)?);
         let answered = (high - low) * half;
         let held = plant.inverse_dynamics(&reference.q, &moving(&reference.dq), &reference.ddq);
         let next = |sign: T| self.advance(at(reference, &deviation.state, h * sign), &(held + answered * sign));
@@ -397,7 +397,7 @@ where
         deviation.state = State { q: (high.q - low.q) * (half / h), dq: (high.dq - low.dq) * (half / h) };
         for (i, m) in deviation.controller_state.iter_mut().enumerate() {
             if self.weights.controller_state[i] > T::zero() {
-                *m = (high_memory[i] - low_memory[i]) * (half / h);
+                *m = (high_state[i] - low_state[i]) * (half / h);
             }
         }
         Some(())

@@ -132,14 +132,14 @@ impl<T: RealField + Copy, const N: usize> SampledLoop<T, N> {
         }
         let held = exponential(&generator);
         let (a, b) = (held.view((0, 0), (2 * N, 2 * N)), held.view((0, 2 * N), (2 * N, N)));
-        let controller_states = self.feedback.controller_state.ncols();
+        let controller_states = self.feedback.torque_by_state.ncols();
         let law = DMatrix::from_fn(N, 2 * N + controller_states, |i, k| {
             if k < N {
                 self.feedback.position[(i, k)]
             } else if k < 2 * N {
                 self.feedback.velocity[(i, k - N)] / h
             } else {
-                self.feedback.controller_state[(i, k - 2 * N)]
+                self.feedback.torque_by_state[(i, k - 2 * N)]
             }
         });
         let (size, samples) = (2 * N + controller_states, delay.count());

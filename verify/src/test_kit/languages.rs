@@ -142,7 +142,7 @@ fn c(kit: &Kit, module: &str) -> String {
     for (state, _) in kit.states.iter().enumerate() {
         let _ = writeln!(text, "    at(state_q[{state}], state_dq[{state}], state_ddq[{state}], state_tau[{state}]);");
     }
-    for value in kit.values.iter().filter(|value| !value.name.starts_with("forward_dynamics")) {
+    for value in &kit.values {
         let (name, state) = (&value.name, value.state);
         let mut call = arguments(value, &|name| format!("state_{name}[{state}]"));
         let parts = value.promise.returned.named();
@@ -156,7 +156,8 @@ fn c(kit: &Kit, module: &str) -> String {
         }
         let call = format!("{}robot_{name}({call});", if number { "found[0] = " } else { "" });
         // An inverse loses what the condition of its matrix takes.
-        let lost = if name == "operational_inertia" { "256 * ROUNDING" } else { "ROUNDING" };
+        let inverse = name == "operational_inertia" || name.starts_with("forward_dynamics");
+        let lost = if inverse { "256 * ROUNDING" } else { "ROUNDING" };
         let entries = value.entries.len();
         let _ = writeln!(text, "    {{\n        static const robot_real expected[{entries}] = {{{}}};", numbers(&value.entries));
         let _ = writeln!(text, "        static robot_real found[{entries}];\n        {call}");

@@ -148,7 +148,7 @@ fn twists(pool: &mut Pool, arm: &Arm) -> Vec<Vec<ExprId>> {
         for &j in &path[k + 1..=middle] {
             let joint = &arm.joints[j];
             let seen = pool.sub_vectors(&origin, &joint.origin);
-            (axis, origin) = (joint.inward(pool, &axis), joint.inward(pool, &seen));
+            (axis, origin) = (joint.from_parent(pool, &axis), joint.from_parent(pool, &seen));
         }
         set(pool, i, &axis, &origin);
     }

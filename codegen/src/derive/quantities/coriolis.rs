@@ -98,7 +98,7 @@ pub fn inertia_and_coriolis(pool: &mut Pool, arm: &Arm, plan: &mut Plan) -> (Vec
             b[parent][j] = entries.inertia;
             b[j][parent] = entries.inertia;
             c[parent][j] = entries.coriolis;
-            c[j][parent] = entries.transposed;
+            c[j][parent] = entries.coriolis_transposed;
         }
     }
     (b, c)
@@ -109,7 +109,7 @@ pub(super) fn angular_velocities(pool: &mut Pool, arm: &Arm) -> Vec<Vector> {
     let mut omega: Vec<Vector> = Vec::with_capacity(arm.dof());
     for joint in &arm.joints {
         let outer = joint.parent.map_or(ZERO, |p| omega[p]);
-        let mut own = joint.inward(pool, &outer);
+        let mut own = joint.from_parent(pool, &outer);
         own[2] = pool.add(own[2], joint.frame_rate);
         omega.push(own);
     }
@@ -212,7 +212,7 @@ fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, moments: &Vel
             inertial: ([ExprId::ZERO, ExprId::ZERO, body.mass], [h[1], -h[0], ExprId::ZERO]),
             rate: Some(Rate {
                 coriolis: (pool.scale(body.mass, &turning), transport.map(|x| -x)),
-                transposed: pool.add_vectors(&[rate[1], -rate[0], ExprId::ZERO], &transport),
+                transposed_moment: pool.add_vectors(&[rate[1], -rate[0], ExprId::ZERO], &transport),
             }),
         };
     }
@@ -228,7 +228,7 @@ fn column(pool: &mut Pool, joint: &Joint, w: &Vector, body: &Body, moments: &Vel
         inertial: (f, [-xz, -yz, pool.add(xx, yy)]),
         rate: Some(Rate {
             coriolis: (force, [pool.sum([ay, -k[0][2], -rotors[1]]), pool.sum([-ax, -k[1][2], rotors[0]]), trace]),
-            transposed: [pool.sum([-ay, -k[2][0], rotors[1]]), pool.sum([ax, -k[2][1], -rotors[0]]), trace],
+            transposed_moment: [pool.sum([-ay, -k[2][0], rotors[1]]), pool.sum([ax, -k[2][1], -rotors[0]]), trace],
         }),
     }
 }

@@ -42,7 +42,7 @@ use crate::derive::newton_euler::{cubic_coefficient, friction, link_motions, str
 use crate::derive::passes::RewriteScope;
 use crate::derive::plan::Plan;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
-use crate::derive::wrench::{along, wrench_outward};
+use crate::derive::wrench::{axis_component, wrench_to_parent};
 use crate::ring::matrix::Vector;
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -200,18 +200,19 @@ fn by_positions(pool: &mut Pool, arm: &Arm, motion: &Motion) -> Rows {
         // What joint j changes at itself and before it.
         let (mut force, mut moment) =
             changed_wrench(pool, arm, j, &axes[j], &omega[j], &loads[j], &composite[j], &velocity_moments[j]);
-        derivative[j][j] = along(arm, j, &force, &moment);
+        derivative[j][j] = axis_component(arm, j, &force, &moment);
         let mut link = j;
         while let Some(parent) = arm.joints[link].parent {
-            (force, moment) = wrench_outward(pool, arm, link, &force, &moment);
-            derivative[parent][j] = along(arm, parent, &force, &moment);
+            (force, moment) = wrench_to_parent(pool, arm, link, &force, &moment);
+            derivative[parent][j] = axis_component(arm, parent, &force, &moment);
             link = parent;
         }
         // What the joints before j change at it.
         let column = coriolis::composite_column(pool, arm, j, &omega, &composite[j], &velocity_moments[j]);
         let mut propagated = propagator.start(pool, &mut plain, column, j);
         while let Some(parent) = propagator.propagate_to_parent(pool, &mut plain, &mut propagated) {
-            derivative[j][parent] = felt(pool, arm.joints[parent].is_revolute(), &axes[parent], propagated.in_link_frame());
+            derivative[j][parent] =
+                torque_derivative(pool, arm.joints[parent].is_revolute(), &axes[parent], propagated.in_link_frame());
         }
     }
     derivative
@@ -294,7 +295,12 @@ fn less_trace(pool: &mut Pool, m: &crate::ring::matrix::Matrix, v: &Vector) -> V
 }
 
 /// ∂tau_i/∂q_j, with the wrench (f_i, n_i) of the column of joint i and its E_i + n_i × Ω in the frame of joint j, where axis j moves so.
-fn felt(pool: &mut Pool, revolute: bool, axis: &AxisMotion, (force, moment, rate): (Vector, Vector, Vector)) -> ExprId {
+fn torque_derivative(
+    pool: &mut Pool,
+    revolute: bool,
+    axis: &AxisMotion,
+    (force, moment, rate): (Vector, Vector, Vector),
+) -> ExprId {
     if !revolute {
         return pool.dot3(&axis.second_rate, &force);
     }

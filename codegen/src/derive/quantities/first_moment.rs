@@ -34,7 +34,7 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
         )
         .with_springs("A spring of a joint adds 1/2 k_s (q_i - rest)².")
     },
-    recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
+    recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Dynamics"),
@@ -56,7 +56,7 @@ pub static CENTER_OF_MASS: Quantity = Quantity {
             "its x, y and z, m.",
         )
     },
-    recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, setting| {
+    recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, setting| {
         let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, setting.model, setting.view));
         let inverse = pool.reciprocal(mass);
         pool.scale(inverse, &first).to_vec()

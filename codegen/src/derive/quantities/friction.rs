@@ -27,7 +27,7 @@ pub static FRICTION: Quantity = Quantity {
     .with_more_friction("Where the description has them, F_0 + F_3 dq_i³ are added; with F_0 the torque need not have that sign.")
     .with_stribeck("Stribeck friction adds F_s sign(dq_i) exp(-|dq_i| / v_s), with the numbers of its joint.")
     .with_load("What grows with the load of a joint depends on q and is {load_friction}."),
-    recursion: Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {
+    recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| {
         let rates = arm.symbols(pool, Symbol::Rate);
         newton_euler::friction(pool, arm, &rates)
     }),

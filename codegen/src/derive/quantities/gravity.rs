@@ -45,7 +45,7 @@ fn composite_moments(pool: &mut Pool, arm: &Arm) -> Vec<(ExprId, Vector)> {
     for i in (0..arm.dof()).rev() {
         if let Some(p) = arm.joints[i].parent {
             let (mass, first) = composite[i];
-            let turned = arm.joints[i].outward(pool, &first);
+            let turned = arm.joints[i].to_parent(pool, &first);
             let weighted = pool.scale(mass, &arm.joints[i].origin);
             let moved = pool.add_vectors(&turned, &weighted);
             composite[p] = (pool.add(composite[p].0, mass), pool.add_vectors(&composite[p].1, &moved));

@@ -39,7 +39,7 @@ pub fn kinetic_energy(pool: &mut Pool, arm: &Arm) -> ExprId {
         let (outer_omega, outer_v) = joint.parent.map_or((ZERO, ZERO), |p| motions[p]);
         let carried = pool.cross(&outer_omega, &joint.origin);
         let origin = pool.add_vectors(&outer_v, &carried);
-        let (mut omega, mut v) = (joint.inward(pool, &outer_omega), joint.inward(pool, &origin));
+        let (mut omega, mut v) = (joint.from_parent(pool, &outer_omega), joint.from_parent(pool, &origin));
         let moving = if joint.is_revolute() { &mut omega } else { &mut v };
         moving[2] = pool.add(moving[2], rates[i]);
         motions.push((omega, v));

@@ -19,7 +19,7 @@
 use crate::derive::arm::{symmetric, Arm};
 use crate::derive::passes::RewriteScope;
 use crate::derive::quantity::{Argument, Documentation, Length, Quantity, Recursion, ResultPart, Typeset};
-use crate::derive::wrench::{along, wrench_outward};
+use crate::derive::wrench::{axis_component, wrench_to_parent};
 use crate::ring::matrix::{Vector, ZERO};
 use crate::ring::{ExprId, Pool, Symbol};
 
@@ -105,7 +105,7 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
         let (outer, moving) = joint.parent.map_or((ZERO, ZERO), |p| (states[p].omega, states[p].velocity));
         let transport = pool.cross(&outer, &joint.origin);
         let origin = pool.add_vectors(&moving, &transport);
-        let (mut omega, mut velocity) = (joint.inward(pool, &outer), joint.inward(pool, &origin));
+        let (mut omega, mut velocity) = (joint.from_parent(pool, &outer), joint.from_parent(pool, &origin));
         let driven = if joint.is_revolute() { &mut omega } else { &mut velocity };
         driven[2] = pool.add(driven[2], rate);
 
@@ -126,7 +126,7 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
     for i in (0..arm.dof()).rev() {
         let joint = &arm.joints[i];
         let (linear, angular) = (states[i].linear, states[i].angular);
-        p[i] = along(arm, i, &linear, &angular);
+        p[i] = axis_component(arm, i, &linear, &angular);
         let mut rotor_momentum = ZERO;
         if let Some(rotor) = joint.rotor {
             let coupling = pool.mul(rotor.inertia, rotor.ratio);
@@ -141,7 +141,7 @@ fn momenta(pool: &mut Pool, arm: &Arm) -> (Vec<ExprId>, Vec<State>) {
         let own = pool.mul(joint.armature, rates[i]);
         p[i] = pool.add(p[i], own);
         if let Some(parent) = joint.parent {
-            let (linear, angular) = wrench_outward(pool, arm, i, &linear, &angular);
+            let (linear, angular) = wrench_to_parent(pool, arm, i, &linear, &angular);
             let angular = pool.add_vectors(&angular, &rotor_momentum);
             states[parent].linear = pool.add_vectors(&states[parent].linear, &linear);
             states[parent].angular = pool.add_vectors(&states[parent].angular, &angular);

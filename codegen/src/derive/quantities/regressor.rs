@@ -55,7 +55,7 @@ pub static KNOWN_TORQUE: Quantity = Quantity {
     .with_load("Friction that grows with the load is not in it: {load_friction}."),
     recursion: Recursion {
         view: |model, _| View::VectorZero(&model.parameters),
-        ..Recursion::new(RewriteScope::Plain, |pool, arm, _, _| {
+        ..Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| {
             let motion = Motion::with_reference(pool, arm);
             inverse_dynamics(pool, arm, &motion)
         })

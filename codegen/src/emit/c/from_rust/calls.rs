@@ -1,9 +1,9 @@
 //! Calls: functions of the program, closures, and what Rust's library has that C has not.
 
 use super::infer::address;
-use super::lower::{is_callable, Lower};
+use super::lower::is_callable;
 use super::program::{last, names};
-use super::scopes::Bound;
+use super::scopes::{Bound, Lower};
 use super::translator::Found;
 use super::types::{Length, Type};
 use super::values::{Binding, Count, Item, Value};

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::infer::Inference;
-use super::lower::Lower;
 use super::program::Function;
+use super::scopes::Lower;
 use super::translator::{comment, snake, Found, Instance, Translator};
 use super::types::{Length, Sizes, Type};
 

@@ -3,9 +3,8 @@
 use syn::Expr;
 
 use super::infer::{address, member};
-use super::lower::Lower;
 use super::program::{guarded, last, names};
-use super::scopes::Bound;
+use super::scopes::{Bound, Lower};
 use super::translator::{c_name, has_fields, Found};
 use super::types::{Length, Type};
 use super::values::{sum, Binding, Count, Item, Kind, Value, View};

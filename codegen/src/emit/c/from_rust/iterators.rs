@@ -1,9 +1,8 @@
 //! Iterators as loops over indices.
 
 use super::infer::address;
-use super::lower::Lower;
 use super::program::last;
-use super::scopes::Bound;
+use super::scopes::{Bound, Lower};
 use super::translator::Found;
 use super::types::Type;
 use super::values::{sum, Binding, Count, Item, Iter, Value, View};

@@ -4,20 +4,11 @@
 
 use super::infer::{address, member, Inferred};
 use super::program::{last, names, Function};
-use super::scopes::{Bound, Frame};
+use super::scopes::{Bound, Lower};
 use super::translator::{c_name, comment, has_fields, Callable, Found, Translator};
 use super::typed_calls::callable_bounds;
 use super::types::{Integer, Length, Type};
 use super::values::{is_word, Binding, Item, Kind, Value};
-
-pub(super) struct Lower<'a, 't> {
-    pub(super) tr: &'t mut Translator<'a>,
-    pub(super) inferred: &'t Inferred,
-    pub(super) text: String,
-    pub(super) indent: usize,
-    pub(super) frames: Vec<Frame<'a>>,
-    owner: String,
-}
 
 impl<'a, 't> Lower<'a, 't> {
     fn new(tr: &'t mut Translator<'a>, inferred: &'t Inferred, owner: &str) -> Self {

@@ -1,9 +1,9 @@
-//! What names stand for inside of a function of C, block by block, and the lines that are written there.
+//! A function of C while it is written: its lines, and what names stand for, block by block.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::lower::Lower;
-use super::translator::{c_name, Found};
+use super::infer::Inferred;
+use super::translator::{c_name, Found, Translator};
 use super::types::Type;
 use super::values::{Iter, Value, View};
 
@@ -29,6 +29,16 @@ pub(super) struct Frame<'a> {
     /// Of a closure: the fields of what it has captured, and their values where it is made.
     pub(super) fields: Vec<(String, String)>,
     captured: BTreeMap<String, Bound<'a>>,
+}
+
+/// What a function of Rust is translated with: lines are written behind each other.
+pub(super) struct Lower<'a, 't> {
+    pub(super) tr: &'t mut Translator<'a>,
+    pub(super) inferred: &'t Inferred,
+    pub(super) text: String,
+    pub(super) indent: usize,
+    pub(super) frames: Vec<Frame<'a>>,
+    pub(super) owner: String,
 }
 
 impl<'a> Lower<'a, '_> {

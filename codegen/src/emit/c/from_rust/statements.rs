@@ -1,8 +1,7 @@
 //! Statements, values that choices give, and values that are put together in a variable.
 
-use super::lower::Lower;
 use super::program::{guarded, names};
-use super::scopes::Bound;
+use super::scopes::{Bound, Lower};
 use super::translator::{c_name, has_fields, Found};
 use super::types::{Integer, Length, Type};
 use super::values::{Binding, Item, Iter, Value};
@@ -54,7 +53,7 @@ impl<'a> Lower<'a, '_> {
             (Expr::Paren(inner), _) => self.goal(&inner.expr, goal),
             (Expr::Block(block), _) => self.block(&block.block, goal),
             (Expr::If(choice), _) => match self.ternary(value)? {
-                Some(found) if !matches!(goal, Goal::Nothing) => self.given(found, goal, value),
+                Some(found) if !matches!(goal, Goal::Nothing) => self.given(found, goal),
                 _ => self.branches(choice, goal),
             },
             (Expr::Match(choice), _) => self.arms(choice, goal),
@@ -92,12 +91,12 @@ impl<'a> Lower<'a, '_> {
                     }
                 }
                 let found = self.expression(value)?;
-                self.given(found, goal, value)
+                self.given(found, goal)
             }
         }
     }
 
-    fn given(&mut self, found: Value, goal: &Goal, value: &syn::Expr) -> Found<()> {
+    fn given(&mut self, found: Value, goal: &Goal) -> Found<()> {
         match goal {
             Goal::Nothing | Goal::Return(Type::Unit) => {
                 if !found.text.is_empty() {
@@ -110,7 +109,6 @@ impl<'a> Lower<'a, '_> {
                     Type::Reference(..) => found.pointer(),
                     _ => found.text(),
                 };
-                let _ = value;
                 self.line(&format!("return {text};"));
             }
         }

@@ -9,7 +9,7 @@ use super::types::{Integer, Length, Sizes, Type};
 
 pub(super) type Found<T> = Result<T, String>;
 
-/// A function of C: its name, the types of its arguments, and whether it is one closure's.
+/// A function of C: its name and the types of its arguments.
 #[derive(Clone, Debug)]
 pub(super) struct Instance {
     pub(super) name: String,

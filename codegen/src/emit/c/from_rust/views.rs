@@ -1,8 +1,7 @@
 //! Neighbouring elements: arrays, slices and parts of them as a pointer and a count.
 
-use super::lower::Lower;
 use super::program::last;
-use super::scopes::Bound;
+use super::scopes::{Bound, Lower};
 use super::translator::Found;
 use super::types::{Length, Type};
 use super::values::{Count, View};
