@@ -153,6 +153,7 @@ The page says how far its own arm is from each pose, and which single mistake in
 "#;
 
 const NUMBERS: &str = "<p class=\"small\">At the posture, rates and accelerations of the sliders; always in m, rad, s, kg and N, whatever units are chosen above. Six digits are shown, and 0 where rounding alone has left something<span class=\"keys\">; copies have all digits of what was computed, such as −5.6e−17</span>.</p>
+<p id=\"followed\" class=\"near\"></p>
 <div id=\"quantities\"></div>
 ";
 

@@ -175,8 +175,8 @@ fn as_expected(verdicts: &[&Verdict]) -> String {
     }
 }
 
-const CONTROLS: &str = "<div class=\"controls\" id=\"playback\"><button type=\"button\" id=\"log-play\" aria-pressed=\"false\">play</button>\
-<label for=\"time\" id=\"time-of\">time</label><input type=\"range\" id=\"time\" min=\"0\" max=\"1\" value=\"0\" step=\"any\"><output id=\"time-value\" for=\"time\"></output></div>
+const CONTROLS: &str = "<div class=\"controls\" id=\"playback\"><button type=\"button\" id=\"log-play\" disabled aria-pressed=\"false\">play</button>\
+<label for=\"time\" id=\"time-of\">time</label><input type=\"range\" id=\"time\" disabled min=\"0\" max=\"1\" value=\"0\" step=\"any\"><output id=\"time-value\" for=\"time\"></output></div>
 <p class=\"small\" id=\"playback-said\">Open a run: the arm follows its log, and the plots have a common cursor; a click into a plot goes to its time.</p>
 ";
 

@@ -1,11 +1,11 @@
 /** The check against the real arm: measured postures and poses in, the row that is wrong out, drawn as a ghost when it is chosen. */
 
 import { byId, html, svg } from "./dom.mjs";
-import { exact, fromUnit, inUnit, tidy, units, withUnit } from "./format.mjs";
+import { exact, fromUnit, inUnit, short, tidy, units, withUnit } from "./format.mjs";
 import { settle } from "./labels.mjs";
 import { rollPitchYaw } from "./numbers.mjs";
 import { Arm } from "./scene.mjs";
-import { apart, asWritten, differInOrientation, explain, frames, read } from "./suspects.mjs";
+import { apart, asWritten, commonVector, differInOrientation, doubtedUnits, explain, frames, read } from "./suspects.mjs";
 import { origin } from "./vector.mjs";
 
 /** Suspects that are listed. */
@@ -78,14 +78,25 @@ export function check(data, state, picture) {
             said.append(html("p", {}, html("strong", {}, "The arm of the page agrees with what was measured.")));
             return;
         }
-        if (suspects.length === 0) {
-            said.append(html("p", { class: "warning" }, "No single mistake that is looked for explains the differences."));
+        const whole = suspects[0]?.difference < 1e-3 * picture.arm.size;
+        const doubts = doubtedUnits(data, measured, picture.arm.size);
+        if (doubts.length > 0 && !whole) {
+            for (const doubt of doubts) said.append(doubted(doubt));
             return;
         }
+        if (suspects.length === 0) {
+            said.append(html("p", { class: "warning" }, "No single mistake that is looked for explains the differences. Lengths that are wrong by any amount are not looked for."));
+        }
+        const common = whole ? null : commonVector(arm, measured);
+        if (common) {
+            const by = `by about (${common.vector.map((x) => short(inUnit(x, "m"))).join(", ")}) ${units.length}`;
+            const where = common.own ? " in the frame of the end effector: the tool, or a length of the last row." : ": a length along that direction, the base or the tool.";
+            said.append(html("p", {}, `${measured.length > 1 ? "All positions differ" : "The position differs"} ${by}${where}`));
+        }
+        if (suspects.length === 0) return;
         const near = suspects.filter((suspect) => suspect.equal);
         const equal = near.length;
-        const partly = suspects[0].difference > 0.05 * before && suspects[0].difference >= 1e-3 * picture.arm.size ? "No single mistake explains them fully. " : "";
-        const whole = suspects[0].difference < 1e-3 * picture.arm.size;
+        const partly = !whole && suspects[0].difference > 0.05 * before ? "No single mistake explains them fully. " : "";
         const one = whole ? "This one explains them:" : "This one comes nearest:";
         const several = whole ? `${equal} mistakes explain them equally well:` : `${equal} mistakes come equally near:`;
         said.append(html("p", {}, partly + (equal === 1 ? one : several)));
@@ -100,6 +111,19 @@ export function check(data, state, picture) {
             item.append(button, suspect.equal ? html("strong", {}, text) : text);
             list.append(item);
         }
+    };
+    /** A question about units, with a button that takes what stands in the field in the other ones. @param {{kind: string, instead: string, words: string}} doubt */
+    const doubted = ({ kind, instead, words }) => {
+        const name = instead === "deg" ? "degrees" : instead;
+        const button = html("button", { type: "button" }, `take them as ${name}`);
+        button.addEventListener("click", () => {
+            const text = field.value;
+            byId(`${kind}-unit`).click();
+            // Other units have converted it.
+            field.value = text;
+            update();
+        });
+        return html("p", { class: "warning" }, `${words}: are these ${name}? Units: ${units.length}, ${units.angle}, by the buttons “lengths” and “angles” at the top. `, button);
     };
     field.addEventListener("input", update);
     // What was typed keeps its meaning when other units are chosen.

@@ -46,9 +46,14 @@ export function set(element, attributes) {
     for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
 }
 
-/** Copies a text and says so in the status line of the page. @param {string} text @param {string} what */
-export async function copy(text, what) {
-    const said = byId("said");
+/** The status line, wherever it stands. @type {any} */
+let said = null;
+
+/** Copies a text and says so in the status line, which goes beside the button. @param {any} button @param {string} text @param {string} what */
+export async function copy(button, text, what) {
+    said ??= byId("said");
+    said.textContent = "";
+    button.parentElement.append(said);
     try {
         await navigator.clipboard.writeText(text);
         said.textContent = `${what}: copied`;

@@ -68,7 +68,10 @@ export function equations(data, state, shown) {
         const content = written(equation, form, chosen("digits") === "exact", quantity !== undefined, () => evaluate(section.details));
         if (chosen("form") === "symbolic" && !symbolic) content.prepend(html("p", { class: "small" }, "No name of a parameter stands in it."));
         const button = html("button", { type: "button", class: "copy" }, "copy as LaTeX");
-        button.addEventListener("click", () => copy(equation.latex[symbolic ? 1 : 0] ?? equation.latex[0], `${name} as LaTeX`));
+        button.addEventListener("click", () => {
+            const latex = equation.latex[symbolic ? 1 : 0] ?? equation.latex[0];
+            copy(button, chosen("digits") === "exact" ? latex : sixDigits(latex), `${name} as LaTeX`);
+        });
         const host = section.details.querySelector("div");
         const link = quantity ? [html("a", { href: `#number-${quantity.name}` }, "its numbers")] : [];
         host?.replaceChildren(content, html("div", { class: "controls copies" }, button, ...link));
@@ -112,6 +115,15 @@ export function equations(data, state, shown) {
     };
     addEventListener("hashchange", follow);
     follow();
+}
+
+/** LaTeX with its fractions, and whole numbers of more than six digits, as decimals of six digits. @param {string} latex */
+export function sixDigits(latex) {
+    return latex.replace(/\\frac\{(\d+)\}\{(\d+)\}|(?<![\w{.]|% )\d{7,}/g, (all, above, below) => {
+        const value = above ? above / below : Number(all);
+        const [digits, exponent] = value.toExponential(5).split("e");
+        return short(value).includes("·") ? `${Number(digits)}\\cdot 10^{${Number(exponent)}}` : short(value);
+    });
 }
 
 /** A step under the pointer marks its uses. @param {Element} details */

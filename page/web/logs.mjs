@@ -21,10 +21,10 @@ const DARK = ["#7db9f5", "#ffb27a", "#63d47c", "#f2a1e6", "#e6c84f", "#ff8a80", 
 const KINDS = [
     ["q_", "joint variables"],
     ["dq_", "rates"],
-    ["eq_", "errors of the joints"],
+    ["eq_", "errors of the joints, desired − actual"],
     ["tau_", "torques and forces"],
     ["estimate_", "estimates of the parameters"],
-    ["e_", "errors of the end effector"],
+    ["e_", "errors of the end effector, desired − actual"],
 ];
 
 /** Columns by plot: kind, title, unit, places. @param {Log} log */
@@ -114,8 +114,11 @@ export function logs(data, state, picture) {
         const times = run.log.columns[0];
         time.min = String(times[0] ?? 0);
         time.max = String(times[times.length - 1] ?? 1);
-        const held = run.rates.length > 0 ? "its q and dq; ddq is that of the fields" : "its q; dq and ddq are those of the fields";
-        said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take ${held}, and the parameters of the data sheet, whatever the run had.` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
+        const [own, lacking, taken, wrong] = run.rates.length > 0 ? ["q and q̇", "Accelerations", "q̈ is that", "τ is"] : ["q", "Rates", "q̇ and q̈ are those", "C, τ and T are"];
+        const held = `${lacking} are not in the log of ${run.name}: ${taken} of the fields here, 0 unless others were typed, and ${wrong} not the run's.`;
+        byId("followed").textContent = run.places.length > 0 ? held : "";
+        for (const control of [play, time]) control.disabled = false;
+        said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take its ${own}, and the parameters of the data sheet, whatever the run had. ${held}` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
         picture.sight.keep("run", run.places.length > 0 ? byId("logs") : null);
         show(again ? time.valueAsNumber : Number(times[0] ?? 0), false);
     };
@@ -148,10 +151,6 @@ export function logs(data, state, picture) {
     };
     play.addEventListener("click", () => {
         if (moving) return pause();
-        if (!active) {
-            said.textContent = "Open a run first.";
-            return undefined;
-        }
         const end = Number(time.max);
         let t = Number(time.value) >= end ? Number(time.min) : Number(time.value);
         let before = performance.now();
@@ -172,6 +171,14 @@ export function logs(data, state, picture) {
     time.addEventListener("input", () => {
         pause();
         show(time.valueAsNumber, false);
+    });
+    // Arrow keys go from sample to sample.
+    time.addEventListener("keydown", (event) => {
+        const by = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+        if (!by || event.altKey || event.ctrlKey || event.metaKey) return;
+        event.preventDefault();
+        pause();
+        show(Number(active?.log.columns[0][k + by] ?? shownTime()), false);
     });
 
     const texts = new Map();
@@ -243,6 +250,8 @@ export function logs(data, state, picture) {
     const leave = () => {
         pause();
         active = null;
+        for (const control of [play, time]) control.disabled = true;
+        byId("followed").textContent = "";
         timed.textContent = "time";
         said.textContent = "No run is followed.";
         picture.sight.keep("run", null);

@@ -300,7 +300,7 @@ export function tableText(value, form) {
 function copyButtons(quantity) {
     const buttons = ["text", "MATLAB", "NumPy", "LaTeX"].map((form) => {
         const button = html("button", { type: "button", class: "copy", "aria-label": `Copy ${quantity.symbol} as ${form}` }, form);
-        button.addEventListener("click", () => copy(tableText(quantity.of(), form), `${quantity.symbol} as ${form}`));
+        button.addEventListener("click", () => copy(button, tableText(quantity.of(), form), `${quantity.symbol} as ${form}`));
         return button;
     });
     return html("div", { class: "controls copies" }, "copy all digits as ", ...buttons, ...equationLink(quantity.name));

@@ -72,10 +72,14 @@ function rounded(zero) {
     return angle === undefined ? "" : ` (${short(evaluate(parse(angle), () => Math.PI))})`;
 }
 
-/** A formula, set. @param {string} text */
+/** A formula, set; one that is wider than a narrow window scrolls by itself. @param {string} text */
 export function formula(text) {
-    return html("span", {}, math("math", {}, mathml(parse(text), { exact: false, count: 0, steps: "" })));
+    const box = text.length > NARROW ? { class: "scroll", tabindex: 0, role: "region", "aria-label": "formula" } : {};
+    return html("span", box, math("math", {}, mathml(parse(text), { exact: false, count: 0, steps: "" })));
 }
+
+/** Longest formula that fits a narrow window. */
+const NARROW = 30;
 
 /** Longest formula that stands in a sentence. */
 const LONG = 200;

@@ -134,7 +134,7 @@ export function sliders(data, state) {
     // In the units of the fields, so that it can be pasted into one of them.
     byId("copy-q").addEventListener("click", () => {
         const used = [...new Set(parts.map(({ unit }) => unitName(unit)))].join(" and ");
-        copy(`[${state.q.map((x, i) => exact(inUnit(x, parts[i].unit))).join(", ")}]`, `q in ${used}`);
+        copy(byId("copy-q"), `[${state.q.map((x, i) => exact(inUnit(x, parts[i].unit))).join(", ")}]`, `q in ${used}`);
     });
 }
 

@@ -7,7 +7,7 @@
  */
 
 import { compose, identity, origin, rotation, subtract, norm } from "./vector.mjs";
-import { withUnit } from "./format.mjs";
+import { units, withUnit } from "./format.mjs";
 import { rowFrame, urdfFrame } from "./kinematics.mjs";
 
 /**
@@ -146,7 +146,7 @@ export function difference(arm, all, size) {
 }
 
 /**
- * Suspects that leave less difference than the arm as it is written, smallest first; those that explain as much as the first are marked, and
+ * Suspects that leave at most half of the difference of the arm as it is written, smallest first; those that explain as much as the first are marked, and
  * stand in the order of the rows, of which rounding knows nothing.
  *
  * @param {any} data @param {Measured[]} measured @param {number} size
@@ -158,7 +158,41 @@ export function explain(data, measured, size) {
     const marked = all.map((suspect) => ({ ...suspect, equal: suspect.difference <= least }));
     const place = ({ equal, difference }) => (equal ? 0 : difference);
     marked.sort((a, b) => place(a) - place(b));
-    return { before, suspects: marked.filter((suspect) => suspect.difference < 0.9 * before) };
+    return { before, suspects: marked.filter((suspect) => suspect.difference <= 0.5 * before) };
+}
+
+/**
+ * The vector by which all measured positions differ from those of an arm, m, up to a tenth of it: in the base frame, else in the frame of the
+ * end effector; null where they differ by several.
+ *
+ * @param {Variant} arm @param {Measured[]} measured @returns {{vector: number[], own: boolean} | null} own: in the frame of the end effector
+ */
+export function commonVector(arm, measured) {
+    const ends = measured.map(({ q }) => frames(arm, q).end);
+    const apart = measured.map(({ position }, k) => subtract(position, origin(ends[k])));
+    const turned = apart.map((vector, k) => vector.map((_, j) => vector.reduce((sum, x, i) => sum + ends[k][i][j] * x, 0)));
+    for (const all of [apart, turned]) {
+        const mean = all[0].map((_, i) => all.reduce((sum, vector) => sum + vector[i], 0) / all.length);
+        if (all.some((vector) => norm(subtract(vector, mean)) > 0.1 * norm(mean))) continue;
+        return { vector: mean.map((x) => (Math.abs(x) < 0.01 * norm(mean) ? 0 : Number(x.toPrecision(3)))), own: all === turned };
+    }
+    return null;
+}
+
+/**
+ * The units that what was measured seems to have instead of those that are chosen: m and mm where all positions are ten times as far from the
+ * base as the arm is long, or all within a hundredth of it; degrees where a joint turns more than once and beyond its limits.
+ *
+ * @param {any} data @param {Measured[]} measured @param {number} size @returns {{kind: string, instead: string, words: string}[]}
+ */
+export function doubtedUnits(data, measured, size) {
+    const far = measured.map(({ position }) => norm(subtract(position, origin(data.base))) / size);
+    const turns = ({ q }) => data.rows.some((row, i) => row.type === "revolute" && Math.abs(q[i]) > Math.max(2 * Math.PI, ...(row.limits ?? []).map(Math.abs)) + 1e-6);
+    const all = [];
+    if (units.length === "m" && Math.min(...far) > 10) all.push({ kind: "length", instead: "mm", words: `The positions are ${Math.round(Math.min(...far))} times as far away as the arm is long` });
+    if (units.length === "mm" && Math.max(...far) < 0.01) all.push({ kind: "length", instead: "m", words: "The positions are within a hundredth of the arm's size" });
+    if (units.angle === "rad" && measured.some(turns)) all.push({ kind: "angle", instead: "deg", words: "A joint turns by more than 2 π" });
+    return all;
 }
 
 /**

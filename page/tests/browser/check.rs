@@ -15,6 +15,29 @@ fn a_planted_mistake_is_the_first_suspect() {
          document.getElementById('measured').value"
     ));
     assert_eq!(tab.run("document.querySelectorAll('#suspects li').length"), 0, "the true arm agrees");
+    // A wrong length is no mistake of those that are looked for: the vector is said, and nothing is named. Other units are asked about, and a
+    // button takes the same numbers in them.
+    let others = tab.run(
+        "(() => { const field = document.getElementById('measured'), said = () => document.getElementById('measured-said'), seen = []; \
+         const lines = field.value.trim().split('\\n').map((line) => line.split(' ').map(Number)); \
+         const put = (change) => { field.value = lines.map((line) => line.map(change).slice(0, 9).join(' ')).join('\\n'); field.dispatchEvent(new Event('input')); \
+             seen.push([...said().children].slice(2).map((line) => line.textContent)); }; \
+         put((x, i) => (i === 8 ? x + 0.05 : x)); seen.push(document.querySelectorAll('#suspects li').length); \
+         put((x, i) => (i > 5 ? x * 1000 : x)); const text = field.value; said().querySelector('button').click(); \
+         seen.push(field.value === text, said().lastChild.textContent, document.getElementById('length-unit').textContent); return seen; })()",
+    );
+    let none =
+        "No single mistake that is looked for explains the differences. Lengths that are wrong by any amount are not looked for.";
+    let vector = "All positions differ by about (0, 0, 0.05) m: a length along that direction, the base or the tool.";
+    assert_eq!(others[0], serde_json::json!([none, vector]));
+    let asked = others[2][0].as_str().expect("a question");
+    assert!(asked.contains("times as far away as the arm is long: are these mm? Units: m, rad,"), "{others}");
+    assert_eq!(others[2].as_array().map(Vec::len), Some(1), "{others}");
+    let agrees = "The arm of the page agrees with what was measured.";
+    assert_eq!(
+        serde_json::json!([others[1], others[3], others[4], others[5]]),
+        serde_json::json!([0, true, agrees, "lengths: mm"])
+    );
     tab.close();
     let wrong = truth.text().replacen("alpha: pi/2", "alpha: -pi/2", 1);
     assert_ne!(wrong, truth.text());

@@ -25,15 +25,22 @@ fn a_log_is_played_on_the_arm() {
     let file = written_with("logs", &robot("scara"), &[small.clone(), large, same]);
     let Some(mut tab) = Tab::open(&file, 1600, "light") else { return };
     let played = tab.run(
-        "(async () => { const log = document.querySelector('[data-log=\"small\"]'); log.open = true; \
+        "(async () => { const log = document.querySelector('[data-log=\"small\"]'), play = document.getElementById('log-play'); \
+         const seen = [play.disabled]; log.open = true; \
          while (!log.querySelector('.uplot canvas')) await new Promise((done) => setTimeout(done, 5)); \
          const time = document.getElementById('time'); time.value = '5'; time.dispatchEvent(new Event('input')); \
-         return [document.getElementById('q2-value').value, document.querySelectorAll('#arm .trail path').length, \
+         for (const key of ['ArrowRight', 'ArrowLeft', 'ArrowLeft']) { \
+             seen.push(time.dispatchEvent(new KeyboardEvent('keydown', { key, cancelable: true })), document.getElementById('time-value').textContent); } \
+         time.value = '5'; time.dispatchEvent(new Event('input')); \
+         seen.push(play.disabled, document.getElementById('followed').textContent); \
+         return [seen, document.getElementById('q2-value').value, document.querySelectorAll('#arm .trail path').length, \
                  [...log.querySelectorAll('.u-title')].map((title) => title.textContent), time.max]; })()",
     );
     // Joints that turn and those that slide have axes of their own.
-    let titles = ["joint variables, rad", "joint variables, m", "errors of the end effector, m"];
-    assert_eq!(played, serde_json::json!(["-0.5", 2, titles, "10"]));
+    let titles = ["joint variables, rad", "joint variables, m", "errors of the end effector, desired − actual, m"];
+    let rates = "Rates are not in the log of small: q̇ and q̈ are those of the fields here, 0 unless others were typed, and C, τ and T are not the run's.";
+    let seen = serde_json::json!([true, false, "5.1 s", false, "5 s", false, "4.9 s", false, rates]);
+    assert_eq!(played, serde_json::json!([seen, "-0.5", 2, titles, "10"]));
     // The other run lies over it: two curves more in the plot of the joints, and its trail; taken away again, they are gone.
     let laid = tab.run(
         "(async () => { const log = document.querySelector('[data-log=\"small\"]'), select = log.querySelector('.lay-over select'); \

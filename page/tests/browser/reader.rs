@@ -88,6 +88,28 @@ fn what_is_left_open_is_said() {
     tab.close();
 }
 
+/// That a text was copied is said beside the button that was pressed, and LaTeX has the digits that are chosen.
+#[test]
+fn a_copy_is_said_where_it_was_asked_for() {
+    let Some(mut tab) = opened(&robot("scara"), 1600, "light") else { return };
+    let seen = tab.run(
+        "(async () => { const seen = [], texts = []; navigator.clipboard.writeText = async (text) => { texts.push(text); }; \
+         const details = document.querySelector('[data-equation=geometric_jacobian]'); details.open = true; \
+         const ready = async () => { do await new Promise((done) => setTimeout(done, 20)); while (!details.querySelector('.copies')); }; await ready(); \
+         const said = document.getElementById('said'); const press = async (button) => { button.click(); await new Promise((done) => setTimeout(done, 20)); \
+             seen.push([said.parentElement === button.parentElement, said.textContent]); }; \
+         await press(details.querySelector('.copy')); document.querySelector('input[value=exact]').click(); await ready(); await new Promise((done) => setTimeout(done, 100)); \
+         await press(details.querySelector('.copy')); await press(document.querySelector('#number-geometric_jacobian [aria-label$=NumPy]')); \
+         await press(document.getElementById('copy-q')); \
+         return [seen, texts.slice(0, 2).map((text) => text.includes('0.5'))]; })()",
+    );
+    let latex = serde_json::json!([true, "geometric_jacobian as LaTeX: copied"]);
+    let expected =
+        serde_json::json!([[latex, latex, [true, "J as NumPy: copied"], [true, "q in rad and m: copied"]], [true, false]]);
+    assert_eq!(seen, expected);
+    tab.close();
+}
+
 /// Nothing stands behind a sine that could be taken for a part of its angle, a small constant has a power of ten, and rates, torques and
 /// derivatives have their symbols; what rounding leaves is shown as 0, and the number stays what was computed.
 #[test]

@@ -20,6 +20,14 @@ fn pages_fit_windows_themes_and_paper() {
             tab.close();
         }
     }
+    // Formulas that are longer than a narrow window is wide.
+    for source in [robot("ur5"), robot("puma560")] {
+        let Some(mut tab) = opened(&source, 360, "light") else { return };
+        let overflow = tab.run("document.scrollingElement.scrollWidth - innerWidth");
+        assert!(overflow.as_f64().is_some_and(|by| by <= 0.0), "{}: 360 px: {overflow} px too wide", source.name());
+        keep(&format!("{}-360-light.png.base64", source.name()), &mut tab);
+        tab.close();
+    }
 }
 
 /// Opens what is folded away, where a page has it.
@@ -136,7 +144,9 @@ const FOLLOWED: &str = r##"(async () => {
     await rest();
     focused.push(inSight());
     const field = document.getElementById("measured");
-    field.value = "0.1 0.2 0.3 0.4  0.5 0.6 0.7";
+    // The first joint counts the other way.
+    const end = robot.directKinematics([0.1, 0.2, 0.3, 0.4]);
+    field.value = `-0.1 0.2 0.3 0.4 ${[0, 1, 2].map((i) => end[i][3]).join(" ")}`;
     field.dispatchEvent(new Event("input"));
     const button = document.querySelector("#suspects button");
     button.scrollIntoView();

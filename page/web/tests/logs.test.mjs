@@ -11,8 +11,8 @@ test("columns of one kind and unit share a plot", () => {
     assert.deepEqual(of, [
         ["joint variables", "rad", [1]],
         ["joint variables", "m", [2]],
-        ["errors of the end effector", "m", [3]],
-        ["errors of the end effector", "rad", [4]],
+        ["errors of the end effector, desired − actual", "m", [3]],
+        ["errors of the end effector, desired − actual", "rad", [4]],
         ["position of the end effector", "m", [5, 6]],
         ["w", "", [7]],
     ]);

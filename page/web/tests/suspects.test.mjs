@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { asWritten, explain, frames, read, suspects } from "../suspects.mjs";
+import { units } from "../format.mjs";
+import { asWritten, commonVector, doubtedUnits, explain, frames, read, suspects } from "../suspects.mjs";
 
 const identity = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0]];
 const arm = (rows, convention = "standard") => ({
@@ -78,6 +79,34 @@ test("a convention is found, and an arm that is right is left alone", () => {
     const measured = [{ q, position: end.map((row) => row[3]), frame: end }];
     assert.equal(explain(data, measured, 1).suspects[0].fault, "convention");
     assert.ok(explain(arm(ARMS.ur5), measured, 1).before < 1e-12);
+});
+
+/** What a UR5 with another row, or tool, measures at some postures. */
+function measuredBy(rows, all, tool = identity) {
+    const truth = { ...asWritten(arm(rows)), tool };
+    return all.map((q) => ({ q, position: frames(truth, q).end.map((row) => row[3]), frame: null }));
+}
+
+test("a length that is wrong by some amount has no suspect, and the vector by which it moves the end effector is said", () => {
+    const data = arm(ARMS.ur5);
+    const longer = ARMS.ur5.map((row, i) => (i === 0 ? [row[0], row[1], row[2] + 0.05, row[3]] : row));
+    const stretched = measuredBy(longer, [0.3, -1.2, 2].map((q1) => [q1, 0, 0, 0, 0, 0]));
+    assert.deepEqual(explain(data, stretched, size(data)).suspects, []);
+    assert.deepEqual(commonVector(asWritten(data), stretched), { vector: [0, 0, 0.05], own: false });
+    const tool = [[1, 0, 0, 0], [0, 1, 0, 0.02], [0, 0, 1, 0.03], [0, 0, 0, 1]];
+    assert.deepEqual(commonVector(asWritten(data), measuredBy(ARMS.ur5, postures(6, 3, 7), tool)), { vector: [0, 0.02, 0.03], own: true });
+    const upper = ARMS.ur5.map((row, i) => (i === 1 ? [row[0] + 0.05, ...row.slice(1)] : row));
+    assert.equal(commonVector(asWritten(data), measuredBy(upper, postures(6, 3, 7))), null);
+});
+
+test("positions in mm and angles in degrees are asked about, and those of the chosen units are not", () => {
+    const data = arm(ARMS.ur5);
+    const measured = measuredBy(ARMS.ur5, postures(6, 3, 9));
+    const asked = (times, turned) => doubtedUnits(data, measured.map(({ q, position }) => ({ q: q.map((x) => x * turned), position: position.map((x) => x * times), frame: null })), size(data)).map((doubt) => doubt.instead);
+    assert.deepEqual([asked(1, 1), asked(1000, 1), asked(1, 57.3), asked(1000, 57.3)], [[], ["mm"], ["deg"], ["mm", "deg"]]);
+    [units.length, units.angle] = ["mm", "deg"];
+    assert.deepEqual([asked(1, 57.3), asked(0.001, 1)], [[], ["m"]]);
+    [units.length, units.angle] = ["m", "rad"];
 });
 
 test("lines are read, and what is none is said", () => {
