@@ -92,9 +92,9 @@ const CROSSING: Regional = Regional {
 /// The case of block 6 for the first three joints of a loop: with a joint that is given between them, that of some of its values.
 fn regional_of(way: &Arrangement) -> Option<Regional> {
     let constant = [0, 1].map(|place| way.is_constant(place));
-    let [one, other] =
-        [0, 1].map(|sample| regional(way.kinds(), &way.link(0, sample), &way.link(1, sample), constant, way.open < 2));
-    one.filter(|_| one == other)
+    let [one, second, third] =
+        [0, 1, 2].map(|sample| regional(way.kinds(), &way.link(0, sample), &way.link(1, sample), constant, way.open < 2));
+    one.filter(|_| one == second && one == third)
 }
 
 /// The case of block 6 for three joints of given kinds with links A, B, as far as they are `constant`; `posed`: the pose is in one of them, and that
@@ -209,12 +209,12 @@ impl Arrangement {
         self.order.iter().map(|joint| self.number(*joint)).collect()
     }
 
-    /// The link at a place; where a joint that is given moves it, at one of two values of that joint. They are no particular ones, so that what is so at
-    /// both is so at all.
+    /// The link at a place; where a joint that is given moves it, at one of three values of that joint. An entry is of degree 1 in the value, or in its sine
+    /// and cosine, which has no more than two zeros on the circle: what is 0 at three values is 0 at all.
     fn link(&self, place: usize, sample: usize) -> Frame {
         let moved = self.given.as_ref().filter(|given| given.place == Some(place));
         let Some(given) = moved else { return self.links[place].clone() };
-        let (x, y, over) = [(33, 56, 65), (48, 55, 73)][sample];
+        let (x, y, over) = [(33, 56, 65), (48, 55, 73), (-13, 84, 85)][sample];
         let over = Number::from(Rational::ONE / Rational::from(over));
         let [c, s] = [x, y].map(|k| &Number::from(k) * &over);
         let joint = if given.prismatic { slide_along_z(&c) } else { turn_about_z(&[c, s]) };

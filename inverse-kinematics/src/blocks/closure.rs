@@ -179,9 +179,14 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
                 continue;
             }
             branch.joints = closed.joints;
-            kept.near |= J == 3 && closed.double;
+            if J == 3 && closed.double {
+                kept.near = true;
+                branch.double = true;
+            }
         }
-        kept.add(branch);
+        if !(branch.double && is_among(kept.found(), &branch)) {
+            kept.add(branch);
+        }
     }
     if kept.count == 0 && !kept.near && !kept.continuum && !(kept.miss < Real::INFINITY) {
         const STARTS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
@@ -196,6 +201,21 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
         }
     }
     *found = kept;
+}
+
+/// Whether one of some solutions is the other of two that meet, as far as rounding lets one tell. Both are double then.
+fn is_among<const J: usize>(known: &[Branch<J>], branch: &Branch<J>) -> bool {
+    let same = 64.0 * SAME * sqrt(UNIT_ROUNDOFF);
+    for known in known {
+        let mut apart: Real = if known.double { 0.0 } else { Real::INFINITY };
+        for (x, y) in known.joints.iter().zip(&branch.joints) {
+            apart = apart.max((x[0] - y[0]).abs() + (x[1] - y[1]).abs());
+        }
+        if apart <= same {
+            return true;
+        }
+    }
+    false
 }
 
 /// The displacement of the origin to a point: the last link of a loop that brings that point to its target.

@@ -22,7 +22,8 @@ const QUARTERS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.
 /// - A joint that is free in the completed arm need not be in the arm: it is tried at four values, with another one that is free, or the last one.
 /// - Where two solutions of the completed arm meet, as far as its blocks can tell, those of the arm are to both sides.
 /// - `double`: the Jacobian of the arm's own joints is so nearly of lower rank that rounding of the pose decides. `free`: a joint can move while
-///   the others keep all rows met. `near`: the construction may have missed something, and nothing that is determined has been found.
+///   the others keep all rows met. `near`: the construction may have missed something, no posture came of a candidate that stands for several, or
+///   what is left of the rows is within a factor of two of what may be.
 /// - None: `miss` is what the best candidate leaves of the rows, m, with angles times `length`, or by how much the construction missed.
 pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
     arm: &Arrangement<6>,
@@ -46,6 +47,7 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
         let turned = tried::<J>(branch.free, &arm.prismatic);
         let starts = if turned[0] == J { 1 } else { 17 };
         let mut best = Closed { joints: start, residual: Real::INFINITY, double: false };
+        let mut met_all = false;
         for number in 0..starts {
             let mut joints = start;
             if number > 0 && turned[0] < J {
@@ -55,11 +57,11 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
                 joints[turned[1]] = QUARTERS[number / 4 % 4];
             }
             let met = settle::<J, N>(&mut kept, arm, &closing, &joints, branch.signs, most);
+            met_all |= met.residual <= most;
             if met.residual < best.residual {
                 best = met;
             }
         }
-        lost |= !(best.residual < Real::INFINITY);
         if best.residual > most && (branch.double || branch.free != 0 || best.residual <= 64.0 * sqrt(UNIT_ROUNDOFF) * length) {
             // What is left grows with the square of the distance from there.
             let apart = sqrt(8.0 * best.residual / length).min(0.5);
@@ -68,9 +70,13 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
                 let joint = number / 2;
                 let size = if arm.prismatic[joint] { apart * length } else { apart };
                 step[joint] = if number % 2 == 0 { size } else { -size };
-                settle::<J, N>(&mut kept, arm, &closing, &closing.moved(&best.joints, &step), branch.signs, most);
+                let met = settle::<J, N>(&mut kept, arm, &closing, &closing.moved(&best.joints, &step), branch.signs, most);
+                met_all |= met.residual <= most;
             }
+            // A continuum or a double solution of the completed arm near the pose may have postures that no start has led to.
+            lost |= !met_all && best.residual <= 64.0 * sqrt(UNIT_ROUNDOFF) * length;
         }
+        lost |= !(best.residual < Real::INFINITY);
     }
     if kept.count == 0 && (lost || !(kept.miss < Real::INFINITY)) {
         // Nothing says how far the pose is, or what is near has been missed: from four postures.
@@ -82,8 +88,7 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
             settle::<J, N>(&mut kept, arm, &closing, &joints, 0, most);
         }
     }
-    let determined = kept.found().iter().any(|branch| !branch.double && branch.free == 0);
-    kept.near = kept.near || (lost && !determined);
+    kept.near |= lost;
     kept
 }
 
@@ -121,10 +126,12 @@ fn settle<const J: usize, const N: usize>(
     let met = refined::<J>(closing, joints, J);
     if met.residual <= most {
         let (_, first) = closing.equations(joints);
-        keep::<J, N>(kept, &own::<J>(arm, closing, &met, most), signs, first);
+        keep::<J, N>(kept, arm, closing.length, &own::<J>(arm, closing, &met, most), signs, first);
     } else {
         kept.missed(met.residual);
     }
+    // Rounding of the pose decides on which side of the tolerance it is.
+    kept.near |= met.residual > 0.5 * most && met.residual <= 2.0 * most;
     met
 }
 
@@ -213,9 +220,13 @@ fn own<const J: usize>(arm: &Arrangement<6>, closing: &Loop<6>, met: &Closed<6>,
     let double = is_nearly_double::<J>(closing, &met.joints);
     if double {
         for joint in 0..J {
-            let mut step = [0.0; 6];
-            step[joint] = if closing.prismatic[joint] { 0.25 * closing.length } else { 0.25 };
-            if refined::<J>(closing, &closing.moved(&met.joints, &step), joint).residual <= most {
+            let mut moves = false;
+            for by in [0.25, -0.25, 0.02, -0.02] {
+                let mut step = [0.0; 6];
+                step[joint] = if closing.prismatic[joint] { by * closing.length } else { by };
+                moves = moves || refined::<J>(closing, &closing.moved(&met.joints, &step), joint).residual <= most;
+            }
+            if moves {
                 if free == 0 {
                     let mut joints = met.joints;
                     joints[joint] = arm.offsets[joint];
@@ -236,14 +247,23 @@ fn own<const J: usize>(arm: &Arrangement<6>, closing: &Loop<6>, met: &Closed<6>,
     Branch { joints, signs: 0, double: whole.double, error: 0.0, free: whole.free }
 }
 
-/// Adds a solution, unless it is known: then the way that came nearest gives it its name. `first`: how far from met the rows were.
-fn keep<const J: usize, const N: usize>(kept: &mut Branches<J, N>, branch: &Branch<J>, signs: u16, first: Real) {
+/// Adds a solution, unless it is known: then the way that came nearest gives it its name. `first`: how far from met the rows were. Slides are
+/// compared in units of `length`.
+fn keep<const J: usize, const N: usize>(
+    kept: &mut Branches<J, N>,
+    arm: &Arrangement<6>,
+    length: Real,
+    branch: &Branch<J>,
+    signs: u16,
+    first: Real,
+) {
     let same = SAME * sqrt(UNIT_ROUNDOFF);
     let count = kept.count;
     for known in kept.all.iter_mut().take(count) {
         let mut apart: Real = 0.0;
-        for (x, y) in known.joints.iter().zip(&branch.joints) {
-            apart = apart.max((x[0] - y[0]).abs() + (x[1] - y[1]).abs());
+        for ((x, y), slides) in known.joints.iter().zip(&branch.joints).zip(arm.prismatic) {
+            let unit = if slides { length } else { 1.0 };
+            apart = apart.max(((x[0] - y[0]).abs() + (x[1] - y[1]).abs()) / unit);
         }
         let wide = branch.double || known.double || branch.free != 0;
         if apart <= if wide { 64.0 * same } else { same } {
@@ -251,6 +271,7 @@ fn keep<const J: usize, const N: usize>(kept: &mut Branches<J, N>, branch: &Bran
                 (known.signs, known.error) = (signs, first);
             }
             known.double |= branch.double;
+            known.free |= branch.free;
             return;
         }
     }

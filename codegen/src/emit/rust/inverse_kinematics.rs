@@ -9,7 +9,7 @@ use super::runtime::is_implemented;
 use super::signature::usize_literal;
 use super::{format, head};
 use crate::emit::origin::Origin;
-use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Target};
+use crate::inverse_kinematics::{Arrangement, Construction, Frame, InverseKinematics, Redundancy, Regional, Target};
 use crate::kinds::{JointKind, Scalar};
 use crate::manipulator::{Joint, Manipulator};
 use crate::program::Module;
@@ -354,6 +354,59 @@ pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<Str
 }
 
 fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
+    let body = solutions(found, dof);
+    let target = match found.target {
+        Target::Pose => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.",
+        Target::Position => " `t`: a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it.",
+        Target::Pointing => " `t`: a pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m, of which position and z axis are to be reached; the last row is not read.",
+        Target::Planar => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the task leaves out.",
+    };
+    let (given, invalid) = arguments_read(found);
+    let rows = found.own.as_ref().map(|_| {
+        let tolerance = if matches!(found.construction, Construction::General(_)) { "`GENERAL_ROWS`" } else { "`ROUNDING`" };
+        let lines = [
+            " The arm has fewer joints than a pose has rows: a pose is reached where all rows are met,".to_owned(),
+            format!(" to {tolerance} times the sum of the lengths in the arm's loop."),
+            String::new(),
+        ];
+        quote!(#(#[doc = #lines])*)
+    });
+    let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
+    let argument = found.redundancy.as_ref().map(|_| quote!(redundancy: Real));
+    let about = about_redundancy(found).map(|about| {
+        let about = format!(" `redundancy`: {about}.");
+        quote!(#[doc = #about])
+    });
+    let redundancy = redundancy_of_a_posture(found);
+    quote! {
+        /// All joint variables q with direct_kinematics(q) = t.
+        ///
+        #[doc = #target]
+        #about
+        ///
+        /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
+        /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
+        /// effector stays (bit i of `free`: joint i + 1).
+        #[doc = #invalid]
+        ///
+        /// Angles are in (-pi, pi]; limits are not looked at (`within_limits` does). T(q) differs from t by roundings, of the order of 100
+        /// units times the arm's length; q itself by that over the smallest singular value of the Jacobian, near a double solution by
+        /// its root.
+        ///
+        #rows
+        #[doc = #class]
+        pub fn inverse_kinematics(t: &[[Real; 4]; 4], #argument) -> Solutions {
+            let [x, y, z, _] = *t;
+            #given
+            #body
+        }
+
+        #redundancy
+    }
+}
+
+/// The construction called, and its solutions in the order of the arm's joints.
+fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
     let kinds = |way: &Arrangement, count: usize| {
         let kinds = way.prismatic.iter().take(count);
         quote!([#(#kinds),*])
@@ -362,29 +415,6 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
     let polish = found.own.is_none().then_some(quote! {
         polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
     });
-    // Solutions without branches come in the order of their joint variables.
-    let by_angle = matches!(found.construction, Construction::TwoSlides(..));
-    let conclusion = match (found.given(), &found.own) {
-        (None, None) => quote!(conclude(&found, #by_angle)),
-        (None, Some(_)) => {
-            let (joints, most) = match &found.construction {
-                Construction::ParallelTurns(..) => (4, 4),
-                _ => (6, 8),
-            };
-            let (joints, most) = (usize_literal(joints), usize_literal(most));
-            quote!(conclude(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING), #by_angle))
-        }
-        (Some(_), _) => {
-            let others = found.loops().first().map_or(0, |way| way.order.len());
-            // With a virtual joint they are more than the arm has.
-            let all = match others + 1 {
-                all if all == dof => quote!(DOF),
-                all => usize_literal(all).into_token_stream(),
-            };
-            let (others, most) = (usize_literal(others), usize_literal(if others == 6 { 8 } else { 4 }));
-            quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), #by_angle))
-        }
-    };
     let links = match found.given().and_then(|given| given.place) {
         None => quote!(let links = LOOP.links_at(&t);),
         Some(place) => {
@@ -395,6 +425,7 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
             }
         }
     };
+    let conclusion = conclusion(found, dof);
     let in_order = quote! {
         let count = found.count;
         for branch in found.all.iter_mut().take(count) {
@@ -402,7 +433,7 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         }
         #conclusion
     };
-    let body = match &found.construction {
+    match &found.construction {
         Construction::SphericalTriple(way, case) => {
             let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
             let polish = (!case.closed).then_some(polish).flatten();
@@ -434,39 +465,8 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
             }
         }
         Construction::Position(way, case) => {
-            let block = format_ident!("{}", case.function);
-            // The origin of the end effector from before the last joint of the loop, and where it is to go from before the first. Behind a last
-            // joint that is given it is elsewhere.
-            let moved = found.given().is_some_and(|given| given.place.is_none() && given.joint > 0);
-            let tip = |frame: TokenStream| if moved { quote!(transform(&#frame, tip)) } else { quote!(column(&#frame, 3)) };
-            let (from, to) = if way.backward {
-                (quote!(transform(&LOOP.before, position)), tip(quote!(inverse(&LOOP.after))))
-            } else {
-                (tip(quote!(LOOP.before)), quote!(transform(&inverse(&LOOP.after), position)))
-            };
-            let links = match found.given().and_then(|given| given.place) {
-                None => quote!(let [a, b, _] = LOOP.links;),
-                Some(place) => {
-                    let place = usize_literal(place);
-                    quote! {
-                        let mut links = LOOP.links;
-                        links[#place] = GIVEN.link(value);
-                        let [a, b, _] = links;
-                    }
-                }
-            };
-            let found = if case.closed {
-                quote!(let mut found = #block(&a, &b, #from, #to);)
-            } else {
-                quote! {
-                    let (from, to) = (#from, #to);
-                    let mut found = #block(&a, &b, from, to);
-                    let links = [a, b, displaced(from)];
-                    polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: to, length: LENGTH });
-                }
-            };
+            let found = position(found, way, case);
             quote! {
-                #links
                 #found
                 #in_order
             }
@@ -498,14 +498,78 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         Construction::General(_) => quote! {
             conclude(&general_arm(&LOOPS, &t, LENGTH), true)
         },
+    }
+}
+
+/// The position of the end effector brought to its place.
+fn position(found: &InverseKinematics, way: &Arrangement, case: &Regional) -> TokenStream {
+    let block = format_ident!("{}", case.function);
+    // The origin of the end effector from before the last joint of the loop, and where it is to go from before the first. Behind a last
+    // joint that is given it is elsewhere.
+    let moved = found.given().is_some_and(|given| given.place.is_none() && given.joint > 0);
+    let tip = |frame: TokenStream| if moved { quote!(transform(&#frame, tip)) } else { quote!(column(&#frame, 3)) };
+    let (from, to) = if way.backward {
+        (quote!(transform(&LOOP.before, position)), tip(quote!(inverse(&LOOP.after))))
+    } else {
+        (tip(quote!(LOOP.before)), quote!(transform(&inverse(&LOOP.after), position)))
     };
-    let target = match found.target {
-        Target::Pose => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.",
-        Target::Position => " `t`: a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it.",
-        Target::Pointing => " `t`: a pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m, of which position and z axis are to be reached; the last row is not read.",
-        Target::Planar => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the task leaves out.",
+    let links = match found.given().and_then(|given| given.place) {
+        None => quote!(let [a, b, _] = LOOP.links;),
+        Some(place) => {
+            let place = usize_literal(place);
+            quote! {
+                let mut links = LOOP.links;
+                links[#place] = GIVEN.link(value);
+                let [a, b, _] = links;
+            }
+        }
     };
-    let (given, invalid) = match found.target {
+    let found = if case.closed {
+        quote!(let mut found = #block(&a, &b, #from, #to);)
+    } else {
+        quote! {
+            let (from, to) = (#from, #to);
+            let mut found = #block(&a, &b, from, to);
+            let links = [a, b, displaced(from)];
+            polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: to, length: LENGTH });
+        }
+    };
+    quote! {
+        #links
+        #found
+    }
+}
+
+/// What becomes of the solutions of all joints in the loop: those of the arm, in their order.
+fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
+    // Solutions without branches come in the order of their joint variables.
+    let by_angle = matches!(found.construction, Construction::TwoSlides(..));
+    match (found.given(), &found.own) {
+        (None, None) => quote!(conclude(&found, #by_angle)),
+        (None, Some(_)) => {
+            let (joints, most) = match &found.construction {
+                Construction::ParallelTurns(..) => (4, 4),
+                _ => (6, 8),
+            };
+            let (joints, most) = (usize_literal(joints), usize_literal(most));
+            quote!(conclude(&without_virtual_joints::<#joints, DOF, #most>(&ARM, &found, &t, LENGTH, ROUNDING), #by_angle))
+        }
+        (Some(_), _) => {
+            let others = found.loops().first().map_or(0, |way| way.order.len());
+            // With a virtual joint they are more than the arm has.
+            let all = match others + 1 {
+                all if all == dof => quote!(DOF),
+                all => usize_literal(all).into_token_stream(),
+            };
+            let (others, most) = (usize_literal(others), usize_literal(if others == 6 { 8 } else { 4 }));
+            quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), #by_angle))
+        }
+    }
+}
+
+/// The statements that read the arguments, and the documentation of what is refused.
+fn arguments_read(found: &InverseKinematics) -> (TokenStream, &'static str) {
+    match found.target {
         Target::Position => {
             let condition = found.redundancy.as_ref().map(|_| quote!(|| !redundancy.is_finite()));
             let value = found.given().map(|given| {
@@ -561,23 +625,12 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
             };
             (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6.")
         }
-    };
-    let rows = found.own.as_ref().map(|_| {
-        let tolerance = if matches!(found.construction, Construction::General(_)) { "`GENERAL_ROWS`" } else { "`ROUNDING`" };
-        let lines = [
-            " The arm has fewer joints than a pose has rows: a pose is reached where all rows are met,".to_owned(),
-            format!(" to {tolerance} times the sum of the lengths in the arm's loop."),
-            String::new(),
-        ];
-        quote!(#(#[doc = #lines])*)
-    });
-    let class = format!(" Class: {}; at most {} solutions.", found.class, found.most);
-    let argument = found.redundancy.as_ref().map(|_| quote!(redundancy: Real));
-    let about = about_redundancy(found).map(|about| {
-        let about = format!(" `redundancy`: {about}.");
-        quote!(#[doc = #about])
-    });
-    let redundancy = found.redundancy.as_ref().map(|redundancy| {
+    }
+}
+
+/// The function that gives the redundancy of a posture, where there is one.
+fn redundancy_of_a_posture(found: &InverseKinematics) -> Option<TokenStream> {
+    found.redundancy.as_ref().map(|redundancy| {
         let value = match redundancy {
             Redundancy::Joint(given) => {
                 let joint = usize_literal(given.joint);
@@ -591,30 +644,5 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
                 #value
             }
         }
-    });
-    quote! {
-        /// All joint variables q with direct_kinematics(q) = t.
-        ///
-        #[doc = #target]
-        #about
-        ///
-        /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
-        /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
-        /// effector stays (bit i of `free`: joint i + 1).
-        #[doc = #invalid]
-        ///
-        /// Angles are in (-pi, pi]; limits are not looked at (`within_limits` does). T(q) differs from t by roundings, of the order of 100
-        /// units times the arm's length; q itself by that over the smallest singular value of the Jacobian, near a double solution by
-        /// its root.
-        ///
-        #rows
-        #[doc = #class]
-        pub fn inverse_kinematics(t: &[[Real; 4]; 4], #argument) -> Solutions {
-            let [x, y, z, _] = *t;
-            #given
-            #body
-        }
-
-        #redundancy
-    }
+    })
 }
