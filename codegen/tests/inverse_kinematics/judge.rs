@@ -226,7 +226,6 @@ macro_rules! reference {
     }};
 }
 
-
 /// Fewer joints than the pose has rows: the posture itself at the poses of random postures and of those with joints at right angles, every posture
 /// that is found meets all rows, and none is found beside such a pose.
 macro_rules! few {
@@ -303,6 +302,8 @@ macro_rules! few {
         assert!(worst < if single { 1e-4 } else { 1e-11 }, "{}: {worst:e}", stringify!($module));
         assert!(complete * 100 >= (poses - poses / 4) * if single { 97 } else { 99 }, "{}: {complete}", stringify!($module));
         assert!(beside * 100 >= poses * if single { 95 } else { 99 }, "{}: {beside} beside", stringify!($module));
+        // Among right angles are postures at which the arm is singular.
+        assert!(special * 10 >= poses / 4 * 7, "{}: {special} with right angles", stringify!($module));
         let mut t = $module::direct_kinematics(&[0.3; DOF]);
         t[0][3] = Real::NAN;
         assert_eq!($ik::inverse_kinematics(&t).verdict, Verdict::Invalid);

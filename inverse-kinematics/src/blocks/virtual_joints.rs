@@ -73,8 +73,10 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
                 let met = settle::<J, N>(&mut kept, arm, &closing, &closing.moved(&best.joints, &step), branch.signs, most);
                 met_all |= met.residual <= most;
             }
-            // A continuum or a double solution of the completed arm near the pose may have postures that no start has led to.
-            lost |= !met_all && best.residual <= 64.0 * sqrt(UNIT_ROUNDOFF) * length;
+            // A continuum of the completed arm near the pose may have postures that no start has led to. Of two that meet the places are known to
+            // the root of rounding, and what is left between them is the square of that.
+            let close = if branch.free != 0 { 64.0 * sqrt(UNIT_ROUNDOFF) } else { 4096.0 * UNIT_ROUNDOFF };
+            lost |= !met_all && best.residual <= close * length;
         }
         lost |= !(best.residual < Real::INFINITY);
     }
