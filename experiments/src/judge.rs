@@ -7,6 +7,10 @@ use crate::model::{digits, number, Expectation, Record, Take, Target, Unit};
 pub struct Line {
     /// The quantity, and how it was taken: `max |e_z| in [5, 20] s`.
     pub what: String,
+    /// The name of the quantity.
+    pub name: String,
+    /// What it is, in words; empty of what is no quantity.
+    pub meaning: &'static str,
     /// The value found, formatted.
     pub found: String,
     /// Its unit.
@@ -20,7 +24,15 @@ pub struct Line {
 impl Line {
     /// A line for what is not a number, and is not as it should be.
     pub fn unmet(what: &str, found: String, expected: &str) -> Line {
-        Line { what: what.into(), found, unit: Unit::None, expected: expected.into(), met: false }
+        Line {
+            what: what.into(),
+            name: String::new(),
+            meaning: "",
+            found,
+            unit: Unit::None,
+            expected: expected.into(),
+            met: false,
+        }
     }
 }
 
@@ -57,7 +69,8 @@ pub fn judge(expectation: &Expectation, record: &Record) -> Line {
         Take::Decay(a, b) => format!("decay of {name} in [{a}, {b}] s"),
     };
     let unit = if matches!(take, Take::Decay(..)) { Unit::PerSecond } else { channel.unit };
-    Line { what, found: digits(found, count), unit, expected, met }
+    let (name, meaning) = (name.clone(), channel.quantity.meaning());
+    Line { what, name, meaning, found: digits(found, count), unit, expected, met }
 }
 
 /// The number that is taken of the record; NaN where there is none, which meets nothing.

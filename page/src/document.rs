@@ -111,7 +111,7 @@ fn header(parts: &Parts<'_>) -> String {
         "<header>\n<h1>{}</h1>\n<p>{joints} joint{}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
          <button type=\"button\" id=\"angle-unit\">angles: rad</button>\n\
          <button type=\"button\" id=\"length-unit\">lengths: m</button>\n\
-         <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n</header>\n",
+         <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"unfold\" title=\"all that is folded in, but runs; of long equations as many as can be printed\">open all</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n</header>\n",
         escape(&manipulator.name),
         if joints == 1 { "" } else { "s" },
         decimal(bodies::total_mass(manipulator)),
@@ -169,7 +169,7 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 
 fn sliders(rows: &[Row]) -> String {
     let mut text = String::from(
-        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always, when Enter is pressed or the field is left; a list of numbers pasted into one sets all joints. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
+        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always, when Enter is pressed or the field is left; a list of numbers sets the joints from there on, or all. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
     );
     for (i, row) in rows.iter().enumerate() {
         let k = i + 1;
@@ -180,8 +180,8 @@ fn sliders(rows: &[Row]) -> String {
             "<div class=\"joint\" data-joint=\"{k}\"><label for=\"q{k}\"><i>q</i><sub>{k}</sub> {name}</label>\
              <input type=\"range\" id=\"q{k}\" step=\"any\">\
              <span class=\"exact\"><input type=\"text\" id=\"q{k}-value\" autocomplete=\"off\" spellcheck=\"false\" aria-label=\"q{k}, exact\" aria-describedby=\"q{k}-unit q{k}-fault\"></span><span class=\"unit\" id=\"q{k}-unit\" data-unit=\"{unit}\">{unit}</span>\
-             <label class=\"rate\"><i>q̇</i> <span class=\"exact\"><input type=\"number\" id=\"dq{k}\" step=\"any\" value=\"0\" aria-label=\"rate of q{k}\" aria-describedby=\"dq{k}-unit\"></span> <span class=\"unit\" id=\"dq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s</span></label>\
-             <label class=\"rate\"><i>q̈</i> <span class=\"exact\"><input type=\"number\" id=\"ddq{k}\" step=\"any\" value=\"0\" aria-label=\"acceleration of q{k}\" aria-describedby=\"ddq{k}-unit\"></span> <span class=\"unit\" id=\"ddq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s²</span></label>\
+             <label class=\"rate\"><i>q̇</i> <span class=\"exact\"><input type=\"text\" autocomplete=\"off\" id=\"dq{k}\" value=\"0\" aria-label=\"rate of q{k}\" aria-describedby=\"dq{k}-unit q{k}-fault\"></span> <span class=\"unit\" id=\"dq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s</span></label>\
+             <label class=\"rate\"><i>q̈</i> <span class=\"exact\"><input type=\"text\" autocomplete=\"off\" id=\"ddq{k}\" value=\"0\" aria-label=\"acceleration of q{k}\" aria-describedby=\"ddq{k}-unit q{k}-fault\"></span> <span class=\"unit\" id=\"ddq{k}-unit\"><span data-unit=\"{unit}\">{unit}</span>/s²</span></label>\
              <span class=\"outside\" id=\"q{k}-outside\" hidden>outside its limits</span><span class=\"outside\" id=\"q{k}-fault\" role=\"status\" hidden></span></div>"
         );
     }

@@ -1,6 +1,8 @@
-//! The equations of a page: what `armgen show` prints, packed, quantity by quantity.
+//! The equations of a page: what `armgen show` prints, packed.
 //!
-//! The texts of an arm of seven joints are 2 MB with their LaTeX; packed they are a quarter of one. Each is unpacked when its section is opened.
+//! The texts of an arm of seven joints are 1 MB with their LaTeX; packed they are a quarter of it. Quantities that stand beside each other repeat
+//! much of each other, so several share a packet: alone, those of a small arm take nearly twice the room. A packet is unpacked when a section of
+//! one of its quantities is opened.
 
 use std::fmt::Write;
 
@@ -17,8 +19,11 @@ use crate::words;
 /// A quantity whose text is longer than this is left out, with the command that prints it.
 const LONGEST: usize = 400_000;
 
-/// All packed texts of a page together, in bytes: where they are more, the longest are left out.
-const TOGETHER: usize = 800_000;
+/// All texts of a page together, in bytes before they are packed: where they are more, the longest are left out.
+const TOGETHER: usize = 2_800_000;
+
+/// No text is added to a packet that would become longer: whoever opens a section waits for all of its packet.
+const PACKET: usize = 131_072;
 
 /// All quantities: those that the page holds, and those that it names only.
 pub(crate) struct Equations {
@@ -34,7 +39,7 @@ struct Quantity {
     name: String,
     symbol: String,
     size: String,
-    /// Packed; none of one that is too long.
+    /// What the script is given, as JSON; none of one that is too long.
     text: Option<String>,
     steps: usize,
 }
@@ -58,10 +63,21 @@ impl Equations {
         }
     }
 
-    /// What the script is given: the packed texts by name.
+    /// What the script is given: the packets, and by the name of each quantity which of them has it.
     pub(crate) fn data(&self) -> Value {
-        let packed = self.quantities.iter().filter_map(|quantity| Some((quantity.name.clone(), json!(quantity.text.as_ref()?))));
-        Value::Object(packed.collect::<Map<_, _>>())
+        let mut packets: Vec<String> = Vec::new();
+        let mut of = Map::new();
+        for quantity in &self.quantities {
+            let Some(text) = &quantity.text else { continue };
+            match packets.last_mut() {
+                Some(last) if last.len() + text.len() < PACKET => last.push(','),
+                _ => packets.push("{".into()),
+            }
+            of.insert(quantity.name.clone(), json!(packets.len() - 1));
+            let _ = write!(packets.last_mut().expect("one was begun"), "{}:{text}", json!(quantity.name));
+        }
+        let packed = parallel_map(&packets, |packet| pack(&format!("{packet}}}")));
+        json!({"of": of, "packets": packed})
     }
 
     /// The section, to be filled as its parts are opened.
@@ -194,7 +210,7 @@ fn quantity(robot: &str, nominal: &Shown, symbolic: Option<&Shown>) -> Quantity 
             "symbolic": other.map(|(value, _)| value),
             "latex": texts,
         });
-        pack(&whole.to_string())
+        whole.to_string()
     });
     let size = match (nominal.rows, nominal.columns) {
         (1, 1) => "a number".to_owned(),

@@ -40,8 +40,12 @@ pub struct Figure {
 /// A line of the table of results.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// The quantity.
+    /// The quantity, and how it was taken: `max |e_z| in [5, 20] s`.
     pub what: String,
+    /// The name of the quantity.
+    pub name: String,
+    /// What the quantity is, in words; may be empty.
+    pub meaning: String,
     /// The value found, with its unit.
     pub found: String,
     /// What was expected.
@@ -153,17 +157,43 @@ pub(crate) fn section(runs: &[Run]) -> String {
                 let _ = write!(text, "<th scope=\"col\">{column}</th>");
             }
             text += "</tr></thead><tbody>\n";
-            for Verdict { what, found, expected, met } in &run.verdicts {
+            for Verdict { what, found, expected, met, .. } in &run.verdicts {
                 let cells = [what, found, expected].map(|cell| format!("<td>{}</td>", escape(cell))).concat();
                 let (class, word) = if *met { ("met", "ok") } else { ("unmet", "OUTSIDE") };
                 let _ = writeln!(text, "<tr class=\"{class}\">{cells}<td>{word}</td></tr>");
             }
             text += "</tbody></table></div>\n";
+            text += &meanings(&run.verdicts);
         }
         text += "<div class=\"plots\"></div><div class=\"figures\"></div></details>\n";
     }
     text
 }
+
+/// What the quantities of a table are, each meaning once.
+fn meanings(verdicts: &[Verdict]) -> String {
+    let mut all: Vec<(&str, Vec<&str>)> = Vec::new();
+    for Verdict { name, meaning, .. } in verdicts.iter().filter(|verdict| !verdict.meaning.is_empty()) {
+        match all.iter_mut().find(|(known, _)| known == meaning) {
+            Some((_, names)) if names.contains(&name.as_str()) => {}
+            Some((_, names)) => names.push(name),
+            None => all.push((meaning, vec![name])),
+        }
+    }
+    let entry = |(meaning, names): &(&str, Vec<&str>)| {
+        let named: Vec<String> = names.iter().take(NAMED).map(|name| format!("<b>{}</b>", escape(name))).collect();
+        format!("{}{}: {}", named.join(", "), if names.len() > NAMED { ", …" } else { "" }, escape(meaning))
+    };
+    let entries: Vec<String> = all.iter().map(entry).collect();
+    if entries.is_empty() {
+        String::new()
+    } else {
+        format!("<p class=\"small\">{}.</p>\n", entries.join("; "))
+    }
+}
+
+/// So many names of one meaning are written out.
+const NAMED: usize = 4;
 
 /// How many of the verdicts are as expected; nothing where there are none.
 fn as_expected(verdicts: &[&Verdict]) -> String {
@@ -176,8 +206,8 @@ fn as_expected(verdicts: &[&Verdict]) -> String {
 }
 
 const CONTROLS: &str = "<div class=\"controls\" id=\"playback\"><button type=\"button\" id=\"log-play\" disabled aria-pressed=\"false\">play</button>\
-<label for=\"time\" id=\"time-of\">time</label><input type=\"range\" id=\"time\" disabled min=\"0\" max=\"1\" value=\"0\" step=\"any\"><output id=\"time-value\" for=\"time\"></output></div>
-<p class=\"small\" id=\"playback-said\">Open a run: the arm follows its log, and the plots have a common cursor; a click into a plot goes to its time.</p>
+<label for=\"time\" id=\"time-of\">time</label><input type=\"range\" id=\"time\" disabled min=\"0\" max=\"1\" value=\"0\" step=\"any\"><span><input type=\"text\" id=\"time-value\" disabled autocomplete=\"off\" aria-label=\"time, s\"> s</span></div>
+<p class=\"small\" id=\"playback-said\">Open a run: the arm follows its log, and the plots have a common cursor; a click into a plot goes to its time, and so does a time that is typed.</p>
 ";
 
 #[cfg(test)]
@@ -205,6 +235,24 @@ mod tests {
         assert_eq!(log.fits(&["a", "b"]), Ok(()));
         assert_eq!(log.fits(&["a", "c"]), Err("its joints are a, b, and the arm's are a, c".into()));
         assert_eq!(read("t,x\n0,1\n").unwrap().fits(&["a"]), Ok(()));
+    }
+
+    #[test]
+    fn a_meaning_stands_once_with_the_names_that_have_it() {
+        let verdict = |name: &str, meaning: &str| Verdict {
+            what: format!("max |{name}|"),
+            name: name.into(),
+            meaning: meaning.into(),
+            found: String::new(),
+            expected: String::new(),
+            met: true,
+        };
+        let all =
+            [verdict("eq_a", "an error"), verdict("w<", "w & more"), verdict("eq_b", "an error"), verdict("eq_a", "an error")];
+        assert_eq!(meanings(&all), "<p class=\"small\"><b>eq_a</b>, <b>eq_b</b>: an error; <b>w&lt;</b>: w &amp; more.</p>\n");
+        assert_eq!(meanings(&[verdict("runs", "")]), "");
+        let many: Vec<Verdict> = ["q1.x", "q1.y", "q1.z", "q2.x", "q2.y"].map(|name| verdict(name, "where")).into();
+        assert!(meanings(&many).ends_with("<b>q2.x</b>, …: where.</p>\n"));
     }
 
     #[test]

@@ -130,7 +130,8 @@ fn hostile_texts_are_inert() {
     let log = Log::read(&csv, |_| hostile.to_owned()).expect("a log");
     let figure =
         String::from("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"><script>hacked=1</script></svg>");
-    let verdict = Verdict { what: hostile.into(), found: hostile.into(), expected: hostile.into(), met: false };
+    let [what, name, meaning, found, expected] = [hostile; 5].map(str::to_owned);
+    let verdict = Verdict { what, name, meaning, found, expected, met: false };
     let run = Run {
         name: hostile.into(),
         title: hostile.into(),

@@ -43,10 +43,12 @@ fn nothing_of_a_name_or_an_expression_is_markup() {
     assert!(!page.contains("<!--"));
 }
 
-/// What the Panda has no determinant for is said without backticks, and with where on the page its rank is seen.
+/// Why an arm of two joints more than rows has no determinant is said without backticks, and with where on the page its rank is seen.
 #[test]
 fn nobody_is_sent_from_the_page_to_the_page() {
-    let page = page("panda7.yaml", include_str!("../../robots/panda7.yaml"));
+    let (head, joint) = ARM.trim_end().split_once("joints:\n").expect("joints");
+    let joints: String = ["one", "two", "three", "four"].map(|name| format!("{}\n", joint.replace("only", name))).concat();
+    let page = page("planar.yaml", &format!("{head}task: [x, y]\njoints:\n{joints}"));
     let (document, _) = page.split_once("<script").expect("a script");
     assert!(document.contains("<a href=\"#singular\">w = √det(J Jᵀ) among the numbers</a>"));
     assert!(!document.contains('`') && !document.contains("armgen page"));

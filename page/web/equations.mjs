@@ -52,38 +52,41 @@ export function equations(data, state, shown) {
         }
     };
     const chosen = (name) => document.querySelector(`input[name="${name}"]:checked`)?.getAttribute("value");
-    const all = /** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("details[data-equation]"));
-    const sections = [...all].map((details) => ({
-        details,
-        /** @type {Promise<Equation> | null} */
-        equation: null,
-    }));
-    const set = async (section) => {
-        const name = section.details.getAttribute("data-equation") ?? "";
-        section.equation ??= unpack(data.equations[name]).then((text) => JSON.parse(text));
-        const equation = await section.equation;
+    const sections = [.../** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("details[data-equation]"))];
+    /** @type {Map<number, Promise<Record<string, Equation>>>} */
+    const packets = new Map();
+    /** An equation; its packet is unpacked once. @param {string} name @returns {Promise<Equation>} */
+    const load = async (name) => {
+        const k = data.equations.of[name];
+        if (!packets.has(k)) packets.set(k, unpack(data.equations.packets[k]).then((text) => JSON.parse(text)));
+        return (await packets.get(k))[name];
+    };
+    /** @param {HTMLDetailsElement} details */
+    const set = async (details) => {
+        const name = details.getAttribute("data-equation") ?? "";
+        const equation = await load(name);
         const symbolic = chosen("form") === "symbolic" && equation.symbolic !== null;
         const form = symbolic ? /** @type {Form} */ (equation.symbolic) : equation.nominal;
-        const quantity = quantityOf(section.details);
-        const content = written(equation, form, chosen("digits") === "exact", quantity !== undefined, () => evaluate(section.details));
+        const quantity = quantityOf(details);
+        const content = written(equation, form, chosen("digits") === "exact", quantity !== undefined, () => evaluate(details));
         if (chosen("form") === "symbolic" && !symbolic) content.prepend(html("p", { class: "small" }, "No name of a parameter stands in it."));
         const button = html("button", { type: "button", class: "copy" }, "copy as LaTeX");
         button.addEventListener("click", () => {
             const latex = equation.latex[symbolic ? 1 : 0] ?? equation.latex[0];
             copy(button, chosen("digits") === "exact" ? latex : sixDigits(latex), `${name} as LaTeX`);
         });
-        const host = section.details.querySelector("div");
+        const host = details.querySelector("div");
         const link = quantity ? [html("a", { href: `#number-${quantity.name}` }, "its numbers")] : [];
         host?.replaceChildren(content, html("div", { class: "controls copies" }, button, ...link));
-        evaluate(section.details);
+        evaluate(details);
     };
-    for (const section of sections) {
-        section.details.addEventListener("toggle", () => {
-            if (!section.details.open) return;
-            if (section.details.querySelector("math")) evaluate(section.details);
-            else set(section);
+    for (const details of sections) {
+        details.addEventListener("toggle", () => {
+            if (!details.open) return;
+            if (details.querySelector("math")) evaluate(details);
+            else set(details);
         });
-        markUses(section.details);
+        markUses(details);
     }
     const key = byId("names");
     const parameters = document.getElementById("parameters");
@@ -98,12 +101,12 @@ export function equations(data, state, shown) {
             // What is set anew has another height: what was switched stays where it is.
             const top = () => input.getBoundingClientRect().top;
             const before = top();
-            await Promise.all(sections.map((section) => (section.details.open ? set(section) : section.details.querySelector("div")?.replaceChildren())));
+            await Promise.all(sections.map((details) => (details.open ? set(details) : details.querySelector("div")?.replaceChildren())));
             scrollBy({ top: top() - before, behavior: "instant" });
         });
     }
     state.on("motion", () => {
-        for (const { details } of sections) if (details.open && quantityOf(details)) evaluate(details);
+        for (const details of sections) if (details.open && quantityOf(details)) evaluate(details);
     });
     addEventListener("beforeprint", () => {
         for (const table of document.querySelectorAll("details[open] .lines")) table.dispatchEvent(new Event("print"));
@@ -115,6 +118,17 @@ export function equations(data, state, shown) {
     };
     addEventListener("hashchange", follow);
     follow();
+    requestAnimationFrame(placeIndices);
+}
+
+/** Without a font of mathematics browsers leave indices on the line of their letters: the style then lowers them. */
+function placeIndices() {
+    const [letter, index] = [math("mi", {}, "t"), math("mn", {}, "1")];
+    const probe = math("math", {}, math("msub", {}, letter, index));
+    byId("equations").append(probe);
+    const [{ bottom, height }, below] = [letter, index].map((element) => element.getBoundingClientRect());
+    document.documentElement.toggleAttribute("data-plain-math", below.bottom - bottom < 0.25 * height);
+    probe.remove();
 }
 
 /** LaTeX with its fractions, and whole numbers of more than six digits, as decimals of six digits. @param {string} latex */

@@ -20,6 +20,17 @@ function raised(exponent) {
     return String(exponent).replace(/./g, (digit) => (digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(digit)]));
 }
 
+/**
+ * The unit of w and det J: m for each row of a velocity, less one for each joint that slides; empty where there is none, as of more joints than
+ * rows that turn and slide. @param {{task: number[], rows: {type: string}[]}} data
+ */
+export function unitOfManipulability({ task, rows }) {
+    const slides = rows.filter((row) => row.type === "prismatic").length;
+    const power = task.filter((row) => row < 3).length - slides;
+    if (power === 0 || (slides > 0 && task.length !== rows.length)) return "";
+    return power === 1 ? "m" : `m${raised(power)}`;
+}
+
 /** The variable of joint k from 1, as it stands in a text. @param {number | string} k @param {string} [letter] */
 export function variable(k, letter = "q") {
     return letter + String(k).replace(/\d/g, (digit) => "₀₁₂₃₄₅₆₇₈₉"[Number(digit)]);
@@ -61,6 +72,13 @@ export function fromUnit(value, unit) {
     if (unit === "m" && units.length === "mm") return value / 1000;
     if (unit === "rad" && units.angle === "deg") return (value * Math.PI) / 180;
     return value;
+}
+
+/** The digits of a number in the unit of the reader: the fewest from fifteen on that are this one in m or rad again, so that 30 degrees are not 29.999999999999996. @param {number} value @param {string} unit */
+export function digitsIn(value, unit) {
+    const whole = inUnit(value, unit);
+    const brief = [15, 16, 17].map((count) => Number(whole.toPrecision(count))).find((x) => fromUnit(x, unit) === value);
+    return exact(brief ?? whole);
 }
 
 /** The name of the unit that the reader sees. @param {string} unit */

@@ -6,6 +6,7 @@
 
 import { byId, html, set, svg } from "./dom.mjs";
 import { short } from "./format.mjs";
+import { typed } from "./formula.mjs";
 import { unpack } from "./pack.mjs";
 import { Arm } from "./scene.mjs";
 import { origin } from "./vector.mjs";
@@ -27,13 +28,25 @@ const KINDS = [
     ["e_", "errors of the end effector, desired − actual"],
 ];
 
+/** The titles of columns whose names say too little. */
+const TITLES = {
+    __proto__: null,
+    z_norm: "norm of z = DᵀQξ, the weighed error of robust control",
+    w: "manipulability w of the task",
+    w_followed: "manipulability w of the rows that are followed",
+    loop_gain: "sampling period times the largest eigenvalue of JᵀKJ, stable below 2",
+    angle: "turn of the end effector about z₀",
+    distance: "distance of the end effector from the z₀ axis",
+    velocity_step: "largest change of the velocity in one sample",
+};
+
 /** Columns by plot: kind, title, unit, places. @param {Log} log */
 export function plots(log) {
     const all = new Map();
     log.names.forEach((name, i) => {
         if (i === 0) return;
         const kind = KINDS.find(([prefix]) => name.startsWith(prefix));
-        const title = kind ? kind[1] : ["x", "y", "z"].includes(name) ? "position of the end effector" : name.replaceAll("_", " ");
+        const title = kind ? kind[1] : ["x", "y", "z"].includes(name) ? "position of the end effector" : (TITLES[name] ?? name.replaceAll("_", " "));
         const key = `${title}|${log.units[i]}`;
         if (!all.has(key)) all.set(key, { title, unit: log.units[i], columns: [] });
         all.get(key).columns.push(i);
@@ -96,8 +109,8 @@ export function logs(data, state, picture) {
         k = sampleAt(log.columns[0], t);
         time.value = String(t);
         // That of the sample which is shown, as in the legends.
-        value.textContent = `${short(shownTime())} s`;
-        time.setAttribute("aria-valuetext", value.textContent);
+        value.value = short(shownTime());
+        time.setAttribute("aria-valuetext", `${value.value} s`);
         if (active.places.length > 0) {
             const q = active.places.map((place) => log.columns[place][k]);
             const rates = active.rates.map((place) => log.columns[place][k] ?? 0);
@@ -117,7 +130,7 @@ export function logs(data, state, picture) {
         const [own, lacking, taken, wrong] = run.rates.length > 0 ? ["q and q̇", "Accelerations", "q̈ is that", "τ is"] : ["q", "Rates", "q̇ and q̈ are those", "C, τ and T are"];
         const held = `${lacking} are not in the log of ${run.name}: ${taken} of the fields here, 0 unless others were typed, and ${wrong} not the run's.`;
         byId("followed").textContent = run.places.length > 0 ? held : "";
-        for (const control of [play, time]) control.disabled = false;
+        for (const control of [play, time, value]) control.disabled = false;
         said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take its ${own}, and the parameters of the data sheet, whatever the run had. ${held}` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
         picture.sight.keep("run", run.places.length > 0 ? byId("logs") : null);
         show(again ? time.valueAsNumber : Number(times[0] ?? 0), false);
@@ -171,6 +184,11 @@ export function logs(data, state, picture) {
     time.addEventListener("input", () => {
         pause();
         show(time.valueAsNumber, false);
+    });
+    value.addEventListener("focus", pause);
+    value.addEventListener("change", () => {
+        const t = typed(value.value);
+        show(Number.isFinite(t) ? Math.max(Number(time.min), Math.min(Number(time.max), t)) : shownTime(), false);
     });
     // Arrow keys go from sample to sample.
     time.addEventListener("keydown", (event) => {
@@ -250,7 +268,7 @@ export function logs(data, state, picture) {
     const leave = () => {
         pause();
         active = null;
-        for (const control of [play, time]) control.disabled = true;
+        for (const control of [play, time, value]) control.disabled = true;
         byId("followed").textContent = "";
         timed.textContent = "time";
         said.textContent = "No run is followed.";

@@ -4,7 +4,7 @@
  */
 
 import { byId, copy, html } from "./dom.mjs";
-import { exact, inWords, short, variable } from "./format.mjs";
+import { exact, inWords, short, unitOfManipulability, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
 import { condition, determinant, gram, manipulability, ROUNDING } from "./linear.mjs";
 import { VELOCITY } from "./lost.mjs";
@@ -32,7 +32,8 @@ export function numbers(data, state, arm) {
     const parts = [["pose", "Pose and Jacobian"], ["singular", "Singular postures"], ["motion", "Equations of motion"]].map(([id, title]) =>
         html("section", { id, "aria-labelledby": `${id}-title` }, html("h3", { id: `${id}-title` }, title)),
     );
-    parts[1].append(html("p", { id: "singular-where" }, ...whereSingular(data)), ...twoJoints(data, state), ...["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" })));
+    // Values that suffice come before those that are needed.
+    parts[1].append(...twoJoints(data, state), html("p", { id: "singular-where" }, ...whereSingular(data)), ...["lost-motion", "singular-why"].map((id) => html("p", { id, class: "near" })));
     let part = 0;
     for (const { element, quantity } of shown) {
         part = quantity.singular ? 1 : part === 1 ? 2 : part;
@@ -83,7 +84,7 @@ function quantities(data, state, arm) {
     ];
     const rows = data.task.map((row) => VELOCITY[row]).join(" ");
     const task = () => data.task.map((row) => robot.geometricJacobian(state.q)[row]);
-    if (data.task.length === n) list.push({ ...scalar("det", "det J", `Determinant of the rows ${rows} of J`, "", () => (manipulability(task()) === 0 ? 0 : determinant(task()))), singular: true });
+    if (data.task.length === n) list.push({ ...scalar("det", "det J", `Determinant of the rows ${rows} of J`, unitOfManipulability(data), () => (manipulability(task()) === 0 ? 0 : determinant(task()))), singular: true });
     (data.determinant?.factors ?? []).forEach((text, k) => {
         const factor = parse(text);
         const lookup = (name) => state.q[Number(name.slice(1)) - 1];
@@ -101,7 +102,7 @@ function quantities(data, state, arm) {
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
     const words = ["", "⚠ nearly singular", "⚠ singular"];
     const singular = () => (told ? 0 : Number(condition(task()) >= SINGULAR) + Number(condition(task()) === Infinity));
-    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, "", () => manipulability(task())), singular: true, near: singular, words });
+    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, unitOfManipulability(data), () => manipulability(task())), singular: true, near: singular, words });
     list.push({ ...scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())), singular: true });
     if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), size: size.inertia, rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {
@@ -133,21 +134,25 @@ function zeroButtons(text, data, state) {
     });
 }
 
-/** The values of two joints that make a longer arm singular, searched for when they are asked for; nothing of other arms. @param {any} data @param {import("./state.mjs").State} state */
+/** The values of two joints that make a longer arm singular, searched for once the page is drawn; nothing of other arms. @param {any} data @param {import("./state.mjs").State} state */
 function twoJoints(data, state) {
     if (!data.firstSix?.singular?.every((text) => text?.startsWith("q"))) return [];
-    const list = html("ul");
-    const details = html("details", {}, html("summary", {}, "Two joints that make it singular, whatever the others do"), list);
+    const [list, printed] = [html("div", { class: "controls" }), html("p", { class: "print-only" })];
+    const note = html("p", { class: "small" }, "In rad, found by a search, which can miss some. Other singular postures tie three joints or more.");
+    const details = html("details", { open: true }, html("summary", {}, "Singular at these values of two joints, whatever the others do"), list, printed, note);
     details.addEventListener("toggle", () => {
         if (list.firstChild) return;
         const w = (q) => Math.sqrt(Math.abs(determinant(gram(robot.geometricJacobian(q)))));
-        const all = pairs(data, w).map((pair) => {
-            const button = html("button", { type: "button" }, `set ${pair.map(([i, x]) => `${variable(i + 1)} = ${short(x)}`).join(", ")}`);
-            button.addEventListener("click", () => state.move(state.q.map((x, i) => pair.find(([k]) => k === i)?.[1] ?? x)));
-            return html("li", {}, button);
-        });
-        list.append(...all);
-        details.append(html("p", { class: "small" }, "In rad, found by a search, which can miss some. Other singular postures tie three joints or more."));
+        const all = pairs(data, w);
+        const words = (pair) => pair.map(([i, x]) => `${variable(i + 1)} = ${short(x)}`).join(", ");
+        printed.textContent = `${all.map(words).join("; ")}.`;
+        list.append(
+            ...all.map((pair) => {
+                const button = html("button", { type: "button" }, `set ${words(pair)}`);
+                button.addEventListener("click", () => state.move(state.q.map((x, i) => pair.find(([k]) => k === i)?.[1] ?? x)));
+                return button;
+            }),
+        );
     });
     return [details];
 }

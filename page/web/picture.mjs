@@ -4,7 +4,7 @@ import { cuboid } from "./bodies.mjs";
 import { dimensions } from "./dimension.mjs";
 import { byId, set, svg } from "./dom.mjs";
 import { exact, short, withUnit } from "./format.mjs";
-import { box } from "./labels.mjs";
+import { box, settle } from "./labels.mjs";
 import { Arm, step, unit } from "./scene.mjs";
 import { narrow, Sight } from "./sight.mjs";
 import { Ball, Box, drawSolids } from "./solids.mjs";
@@ -13,8 +13,8 @@ import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
 
 const LAYERS = ["grid", "points", "trail", "ghosts", "links", "bodies", "ellipsoids", "frames", "lost", "dimensions", "marks", "gravity"];
 
-/** The height of the badge with what is around it, in pixels of the window. */
-const BADGE = 45;
+/** The height of a badge of two lines with what is around it, in pixels of the window. */
+const BADGE = 55;
 
 /** The narrowest picture that is drawn, px. */
 const LEAST = 100;
@@ -141,8 +141,10 @@ export class Picture {
         const length = 0.11 * this.arm.size;
         const { pixel } = this.view;
         this.names = [];
+        /** @type {{x: number, y: number, names: string[], text: Element}[]} */
+        const shared = [];
         frames.forEach((frame, k) => {
-            const { element, axes, text } = this.frames[k];
+            const { name, element, axes, text } = this.frames[k];
             const at = origin(frame);
             element.setAttribute("data-origin", at.map(exact).join(" "));
             const [x, y] = this.view.project(at);
@@ -150,13 +152,19 @@ export class Picture {
                 const [u, v] = this.view.project(along(at, length, column(frame, j)));
                 set(axis, { x1: x.toFixed(1), y1: y.toFixed(1), x2: u.toFixed(1), y2: v.toFixed(1) });
             });
-            // Frames at one place get their names beside each other.
-            const own = { x: x + 5, y: y + 3, width: (4 + 8 * this.frames[k].name.length) * pixel, height: 13 * pixel };
-            const next = () => this.names.find((other) => Math.abs(other.y - own.y) < own.height && own.x < other.x + other.width && other.x < own.x + own.width);
-            for (let other = next(); other; other = next()) own.x = other.x + other.width + 0.1;
-            this.names.push(own);
-            set(text, { x: own.x.toFixed(1), y: (own.y + 11 * pixel).toFixed(1) });
+            // Frames at one place share a name: 3, 4, e.
+            const known = shared.find((other) => Math.hypot(other.x - x, other.y - y) < 3);
+            if (known) known.names.push(name);
+            else shared.push({ x, y, names: [name], text });
+            text.textContent = "";
         });
+        for (const { x, y, names, text } of shared) {
+            text.textContent = names.join(", ");
+            const places = [14, -5, 28, -19].flatMap((off) => [5, -5].map((by) => ({ x: x + by, y: y + off * pixel, end: by < 0 })));
+            const { box, at } = settle(text.textContent, places, pixel, this.names);
+            this.names.push(box);
+            set(text, at);
+        }
     }
 
     drawBodies() {
@@ -209,7 +217,7 @@ export class Picture {
         const frames = byId("show-frames").checked ? this.names.map(({ x, y, width, height }) => ({ x: x - 2, y: y - 3, width: width + 4, height: height + 6 })) : [];
         const badge = byId("singular-posture").textContent;
         const wide = badge.length * 7.4 * this.unit + 24;
-        const lines = narrow.matches ? 1 : Math.ceil(wide / (WIDTH - 16));
+        const lines = Math.ceil(wide / (WIDTH - 16));
         const badges = badge ? [{ x: 0, y: 0, width: Math.min(wide, WIDTH), height: (14 + 20 * lines) * this.unit }] : [];
         return [...frames, ...others, box("gravity 9.81 m/s²", { x: 12, y: HEIGHT - 8, end: false }, pixel), { x: 20, y: HEIGHT - 104, width: 52, height: 84 }, ...badges];
     }

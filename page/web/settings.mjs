@@ -3,6 +3,9 @@
 import { byId, html } from "./dom.mjs";
 import { short, units } from "./format.mjs";
 
+/** Nodes of equations from which on no more are opened at once: browsers take minutes to print many more. */
+const NODES = 12000;
+
 /** @param {import("./state.mjs").State} state */
 export function settings(state) {
     const toggle = (id, kind, names, title) => {
@@ -34,6 +37,24 @@ export function settings(state) {
     });
     name();
     byId("print").addEventListener("click", () => window.print());
+    const unfold = byId("unfold");
+    unfold.addEventListener("click", async () => {
+        const open = unfold.textContent === "open all";
+        unfold.textContent = open ? "fold all" : "open all";
+        // Runs move the arm when they are opened.
+        const all = /** @type {NodeListOf<HTMLDetailsElement>} */ (document.querySelectorAll("#content details:not([data-log], #check details)"));
+        const isEquation = (details) => details.matches("[data-equation]");
+        for (const details of all) {
+            const full = isEquation(details) && document.querySelectorAll("math *").length > NODES;
+            if (details.open === open || (open && full)) continue;
+            details.open = open;
+            // One after the other: an equation is set when it is opened, and one with more lines than are set at once stays folded in.
+            const isBusy = () => open && isEquation(details) && (!details.querySelector(".copies") || details.querySelector("[aria-busy=true]"));
+            do await new Promise(requestAnimationFrame);
+            while (isBusy());
+            if (open && details.querySelector(".lines + .controls > :not([hidden])")) details.open = false;
+        }
+    });
     // Sliders are not printed: the posture that the numbers hold for is said in words.
     const posture = html("p", { class: "print-only" });
     const folded = html("p", { class: "print-only small" });

@@ -5,7 +5,7 @@
  */
 
 import { byId, copy } from "./dom.mjs";
-import { exact, fromUnit, inUnit, short, unitName } from "./format.mjs";
+import { digitsIn, fromUnit, inUnit, short, unitName, variable } from "./format.mjs";
 import { typed } from "./formula.mjs";
 import { range } from "./state.mjs";
 
@@ -30,6 +30,18 @@ export function sliders(data, state) {
             acceleration: byId(`ddq${k}`),
         };
     });
+    /** Sets the joints from one on, or all of them where there is a number for each. @param {number} i @param {string} text */
+    const fill = (i, text) => {
+        const [words, { field, fault }] = [listed(text), parts[i]];
+        typing.delete(field);
+        const first = words.length === parts.length ? 0 : i;
+        const fits = first + words.length <= parts.length;
+        fault.hidden = fits;
+        fault.textContent = `${words.length} numbers: a posture has ${parts.length}, and from ${variable(i + 1)} on there are ${parts.length - i} joints`;
+        if (!fits) return;
+        refused.delete(field);
+        state.move(state.q.map((x, k) => (words[k - first] === undefined ? x : meant(words[k - first], parts[k].unit) + 0)));
+    };
     parts.forEach((part, i) => {
         [part.range.min, part.range.max] = range(data.rows[i]).map(String);
         part.range.addEventListener("input", () => {
@@ -58,47 +70,42 @@ export function sliders(data, state) {
             // What is left standing and is no number is said to be none.
             field.addEventListener("change", () => {
                 if (typing.has(field)) take();
-                const { badInput } = field.validity;
                 const text = field.value.trim();
-                const wrong = badInput || (text !== "" && !Number.isFinite(typed(text)));
+                const wrong = text !== "" && !Number.isFinite(typed(text));
+                if (wrong && field === part.field && isList(text)) return fill(i, text);
                 // Digits that were added to a number may have been meant to take its place.
                 const sum = !wrong && !ofPi(text) && Number.isNaN(Number(text.replaceAll("−", "-")));
                 part.fault.hidden = !wrong && !sum;
-                part.fault.textContent = badInput ? "this field takes digits alone" : sum ? `${text} was taken for ${short(typed(text))}` : fault(text, unit);
+                part.fault.textContent = sum ? `${text} was taken for ${short(typed(text))}` : fault(text, unit);
                 if (wrong) return;
                 refused.delete(field);
-                field.value = exact(inUnit(values()[i], unit));
+                field.value = digitsIn(values()[i], unit);
                 field.removeAttribute("aria-invalid");
                 if (document.activeElement === field) field.select();
             });
             field.addEventListener("keydown", (event) => {
-                if (event.key !== "Escape" || !typing.delete(field)) return;
-                field.value = exact(inUnit(values()[i], unit));
-                field.select();
+                if (event.key === "Escape" && typing.delete(field)) {
+                    field.value = digitsIn(values()[i], unit);
+                    field.select();
+                }
+                const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
+                if (!sign || event.ctrlKey || event.metaKey || event.altKey) return;
+                event.preventDefault();
+                if (typing.has(field)) field.dispatchEvent(new Event("change"));
+                const step = unitName(unit) === unit ? 0.01 : 1;
+                values()[i] = fromUnit(Number((inUnit(values()[i], unit) + sign * step).toPrecision(15)), unit);
+                state.changed("motion");
             });
             selectWhenEntered(field);
         };
         listen(part.field, () => state.q, part.unit);
-        part.field.addEventListener("paste", (event) => {
-            const words = listed(event.clipboardData?.getData("text") ?? "");
-            if (words.length < 2) return;
-            event.preventDefault();
-            typing.delete(part.field);
-            const fits = words.length === parts.length;
-            part.fault.hidden = fits;
-            if (fits) return state.move(words.map((word, k) => meant(word, parts[k].unit) + 0));
-            part.fault.textContent = `${words.length} numbers were pasted; a posture of this arm has ${parts.length}`;
-        });
         listen(part.rate, () => state.dq, part.unit);
         listen(part.acceleration, () => state.ddq, part.unit);
-        part.field.addEventListener("keydown", (event) => {
-            const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
-            if (!sign || event.ctrlKey || event.metaKey || event.altKey) return;
+        part.field.addEventListener("paste", (event) => {
+            const text = event.clipboardData?.getData("text") ?? "";
+            if (!isList(text)) return;
             event.preventDefault();
-            if (typing.has(part.field)) part.field.dispatchEvent(new Event("change"));
-            const step = unitName(part.unit) === part.unit ? 0.01 : 1;
-            state.q[i] = fromUnit(inUnit(state.q[i], part.unit) + sign * step, part.unit);
-            state.changed("motion");
+            fill(i, text);
         });
     });
     const show = () => {
@@ -134,7 +141,7 @@ export function sliders(data, state) {
     // In the units of the fields, so that it can be pasted into one of them.
     byId("copy-q").addEventListener("click", () => {
         const used = [...new Set(parts.map(({ unit }) => unitName(unit)))].join(" and ");
-        copy(byId("copy-q"), `[${state.q.map((x, i) => exact(inUnit(x, parts[i].unit))).join(", ")}]`, `q in ${used}`);
+        copy(byId("copy-q"), `[${state.q.map((x, i) => digitsIn(x, parts[i].unit)).join(", ")}]`, `q in ${used}`);
     });
 }
 
@@ -150,18 +157,24 @@ function selectWhenEntered(field) {
     });
 }
 
-/** The numbers of a list, as other programs write one: [0.1, -pi/4, 0], or one a line; none of what is no list. @param {string} text */
+/** The numbers of a list, as other programs write one: [0.1, -pi/4, 0], or one a line, with a dash as in YAML or without; none of what is no list. @param {string} text */
 export function listed(text) {
-    const inside = /^[^[({]*[[({]+([^\])}]*)[\])}]+[\s;]*$/.exec(text)?.[1] ?? text;
+    const inside = /^[^[({]*[[({]+([^\])}]*)[\])}]+[\s;]*$/.exec(text)?.[1] ?? text.replace(/^\s*- /gm, "");
     const words = inside.split(/[\s,;]+/).filter((word) => word !== "");
     return words.every((word) => Number.isFinite(typed(word))) ? words : [];
 }
 
+/** A number, or several apart, with commas for their points: 1,5, or 0,1; 0,2. */
+const COMMAS = /^\s*[-+−]?\d+,\d+([\s;]+[-+−]?\d+,\d+)*\s*$/;
+
+/** Whether a text is several numbers. @param {string} text */
+function isList(text) {
+    return listed(text).length > 1 && !COMMAS.test(text);
+}
+
 /** Why a text is no number. @param {string} text @param {string} unit */
 function fault(text, unit) {
-    const several = listed(text);
-    if (/^\s*[-+−]?\d+,\d+\s*$/.test(text)) return `“${text}” is no number: a decimal point is a point, ${text.trim().replace(",", ".")}`;
-    if (several.length > 1) return `“${text}” are ${several.length} numbers: a posture is pasted as a whole, not typed`;
+    if (COMMAS.test(text)) return `“${text}” has commas for points: write ${text.trim().replaceAll(",", ".")}`;
     return `“${text}” is no number: digits in ${unitName(unit)}, pi in ${unit}, + − * / and parentheses are`;
 }
 
@@ -179,7 +192,7 @@ function ofPi(text) {
 function write(field, value, unit) {
     if (typing.has(field) || meant(field.value, unit) === value || refused.get(field) === value) return false;
     refused.delete(field);
-    field.value = exact(inUnit(value, unit));
+    field.value = digitsIn(value, unit);
     field.removeAttribute("aria-invalid");
     return true;
 }

@@ -3,7 +3,7 @@
  */
 
 import { byId, html, svg } from "./dom.mjs";
-import { inUnit, short, unitName, variable, withUnit } from "./format.mjs";
+import { inUnit, short, unitName, unitOfManipulability, variable, withUnit } from "./format.mjs";
 import { evaluate, parse, zeros } from "./formula.mjs";
 import { determinant, gram, manipulability, outline, eigen } from "./linear.mjs";
 import { extremes } from "./reach.mjs";
@@ -84,8 +84,8 @@ function views(points, ends, ranges) {
     const extent = (/** @type {number[]} */ [low, high]) => `${about(low)} to ${about(high)}`;
     const [x, y, z] = ends.axes.map(extent);
     return [
-        picture(`side: distance from the z axis ${extent(ends.away)}, z ${z}`, ["distance", "z"], points.map(([x, y, z]) => [Math.hypot(x, y), z])),
-        picture(`top: x ${x}, y ${y}`, ["x", "y"], points),
+        picture(`From the side, all directions about the z axis laid over each other: distance from it ${extent(ends.away)}, z ${z}.`, ["distance", "z"], points.map(([x, y, z]) => [Math.hypot(x, y), z])),
+        picture(`From above, all heights laid over each other: x ${x}, y ${y}.`, ["x", "y"], points),
         html("p", {}, `Reach: ${about(size)} from the origin of the base. These lengths are the extremes within the limits, searched for from the outermost of ${points.length} postures, whose points are shown; a search can miss a farther one${ranges && `. ${ranges}`}.`),
     ];
 }
@@ -198,9 +198,11 @@ function map(data, state, picture) {
         context.strokeStyle = "#ff3b30";
         context.lineWidth = 2;
         context.strokeRect(((state.q[i] - a) / (b - a)) * SIDE - 5, SIDE - ((state.q[j] - c) / (d - c)) * SIDE - 5, 10, 10);
+        const held = state.q.flatMap((x, k) => (k === i || k === j ? [] : [`${variable(k + 1)} = ${withUnit(x, unit(k))}`]));
+        const size = `${short(largest)} ${unitOfManipulability(data)}`.trim();
         byId("w-said").textContent =
-            `Across: ${variable(i + 1)} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: ${variable(j + 1)} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
-            `w from 0 (dark) to ${short(largest)} (bright), the least that is drawn ${short(Number(smallest.toPrecision(3)))} at ${variable(i + 1)} = ${withUnit(Number(at(lowest % CELLS, a, b).toPrecision(3)), unit(i))}, ${variable(j + 1)} = ${withUnit(Number(at(Math.floor(lowest / CELLS), c, d).toPrecision(3)), unit(j))}${square ? ", white lines where a factor of det J changes its sign" : ""}; the square is the posture that is shown. `;
+            `${held.length > 0 ? `The slice of all postures at ${held.join(", ")}. ` : ""}Across: ${variable(i + 1)} from ${withUnit(a, unit(i))} to ${withUnit(b, unit(i))}; up: ${variable(j + 1)} from ${withUnit(c, unit(j))} to ${withUnit(d, unit(j))}; ` +
+            `w from 0 (dark) to ${size} (bright), the least that is drawn ${short(Number(smallest.toPrecision(3)))} at ${variable(i + 1)} = ${withUnit(Number(at(lowest % CELLS, a, b).toPrecision(3)), unit(i))}, ${variable(j + 1)} = ${withUnit(Number(at(Math.floor(lowest / CELLS), c, d).toPrecision(3)), unit(j))}${square ? ", white lines where a factor of det J changes its sign" : ""}; the square is the posture that is shown. `;
         byId("w-said").append(html("a", { href: "#singular" }, "Where the arm is singular"));
     };
     details.addEventListener("toggle", draw);

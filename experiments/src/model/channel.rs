@@ -80,6 +80,55 @@ pub enum Quantity {
     Posture(PostureQuantity, usize),
 }
 
+impl Quantity {
+    /// What it is, for whom its name does not say it.
+    pub fn meaning(self) -> &'static str {
+        use JointQuantity as J;
+        match self {
+            Quantity::Time => "time",
+            Quantity::Joint(J::Position, _) => "joint variable",
+            Quantity::Joint(J::Error, _) => "error of a joint, desired minus actual",
+            Quantity::Joint(J::Rate, _) => "rate of a joint",
+            Quantity::Joint(J::Effort, _) => "torque or force of a joint",
+            Quantity::Tip(_) => "position of the end effector",
+            Quantity::DesiredTip(_) => "desired position of the end effector",
+            Quantity::TaskError(_) => "error of the end effector, desired minus actual",
+            Quantity::Angle => "turn of the end effector about z0",
+            Quantity::Speed => "speed of the end effector",
+            Quantity::Acceleration => "size of the acceleration of the end effector",
+            Quantity::TurnRate => "rate of the turn about z0",
+            Quantity::TurnAcceleration => "acceleration of the turn about z0",
+            Quantity::Distance => "distance of the end effector from the z0 axis",
+            Quantity::VelocityStep => "change of the end effector's velocity in one sample, along the axis where it is largest",
+            Quantity::Manipulability => "manipulability of the task, the root of det(J Jᵀ)",
+            Quantity::FollowedManipulability => "manipulability of the rows that are followed",
+            Quantity::LoopGain => "sampling period times the largest eigenvalue of Jᵀ K J: the loop of the transpose is stable below 2",
+            Quantity::ZNorm => "norm of z = DᵀQξ, the weighed error of robust control",
+            Quantity::Estimate(_) => "estimate of a parameter by adaptive control",
+            Quantity::SpectralRadius => {
+                "largest spectral radius of the sampled loop about rest along the path, stable below 1; with the estimate of the start"
+            }
+            Quantity::DelayedSpectralRadius => "that spectral radius with one sample of delay",
+            Quantity::StablePeriod => {
+                "largest stable sampling period: up to it that spectral radius stays below 1; with the estimate of the start"
+            }
+            Quantity::RestRadius => "largest spectral radius of the sampled loop about rest, stable below 1",
+            Quantity::RestPeriod => "largest sampling period at which the loop is stable about rest",
+            Quantity::MotionGrowth => "largest growth of a small deviation in motion",
+            Quantity::MotionRate => "rate at which a small deviation goes on growing in motion",
+            Quantity::MotionLostAt => "when a joint leaves its reference by more than 1 rad or m, without noise",
+            Quantity::LostAt => "when a joint is first off by more than 0.1 rad or m",
+            Quantity::RateLimitedAt => "when a rate was first cut to its limit",
+            Quantity::EndsAt => "end of the path",
+            Quantity::PosturesAtStart => "number of postures that reach the first pose of the path",
+            Quantity::BranchEndsAt => "when the branch of postures ends that is followed",
+            Quantity::Stops => "largest miss of a stop",
+            Quantity::Via(_) => "least distance to a via point",
+            Quantity::Posture(of, _) => of.meaning(),
+        }
+    }
+}
+
 /// Quantities of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointQuantity {
@@ -142,6 +191,19 @@ impl PostureQuantity {
             PostureQuantity::Force(i) => format!("force_{}", i + 1),
             PostureQuantity::Condition => "condition".into(),
             PostureQuantity::Distance => "distance".into(),
+        }
+    }
+
+    fn meaning(self) -> &'static str {
+        match self {
+            PostureQuantity::Tip(_) => "position of the end effector at a posture",
+            PostureQuantity::Manipulability => "manipulability at a posture, the root of det(J Jᵀ)",
+            PostureQuantity::Heading => "angle of the end effector's y axis in the plane",
+            PostureQuantity::Velocity(_) => "semi-axis of the velocity ellipsoid in the plane",
+            PostureQuantity::Direction(_) => "direction of that semi-axis",
+            PostureQuantity::Force(_) => "semi-axis of the force ellipsoid in the plane",
+            PostureQuantity::Condition => "condition number of the Jacobian in the plane",
+            PostureQuantity::Distance => "distance to a singular posture",
         }
     }
 

@@ -35,18 +35,44 @@ fn typing_counts_when_it_is_finished() {
              const event = new ClipboardEvent('paste', { clipboardData, cancelable: true, bubbles: true }); field.dispatchEvent(event); \
              const fault = document.getElementById('q2-fault'); \
              seen.push([event.defaultPrevented, [1, 2, 3, 4].map((k) => document.getElementById(`q${k}-value`).value), fault.hidden ? '' : fault.textContent]); }; \
-         paste('[0.1, -pi/4, 0.3, -0]'); paste('array([0.1, 0.2])'); paste('2*(pi - 1)/3'); paste('1;2\\n3\\t4'); \
-         document.getElementById('angle-unit').click(); paste('90 pi/4 0.5 0'); return seen; })()",
+         paste('[0.1, -pi/4, 0.3, -0]'); paste('array([0.5, 0.2])'); paste('2*(pi - 1)/3'); paste('1,5'); paste('1,2,3,4,5'); paste('1;2\\n3\\t4'); \
+         paste('- 7\\n- 8'); document.getElementById('angle-unit').click(); paste('90 pi/4 0.5 0'); return seen; })()",
     );
-    let first = ["0.1", "-0.7853981633974483", "0.3", "0"];
+    // A list of all joints is a posture, another one goes on from the joint whose field it is pasted into.
+    let from_there_on = ["0.1", "0.5", "0.2", "0"];
+    let too_many = "5 numbers: a posture has 4, and from q₂ on there are 3 joints";
     let expected = serde_json::json!([
-        [true, first, ""],
-        [true, first, "2 numbers were pasted; a posture of this arm has 4"],
-        [false, first, "2 numbers were pasted; a posture of this arm has 4"],
+        [true, ["0.1", "-0.7853981633974483", "0.3", "0"], ""],
+        [true, from_there_on, ""],
+        [false, from_there_on, ""],
+        [false, from_there_on, ""],
+        [true, from_there_on, too_many],
         [true, ["1", "2", "3", "4"], ""],
+        [true, ["1", "7", "8", "4"], ""],
         [true, ["90", "45", "0.5", "0"], ""]
     ]);
     assert_eq!(pasted, expected);
+    // Degrees stand as they were typed, in rates as well; commas for points are named, and a list counts typed as pasted.
+    let typed = tab.run(
+        "(() => { const seen = []; const type = (id, text) => { const field = document.getElementById(id), fault = document.getElementById(`${id.match(/q\\d/)[0]}-fault`); \
+             field.value = text; for (const kind of ['input', 'change']) field.dispatchEvent(new Event(kind, { bubbles: true })); \
+             seen.push([field.value, fault.hidden ? '' : fault.textContent]); }; \
+         type('q1-value', '30'); type('dq1', '30'); type('dq1', 'pi/6'); type('ddq1', '1,5'); type('q2-value', '0,1; 0,2'); type('q2-value', '10, 0.2'); \
+         seen.push(document.getElementById('q3-value').value, robot.directKinematics([1, 2, 3, 4].map((k) => [30 * Math.PI / 180, 10 * Math.PI / 180, 0.2, 0][k - 1]))[0][3] === \
+             Number(document.querySelector('[data-quantity=direct_kinematics][data-row=\"1\"][data-column=\"4\"]').dataset.value)); return seen; })()",
+    );
+    let commas = |text: &str, points: &str| format!("“{text}” has commas for points: write {points}");
+    let expected = serde_json::json!([
+        ["30", ""],
+        ["30", ""],
+        ["30", ""],
+        ["1,5", commas("1,5", "1.5")],
+        ["0,1; 0,2", commas("0,1; 0,2", "0.1; 0.2")],
+        ["10", ""],
+        "0.2",
+        true
+    ]);
+    assert_eq!(typed, expected);
     tab.close();
 }
 
@@ -85,6 +111,15 @@ fn what_is_left_open_is_said() {
          button('show fewer').click(); return [more > first, (await ready()) === first]; })()",
     );
     assert_eq!(folded, serde_json::json!([true, true]));
+    // All that is folded in is opened by one button, as long as the equations can be printed, and folded again.
+    let all = tab.run(
+        "(async () => { const button = document.getElementById('unfold'), seen = []; \
+         const open = () => document.querySelectorAll('#content details[open]').length; \
+         for (let k = 0; k < 2; k++) { button.click(); let before = -1; while (before !== open()) { before = open(); await new Promise((done) => setTimeout(done, 700)); } \
+             seen.push([button.textContent, document.getElementById('w-map').open, document.querySelectorAll('[data-equation]:not([open])').length > 5, \
+                        [...document.querySelectorAll('[data-equation][open]:not([data-equation=inverse_dynamics])')].every((one) => !one.querySelector('.lines + .controls > :not([hidden])'))]); } return seen; })()",
+    );
+    assert_eq!(all, serde_json::json!([["fold all", true, true, true], ["open all", false, true, true]]));
     tab.close();
 }
 
@@ -126,7 +161,9 @@ fn formulas_and_numbers_cannot_be_misread() {
              document.querySelector('[data-equation=inverse_dynamics_derivatives_by_dq] summary').textContent); \
          document.querySelector('input[value=symbolic]').click(); await new Promise((done) => setTimeout(done, 200)); \
          const index = [...document.querySelectorAll('[data-equation=inverse_dynamics] msub')].find((one) => one.textContent === 'Il1'); \
-         seen.push([...index.lastChild.children].map((part) => part.localName + part.textContent)); return seen; })()",
+         seen.push([...index.lastChild.children].map((part) => part.localName + part.textContent)); \
+         const low = (sub) => sub.children[1].getBoundingClientRect().bottom - sub.children[0].getBoundingClientRect().bottom > 0.1 * sub.children[0].getBoundingClientRect().height; \
+         seen.push([...document.querySelectorAll('[data-equation=inverse_dynamics] msub')].filter((sub) => sub.children[0].localName === 'mi').every(low)); return seen; })()",
     );
     let expected = serde_json::json!([
         "−5q.2sinq2",
@@ -137,7 +174,8 @@ fn formulas_and_numbers_cannot_be_misread() {
         "τknown(q,q.,q.r,q¨r)=",
         2,
         "∂τ/∂q̇ inverse dynamics derivatives by q̇, 4 × 4",
-        ["mil", "mn1"]
+        ["mil", "mn1"],
+        true
     ]);
     assert_eq!(seen, expected);
     tab.close();
@@ -173,11 +211,19 @@ fn a_singular_posture_says_why() {
                  const line = box(document.querySelector('#arm .lost path')); \
                  const within = (one) => one.left >= arm.left && one.right <= arm.right && one.top >= arm.top && one.bottom <= arm.bottom; \
                  const others = [...document.querySelectorAll('#arm .frame-name, #arm .gravity text, #singular-posture a')].map(box); \
+                 const names = [...document.querySelectorAll('#arm .frame-name')].filter((name) => name.textContent).map(box); \
+                 if (names.some((name, k) => names.some((other, i) => i < k && !apart(name, other)))) faults.push(`names, ${view}`); \
                  if (!within(line) || !within(words) || others.some((other) => !apart(words, other))) faults.push(view); } \
              const texts = [...document.querySelectorAll('#singular a')].map((link) => document.querySelector(link.hash) !== null); \
              return [document.getElementById('singular-why').textContent, faults, texts.every((there) => there), document.getElementById('singular-posture').textContent]; })()",
         );
         assert_eq!((&seen[0], &seen[1], &seen[2]), (&why.into(), &serde_json::json!([]), &true.into()), "{name}: {seen}");
+        if name == "scara" {
+            let names =
+                "[...document.querySelectorAll('#arm .frame-name')].map((name) => name.textContent).filter((name) => name)";
+            tab.run("document.querySelector('button[data-view=front]').click()");
+            assert_eq!(tab.run(names), serde_json::json!(["0", "1", "2", "3, 4, e"]));
+        }
         if name == "ur5" {
             assert_eq!(seen[3], "⚠ singular posture: factor 1, sin(q₃), and factor 2, sin(q₅), of det J are zero");
         }

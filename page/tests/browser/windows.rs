@@ -4,6 +4,7 @@ use armgen_page::{Log, Run, Verdict};
 
 use crate::driver::{self, Tab};
 use crate::pages::{opened, robot, written, written_with};
+use crate::MOVE;
 
 /// The widest and the narrowest window, both themes, print: nothing is said, nothing overflows.
 #[test]
@@ -15,6 +16,11 @@ fn pages_fit_windows_themes_and_paper() {
             assert!(overflow.as_f64().is_some_and(|by| by <= 0.0), "{}: {width} px: {overflow} px too wide", source.name());
             let cut = "const pane = document.getElementById('arm-pane'); pane.scrollWidth - pane.clientWidth";
             assert_eq!(tab.run(cut), 0, "{}: {width} px: the sliders are cut off", source.name());
+            let units = "[...document.querySelectorAll('#sliders .rate .unit')].every((unit) => unit.checkVisibility())";
+            assert_eq!(tab.run(units), true, "{}: {width} px: units of rates", source.name());
+            // Six digits of seven joints fit where there is room for them at all.
+            let scrolled = tab.run(&format!("{MOVE}(1); {CUT}"));
+            assert_eq!(scrolled, 0, "{}: {width} px: {scrolled} px of B are cut off", source.name());
             keep(&format!("{}-{width}-{theme}.png.base64", source.name()), &mut tab);
             assert!(tab.print() > 10_000);
             tab.close();
@@ -29,6 +35,10 @@ fn pages_fit_windows_themes_and_paper() {
         tab.close();
     }
 }
+
+/// By how much the inertia matrix is wider than a place of 40 em at least.
+const CUT: &str = "(() => { const box = document.querySelector('#number-inertia_matrix .scroll'); \
+                   return box.clientWidth <= 640 ? 0 : box.scrollWidth - box.clientWidth; })()";
 
 /// Opens what is folded away, where a page has it.
 const UNFOLD: &str = r#"(async () => {
@@ -56,7 +66,14 @@ const UNFOLD: &str = r#"(async () => {
 fn everybody_can_read_and_use_a_page() {
     let log =
         Log::read("t,q_shoulder,q_elbow,q_quill,q_wrist,other\n0,0,0,0,0,1\n1,1,1,0,0,2\n", |_| "rad".into()).expect("a log");
-    let verdict = |met| Verdict { what: "w".into(), found: "1".into(), expected: "2".into(), met };
+    let verdict = |met| Verdict {
+        what: "w".into(),
+        name: "w".into(),
+        meaning: "manipulability".into(),
+        found: "1".into(),
+        expected: "2".into(),
+        met,
+    };
     let named = |name: &str| Run {
         name: name.into(),
         log: Some(log.clone()),

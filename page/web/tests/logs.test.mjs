@@ -14,7 +14,7 @@ test("columns of one kind and unit share a plot", () => {
         ["errors of the end effector, desired − actual", "m", [3]],
         ["errors of the end effector, desired − actual", "rad", [4]],
         ["position of the end effector", "m", [5, 6]],
-        ["w", "", [7]],
+        ["manipulability w of the task", "", [7]],
     ]);
 });
 

@@ -15,6 +15,8 @@ use crate::{terminal, DONE, UNREADABLE};
 pub(super) fn of_jobs(jobs: &[Job<'_>]) -> Vec<Run> {
     let verdict = |line: armgen_experiments::judge::Line| Verdict {
         what: line.what,
+        name: line.name,
+        meaning: line.meaning.to_owned(),
         found: format!("{} {}", line.found, line.unit).trim_end().to_owned(),
         expected: line.expected,
         met: line.met,
