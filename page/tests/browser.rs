@@ -124,6 +124,9 @@ fn an_arm_without_mass_has_its_kinematics() {
 /// Texts of files that would be markup are texts, and nothing of them runs, with the policy removed as well.
 #[test]
 fn hostile_texts_are_inert() {
+    if driver::program().is_none() {
+        return;
+    }
     let folder = driver::folder("hostile");
     let hostile = "</script><script>hacked=1</script><img src=x onerror=hacked=1>\"'\u{2028}<!--<script>";
     let csv = format!("t,x,{hostile}\n0,1,2\n1,2,3\n");

@@ -64,6 +64,9 @@ const UNFOLD: &str = r#"(async () => {
 /// somewhere, and every text has a contrast of 4.5 to 1; the key of tabulators reaches all controls in their order, and the focus is seen.
 #[test]
 fn everybody_can_read_and_use_a_page() {
+    if driver::program().is_none() {
+        return;
+    }
     let log =
         Log::read("t,q_shoulder,q_elbow,q_quill,q_wrist,other\n0,0,0,0,0,1\n1,1,1,0,0,2\n", |_| "rad".into()).expect("a log");
     let verdict = |met| Verdict {
@@ -120,6 +123,9 @@ fn keep(name: &str, tab: &mut Tab) {
 /// suspect that is shown. It covers neither what was pressed nor the time line, and leaves when what acts on it does.
 #[test]
 fn the_picture_stays_in_sight_of_what_acts_on_it() {
+    if driver::program().is_none() {
+        return;
+    }
     let log = Log::read("t,q_shoulder,q_elbow,q_quill,q_wrist\n0,0,0.1,0,0\n1,1,1,0,0\n", |_| "rad".into()).expect("a log");
     let run = Run { name: "one".into(), log: Some(log), ..Run::default() };
     let file = written_with("narrow-log", &robot("scara"), &[run]);
@@ -206,6 +212,9 @@ fn the_badge_of_a_narrow_window_leaves_the_arm_free() {
 /// A picture that is out of sight, or smaller than any arm, is not drawn: lengths over its size would be infinite.
 #[test]
 fn a_picture_without_a_size_says_nothing() {
+    if driver::program().is_none() {
+        return;
+    }
     let file = written(&robot("ur5"));
     // The window of one column keeps room for the badge, by the size of the picture.
     let Some(mut tab) = Tab::open(&file, 360, "light") else { return };
