@@ -13,6 +13,16 @@ impl Random {
     }
 }
 
+/// The largest difference between the joint variables of two postures, angles modulo whole turns.
+fn distance<R: Copy + Into<f64>>(x: &[R], y: &[R], revolute: &[bool]) -> f64 {
+    let turn = std::f64::consts::TAU;
+    let apart = |((x, y), turns): ((&R, &R), &bool)| {
+        let d = ((*x).into() - (*y).into()).abs();
+        if *turns { (d % turn).min(turn - d % turn) } else { d }
+    };
+    x.iter().zip(y).zip(revolute).map(apart).fold(0.0, f64::max)
+}
+
 /// The determinant of the Jacobian of six joints, or of that of the position of three, from differences of the pose: it is linear in each sine,
 /// cosine and slide, so that those over a right angle to either side, or a metre, are no approximation.
 fn determinant(q: &[f64], revolute: &[bool], t: &dyn Fn(&[f64]) -> [[f64; 4]; 4]) -> f64 {
@@ -118,13 +128,7 @@ macro_rules! check {
             most = most.max(found.count);
             odd += found.count % 2;
             let nearest = found.nearest_to(&q).expect("a complete set has a posture");
-            let turn = std::f64::consts::TAU;
-            let apart = |(i, (x, y)): (usize, (&Real, &Real))| {
-                let d = (f64::from(*x) - f64::from(*y)).abs();
-                if $module::JOINT_IS_REVOLUTE[i] { (d % turn).min(turn - d % turn) } else { d }
-            };
-            let distance = nearest.q.iter().zip(&q).enumerate().map(apart).fold(0.0, f64::max);
-            lost += usize::from(distance > if single { 0.1 } else { 1e-5 });
+            lost += usize::from(distance(&nearest.q, &q, &$module::JOINT_IS_REVOLUTE) > if single { 0.1 } else { 1e-5 });
         }
         println!("{}: {complete} of {poses} complete, lost {lost}, odd {odd}, most {most}, T right to {worst:.1e}", stringify!($module));
         // In single precision a posture that is hardly regular may be off by a tenth.
@@ -203,14 +207,7 @@ macro_rules! reference {
             let kind = words.next().expect("a kind");
             let said = format!("{:?}", found.verdict);
             assert!(words.any(|verdict| verdict == said), "{} {head}: {found:?}", stringify!($module));
-            let distance = |x: &[Real; DOF], y: &[f64]| -> f64 {
-                let turn = std::f64::consts::TAU;
-                let apart = |(i, (x, y)): (usize, (&f64, &f64))| {
-                    let d = (x - y).abs();
-                    if $module::JOINT_IS_REVOLUTE[i] { (d % turn).min(turn - d % turn) } else { d }
-                };
-                x.iter().zip(y).enumerate().map(apart).fold(0.0, f64::max)
-            };
+            let distance = |x: &[Real; DOF], y: &[f64]| distance(x, y, &$module::JOINT_IS_REVOLUTE);
             for (q, sigma) in postures {
                 let least = found.as_slice().iter().map(|s| distance(&s.q, q)).fold(f64::INFINITY, f64::min);
                 assert!(least < 1e-9f64.max(1e-11 / sigma), "{} {head}: {q:?} is missing by {least:e}", stringify!($module));
@@ -262,13 +259,7 @@ macro_rules! few {
                 special += usize::from(right);
                 most = most.max(found.count);
                 let nearest = found.nearest_to(&q).expect("a complete set has a posture");
-                let turn = std::f64::consts::TAU;
-                let apart = |(i, (x, y)): (usize, (&Real, &Real))| {
-                    let d = (f64::from(*x) - f64::from(*y)).abs();
-                    if $module::JOINT_IS_REVOLUTE[i] { (d % turn).min(turn - d % turn) } else { d }
-                };
-                let distance = nearest.q.iter().zip(&q).enumerate().map(apart).fold(0.0, f64::max);
-                lost += usize::from(distance > if single { 0.02 } else { 1e-6 });
+                lost += usize::from(distance(&nearest.q, &q, &$module::JOINT_IS_REVOLUTE) > if single { 0.02 } else { 1e-6 });
             }
             // Moved and turned by a little: Cayley's rotation, v + (w × v + w × (w × v)/2)/(1 + w²/4).
             let mut off = t;
@@ -296,11 +287,9 @@ macro_rules! few {
             poses - poses / 4,
             poses / 4
         );
-        // Next to folds of the completed arm single precision loses some.
-        let few = if single { poses / 100 } else { 0 };
-        assert!(lost <= few && none <= few, "{}: lost {lost}, none {none}", stringify!($module));
+        assert!(lost == 0 && none == 0, "{}: lost {lost}, none {none}", stringify!($module));
         assert!(worst < if single { 1e-4 } else { 1e-11 }, "{}: {worst:e}", stringify!($module));
-        assert!(complete * 100 >= (poses - poses / 4) * if single { 97 } else { 99 }, "{}: {complete}", stringify!($module));
+        assert!(complete * 100 >= (poses - poses / 4) * if single { 95 } else { 99 }, "{}: {complete}", stringify!($module));
         assert!(beside * 100 >= poses * if single { 95 } else { 99 }, "{}: {beside} beside", stringify!($module));
         // Among right angles are postures at which the arm is singular.
         assert!(special * 10 >= poses / 4 * 7, "{}: {special} with right angles", stringify!($module));

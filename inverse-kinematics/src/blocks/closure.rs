@@ -140,13 +140,9 @@ impl<const N: usize> Loop<'_, N> {
         let mut damping = damping * self.length * self.length;
         for _ in 0..30 {
             // (J'J + damping) dq = J' e
-            let mut normal = Equations { rows: [[0.0; N]; N], right: [0.0; N] };
+            let mut normal = least_squares(&here);
             for i in 0..N {
-                for j in 0..N {
-                    normal.rows[i][j] = here.rows.iter().fold(0.0, |sum, row| sum + row[i] * row[j]);
-                }
                 normal.rows[i][i] += damping;
-                normal.right[i] = here.rows.iter().zip(here.right).fold(0.0, |sum, (row, e)| sum + row[i] * e);
             }
             let (x, _) = solve(&normal);
             let next = self.moved(&joints, &x);
@@ -184,18 +180,13 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
                 branch.double = true;
             }
         }
-        if !(branch.double && is_among(kept.found(), &branch)) {
+        if !(branch.double && is_among(kept.found(), &branch, closing)) {
             kept.add(branch);
         }
     }
     if kept.count == 0 && !kept.near && !kept.continuum && !(kept.miss < Real::INFINITY) {
-        const STARTS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         for first in 0..4 {
-            let mut joints = [[0.0; 2]; J];
-            for (i, (joint, prismatic)) in joints.iter_mut().zip(closing.prismatic).enumerate() {
-                *joint = if prismatic { [0.0; 2] } else { STARTS[(first + i * i) % 4] };
-            }
-            let nearest = closing.nearest(&joints, 1.0);
+            let nearest = closing.nearest(&posture(first, &closing.prismatic), 1.0);
             kept.near |= nearest.residual <= CLOSED * closing.length;
             kept.missed(nearest.residual);
         }
@@ -203,15 +194,23 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
     *found = kept;
 }
 
+/// Quarter turns: values at which a turning joint is tried.
+const QUARTERS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+
+/// One of four postures to search from, with all slides at 0.
+fn posture<const J: usize>(number: usize, prismatic: &[bool; J]) -> [[Real; 2]; J] {
+    let mut joints = [[0.0; 2]; J];
+    for (i, (joint, prismatic)) in joints.iter_mut().zip(prismatic).enumerate() {
+        *joint = if *prismatic { [0.0; 2] } else { QUARTERS[(number + i * i) % 4] };
+    }
+    joints
+}
+
 /// Whether one of some solutions is the other of two that meet, as far as rounding lets one tell. Both are double then.
-fn is_among<const J: usize>(known: &[Branch<J>], branch: &Branch<J>) -> bool {
+fn is_among<const J: usize>(known: &[Branch<J>], branch: &Branch<J>, closing: &Loop<J>) -> bool {
     let same = 64.0 * SAME * sqrt(UNIT_ROUNDOFF);
     for known in known {
-        let mut apart: Real = if known.double { 0.0 } else { Real::INFINITY };
-        for (x, y) in known.joints.iter().zip(&branch.joints) {
-            apart = apart.max((x[0] - y[0]).abs() + (x[1] - y[1]).abs());
-        }
-        if apart <= same {
+        if known.double && apart(&known.joints, &branch.joints, &closing.prismatic, closing.length) <= same {
             return true;
         }
     }
@@ -277,24 +276,43 @@ fn solve<const N: usize>(equations: &Equations<N>) -> ([Real; N], Real) {
     (x, smallest)
 }
 
-/// Two solutions whose joints differ by less than this are one: 8e-8 in double precision.
+/// The equations of least squares, (K'K) x = K'e for the rows (K, e).
+fn least_squares<const N: usize>(of: &Equations<N>) -> Equations<N> {
+    let mut normal = Equations { rows: [[0.0; N]; N], right: [0.0; N] };
+    for i in 0..N {
+        for j in 0..N {
+            normal.rows[i][j] = of.rows.iter().fold(0.0, |sum, row| sum + row[i] * row[j]);
+        }
+        normal.right[i] = of.rows.iter().zip(of.right).fold(0.0, |sum, (row, e)| sum + row[i] * e);
+    }
+    normal
+}
+
+/// Two solutions that are no further apart than this times the root of u are one: 8e-8 in double precision.
 const SAME: Real = 8.0;
 
+/// How far two solutions are apart: the most by which the two values of a joint differ, slides in units of `length`.
+fn apart<const J: usize, const K: usize>(x: &[[Real; 2]; J], y: &[[Real; 2]; J], prismatic: &[bool; K], length: Real) -> Real {
+    let mut largest: Real = 0.0;
+    for ((x, y), slides) in x.iter().zip(y).zip(prismatic) {
+        let unit = if *slides { length } else { 1.0 };
+        largest = largest.max(((x[0] - y[0]).abs() + (x[1] - y[1]).abs()) / unit);
+    }
+    largest
+}
+
 /// Adds a solution unless it is known.
-fn merge<const N: usize>(found: &mut Branches<6, N>, closed: &Closed<6>, double: bool) {
+fn merge<const N: usize>(found: &mut Branches<6, N>, closing: &Loop<6>, closed: &Closed<6>, double: bool) {
     let same = SAME * sqrt(UNIT_ROUNDOFF);
+    let double = closed.double || double;
     let count = found.count;
     for known in found.all.iter_mut().take(count) {
-        let mut apart: Real = 0.0;
-        for (x, y) in known.joints.iter().zip(&closed.joints) {
-            apart = apart.max((x[0] - y[0]).abs() + (x[1] - y[1]).abs());
-        }
+        let off = apart(&known.joints, &closed.joints, &closing.prismatic, closing.length);
         // The place of a double solution is known to the root of the rounding only.
-        let double = closed.double || double;
-        if apart <= if double || known.double { 64.0 * same } else { same } {
+        if off <= if double || known.double { 64.0 * same } else { same } {
             known.double |= double;
             return;
         }
     }
-    found.add(Branch { joints: closed.joints, signs: 0, double: closed.double || double, error: 0.0, free: 0 });
+    found.add(Branch { joints: closed.joints, signs: 0, double, error: 0.0, free: 0 });
 }

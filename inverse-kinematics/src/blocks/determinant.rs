@@ -87,7 +87,7 @@ impl Search<'_> {
                 let closed = self.closing.close(&joints, root.double);
                 if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
                     let before = found.count;
-                    merge(found, &closed, closed.residual > CLOSED);
+                    merge(found, &self.closing, &closed, closed.residual > CLOSED);
                     told += found.count - before;
                 }
             }
@@ -105,7 +105,7 @@ impl Search<'_> {
             // The search may have gone to another posture nearby.
             let met = closed.residual <= 2.0 * ROUNDING && closed.double;
             if met {
-                merge(found, &closed, true);
+                merge(found, &self.closing, &closed, true);
             }
             all &= met;
         }

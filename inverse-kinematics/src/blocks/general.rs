@@ -10,7 +10,7 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
     let mut found = Branches::new();
     let one = determinant_on_circle(&first.links_at(t), first.prismatic, length);
     for branch in one.found.found() {
-        join(&mut found, &first.of_arm(branch), length);
+        join(&mut found, first, branch, length);
     }
     found.miss = one.found.miss;
     if one.complete {
@@ -18,7 +18,7 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
     }
     let other = determinant_on_circle(&second.links_at(t), second.prismatic, length);
     for branch in other.found.found() {
-        join(&mut found, &second.of_arm(branch), length);
+        join(&mut found, second, branch, length);
     }
     found.miss = found.miss.min(other.found.miss);
     found.continuum = one.free && other.free;
@@ -30,21 +30,24 @@ pub fn general_arm(arrangements: &[Arrangement<6>; 2], t: &Frame, length: Real) 
     found
 }
 
-/// Adds a solution unless it is known.
-fn join(found: &mut Branches<6, 16>, branch: &Branch<6>, length: Real) {
-    let same = SAME * sqrt(UNIT_ROUNDOFF) * if length > 1.0 { length } else { 1.0 };
+/// Adds a solution of an arrangement's loop, in the arm's order, unless it is known.
+fn join(found: &mut Branches<6, 16>, way: &Arrangement<6>, branch: &Branch<6>, length: Real) {
+    let same = SAME * sqrt(UNIT_ROUNDOFF);
+    let branch = way.of_arm(branch);
+    let mut prismatic = [false; 6];
+    for (joint, slides) in way.order.iter().zip(way.prismatic) {
+        if let Some(kind) = prismatic.get_mut(*joint) {
+            *kind = slides;
+        }
+    }
     let count = found.count;
     for known in found.all.iter_mut().take(count) {
-        let pairs = known.joints.iter().zip(&branch.joints);
-        let differ = pairs.into_iter().any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= same));
         // Of a double solution the place is known to the square root of the rounding only.
-        let apart = if known.double && branch.double { 64.0 } else { 1.0 };
-        let pairs = known.joints.iter().zip(&branch.joints);
-        let far = pairs.into_iter().any(|(x, y)| !((x[0] - y[0]).abs() + (x[1] - y[1]).abs() <= apart * same));
-        if !differ || !far {
+        let off = apart(&known.joints, &branch.joints, &prismatic, length);
+        if off <= if known.double && branch.double { 64.0 * same } else { same } {
             known.double |= branch.double;
             return;
         }
     }
-    found.add(*branch);
+    found.add(branch);
 }

@@ -226,7 +226,7 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
             if f <= plus.min(minus) + 1e-3 * (plus + minus) {
                 let closed = closing.close(&arm.joints(given, &at, w), root.double);
                 if closed.residual <= if root.double { 64.0 * CLOSED } else { CLOSED } {
-                    merge(&mut found, &closed, closed.residual > CLOSED);
+                    merge(&mut found, &closing, &closed, closed.residual > CLOSED);
                 }
             }
         }
@@ -239,7 +239,7 @@ pub fn two_slides(links: &[Frame; 6], slides: [usize; 2], length: Real) -> Branc
         let w = if at.f.at(w).abs() <= at.f.at(-w).abs() { w } else { -w };
         let closed = closing.nearest(&arm.joints(given, &at, w), UNIT_ROUNDOFF);
         if closed.residual <= 2.0 * ROUNDING && closed.double {
-            merge(&mut found, &closed, true);
+            merge(&mut found, &closing, &closed, true);
         }
     }
     found.near = !roots.free && (roots.near || distinct != roots.count);

@@ -12,8 +12,9 @@ pub const GENERAL_ROWS: Real = if UNIT_ROUNDOFF < 1e-10 { 1e-9 } else { ROUNDING
 /// A candidate that leaves more of the rows than this, relative to the arm's length, has not been moved there by rounding.
 const FAR: Real = 0.25;
 
-/// The values at which a joint that is free in the completed arm is tried.
-const QUARTERS: [[Real; 2]; 4] = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+/// Of two that meet: so large an error, rad, that neither need be near the candidate; four times that, that they need not be to either side of it.
+/// In double precision errors are smaller by orders.
+const VAGUE: Real = 1.0 / 128.0;
 
 /// The solutions of an arm of J joints, of those that the arm completed by virtual joints has at a pose, in the arm's order.
 ///
@@ -40,7 +41,8 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
     for branch in found.found() {
         let start = in_loop(arm, &branch.joints, J);
         let (_, first) = closing.equations(&start);
-        if branch.free == 0 && first > FAR * length {
+        // Of two that meet rounding may have moved the place by much.
+        if branch.free == 0 && !branch.double && first > FAR * length {
             kept.missed(first);
             continue;
         }
@@ -62,21 +64,32 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
                 best = met;
             }
         }
-        if best.residual > most && (branch.double || branch.free != 0 || best.residual <= 64.0 * sqrt(UNIT_ROUNDOFF) * length) {
+        let nearly = branch.double || branch.free != 0 || best.residual <= 64.0 * sqrt(UNIT_ROUNDOFF) * length;
+        if best.residual > most && nearly {
+            let from = best;
             // What is left grows with the square of the distance from there.
-            let apart = sqrt(8.0 * best.residual / length).min(0.5);
+            let by = sqrt(8.0 * from.residual / length).min(0.5);
             for number in 0..2 * J {
                 let mut step = [0.0; 6];
                 let joint = number / 2;
-                let size = if arm.prismatic[joint] { apart * length } else { apart };
+                let size = if arm.prismatic[joint] { by * length } else { by };
                 step[joint] = if number % 2 == 0 { size } else { -size };
-                let met = settle::<J, N>(&mut kept, arm, &closing, &closing.moved(&best.joints, &step), branch.signs, most);
+                let met = settle::<J, N>(&mut kept, arm, &closing, &closing.moved(&from.joints, &step), branch.signs, most);
                 met_all |= met.residual <= most;
+                if met.residual < best.residual {
+                    best = met;
+                }
             }
             // A continuum of the completed arm near the pose may have postures that no start has led to. Of two that meet the places are known to
             // the root of rounding, and what is left between them is the square of that.
             let close = if branch.free != 0 { 64.0 * sqrt(UNIT_ROUNDOFF) } else { 4096.0 * UNIT_ROUNDOFF };
-            lost |= !met_all && best.residual <= close * length;
+            lost |= !met_all && (branch.double && branch.error > VAGUE || from.residual <= close * length);
+        }
+        if branch.double && best.residual <= most {
+            // The candidate stands for two, of which this is one.
+            let before = kept.count;
+            settle::<J, N>(&mut kept, arm, &closing, &mirrored(&start, &best.joints, &arm.prismatic), branch.signs, most);
+            lost |= branch.error > 4.0 * VAGUE && kept.count == before;
         }
         lost |= !(best.residual < Real::INFINITY);
     }
@@ -84,8 +97,8 @@ pub fn without_virtual_joints<const V: usize, const J: usize, const N: usize>(
         // Nothing says how far the pose is, or what is near has been missed: from four postures.
         for first in 0..4 {
             let mut joints = in_loop(arm, &[[1.0, 0.0]; J], J);
-            for (i, (joint, slides)) in joints.iter_mut().zip(arm.prismatic).enumerate().take(J) {
-                *joint = if slides { [0.0; 2] } else { QUARTERS[(first + i * i) % 4] };
+            for (joint, value) in joints.iter_mut().zip(&posture(first, &arm.prismatic)).take(J) {
+                *joint = *value;
             }
             settle::<J, N>(&mut kept, arm, &closing, &joints, 0, most);
         }
@@ -137,6 +150,18 @@ fn settle<const J: usize, const N: usize>(
     met
 }
 
+/// A posture as far from the middle as another on the other side.
+fn mirrored(middle: &[[Real; 2]; 6], other: &[[Real; 2]; 6], prismatic: &[bool; 6]) -> [[Real; 2]; 6] {
+    let mut joints = *middle;
+    for ((joint, [x, y]), slides) in joints.iter_mut().zip(other).zip(prismatic) {
+        let [c, s] = *joint;
+        // The point turned back from the other, and by its own angle.
+        let [u, v] = [c * x + s * y, s * x - c * y];
+        *joint = if *slides { [2.0 * c - x, 0.0] } else { back_on_circle([c * u - s * v, s * u + c * v]) };
+    }
+    joints
+}
+
 /// The values in the loop of an arm's first joints; the others are at 0.
 fn in_loop<const V: usize>(arm: &Arrangement<6>, joints: &[[Real; 2]; V], own: usize) -> [[Real; 2]; 6] {
     let mut values = [[1.0, 0.0]; 6];
@@ -157,20 +182,17 @@ fn in_loop<const V: usize>(arm: &Arrangement<6>, joints: &[[Real; 2]; V], own: u
 /// The equations of a step of the first J joints by least squares, (K'K) dq = K'e for the columns K of the Jacobian and what is left e of the rows;
 /// steps of the others, and of the joint `held`, are 0. Damped by rounding (Levenberg), so that joints that move nothing stay where they are.
 fn normal_equations<const J: usize>(closing: &Loop<6>, of: &Equations<6>, held: usize) -> Equations<6> {
-    let mut normal = Equations { rows: [[0.0; 6]; 6], right: [0.0; 6] };
+    let moves = |i: usize| i < J && i != held;
+    let mut own = *of;
+    for row in &mut own.rows {
+        for (i, entry) in row.iter_mut().enumerate() {
+            *entry = if moves(i) { *entry } else { 0.0 };
+        }
+    }
+    let mut normal = least_squares(&own);
     for i in 0..6 {
         let size = if closing.prismatic[i] { 1.0 } else { closing.length * closing.length };
-        if i >= J || i == held {
-            normal.rows[i][i] = size;
-            continue;
-        }
-        for j in 0..J {
-            if j != held {
-                normal.rows[i][j] = of.rows.iter().fold(0.0, |sum, row| sum + row[i] * row[j]);
-            }
-        }
-        normal.rows[i][i] += 16.0 * UNIT_ROUNDOFF * size;
-        normal.right[i] = of.rows.iter().zip(of.right).fold(0.0, |sum, (row, e)| sum + row[i] * e);
+        normal.rows[i][i] += if moves(i) { 16.0 * UNIT_ROUNDOFF * size } else { size };
     }
     normal
 }
@@ -214,6 +236,20 @@ fn is_nearly_double<const J: usize>(closing: &Loop<6>, joints: &[[Real; 2]; 6]) 
     !(trace * SECOND_DERIVATIVES * 32.0 * UNIT_ROUNDOFF < 0.5)
 }
 
+/// A posture with a free joint at 0: it goes there in steps, on which the others follow.
+fn at_zero<const J: usize>(arm: &Arrangement<6>, closing: &Loop<6>, met: &Closed<6>, joint: usize) -> Closed<6> {
+    let ([x, y], [c, s]) = (met.joints[joint], arm.offsets[joint]);
+    let left = if closing.prismatic[joint] { c - x } else { atan2(x * s - y * c, x * c + y * s) };
+    let mut joints = met.joints;
+    for _ in 0..8 {
+        let mut step = [0.0; 6];
+        step[joint] = 0.125 * left;
+        joints = refined::<J>(closing, &closing.moved(&joints, &step), joint).joints;
+    }
+    joints[joint] = [c, s];
+    refined::<J>(closing, &joints, joint)
+}
+
 /// A posture that meets all rows as a solution of the arm. Where it is nearly double each joint is moved: if the others can follow, it is free,
 /// and the first such joint is taken to 0 if they can follow there.
 fn own<const J: usize>(arm: &Arrangement<6>, closing: &Loop<6>, met: &Closed<6>, most: Real) -> Branch<J> {
@@ -230,9 +266,7 @@ fn own<const J: usize>(arm: &Arrangement<6>, closing: &Loop<6>, met: &Closed<6>,
             }
             if moves {
                 if free == 0 {
-                    let mut joints = met.joints;
-                    joints[joint] = arm.offsets[joint];
-                    let there = refined::<J>(closing, &joints, joint);
+                    let there = at_zero::<J>(arm, closing, met, joint);
                     if there.residual <= most {
                         place = there;
                     }
@@ -249,8 +283,7 @@ fn own<const J: usize>(arm: &Arrangement<6>, closing: &Loop<6>, met: &Closed<6>,
     Branch { joints, signs: 0, double: whole.double, error: 0.0, free: whole.free }
 }
 
-/// Adds a solution, unless it is known: then the way that came nearest gives it its name. `first`: how far from met the rows were. Slides are
-/// compared in units of `length`.
+/// Adds a solution, unless it is known: then the way that came nearest gives it its name. `first`: how far from met the rows were.
 fn keep<const J: usize, const N: usize>(
     kept: &mut Branches<J, N>,
     arm: &Arrangement<6>,
@@ -262,13 +295,9 @@ fn keep<const J: usize, const N: usize>(
     let same = SAME * sqrt(UNIT_ROUNDOFF);
     let count = kept.count;
     for known in kept.all.iter_mut().take(count) {
-        let mut apart: Real = 0.0;
-        for ((x, y), slides) in known.joints.iter().zip(&branch.joints).zip(arm.prismatic) {
-            let unit = if slides { length } else { 1.0 };
-            apart = apart.max(((x[0] - y[0]).abs() + (x[1] - y[1]).abs()) / unit);
-        }
         let wide = branch.double || known.double || branch.free != 0;
-        if apart <= if wide { 64.0 * same } else { same } {
+        let off = apart(&known.joints, &branch.joints, &arm.prismatic, length);
+        if off <= if wide { 64.0 * same } else { same } {
             if first < known.error {
                 (known.signs, known.error) = (signs, first);
             }

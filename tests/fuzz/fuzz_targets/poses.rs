@@ -16,6 +16,16 @@ mod solver {
 
     include!("../../../inverse-kinematics/src/blocks/solutions.rs");
 
+    /// With as many joints as the module has, the last ones at 0.
+    fn padded<const J: usize>(found: &Branches<J, 8>) -> Branches<6, 8> {
+        let mut all = Branches { miss: found.miss, near: found.near, continuum: found.continuum, ..Branches::new() };
+        for branch in found.found() {
+            let joints = std::array::from_fn(|i| branch.joints.get(i).copied().unwrap_or([1.0, 0.0]));
+            all.add(Branch { joints, signs: branch.signs, double: branch.double, error: branch.error, free: branch.free });
+        }
+        all
+    }
+
     /// The solutions of the construction of this number.
     pub fn solve(which: u8, links: &[Frame; 6], other: &[Frame; 6], length: Real, t: &[[Real; 4]; 4]) -> Solutions {
         if !is_pose(t) {
@@ -35,10 +45,13 @@ mod solver {
         };
         let (first, second) = (way(links), way(other));
         let regional = [regional_elbow, regional_crossing, regional_general];
-        match which % 6 {
+        match which % 8 {
             0 => conclude(&general_arm(&[first, second], &t, length), true),
             1 => conclude(&three_parallel(&first.links_at(&t)), false),
             2 => conclude(&three_prismatic(&first.links_at(&t), [0, 2, 4]), false),
+            // Arms of three and five joints, completed to the one or the other.
+            6 => conclude(&padded(&without_virtual_joints::<6, 3, 8>(&second, &three_prismatic(&first.links_at(&t), [0, 2, 4]), &t, length, ROUNDING)), false),
+            7 => conclude(&padded(&without_virtual_joints::<6, 5, 8>(&second, &three_parallel(&first.links_at(&t)), &t, length, ROUNDING)), false),
             n => {
                 let links = first.links_at(&t);
                 let mut found = spherical_triple(&links, [false; 3], regional[usize::from(n) - 3]);
