@@ -12,6 +12,7 @@ mod chain;
 mod classes;
 mod frame;
 mod general;
+mod jacobian;
 mod steps;
 mod virtual_joints;
 
@@ -25,6 +26,7 @@ pub use classes::Regional;
 pub use frame::Frame;
 
 use chain::Chain;
+use jacobian::Jacobian;
 
 /// How all solutions of an arm are found.
 #[derive(Clone, Debug)]
@@ -104,7 +106,7 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
     if target == Target::Pose && chain.joints.len() < 6 {
         return virtual_joints::classify(&chain, &length);
     }
-    classes::classify(&completed(chain, target)?, target, length, true)
+    classify(&completed(chain, target)?, None, target, &length)
 }
 
 /// One joint more than the target asks for: what the description says is given; else the swivel angle where there is one, or the joint that leaves
@@ -112,8 +114,14 @@ pub fn of(manipulator: &Manipulator) -> Result<InverseKinematics, String> {
 fn redundant(chain: &Chain, target: Target, length: &Number, given: Option<GivenBeside>) -> Result<InverseKinematics, String> {
     let joints = chain.joints.len();
     let with = |joint: usize| {
-        let (rest, given) = chain.without(joint);
-        let mut found = classes::classify(&completed(rest, target)?, target, length.clone(), true)?;
+        // The turn about the end effector's z axis is behind a last joint that is given, a slide along the last axis before it.
+        let (rest, given) = if target == Target::Pointing {
+            completed(chain.clone(), target)?.without(joint)
+        } else {
+            let (rest, given) = chain.without(joint);
+            (completed(rest, target)?, given)
+        };
+        let mut found = classify(&rest, given.as_ref(), target, length)?;
         found.class += &format!("; q{} is given", joint + 1);
         // A joint between two others belongs to the loop.
         found.redundancy = given
@@ -188,8 +196,8 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<(Target, usize), S
         Some(Target::Planar) | None => {}
         Some(Target::Pointing) => {
             return match chain.joints.len() {
-                5 => Ok((Target::Pointing, 5)),
-                _ => Err("a pointing target asks for five joints".into()),
+                5 | 6 => Ok((Target::Pointing, 5)),
+                _ => Err("a pointing target asks for five joints, or for six, of which one is given".into()),
             }
         }
     }
@@ -250,6 +258,31 @@ fn completed(mut chain: Chain, target: Target) -> Result<Chain, String> {
         chain.slide_at_the_end();
     }
     Ok(chain)
+}
+
+/// The class of an arm with its virtual joints, from which a joint at an end may have been `taken`, whose value is given. Of a position the others
+/// have to move the end effector in three directions: what they leave alone has no postures, or, at the one value that it has, a continuum.
+fn classify(chain: &Chain, taken: Option<&Given>, target: Target, length: &Number) -> Result<InverseKinematics, String> {
+    let jacobian = if target == Target::Position { Jacobian::of(chain, taken) } else { None };
+    let Some(jacobian) = jacobian.filter(|jacobian| jacobian.rank(3) < chain.joints.len()) else {
+        return classes::classify(chain, target, length);
+    };
+    let rows = ["x", "y", "z"];
+    let (still, rest): (Vec<_>, Vec<_>) = (0..3).partition(|axis| jacobian.is_still(*axis));
+    Err(match (still.as_slice(), chain.left_out) {
+        ([axis], None) => {
+            let (row, rest) = (rows[*axis], rest.into_iter().map(|axis| rows[axis]).collect::<Vec<_>>().join(", "));
+            format!("no joint moves the end effector along {row} of the base, a row of the task; `task: [{rest}]` leaves it out")
+        }
+        (_, None) => "at every posture the joints move the end effector in fewer directions than the task has rows; \
+                      leave rows out that they cannot meet"
+            .into(),
+        (_, Some(joint)) => format!(
+            "with q{} given the joints move the end effector in fewer directions than the task has rows, at every posture; \
+             another joint can be given, or rows left out",
+            joint + 1
+        ),
+    })
 }
 
 /// The largest length of an arm; 1 m where all are 0.

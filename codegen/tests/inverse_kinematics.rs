@@ -46,7 +46,7 @@ fn classes_of_robots() {
     // Three joints of a plane reach no position outside of it.
     let (_, _, _, text) = made_up().into_iter().find(|(name, ..)| *name == "position4r_j2").expect("an arm");
     let reason = classified("plane", &text.replace("given: j2", "given: j1")).expect_err("no class");
-    assert!(reason.contains("for a position and 3 joints of this geometry"), "{reason}");
+    assert!(reason.contains("with q1 given the joints move the end effector in fewer directions"), "{reason}");
     for (name, class, most, text) in made_up() {
         let found = classified(name, &text).unwrap_or_else(|reason| panic!("{name}: {reason}"));
         assert!(found.class.starts_with(class) && found.most == most, "{name}: {} {}", found.class, found.most);
@@ -56,6 +56,33 @@ fn classes_of_robots() {
         assert!((1..=joints).all(|joint| names(&shown, joint)), "{shown}");
         assert!(!shown.contains(&format!("q{}", joints + 2)), "{shown}");
     }
+}
+
+/// Rows of a position that the joints leave alone: a plane, a sphere, a joint that is given. What is asked for instead has a construction.
+#[test]
+fn positions_of_too_many_rows_are_refused() {
+    let q = "pi/2";
+    let reason = |task: &str, rows: &[_]| classified("position", &description("position", task, rows));
+    let slide_first = [(P, "0.1", q, "0.2", "0"), (R, "0.4", "0", "0.1", "0"), (R, "0.3", "0", "0", "0")];
+    let slide_between = [(R, "0.1", q, "0.2", "0"), (P, "0.3", "-pi/2", "0.1", "0"), (R, "0.3", "0", "0", "0")];
+    let turns = [(R, "0.5", "0", "0", "0"), (R, "0.4", "0", "0.1", "0"), (R, "0.3", "0", "0", "0")];
+    for (row, task, rows) in
+        [("y", "task: [x, z]", &slide_first), ("z", "task: [x, y]", &slide_between), ("z", "task: [x, y]", &turns)]
+    {
+        let refused = reason("task: [x, y, z]", rows).expect_err("no class");
+        let wanted =
+            format!("no joint moves the end effector along {row} of the base, a row of the task; `{task}` leaves it out");
+        assert_eq!(refused, wanted);
+        assert!(reason(task, rows).is_ok(), "{:?}", reason(task, rows));
+    }
+    let sphere = [(R, "0", q, "0.3", "0"), (R, "0", "-pi/2", "0", "0"), (R, "0.2", "0", "0.1", "0")];
+    let refused = reason("task: [x, y, z]", &sphere).expect_err("no class");
+    assert!(refused.starts_with("at every posture the joints move the end effector in fewer directions"), "{refused}");
+    let scara = [(R, "0.3", "0", "0.2", "0"), (R, "0.2", "pi", "0", "0"), (P, "0", "0", "0", "0"), (R, "0.1", "0", "0.1", "0")];
+    let given = |joint: &str| reason(&format!("task: [x, y, z]\ninverse_kinematics: {{given: {joint}}}"), &scara);
+    let refused = given("j3").expect_err("no class");
+    assert!(refused.starts_with("with q3 given the joints move the end effector in fewer directions"), "{refused}");
+    assert!(given("j4").is_ok() && given("j1").is_ok());
 }
 
 /// Whether a text has a joint, by its number or its variable.

@@ -1,6 +1,6 @@
 //! Which class an arm is of: the cheapest whose exact tests it passes; of equals the lowest start of the loop, forwards before backwards.
 
-use super::chain::{Arrangement, Chain};
+use super::chain::{Arrangement, Chain, Given};
 use super::frame::{compose, is_parallel, is_right, is_zero, slide_along_z, sum_of_angles, turn_about_z, turns_beside_x, Frame};
 use super::general;
 use super::{Choice, Construction, InverseKinematics, Redundancy, Target};
@@ -92,9 +92,8 @@ const CROSSING: Regional = Regional {
 /// The case of block 6 for the first three joints of a loop: with a joint that is given between them, that of some of its values.
 fn regional_of(way: &Arrangement) -> Option<Regional> {
     let constant = [0, 1].map(|place| way.is_constant(place));
-    let [one, second, third] =
-        [0, 1, 2].map(|sample| regional(way.kinds(), &way.link(0, sample), &way.link(1, sample), constant, way.open < 2));
-    one.filter(|_| one == second && one == third)
+    let cases = [0, 1, 2].map(|sample| regional(way.kinds(), &way.link(0, sample), &way.link(1, sample), constant, way.open < 2));
+    cases[0].filter(|_| cases.iter().all(|case| *case == cases[0]))
 }
 
 /// The case of block 6 for three joints of given kinds with links A, B, as far as they are `constant`; `posed`: the pose is in one of them, and that
@@ -203,22 +202,28 @@ impl Regional {
     }
 }
 
+impl Given {
+    /// The link that it moves, at one of three values. An entry is of degree 1 in the value, or in its sine and cosine, which has no more than two
+    /// zeros on the circle: what is 0 at three values is 0 at all.
+    pub(super) fn link(&self, sample: usize) -> Frame {
+        let (x, y, over) = [(33, 56, 65), (48, 55, 73), (-13, 84, 85)][sample];
+        let over = Number::from(Rational::ONE / Rational::from(over));
+        let [c, s] = [x, y].map(|k| &Number::from(k) * &over);
+        let joint = if self.prismatic { slide_along_z(&c) } else { turn_about_z(&[c, s]) };
+        compose(&self.before, &compose(&joint, &self.after))
+    }
+}
+
 impl Arrangement {
     /// The numbers of its joints in the arm, from 1.
     fn joints(&self) -> Vec<usize> {
         self.order.iter().map(|joint| self.number(*joint)).collect()
     }
 
-    /// The link at a place; where a joint that is given moves it, at one of three values of that joint. An entry is of degree 1 in the value, or in its sine
-    /// and cosine, which has no more than two zeros on the circle: what is 0 at three values is 0 at all.
-    fn link(&self, place: usize, sample: usize) -> Frame {
+    /// The link at a place; where a joint that is given moves it, at one of three values of that joint.
+    pub(super) fn link(&self, place: usize, sample: usize) -> Frame {
         let moved = self.given.as_ref().filter(|given| given.place == Some(place));
-        let Some(given) = moved else { return self.links[place].clone() };
-        let (x, y, over) = [(33, 56, 65), (48, 55, 73), (-13, 84, 85)][sample];
-        let over = Number::from(Rational::ONE / Rational::from(over));
-        let [c, s] = [x, y].map(|k| &Number::from(k) * &over);
-        let joint = if given.prismatic { slide_along_z(&c) } else { turn_about_z(&[c, s]) };
-        compose(&given.before, &compose(&joint, &given.after))
+        moved.map_or_else(|| self.links[place].clone(), |given| given.link(sample))
     }
 
     fn kinds(&self) -> [bool; 3] {
@@ -226,23 +231,40 @@ impl Arrangement {
     }
 }
 
-/// The class of an arm with its virtual joints, or why it is of none. Not `searched`: no class whose solutions are the roots of an equation that
-/// is sampled.
-pub(super) fn classify(chain: &Chain, target: Target, length: Number, searched: bool) -> Result<InverseKinematics, String> {
-    let slides = chain.joints.iter().filter(|joint| joint.prismatic).count();
-    let found = match (chain.joints.len(), slides) {
+/// The class of an arm with its virtual joints, or why it is of none.
+pub(super) fn classify(chain: &Chain, target: Target, length: &Number) -> Result<InverseKinematics, String> {
+    solved(chain, target, length, closed(chain, target).or_else(|| searched(chain, length)))
+}
+
+/// The same of classes whose solutions are not the roots of an equation that is sampled.
+pub(super) fn closed_form(chain: &Chain, target: Target, length: &Number) -> Result<InverseKinematics, String> {
+    solved(chain, target, length, closed(chain, target))
+}
+
+fn slides(chain: &Chain) -> usize {
+    chain.joints.iter().filter(|joint| joint.prismatic).count()
+}
+
+fn closed(chain: &Chain, target: Target) -> Option<Class> {
+    match (chain.joints.len(), slides(chain)) {
         (3, _) if target == Target::Position => position(chain, true).or_else(|| position(chain, false)),
         (4, _) => parallel_turns(chain),
         (6, 3) => three_prismatic(chain),
-        (6, 0 | 1) => spherical_triple(chain, true)
-            .or_else(|| three_parallel(chain))
-            .or_else(|| spherical_triple(chain, false))
-            .or_else(|| searched.then(|| general(chain, &length))?),
-        (6, 2) => spherical_triple(chain, true)
-            .or_else(|| spherical_triple(chain, false))
-            .or_else(|| searched.then(|| two_slides(chain, &length))?),
+        (6, 0 | 1) => spherical_triple(chain, true).or_else(|| three_parallel(chain)).or_else(|| spherical_triple(chain, false)),
+        (6, 2) => spherical_triple(chain, true).or_else(|| spherical_triple(chain, false)),
         _ => None,
-    };
+    }
+}
+
+fn searched(chain: &Chain, length: &Number) -> Option<Class> {
+    match (chain.joints.len(), slides(chain)) {
+        (6, 0 | 1) => general(chain, length),
+        (6, 2) => two_slides(chain, length),
+        _ => None,
+    }
+}
+
+fn solved(chain: &Chain, target: Target, length: &Number, found: Option<Class>) -> Result<InverseKinematics, String> {
     let none = || {
         let word = match target {
             Target::Pose => "a pose",
@@ -250,11 +272,14 @@ pub(super) fn classify(chain: &Chain, target: Target, length: Number, searched: 
             Target::Pointing => "a position and a direction",
             Target::Position => "a position",
         };
-        let slides = if slides > 0 { format!(", {slides} of them prismatic,") } else { String::new() };
+        let slides = match slides(chain) {
+            0 => String::new(),
+            slides => format!(", {slides} of them prismatic,"),
+        };
         format!("there is no construction for {word} and {} joints{slides} of this geometry", chain.joints.len())
     };
     let Class { construction, class, most, choices } = found.ok_or_else(none)?;
-    Ok(InverseKinematics { target, construction, class, most, choices, length, redundancy: None, own: None })
+    Ok(InverseKinematics { target, construction, class, most, choices, length: length.clone(), redundancy: None, own: None })
 }
 
 /// A class that fits.

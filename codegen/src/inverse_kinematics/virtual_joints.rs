@@ -7,10 +7,9 @@
 
 use super::chain::{Chain, Virtual};
 use super::classes;
+use super::jacobian::Jacobian;
 use super::{InverseKinematics, Target};
 use crate::exact::Number;
-use crate::ring::field::{Element, Field};
-use armgen_algebra::scramble::scramble;
 
 /// (cos, sin) of an angle that no arm has: from a triple of Pythagoras.
 fn angle(c: i64, s: i64, r: i64) -> [Number; 2] {
@@ -99,10 +98,11 @@ fn ways(chain: &Chain, length: &Number) -> Vec<Vec<Virtual>> {
 /// else the first of any class.
 pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinematics, String> {
     let own = chain.joints.len();
+    let rank = |chain: &Chain| Jacobian::of(chain, None).map(|jacobian| jacobian.rank(6));
     if rank(chain).is_some_and(|rank| rank < own) {
         return Err("at every pose some joints can move while the end effector stays".into());
     }
-    if let Ok(found) = classes::classify(chain, Target::Pose, length.clone(), true) {
+    if let Ok(found) = classes::classify(chain, Target::Pose, length) {
         return Ok(found);
     }
     let completed = |way: &Vec<Virtual>| {
@@ -112,11 +112,9 @@ pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinemati
     };
     let regular = |completed: &Chain| rank(completed).is_none_or(|rank| rank == completed.joints.len());
     let all: Vec<Chain> = ways(chain, length).iter().map(completed).filter(regular).collect();
-    let closed = all.iter().find_map(|completed| classes::classify(completed, Target::Pose, length.clone(), false).ok());
-    let found = closed.map_or_else(
-        || all.iter().find_map(|completed| classes::classify(completed, Target::Pose, length.clone(), true).ok()),
-        Some,
-    );
+    let closed = all.iter().find_map(|completed| classes::closed_form(completed, Target::Pose, length).ok());
+    let found =
+        closed.map_or_else(|| all.iter().find_map(|completed| classes::classify(completed, Target::Pose, length).ok()), Some);
     let mut found = found.ok_or_else(|| format!("there is no construction for a pose and {own} joints of this geometry"))?;
     // Joints behind the last one that stay at 0, wherever they are.
     let mut still = chain.clone();
@@ -127,81 +125,4 @@ pub(super) fn classify(chain: &Chain, length: &Number) -> Result<InverseKinemati
     let more = if more == 1 { "a virtual joint that has".to_owned() } else { format!("{more} virtual joints that have") };
     found.class = format!("{joints} and {more} to come out 0, {}", found.class);
     Ok(found)
-}
-
-/// The rank of the Jacobian at a random posture with the virtual joints at 0. None: the field has not all roots.
-fn rank(chain: &Chain) -> Option<usize> {
-    let (way, own) = (chain.arranged(0, false), chain.joints.len() - chain.still);
-    let numbers = way.links.iter().flatten().flatten().chain(way.offsets.iter().flatten());
-    let mut field = Field::with_roots_of(numbers)?;
-    let number = |field: &mut Field, x: &Number| field.number(x);
-    let mut at: [[Element; 4]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|j| if i == j { field.one() } else { field.zero() }));
-    let mut columns: Vec<Vec<Element>> = Vec::new();
-    for (place, link) in way.links.iter().enumerate() {
-        let (z, p) = (at.map(|row| row[2]), at.map(|row| row[3]));
-        let zero = field.zero();
-        columns.push(if way.prismatic[place] {
-            z.into_iter().chain([zero; 3]).collect()
-        } else {
-            cross(&field, p, z).into_iter().chain(z).collect()
-        });
-        let link: Vec<Element> = link.iter().flatten().map(|x| number(&mut field, x)).collect();
-        let offset: Vec<Element> = way.offsets[place].iter().map(|x| number(&mut field, x)).collect();
-        let random = field.from_u64(scramble(7 + place as u64));
-        let (zero, one) = (field.zero(), field.one());
-        let moved = match (way.prismatic[place], place < own) {
-            (true, true) => (one, zero, random),
-            (true, false) => (one, zero, offset[0]),
-            (false, true) => {
-                let (s, c) = field.circle(random);
-                (c, s, zero)
-            }
-            (false, false) => (offset[0], offset[1], zero),
-        };
-        at = stepped(&field, &at, moved, &link);
-    }
-    Some(rank_of(&field, columns))
-}
-
-fn cross(field: &Field, p: [Element; 3], z: [Element; 3]) -> [Element; 3] {
-    let minor = |i: usize, j: usize| field.sub(field.mul(p[i], z[j]), field.mul(p[j], z[i]));
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
-}
-
-/// A frame behind Rz Tz of (c, s, d) and a link.
-fn stepped(field: &Field, at: &[[Element; 4]; 3], (c, s, d): (Element, Element, Element), link: &[Element]) -> [[Element; 4]; 3] {
-    let sum = |x: Element, y: Element| field.add(x, y);
-    let turned = at.map(|[x, y, z, p]| {
-        let (u, v) = (sum(field.mul(x, c), field.mul(y, s)), field.sub(field.mul(y, c), field.mul(x, s)));
-        [u, v, z, sum(p, field.mul(z, d))]
-    });
-    turned.map(|row| {
-        std::array::from_fn(|j| {
-            let product = (0..3).fold(field.zero(), |total, k| sum(total, field.mul(row[k], link[4 * k + j])));
-            if j == 3 {
-                sum(product, row[3])
-            } else {
-                product
-            }
-        })
-    })
-}
-
-fn rank_of(field: &Field, mut columns: Vec<Vec<Element>>) -> usize {
-    let mut rank = 0;
-    for entry in 0..6 {
-        let Some(pivot) = (rank..columns.len()).find(|k| columns[*k][entry] != field.zero()) else { continue };
-        columns.swap(rank, pivot);
-        let over = field.inverse(columns[rank][entry]);
-        let pivot = columns[rank].clone();
-        for column in columns.iter_mut().skip(rank + 1) {
-            let factor = field.mul(column[entry], over);
-            for (x, y) in column.iter_mut().zip(&pivot) {
-                *x = field.sub(*x, field.mul(factor, *y));
-            }
-        }
-        rank += 1;
-    }
-    rank
 }

@@ -290,6 +290,22 @@ pub(crate) fn made_up() -> Vec<(&'static str, &'static str, usize, String)> {
                 (R, "0.07", "0.7", "0.2", "0.2"),
             ],
         ),
+        // Six joints, one of them given.
+        arm(
+            "pointing6r",
+            "tool: {xyz: [0.05, 0.02, 0.1], rpy: [0, 0.4, 0.5]}\n\
+             inverse_kinematics: {target: pointing}",
+            "spherical triple (axes 4 5 6 through one point)",
+            8,
+            &[
+                (R, "0.1", quarter, "0.3", "0.1"),
+                (R, elbow, "0", "0.1", "0"),
+                (R, "0.02", "-pi/2", "0.05", "0"),
+                (R, "0", quarter, "0.35", "0"),
+                (R, "0", "-pi/2", "0", "0.2"),
+                (R, "0", "0", "0.1", "0"),
+            ],
+        ),
         arm(
             "general",
             "",

@@ -97,9 +97,24 @@ fn of_line(m: Modulus, p: [u64; 3], l: [u64; 3]) -> [u64; 14] {
     all
 }
 
+/// Slides alone: the entries of the pose are linear in them.
+fn of_slides(chain: &Chain, pose: &Frame) -> System {
+    let m = chain.modulus;
+    let entries = sampled::<12>(m, &chain.slides, |at| {
+        let reached = chain.pose(at);
+        std::array::from_fn(|i| m.minus(reached[i / 4][i % 4], pose[i / 4][i % 4]))
+    });
+    let mut equations = entries.map(|coefficients| polynomial(chain.joints(), &coefficients, 1)).to_vec();
+    equations.retain(|equation| !equation.terms.is_empty());
+    System { slides: chain.slides.clone(), equations }
+}
+
 /// The loop read from `start` on, its first joints (two of six, none of one, else one) eliminated with the last one, which has to turn; with a point as the
 /// target, of which nothing turns, none but the first. `None` if the products of the first joints' variables are not determined.
 pub(super) fn of_loop(chain: &Chain, pose: &Frame, start: usize, point: bool) -> Option<System> {
+    if !point && chain.slides.iter().all(|slides| *slides) {
+        return Some(of_slides(chain, pose));
+    }
     let m = chain.modulus;
     let n = chain.joints();
     let joint = |place: usize| (start + place) % n;

@@ -4,6 +4,8 @@ use armgen_codegen::schedule::{Options, Selection};
 
 use super::*;
 
+mod few_joints;
+
 fn module(text: &str) -> (Source, String) {
     let source = Source::new("robot.yaml", text);
     let functions = Selection::named(["direct_kinematics"]).expect("a function");
@@ -15,6 +17,12 @@ fn module(text: &str) -> (Source, String) {
 fn robot(name: &str) -> (Source, String) {
     let path = format!("{}/../robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
     module(&std::fs::read_to_string(path).expect("a robot of the project"))
+}
+
+/// What is wrong with a text in which something is replaced where it first stands.
+fn fault_of(source: &Source, text: &str, [old, new]: [&str; 2]) -> String {
+    assert!(text.contains(old), "{old}");
+    verify(source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
 }
 
 #[test]
@@ -278,10 +286,7 @@ fn a_swivel_angle_is_verified_and_not_counted() {
         assert_eq!(report.to_json(), verify(&source, &text, 8).to_json());
         assert!(report.to_json().contains("\"sound_branches\": 8"));
         assert_eq!(report.uncounted.as_deref(), Some("the swivel angle is given"));
-        let fault = |old: &str, new: &str| {
-            assert!(text.contains(old), "{old}");
-            verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
-        };
+        let fault = |old: &str, new: &str| fault_of(&source, &text, [old, new]);
         assert!(fault("order: [0, 1, 2,", "order: [0, 2, 1,").contains("not the loop of this arm"));
         assert!(fault("0.08", "0.09").contains("is not the float nearest"));
         assert!(fault("swivel_angle(&LOOP, q)", "q[0]").contains("should stand where"));
@@ -342,10 +347,7 @@ fn arms_with_any_angles_are_verified() {
 #[test]
 fn other_texts_are_refused() {
     let (source, text) = robot("puma560");
-    let fault = |old: &str, new: &str| {
-        assert!(text.contains(old), "{old}");
-        verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
-    };
+    let fault = |old: &str, new: &str| fault_of(&source, &text, [old, new]);
     // A sign, a lost branch, a degenerate case that is dropped.
     let why = "is not the tested one";
     assert!(fault("x * along - y * w, y * along + x * w", "x * along + y * w, y * along + x * w").contains(why));
@@ -374,8 +376,7 @@ fn other_texts_of_slides_are_refused() {
     ];
     for (name, old, new, says) in errors {
         let (source, text) = module(&made_up_arm(name));
-        assert!(text.contains(old), "{old}");
-        let fault = verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default();
+        let fault = fault_of(&source, &text, [old, new]);
         assert!(fault.contains(says), "{name}, {new}: {fault}");
     }
 }
@@ -406,8 +407,7 @@ fn other_texts_of_positions_are_refused() {
     ];
     for (name, old, new, says) in errors {
         let (source, text) = module(&made_up_arm(name));
-        assert!(text.contains(old), "{old}");
-        let fault = verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default();
+        let fault = fault_of(&source, &text, [old, new]);
         assert!(fault.contains(says), "{name}, {new}: {fault}");
     }
 }
@@ -416,10 +416,7 @@ fn other_texts_of_positions_are_refused() {
 #[test]
 fn what_is_not_armgens_is_refused() {
     let (source, text) = robot("scara4");
-    let fault = |old: &str, new: &str| {
-        assert!(text.contains(old), "{old}");
-        verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
-    };
+    let fault = |old: &str, new: &str| fault_of(&source, &text, [old, new]);
     let writes = "where armgen writes";
     let code = "[\"elbow up\n// \", \"elbow down\"]; mod libm {} pub const X: [&str; 2] = [\"\n\", \"elbow down\"]";
     assert!(fault("[\"elbow up\", \"elbow down\"]", code).contains(writes));
@@ -454,10 +451,7 @@ fn modules_in_c_are_verified() {
         assert!(is_one(&text));
         let report = verify(&source, &text, 2);
         assert!(report.passed() && report.translated && report.numbers > 100 && report.sound == Some(8), "{report}");
-        let fault = |old: &str, new: &str| {
-            assert!(text.contains(old), "{old}");
-            verify(&source, &text.replacen(old, new, 1), 0).faults.pop().unwrap_or_default()
-        };
+        let fault = |old: &str, new: &str| fault_of(&source, &text, [old, new]);
         let writes = "where armgen writes";
         assert!(fault("x * along - y * w", "x * along + y * w").contains(writes));
         assert!(fault("found.count = 2;", "found.count = 1;").contains(writes));

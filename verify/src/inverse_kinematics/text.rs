@@ -284,12 +284,13 @@ fn body(
     (dof, given, tip, own): (usize, bool, bool, bool),
 ) -> Result<(Construction, Option<usize>), String> {
     let name = |reader: &mut Reader<'_>, end: char| reader.until(end).map(str::to_owned);
-    if reader.take(if own {
-        "conclude(&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS),true)}"
+    let all = joints_with_given(loops, dof);
+    if reader.take(&if own {
+        "conclude(&without_virtual_joints::<6,DOF,16>(&ARM,&general_arm(&LOOPS,&t,LENGTH),&t,LENGTH,GENERAL_ROWS),true)}".into()
     } else if given {
-        "conclude(&GIVEN.with::<6,DOF,16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}"
+        format!("conclude(&GIVEN.with::<6,{all},16>(&general_arm(&LOOPS,&t,LENGTH),value),true)}}")
     } else {
-        "conclude(&general_arm(&LOOPS,&t,LENGTH),true)}"
+        "conclude(&general_arm(&LOOPS,&t,LENGTH),true)}".to_owned()
     }) {
         return Ok((Construction::General, None));
     }
@@ -364,6 +365,14 @@ fn position(reader: &mut Reader<'_>, loops: &[Arrangement], (tip, moved): (bool,
     Ok(Construction::Position { case, polished })
 }
 
+/// How many joints there are with that which is given: with a virtual one more than the arm has.
+fn joints_with_given(loops: &[Arrangement], dof: usize) -> String {
+    match loops.first().map_or(0, |way| way.order.len()) + 1 {
+        all if all == dof => "DOF".to_owned(),
+        all => all.to_string(),
+    }
+}
+
 /// The end of the function.
 fn conclusion(
     reader: &mut Reader<'_>,
@@ -376,7 +385,7 @@ fn conclusion(
     let by_angle = matches!(construction, Construction::TwoSlides { .. });
     if given {
         let others = loops.first().map_or(0, |way| way.order.len());
-        let all = if others + 1 == dof { "DOF".to_owned() } else { (others + 1).to_string() };
+        let all = joints_with_given(loops, dof);
         let most = if others == 6 { 8 } else { 4 };
         reader.expect(&format!("conclude(&GIVEN.with::<{others},{all},{most}>(&found,value),"))?;
     } else if own {
@@ -480,7 +489,9 @@ impl Text {
         first.moved = moved;
         if let Some(joint) = &mut joint {
             joint.place = moved;
-            let end = joint.joint == 0 || joint.joint + 1 == dof;
+            // Of a direction the virtual turn is behind a last joint.
+            let last = joint.joint + 1 == dof;
+            let end = joint.joint == 0 || last && (at_end || dof != 6 || first.order.len() != 6);
             if joint.joint >= dof || end != at_end || end == moved.is_some() {
                 return Err("GIVEN: the function takes the joint from another place of the arm".into());
             }

@@ -412,9 +412,12 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
         quote!([#(#kinds),*])
     };
     // Solutions of the arm's own joints are refined on their own.
-    let polish = found.own.is_none().then_some(quote! {
-        polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
-    });
+    let polish = |polished: bool| {
+        let call = quote! {
+            polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
+        };
+        (polished && found.own.is_none()).then_some(call)
+    };
     let links = match found.given().and_then(|given| given.place) {
         None => quote!(let links = LOOP.links_at(&t);),
         Some(place) => {
@@ -436,7 +439,7 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
     match &found.construction {
         Construction::SphericalTriple(way, case) => {
             let (kinds, block) = (kinds(way, 3), format_ident!("{}", case.function));
-            let polish = (!case.closed).then_some(polish).flatten();
+            let polish = polish(!case.closed);
             quote! {
                 #links
                 let mut found = spherical_triple(&links, #kinds, #block);
@@ -445,7 +448,7 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
             }
         }
         Construction::ThreeParallel(_, polished) => {
-            let polish = polished.then_some(polish).flatten();
+            let polish = polish(*polished);
             quote! {
                 #links
                 let mut found = three_parallel(&links);
@@ -489,9 +492,10 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
             let mut found = shoulder_elbow_wrist(&LOOP, &t, redundancy);
             #in_order
         },
-        Construction::General(_) if found.given().is_some() => quote! {
-            conclude(&GIVEN.with::<6, DOF, 16>(&general_arm(&LOOPS, &t, LENGTH), value), true)
-        },
+        Construction::General(_) if found.given().is_some() => {
+            let all = joints_with_given(6, dof);
+            quote!(conclude(&GIVEN.with::<6, #all, 16>(&general_arm(&LOOPS, &t, LENGTH), value), true))
+        }
         Construction::General(_) if found.own.is_some() => quote! {
             conclude(&without_virtual_joints::<6, DOF, 16>(&ARM, &general_arm(&LOOPS, &t, LENGTH), &t, LENGTH, GENERAL_ROWS), true)
         },
@@ -556,14 +560,18 @@ fn conclusion(found: &InverseKinematics, dof: usize) -> TokenStream {
         }
         (Some(_), _) => {
             let others = found.loops().first().map_or(0, |way| way.order.len());
-            // With a virtual joint they are more than the arm has.
-            let all = match others + 1 {
-                all if all == dof => quote!(DOF),
-                all => usize_literal(all).into_token_stream(),
-            };
+            let all = joints_with_given(others, dof);
             let (others, most) = (usize_literal(others), usize_literal(if others == 6 { 8 } else { 4 }));
             quote!(conclude(&GIVEN.with::<#others, #all, #most>(&found, value), #by_angle))
         }
+    }
+}
+
+/// So many joints there are with that which is given: with a virtual joint more than the arm has.
+fn joints_with_given(others: usize, dof: usize) -> TokenStream {
+    match others + 1 {
+        all if all == dof => quote!(DOF),
+        all => usize_literal(all).into_token_stream(),
     }
 }
 
