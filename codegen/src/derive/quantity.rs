@@ -409,19 +409,19 @@ impl Quantity {
 
     pub(crate) fn by_plan(&self, model: &Model, view: View<'_>, mut plan: Plan, effort: usize) -> Derivation {
         let Recursion { entries, rewriting, view: own_view, prepare, without, starts } = self.recursion;
-        let setting = DerivationInput { model, view: own_view(model, view) };
-        let rewriting = match (rewriting, setting.view) {
+        let input = DerivationInput { model, view: own_view(model, view) };
+        let rewriting = match (rewriting, input.view) {
             (RewriteScope::Dynamics, View::Nominal) => RewriteScope::Dynamics,
             (RewriteScope::Dynamics, _) => RewriteScope::KeepParameters,
             (other, _) => other,
         };
         let mut pool = Pool::new(model.field.clone());
-        let mut arm = Arm::new(&mut pool, &model.manipulator, setting.view);
+        let mut arm = Arm::new(&mut pool, &model.manipulator, input.view);
         prepare(&mut pool, &mut arm);
         let derive = |pool: &mut Pool, plan: &mut Plan| {
             let mut arm = arm.clone();
             passes::rewrite(pool, &mut arm, plan, rewriting);
-            entries(pool, &arm, plan, &setting)
+            entries(pool, &arm, plan, &input)
         };
         without.iter().for_each(|&pass| plan.disable(pass));
         passes::disable_unsuitable(&pool, &arm, &mut plan);

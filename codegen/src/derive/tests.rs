@@ -234,8 +234,8 @@ fn every_way_of_a_plan_leads_to_the_same_expressions() {
         for quantity in catalogue::quantities().filter(|quantity| !of_parameters.contains(quantity)).filter(there) {
             let mut pool = Pool::new(model.field.clone());
             let arm = Arm::new(&mut pool, &model.manipulator, View::Nominal);
-            let setting = DerivationInput { model: &model, view: View::Nominal };
-            let plain = (quantity.recursion.entries)(&mut pool, &arm, &mut Plan::default(), &setting);
+            let input = DerivationInput { model: &model, view: View::Nominal };
+            let plain = (quantity.recursion.entries)(&mut pool, &arm, &mut Plan::default(), &input);
             for seed in 0..8 {
                 let found = quantity.by_plan(&model, View::Nominal, Plan::scattered(seed), 0);
                 for (k, (&a, &b)) in plain.iter().zip(&found.entries).enumerate() {

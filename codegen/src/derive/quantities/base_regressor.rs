@@ -23,7 +23,7 @@ pub static BASE_REGRESSOR: Quantity = Quantity {
          `regressor: base` in the description: it has all base parameters, zero or not.",
     )
     .with_load("Friction that grows with the load is not linear in parameters: the torque of {inverse_dynamics} has {load_friction} besides."),
-    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| base::base_regressor(pool, arm, setting.model.base_parameters(), plan).concat()) },
+    recursion: Recursion { view: |model, _| View::Vector(model.base_parameters()), prepare: base::place_frames_for_base_parameters, starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| base::base_regressor(pool, arm, input.model.base_parameters(), plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("BaseRegressor"),

@@ -56,8 +56,8 @@ pub static CENTER_OF_MASS: Quantity = Quantity {
             "its x, y and z, m.",
         )
     },
-    recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, setting| {
-        let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, setting.model, setting.view));
+    recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, input| {
+        let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, input.model, input.view));
         let inverse = pool.reciprocal(mass);
         pool.scale(inverse, &first).to_vec()
     }),

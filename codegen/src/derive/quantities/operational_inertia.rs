@@ -36,8 +36,8 @@ pub static OPERATIONAL_INERTIA: Quantity = Quantity {
          configuration it is infinite, and its entries are not finite or, by rounding, very large.",
     ) },
     recursion: Recursion { // The Jacobian wants the lengths of the description.
-        without: &[Pass::UnitOfLength], ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, setting| {
-            operational_inertia(pool, arm, plan, &setting.model.manipulator.task_rows()).concat()
+        without: &[Pass::UnitOfLength], ..Recursion::new(RewriteScope::Dynamics, |pool, arm, plan, input| {
+            operational_inertia(pool, arm, plan, &input.model.manipulator.task_rows()).concat()
         }) },
     missing,
     gathers: &[],

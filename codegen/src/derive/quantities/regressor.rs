@@ -28,7 +28,7 @@ pub static REGRESSOR: Quantity = Quantity {
     .with_more_friction("In F cubic friction is F_3 dq² dqr.")
     .with_stribeck("In F Stribeck friction is F_s sign(dq) exp(-|dq| / v_s), linear in F_s; v_s is a number of the description.")
     .with_load("Friction that grows with the load is not linear in parameters and not in F: {load_friction} is added to Y pi + tau_known."),
-    recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, setting| regressor_by_plan(pool, arm, &setting.model.parameters, plan).concat()) },
+    recursion: Recursion { view: |model, _| View::Vector(&model.parameters), starts: &STARTS, ..Recursion::new(RewriteScope::Frames, |pool, arm, plan, input| regressor_by_plan(pool, arm, &input.model.parameters, plan).concat()) },
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
     interface: Some("Regressor"),
