@@ -25,8 +25,8 @@ pub(crate) struct Parts<'p> {
     pub(crate) drives: &'p str,
     pub(crate) equations: &'p str,
     pub(crate) cost: &'p str,
-    /// The logs, or the experiments; none without any.
-    pub(crate) logs: Option<&'p str>,
+    /// The heading and the text of the logs, or of the experiments; none without any.
+    pub(crate) logs: Option<(&'static str, String)>,
     /// What the script is given.
     pub(crate) data: &'p Value,
     /// The script.
@@ -94,7 +94,7 @@ fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
         ("equations", "Equations", parts.equations.into()),
         ("workspace", "Workspace", WORKSPACE.into()),
     ];
-    all.extend(parts.logs.map(|logs| ("logs", "Logs", logs.to_owned())));
+    all.extend(parts.logs.clone().map(|(title, logs)| ("logs", title, logs)));
     all.push(("cost", "Cost", parts.cost.into()));
     all
 }
@@ -111,7 +111,7 @@ fn header(parts: &Parts<'_>) -> String {
         "<header>\n<h1>{}</h1>\n<p>{joints} joint{}, {rows}, {} kg</p>\n<div class=\"controls\">\n\
          <button type=\"button\" id=\"angle-unit\">angles: rad</button>\n\
          <button type=\"button\" id=\"length-unit\">lengths: m</button>\n\
-         <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"unfold\" title=\"all that is folded in, but runs; of long equations as many as can be printed\">open all</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n</header>\n",
+         <button type=\"button\" id=\"theme\">dark theme</button>\n<button type=\"button\" id=\"unfold\" title=\"all that is folded in, but runs; of long equations as many as can be printed\">open all</button>\n<button type=\"button\" id=\"print\">print</button>\n</div>\n<p id=\"unfold-said\" class=\"small\" role=\"status\"></p>\n</header>\n",
         escape(&manipulator.name),
         if joints == 1 { "" } else { "s" },
         decimal(bodies::total_mass(manipulator)),
@@ -169,7 +169,7 @@ const WORKSPACE: &str = r#"<details id="postures"><summary>Other postures at thi
 
 fn sliders(rows: &[Row]) -> String {
     let mut text = String::from(
-        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always, when Enter is pressed or the field is left; a list of numbers sets the joints from there on, or all. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
+        "<div id=\"sliders\">\n<p class=\"small\">Sliders go to the limits, else to ±π rad or ±1 m; fields take any number, also as −pi/4, which is in rad always, or as 30 deg, when Enter is pressed or the field is left; a list of numbers sets the joints from there on, or all. <i>q̇</i>, <i>q̈</i>: rates and accelerations, per s and s².</p>\n",
     );
     for (i, row) in rows.iter().enumerate() {
         let k = i + 1;

@@ -105,7 +105,7 @@ pub fn page(source: &Source, runs: &[Run]) -> Result<(Option<String>, Diagnostic
         warnings: warnings::Warnings::new(source, &description, &diagnostics),
         equations: &equations.section(),
         cost: &cost,
-        logs: (!runs.is_empty()).then(|| logs::section(runs)).as_deref(),
+        logs: (!runs.is_empty()).then(|| (logs::title(runs), logs::section(runs))),
         data: &data,
         script: &script,
     });

@@ -136,6 +136,15 @@ pub(crate) fn data(runs: &[Run], rows: &[Row]) -> Value {
     Value::Object(runs.iter().map(of).collect::<Map<_, _>>())
 }
 
+/// Its heading: runs with results are experiments.
+pub(crate) fn title(runs: &[Run]) -> &'static str {
+    if runs.iter().any(|run| !run.verdicts.is_empty()) {
+        "Experiments"
+    } else {
+        "Logs"
+    }
+}
+
 /// The section.
 pub(crate) fn section(runs: &[Run]) -> String {
     let mut text = String::from(CONTROLS);
@@ -159,7 +168,7 @@ pub(crate) fn section(runs: &[Run]) -> String {
             text += "</tr></thead><tbody>\n";
             for Verdict { what, found, expected, met, .. } in &run.verdicts {
                 let cells = [what, found, expected].map(|cell| format!("<td>{}</td>", escape(cell))).concat();
-                let (class, word) = if *met { ("met", "ok") } else { ("unmet", "OUTSIDE") };
+                let (class, word) = if *met { ("met", "as expected") } else { ("unmet", "NOT as expected") };
                 let _ = writeln!(text, "<tr class=\"{class}\">{cells}<td>{word}</td></tr>");
             }
             text += "</tbody></table></div>\n";

@@ -61,6 +61,8 @@ export function equations(data, state, shown) {
         if (!packets.has(k)) packets.set(k, unpack(data.equations.packets[k]).then((text) => JSON.parse(text)));
         return (await packets.get(k))[name];
     };
+    /** The entries that were chosen, by the names of their equations. @type {Map<string, string>} */
+    const entries = new Map();
     /** @param {HTMLDetailsElement} details */
     const set = async (details) => {
         const name = details.getAttribute("data-equation") ?? "";
@@ -68,7 +70,8 @@ export function equations(data, state, shown) {
         const symbolic = chosen("form") === "symbolic" && equation.symbolic !== null;
         const form = symbolic ? /** @type {Form} */ (equation.symbolic) : equation.nominal;
         const quantity = quantityOf(details);
-        const content = written(equation, form, chosen("digits") === "exact", quantity !== undefined, () => evaluate(details));
+        const options = { exact: chosen("digits") === "exact", count: 0, steps: form.steps?.[0]?.[0].replace(/\d+$/, "") ?? "", numbered: quantity !== undefined, evaluate: () => evaluate(details), entries, name };
+        const content = written(equation, form, options);
         if (chosen("form") === "symbolic" && !symbolic) content.prepend(html("p", { class: "small" }, "No name of a parameter stands in it."));
         const button = html("button", { type: "button", class: "copy" }, "copy as LaTeX");
         button.addEventListener("click", () => {
@@ -90,7 +93,12 @@ export function equations(data, state, shown) {
     }
     const key = byId("names");
     const parameters = document.getElementById("parameters");
-    key.append(parameters ? "Names are those of the description's parameters; what has none, such as a length, is a number. " : "The description names no parameters, so all are numbers.");
+    if (!parameters) {
+        const names = /** @type {HTMLInputElement} */ (document.querySelector('input[value="symbolic"]'));
+        names.disabled = true;
+        names.labels?.[0].setAttribute("title", "the description names no parameters");
+    }
+    key.append("Names are those of the description's parameters; what has none, such as a length, is a number. ");
     for (const [k, row] of [...(parameters?.querySelectorAll("tbody tr") ?? [])].entries()) {
         const [name, value] = [...row.children].map((cell) => cell.querySelector(".number")?.textContent || cell.textContent || "");
         key.append(k > 0 ? "; " : "", html("span", {}, math("math", {}, nameElement(name, { exact: false, count: 0, steps: "" })), ` = ${value}`));
@@ -152,20 +160,20 @@ function markUses(details) {
 }
 
 /**
- * @param {Equation} equation @param {Form} form @param {boolean} exact
- * @param {boolean} numbered whether the page computes it @param {() => void} evaluate writes the numbers of what was set
+ * @param {Equation} equation @param {Form} form
+ * @param {any} options numbered: whether the page computes it, evaluate: writes the numbers of what was set, entries: what was chosen of which name
  */
-function written(equation, form, exact, numbered, evaluate) {
+function written(equation, form, options) {
     const host = html("div", { class: "formulas" });
-    const options = { exact, count: 0, steps: form.steps?.[0]?.[0].replace(/\d+$/, "") ?? "", numbered, evaluate };
     if (fits(form)) {
         host.append(matrix(equation, form, options));
     } else {
         const all = lines(equation, form);
         const head = html("p", {}, math("math", {}, symbolElement(form.symbol, options)), note(form));
         const body = html("div");
-        host.append(head, ...entryChoice(all, (chosen) => list(body, chosen, { ...options, count: 0 })), body);
-        list(body, all, options);
+        const [choice, first] = entryChoice(all, options, (chosen) => list(body, chosen, { ...options, count: 0 }));
+        host.append(head, ...choice, body);
+        list(body, first, options);
     }
     const factors = form.factors ?? form.common_factors;
     if (factors) {
@@ -264,13 +272,22 @@ function entryLabel(equation, form, i, j) {
     return `${letter} ${entryIndex(equation, form, i, j)} ${equation.columnNames?.[j] ?? ""}`.trim().replace(/^([a-zτ]̈?) (\d)/u, "$1$2");
 }
 
-/** A choice of one entry, which is then shown with the steps that it needs alone; nothing where there are no steps. @param {any[]} all @param {(chosen: any[]) => void} show */
-function entryChoice(all, show) {
+/**
+ * A choice of one entry, which is then shown with the steps that it needs alone; nothing where there are no steps. Also the lines of what was
+ * chosen before, in another form. @param {any[]} all @param {{entries: Map<string, string>, name: string}} options @param {(chosen: any[]) => void} show @returns {[any[], any[]]}
+ */
+function entryChoice(all, { entries: kept, name }, show) {
     const entries = all.filter((line) => line.entry !== "");
-    if (entries.length < 2 || entries.length === all.length) return [];
+    if (entries.length < 2 || entries.length === all.length) return [[], all];
     const select = html("select", {}, html("option", { value: "" }, "all"), ...entries.map((line) => html("option", { value: line.entry }, line.label)));
-    select.addEventListener("change", () => show(select.value === "" ? all : needed(all, select.value)));
-    return [html("p", { class: "controls entries" }, html("label", {}, "entry ", select))];
+    const chosen = () => (select.value === "" ? all : needed(all, select.value));
+    select.addEventListener("change", () => {
+        kept.set(name, select.value);
+        show(chosen());
+    });
+    const before = kept.get(name);
+    if (entries.some(({ entry }) => entry === before)) select.value = before;
+    return [[html("p", { class: "controls entries" }, html("label", {}, "entry ", select))], chosen()];
 }
 
 /** The line of an entry, and after it the steps that it needs, in their order. @param {any[]} all @param {string} entry */
@@ -302,7 +319,7 @@ function lines(equation, form) {
  * @param {any} name @param {import("./formula.mjs").Node} node @param {any} options
  */
 function line(name, node, options) {
-    const terms = node.kind === "sum" ? termsOf(node, options) : [[mathml(node, options)]];
+    const terms = node.kind === "sum" ? termsOf(node, options, true) : [[mathml(node, options)]];
     return terms.flatMap((term, i) => [math("math", {}, math("mrow", {}, ...(i === 0 ? [name, math("mo", {}, "=")] : []), ...term)), " "]);
 }
 

@@ -105,7 +105,7 @@ export function quotient(numerator, denominator) {
     return Number(`${whole}e${-shift}`);
 }
 
-const FUNCTIONS = { __proto__: null, sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, acos: Math.acos, sign: Math.sign };
+const FUNCTIONS = { __proto__: null, sin: Math.sin, cos: Math.cos, sqrt: Math.sqrt, atan: Math.atan, acos: Math.acos, sign: Math.sign, deg: (x) => (x * Math.PI) / 180 };
 
 /** The value of a formula, its names looked up. @param {Node} node @param {(name: string) => number} lookup @returns {number} */
 export function evaluate(node, lookup) {
@@ -192,9 +192,9 @@ export function folded(node) {
     }
 }
 
-/** The number that somebody typed, as 1.5, -pi/4 or 2*(pi - 1); NaN where it is none. @param {string} text */
+/** The number that somebody typed, as 1.5, -pi/4 or 2*(pi - 1), degrees as 30 deg, 30° or deg(30); NaN where it is none. @param {string} text */
 export function typed(text) {
-    const plain = text.trim().replaceAll("π", "pi").replaceAll("−", "-");
+    const plain = text.trim().replaceAll("π", "pi").replaceAll("−", "-").replace(/((?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*(?:°|deg\b)/gi, "deg($1)");
     // A number alone keeps its bits.
     if (/^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(plain)) return Number(plain);
     try {

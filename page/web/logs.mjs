@@ -103,7 +103,7 @@ export function logs(data, state, picture) {
             if (Math.abs(left - chart.cursor.left) > 0.5) chart.setCursor({ left, top: 0 }, false);
         }
     };
-    const show = (t, fromChart) => {
+    const show = (t) => {
         if (!active) return;
         const { log } = active;
         k = sampleAt(log.columns[0], t);
@@ -117,7 +117,7 @@ export function logs(data, state, picture) {
             if (rates.length > 0) state.dq = rates.map(Number);
             if (q.every((x) => x !== null)) state.move(q);
         }
-        if (!fromChart) mark();
+        mark();
     };
     /** Follows a run: from its start, or from where it was followed until now. @param {any} run */
     const choose = (run) => {
@@ -133,7 +133,7 @@ export function logs(data, state, picture) {
         for (const control of [play, time, value]) control.disabled = false;
         said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take its ${own}, and the parameters of the data sheet, whatever the run had. ${held}` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
         picture.sight.keep("run", run.places.length > 0 ? byId("logs") : null);
-        show(again ? time.valueAsNumber : Number(times[0] ?? 0), false);
+        show(again ? time.valueAsNumber : Number(times[0] ?? 0));
     };
     const layer = picture.layers.trail;
     picture.extras.push(() => {
@@ -173,7 +173,7 @@ export function logs(data, state, picture) {
             const now = performance.now();
             t = Math.min(end, t + (now - before) / 1000);
             before = now;
-            show(t, false);
+            show(t);
             if (t >= end) pause();
             else moving = requestAnimationFrame(tick);
         };
@@ -183,12 +183,12 @@ export function logs(data, state, picture) {
     state.on("sweep", pause);
     time.addEventListener("input", () => {
         pause();
-        show(time.valueAsNumber, false);
+        show(time.valueAsNumber);
     });
     value.addEventListener("focus", pause);
     value.addEventListener("change", () => {
         const t = typed(value.value);
-        show(Number.isFinite(t) ? Math.max(Number(time.min), Math.min(Number(time.max), t)) : shownTime(), false);
+        show(Number.isFinite(t) ? Math.max(Number(time.min), Math.min(Number(time.max), t)) : shownTime());
     });
     // Arrow keys go from sample to sample.
     time.addEventListener("keydown", (event) => {
@@ -196,7 +196,7 @@ export function logs(data, state, picture) {
         if (!by || event.altKey || event.ctrlKey || event.metaKey) return;
         event.preventDefault();
         pause();
-        show(Number(active?.log.columns[0][k + by] ?? shownTime()), false);
+        show(Number(active?.log.columns[0][k + by] ?? shownTime()));
     });
 
     const texts = new Map();
@@ -241,14 +241,16 @@ export function logs(data, state, picture) {
         const rates = ratesOf.every((place) => place >= 0) ? ratesOf : [];
         /** @type {any} */
         const run = { name, log, places: placesOf(log), rates, trails: [], over: null, charts: [], host: details.querySelector(".plots") };
+        // A run that goes on under the button would move the cursor away from the pointer, which is then taken for a drag.
+        run.host.addEventListener("pointerdown", pause, { capture: true });
         // The arm goes to the time of a click; that the pointer passes over a plot moves its cursor alone.
         run.host.addEventListener("click", (event) => {
             const chart = run.charts.find((one) => one.over.contains(event.target));
-            const idx = chart?.cursor.idx;
-            if (idx === null || idx === undefined) return;
+            if (!chart) return;
+            const index = chart.posToIdx(event.clientX - chart.over.getBoundingClientRect().left);
             pause();
             if (active !== run) choose(run);
-            show(Number(log.columns[0][idx]), true);
+            show(Number(log.columns[0][index]));
         });
         opened.set(name, run);
         const others = Object.keys(data.runs).filter((other) => other !== name && data.runs[other].log !== null);
@@ -294,6 +296,16 @@ export function logs(data, state, picture) {
 
 const HEIGHT = 190;
 
+/** Ticks with as many digits as their step asks for, so that no two are the same. @param {number[]} all */
+export function tickLabels(all) {
+    const step = all.length > 1 ? all[1] - all[0] : 0;
+    const size = Math.max(...all.map(Math.abs));
+    if (size < 1e-4 || size >= 1e6) return all.map((x) => short(Number(x.toPrecision(6))));
+    let digits = 0;
+    while (digits < 12 && Math.abs(step - Number(step.toFixed(digits))) > 1e-6 * step) digits++;
+    return all.map((x) => String(Number(x.toFixed(digits))).replace("-", "−"));
+}
+
 /** @param {Element | null} host */
 function width(host) {
     return Math.max(240, Math.min(760, (host?.clientWidth ?? 600) - 4));
@@ -334,7 +346,7 @@ function isDark() {
 function chart(host, log, plot, name, over) {
     const ink = () => (isDark() ? "#a9b5c1" : "#525d69");
     const grid = () => (isDark() ? "#2b343d" : "#dfe4e9");
-    const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "11px sans-serif", labelFont: "12px sans-serif", labelSize: 18, size: 46 });
+    const axis = (label) => ({ label, stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid }, font: "11px sans-serif", labelFont: "12px sans-serif", labelSize: 18, size: 46, values: (_, all) => tickLabels(all) });
     const curve = (label, k, dash, weight) => ({
         label,
         hues: [COLOURS, DARK].map((all) => all[k % all.length]),
@@ -366,7 +378,7 @@ function chart(host, log, plot, name, over) {
         cursor: { y: false, sync: { key: name }, points: { stroke: colour, fill: colour } },
         legend: { markers: { stroke: colour, dash: (_, k) => (k > 0 && series[k - 1].dash ? "dotted" : "solid") } },
         series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
-        axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64, values: (_, all) => all.map((x) => short(Number(x.toPrecision(6)))) }],
+        axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64 }],
     };
     const drawn = new uPlot(options, [log.columns[0], ...values], host);
     describe(drawn, options.title);

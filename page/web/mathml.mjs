@@ -22,7 +22,8 @@ function make(options, name, attributes, ...children) {
 export function nameElement(text, options) {
     const mi = (content) => make(options, "mi", {}, content);
     const mn = (content) => make(options, "mn", {}, content);
-    const sub = (base, index) => make(options, "msub", {}, base, index);
+    // What leans over its own foot has its index below the overhang.
+    const sub = (base, index) => make(options, "msub", /^[TVWY]$/.test(base.textContent ?? "") ? { class: "overhang" } : {}, base, index);
     const joint = /^(ddqr|dqr|ddq|dq|qr|q|tau)(\d*)$/.exec(text);
     if (joint) {
         const [, letter, index] = joint;
@@ -111,10 +112,14 @@ function isCall(node) {
     return node.kind === "call" && node.name !== "sqrt";
 }
 
-/** The terms of a sum, each with its sign. @param {any} node @param {Options} options @returns {any[][]} */
-export function termsOf(node, options) {
+/**
+ * The terms of a sum, each with its sign; where each of them stands in an element of its own, an operator that begins it has a space behind it
+ * only, since a space of the text stands before it. @param {any} node @param {Options} options @param {boolean} [apart] @returns {any[][]}
+ */
+export function termsOf(node, options, apart = false) {
     return node.terms.map((term, i) => {
-        const sign = () => make(options, "mo", { form: i === 0 ? "prefix" : "infix" }, term.negative ? "−" : "+");
+        const form = i === 0 ? { form: "prefix" } : { form: "infix", ...(apart ? { lspace: "0", rspace: "0.25em" } : {}) };
+        const sign = () => make(options, "mo", form, term.negative ? "−" : "+");
         return [...(i > 0 || term.negative ? [sign()] : []), factorOf(term.node, options)];
     });
 }

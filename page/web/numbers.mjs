@@ -6,7 +6,7 @@
 import { byId, copy, html } from "./dom.mjs";
 import { exact, inWords, short, unitOfManipulability, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
-import { condition, determinant, gram, manipulability, ROUNDING } from "./linear.mjs";
+import { condition, determinant, gram, manipulability, ROUNDING, singular } from "./linear.mjs";
 import { VELOCITY } from "./lost.mjs";
 import { sizes, withoutNoise } from "./noise.mjs";
 import { formula, pairs, setOf, whereSingular } from "./singular.mjs";
@@ -143,7 +143,8 @@ function twoJoints(data, state) {
     details.addEventListener("toggle", () => {
         if (list.firstChild) return;
         const w = (q) => Math.sqrt(Math.abs(determinant(gram(robot.geometricJacobian(q)))));
-        const all = pairs(data, w);
+        const smallest = (q) => singular(robot.geometricJacobian(q)).values.at(-1) ?? 0;
+        const all = pairs(data, w, smallest);
         const words = (pair) => pair.map(([i, x]) => `${variable(i + 1)} = ${short(x)}`).join(", ");
         printed.textContent = `${all.map(words).join("; ")}.`;
         list.append(

@@ -97,9 +97,10 @@ function sets(factors, singular) {
  * Values of two joints at which a longer arm is singular whatever the others do: of those of the first six joints with what a search finds
  * beside each. The first joint and the last of all change nothing.
  *
- * @param {any} data @param {(q: number[]) => number} w @returns {[number, number][][]} joints from 0, and their values
+ * @param {any} data @param {(q: number[]) => number} w @param {(q: number[]) => number} smallest singular value of J, which has digits where w has none any more
+ * @returns {[number, number][][]} joints from 0, and their values
  */
-export function pairs(data, w) {
+export function pairs(data, w, smallest) {
     const { factors, singular } = data.firstSix;
     const alone = factors.flatMap((factor, f) => {
         const { joint, period, values } = zeros(singular[f]) ?? { joint: Number(singular[f].match(/\d+/)), period: 0, values: rootsOf(factor).map((value) => ({ value })) };
@@ -112,17 +113,30 @@ export function pairs(data, w) {
     for (const [i, x] of alone) {
         for (let k = 1; k < data.rows.length - 1; k++) {
             if (k === i || data.rows[k].type !== "revolute") continue;
-            const at = (y, others) => w(others.map((other, m) => (m === i ? x : m === k ? y : other)));
+            const posture = (y, others) => others.map((other, m) => (m === i ? x : m === k ? y : other));
+            const at = (y, others) => w(posture(y, others));
             const [first, ...rest] = elsewhere;
             const least = 1e-6 * Math.max(...[0, 1, 2, 3, 4, 5].map((y) => at(y, first)));
             for (const y of roots((y) => at(y, first), least, 120)) {
                 const pair = /** @type {[number, number][]} */ ([[i, x], [k, y]]).sort(([a], [b]) => a - b);
                 const isKnown = found.some((other) => other.every(([m, z], j) => m === pair[j][0] && Math.abs(Math.sin((z - pair[j][1]) / 2)) < 1e-6));
-                if (!isKnown && rest.every((others) => at(y, others) < 10 * least)) found.push(pair);
+                if (isKnown || !rest.every((others) => at(y, others) < 10 * least)) continue;
+                const exact = refined((y) => smallest(posture(y, first)), y);
+                found.push(/** @type {[number, number][]} */ (pair.map(([m, z]) => [m, m === k ? exact : z])));
             }
         }
     }
     return found;
+}
+
+/** A zero x to all digits where a function grows as |x - root|: a secant between two places, one on each side. @param {(x: number) => number} of @param {number} near */
+export function refined(of, near) {
+    let x = near;
+    for (const h of [1e-6, 1e-7, 1e-8]) {
+        const [a, b] = [of(x - h), of(x + h)];
+        if (a + b > 0) x += (h * (a - b)) / (a + b);
+    }
+    return Math.abs(x) < 1e-14 ? 0 : x;
 }
 
 /** The sentences. @param {any} data @returns {(Node | string)[]} */
@@ -141,5 +155,5 @@ export function whereSingular(data) {
     const needed = six ? sets(six, zero) : [];
     // One that is always zero says nothing, and one of which several joints decide as little as w does.
     const tells = six && zero.every((text) => text !== null && text !== "at every q");
-    return [...shared, all, ...(tells ? [" That of the first six is zero nowhere but where ", ...needed, ": only there can the arm be singular, and is where those of the other choices are zero as well."] : [])];
+    return [...shared, all, ...(tells ? [" That of the first six is zero nowhere but where ", ...needed, ". Only there can the arm be singular, and it is singular there only where the determinants of all other choices are zero as well."] : [])];
 }

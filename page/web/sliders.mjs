@@ -5,11 +5,11 @@
  */
 
 import { byId, copy } from "./dom.mjs";
-import { digitsIn, fromUnit, inUnit, short, unitName, variable } from "./format.mjs";
+import { digitsIn, fromUnit, inUnit, short, unitName, units, variable } from "./format.mjs";
 import { typed } from "./formula.mjs";
 import { range } from "./state.mjs";
 
-/** Fields with a text that is no number, and what the number was: the text stays until that is another one. @type {Map<any, number>} */
+/** Fields with a text that is no number, and what the number was: the text stays until that is another one, or all of them are set. @type {Map<any, {all: number[], value: number}>} */
 const refused = new Map();
 
 /** Fields into which somebody types. @type {Set<any>} */
@@ -28,6 +28,7 @@ export function sliders(data, state) {
             fault: byId(`q${k}-fault`),
             rate: byId(`dq${k}`),
             acceleration: byId(`ddq${k}`),
+            shown: state.q,
         };
     });
     /** Sets the joints from one on, or all of them where there is a number for each. @param {number} i @param {string} text */
@@ -39,12 +40,12 @@ export function sliders(data, state) {
         fault.hidden = fits;
         fault.textContent = `${words.length} numbers: a posture has ${parts.length}, and from ${variable(i + 1)} on there are ${parts.length - i} joints`;
         if (!fits) return;
-        refused.delete(field);
         state.move(state.q.map((x, k) => (words[k - first] === undefined ? x : meant(words[k - first], parts[k].unit) + 0)));
     };
     parts.forEach((part, i) => {
         [part.range.min, part.range.max] = range(data.rows[i]).map(String);
         part.range.addEventListener("input", () => {
+            refused.delete(part.field);
             state.q[i] = part.range.valueAsNumber + 0;
             state.changed("motion");
         });
@@ -55,7 +56,7 @@ export function sliders(data, state) {
                 const wrong = !Number.isFinite(value);
                 field.setAttribute("aria-invalid", String(wrong));
                 if (wrong) {
-                    refused.set(field, values()[i]);
+                    refused.set(field, { all: values(), value: values()[i] });
                     return;
                 }
                 refused.delete(field);
@@ -71,10 +72,10 @@ export function sliders(data, state) {
             field.addEventListener("change", () => {
                 if (typing.has(field)) take();
                 const text = field.value.trim();
-                const wrong = text !== "" && !Number.isFinite(typed(text));
+                const wrong = text !== "" && !Number.isFinite(meant(text, unit));
                 if (wrong && field === part.field && isList(text)) return fill(i, text);
                 // Digits that were added to a number may have been meant to take its place.
-                const sum = !wrong && !ofPi(text) && Number.isNaN(Number(text.replaceAll("−", "-")));
+                const sum = !wrong && !inRadians(text) && Number.isNaN(Number(text.replaceAll("−", "-")));
                 part.fault.hidden = !wrong && !sum;
                 part.fault.textContent = sum ? `${text} was taken for ${short(typed(text))}` : fault(text, unit);
                 if (wrong) return;
@@ -84,18 +85,24 @@ export function sliders(data, state) {
                 if (document.activeElement === field) field.select();
             });
             field.addEventListener("keydown", (event) => {
-                if (event.key === "Escape" && typing.delete(field)) {
-                    field.value = digitsIn(values()[i], unit);
+                if (event.key === "Escape") {
+                    const was = [typing.delete(field), refused.delete(field)];
+                    if (!was.includes(true)) return;
+                    restore(field, values()[i], unit);
+                    part.fault.hidden = true;
                     field.select();
                 }
                 const sign = { ArrowUp: 1, ArrowDown: -1 }[event.key];
                 if (!sign || event.ctrlKey || event.metaKey || event.altKey) return;
                 event.preventDefault();
                 if (typing.has(field)) field.dispatchEvent(new Event("change"));
+                refused.delete(field);
                 const step = unitName(unit) === unit ? 0.01 : 1;
                 values()[i] = fromUnit(Number((inUnit(values()[i], unit) + sign * step).toPrecision(15)), unit);
                 state.changed("motion");
             });
+            // What was typed and then typed back is no change.
+            field.addEventListener("blur", () => typing.has(field) && field.dispatchEvent(new Event("change")));
             selectWhenEntered(field);
         };
         listen(part.field, () => state.q, part.unit);
@@ -112,9 +119,11 @@ export function sliders(data, state) {
         parts.forEach((part, i) => {
             const q = state.q[i];
             if (part.range.valueAsNumber !== q) part.range.value = String(q);
-            if (write(part.field, q, part.unit)) part.fault.hidden = true;
-            write(part.rate, state.dq[i], part.unit);
-            write(part.acceleration, state.ddq[i], part.unit);
+            const fields = /** @type {[any, number[]][]} */ ([[part.field, state.q], [part.rate, state.dq], [part.acceleration, state.ddq]]);
+            const set = fields.filter(([field, all]) => write(field, all, i, part.unit));
+            // A posture that is set is another one, whatever was said before.
+            if ((set.length > 0 || part.shown !== state.q) && !fields.some(([field]) => refused.has(field))) part.fault.hidden = true;
+            part.shown = state.q;
             [part.field, part.rate, part.acceleration].forEach((field, k) => {
                 const brief = short(inUnit([q, state.dq[i], state.ddq[i]][k], part.unit));
                 const around = field.parentElement;
@@ -133,9 +142,7 @@ export function sliders(data, state) {
         show();
     });
     byId("zero").addEventListener("click", () => {
-        refused.clear();
-        state.dq.fill(0);
-        state.ddq.fill(0);
+        [state.dq, state.ddq] = [state.dq, state.ddq].map((all) => all.map(() => 0));
         state.move(state.q.map(() => 0));
     });
     // In the units of the fields, so that it can be pasted into one of them.
@@ -160,7 +167,7 @@ function selectWhenEntered(field) {
 /** The numbers of a list, as other programs write one: [0.1, -pi/4, 0], or one a line, with a dash as in YAML or without; none of what is no list. @param {string} text */
 export function listed(text) {
     const inside = /^[^[({]*[[({]+([^\])}]*)[\])}]+[\s;]*$/.exec(text)?.[1] ?? text.replace(/^\s*- /gm, "");
-    const words = inside.split(/[\s,;]+/).filter((word) => word !== "");
+    const words = inside.replace(/(\d)\s+(deg\b|°)/g, "$1$2").split(/[\s,;]+/).filter((word) => word !== "");
     return words.every((word) => Number.isFinite(typed(word))) ? words : [];
 }
 
@@ -175,26 +182,38 @@ function isList(text) {
 /** Why a text is no number. @param {string} text @param {string} unit */
 function fault(text, unit) {
     if (COMMAS.test(text)) return `“${text}” has commas for points: write ${text.trim().replaceAll(",", ".")}`;
-    return `“${text}” is no number: digits in ${unitName(unit)}, pi in ${unit}, + − * / and parentheses are`;
+    const said = `“${text}” is not a number. Write one`;
+    if (unit === "m") return `${said} in ${unitName(unit)} without its unit, such as ${units.length === "mm" ? "250 or 1000/3" : "0.25 or 1/3"}`;
+    return `${said}, such as ${units.angle === "deg" ? "30 (deg)" : "0.5 (rad)"}, −pi/4 (always rad) or 30 deg`;
 }
 
-/** What was typed, in rad or m: an expression with pi is in rad whatever the fields are in. @param {string} text @param {string} unit */
-function meant(text, unit) {
-    return ofPi(text) ? typed(text) : fromUnit(typed(text), unit);
+/** What was typed, in rad or m: an expression with pi or with degrees is in rad whatever the fields are in. @param {string} text @param {string} unit */
+export function meant(text, unit) {
+    if (unit !== "rad" && /deg|°/.test(text)) return NaN;
+    return inRadians(text) ? typed(text) : fromUnit(typed(text), unit);
 }
 
 /** @param {string} text */
-function ofPi(text) {
-    return /pi|π/.test(text);
+function inRadians(text) {
+    return /pi|π|deg|°/.test(text);
 }
 
-/** Leaves a field alone that holds the number already, while somebody types into it, and one whose text is said to be no number. @param {any} field @param {number} value @param {string} unit */
-function write(field, value, unit) {
-    if (typing.has(field) || meant(field.value, unit) === value || refused.get(field) === value) return false;
+/**
+ * Leaves a field alone that holds the number already, while somebody types into it, and one whose text is said to be no number, as long as
+ * nobody has set its number, alone or with all of its kind. @param {any} field @param {number[]} all @param {number} i @param {string} unit
+ */
+function write(field, all, i, unit) {
+    const before = refused.get(field);
+    if (typing.has(field) || meant(field.value, unit) === all[i] || (before?.all === all && before.value === all[i])) return false;
     refused.delete(field);
+    restore(field, all[i], unit);
+    return true;
+}
+
+/** Writes a number into its field. @param {any} field @param {number} value @param {string} unit */
+function restore(field, value, unit) {
     field.value = digitsIn(value, unit);
     field.removeAttribute("aria-invalid");
-    return true;
 }
 
 /** Sweeps the joints one after the other, and stops at a touch; with reduced motion it steps. @param {any} data @param {import("./state.mjs").State} state */

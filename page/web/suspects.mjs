@@ -212,7 +212,7 @@ export function read(text, joints, convert, units) {
         if (wrong !== undefined) {
             faults.push(`line ${k + 1}: “${wrong}” is no number`);
         } else if (numbers.length !== joints + 3 && numbers.length !== joints + 6) {
-            faults.push(`line ${k + 1}: ${numbers.length} numbers; ${joints} joints and x y z are ${joints + 3}, with roll pitch yaw ${joints + 6}`);
+            faults.push(`line ${k + 1}: ${numbers.length} numbers; ${joints} joints and x y z are ${joints + 3}, with roll pitch yaw ${joints + 6}${commas(line)}`);
         } else {
             const q = units.map((unit, i) => convert(numbers[i], unit));
             const position = numbers.slice(joints, joints + 3).map((x) => convert(x, "m"));
@@ -221,6 +221,13 @@ export function read(text, joints, convert, units) {
         }
     });
     return { measured, faults };
+}
+
+/** What is said of a line with commas for points. @param {string} line */
+function commas(line) {
+    const number = /(?<![\d.,])[-+−]?\d+,\d+(?![\d.,])/g;
+    const words = line.match(number);
+    return words ? `. Commas were read as separators: write points, ${words.slice(0, 2).join(" ").replaceAll(",", ".")}${words.length > 2 ? " …" : ""}` : "";
 }
 
 /** Rz(yaw) Ry(pitch) Rx(roll). @param {number[]} angles roll, pitch, yaw */

@@ -183,6 +183,11 @@ impl Tab {
 
     /// Clicks into the middle of an element.
     pub(crate) fn click(&mut self, selector: &str) {
+        self.click_for(selector, 0);
+    }
+
+    /// Clicks into the middle of an element, the button down for so many milliseconds at least.
+    pub(crate) fn click_for(&mut self, selector: &str, milliseconds: u64) {
         let at = self.run(&format!(
             "(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{ block: 'center' }}); const box = e.getBoundingClientRect(); \
              return [box.x + box.width / 2, box.y + box.height / 2]; }})()"
@@ -190,6 +195,7 @@ impl Tab {
         for kind in ["mousePressed", "mouseReleased"] {
             let event = json!({"type": kind, "x": at[0], "y": at[1], "button": "left", "clickCount": 1});
             self.call("Input.dispatchMouseEvent", event);
+            std::thread::sleep(std::time::Duration::from_millis(milliseconds));
         }
     }
 

@@ -27,7 +27,17 @@ fn equations_are_set_when_they_are_opened() {
             // One entry is shown before the steps that it needs, and they are fewer than all; no step that is named is missing.
             let chosen = tab.run(CHOOSE_ENTRY);
             assert_eq!(chosen, serde_json::json!(["1,2", true, [], true, true]));
+            assert_eq!(tab.run(KEEP_ENTRY), serde_json::json!(["b12", "1,2", true, true]));
+            // An operator stands in the middle of its operands, wherever a line may break.
+            assert_eq!(tab.run(OPERATORS), serde_json::json!([true, true]));
         }
+        // Names are offered where there are some.
+        let offered = tab.run("(() => { const names = document.querySelector('input[value=symbolic]'); return [names.disabled, names.parentElement.title !== '']; })()");
+        assert_eq!(
+            offered,
+            if name == "ur5" { serde_json::json!([true, true]) } else { serde_json::json!([false, false]) },
+            "{name}"
+        );
         tab.close();
     }
 }
@@ -109,6 +119,45 @@ fn choose(name: &str, value: &str, then: &str) -> String {
          await new Promise((done) => setTimeout(done, 100)); return {then}; }})()"
     )
 }
+
+/// Another form of what is shown keeps the entry that was chosen.
+const KEEP_ENTRY: &str = r#"(async () => {
+    const details = document.querySelector("details[data-equation=inertia_matrix]");
+    const ready = async () => {
+        do await new Promise((done) => setTimeout(done, 50)); while (!details.querySelector("select") || details.querySelector("[aria-busy=true]"));
+    };
+    const select = () => details.querySelector("select");
+    const lines = () => details.querySelectorAll(".lines > div").length;
+    await ready();
+    const all = lines();
+    select().value = "1,2";
+    select().dispatchEvent(new Event("change"));
+    await ready();
+    document.querySelector("input[value=exact]").click();
+    await ready();
+    const seen = [select().selectedOptions[0].textContent, details.querySelector(".lines > div").dataset.entry, lines() < all];
+    document.querySelector("input[value=decimal]").click();
+    await ready();
+    seen.push(select().value === "1,2");
+    return seen;
+})()"#;
+
+/// The spaces before and behind the operators that begin a part of a line, in parts of the font: about the same, and neither is nothing.
+const OPERATORS: &str = r#"(() => {
+    const signs = [...document.querySelectorAll(".lines > div > math + math > mrow > mo:first-child")].filter((sign) => sign.getClientRects().length > 0);
+    const box = (element) => element.getBoundingClientRect();
+    const gaps = signs.flatMap((sign) => {
+        const [before, after] = [sign.closest("math").previousElementSibling, sign.nextElementSibling];
+        if (box(before).top > box(sign).bottom || box(before).right > box(sign).left + 1) return [];
+        const size = parseFloat(getComputedStyle(sign).fontSize);
+        // The box of an operator has its spaces.
+        const text = document.createRange();
+        text.selectNodeContents(sign);
+        const ink = text.getBoundingClientRect();
+        return [[(ink.left - box(before).right) / size, (box(after).left - ink.right) / size]];
+    });
+    return [gaps.length > 5, gaps.every(([before, after]) => before > 0.15 && after > 0.15 && Math.abs(before - after) < 0.1)];
+})()"#;
 
 /// Chooses an entry of the inertia matrix, and all of them again.
 const CHOOSE_ENTRY: &str = r#"(async () => {

@@ -99,6 +99,15 @@ fn a_log_is_played_on_the_arm() {
                  document.getElementById('time-of').textContent, document.getElementById('q2-value').value]; })()",
     );
     assert_eq!(one, serde_json::json!([["4.2 s"], true, 2, 0, true, "small, time", "-0.42"]));
+    // A click into a plot goes to its time and stays there, also while the run is played.
+    let state = "[document.getElementById('log-play').textContent, document.getElementById('time-value').value, document.getElementById('q2-value').value]";
+    let playing = tab.run(
+        "(async () => { const time = document.getElementById('time'), play = document.getElementById('log-play'); time.value = '0'; time.dispatchEvent(new Event('input')); \
+         play.click(); await new Promise((done) => setTimeout(done, 200)); return [play.textContent, Number(time.value) > 0]; })()",
+    );
+    assert_eq!(playing, serde_json::json!(["pause", true]));
+    tab.click_for("[data-log=small] .u-over", 200);
+    assert_eq!(tab.run(state), serde_json::json!(["play", "5", "-0.5"]));
     // A time that is typed is gone to, within the run, and what is none is forgotten.
     let typed = tab.run(
         "(() => { const value = document.getElementById('time-value'), q2 = document.getElementById('q2-value'); \

@@ -21,6 +21,12 @@ fn pages_fit_windows_themes_and_paper() {
             // Six digits of seven joints fit where there is room for them at all.
             let scrolled = tab.run(&format!("{MOVE}(1); {CUT}"));
             assert_eq!(scrolled, 0, "{}: {width} px: {scrolled} px of B are cut off", source.name());
+            // A warning at a row ends before what fades at the edge.
+            let whole = tab.run(
+                "[...document.querySelectorAll('#sheet .said .warning')].every((one) => \
+                 one.getBoundingClientRect().right <= one.closest('.scroll').getBoundingClientRect().right - 35)",
+            );
+            assert_eq!(whole, true, "{}: {width} px: a warning fades", source.name());
             keep(&format!("{}-{width}-{theme}.png.base64", source.name()), &mut tab);
             assert!(tab.print() > 10_000);
             tab.close();

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { digitsIn, fromUnit, unitOfManipulability, units } from "../format.mjs";
-import { listed } from "../sliders.mjs";
+import { listed, meant } from "../sliders.mjs";
 
 test("degrees stand as they were typed, and all digits of others are the same angle again", () => {
     units.angle = "deg";
@@ -31,4 +31,14 @@ test("a list is what programs write, YAML as well", () => {
     assert.deepEqual(listed("- 0.1\n- -0.2\n"), ["0.1", "-0.2"]);
     assert.deepEqual(listed("q: [0.1, pi/2]"), ["0.1", "pi/2"]);
     assert.deepEqual(listed("1 - 2"), []);
+    assert.deepEqual(listed("[30 deg, 45°, 0.1]"), ["30deg", "45°", "0.1"]);
+});
+
+test("degrees are angles whatever the fields are in, and no lengths", () => {
+    for (const angle of ["rad", "deg"]) {
+        units.angle = angle;
+        assert.equal(meant("30 deg", "rad"), (30 * Math.PI) / 180);
+    }
+    units.angle = "rad";
+    assert.ok(Number.isNaN(meant("30 deg", "m")));
 });

@@ -80,5 +80,7 @@ test("fields take numbers and expressions of pi", () => {
     same("2*(pi - 1)", 2 * (Math.PI - 1));
     same(".5 + 1.", 1.5);
     same("1e3/4", 250);
-    for (const text of ["", "pi pi", "q1", "0x10", "1,5", "Infinity", "constructor(1)", "alert(1)", "1.2.3", "(".repeat(100000)]) assert.ok(!Number.isFinite(typed(text)), text);
+    for (const text of ["30 deg", "30deg", "30°", "deg(30)", "3e1 deg"]) same(text, (30 * Math.PI) / 180);
+    same("pi/2 - 45°", Math.PI / 2 - Math.PI / 4);
+    for (const text of ["", "deg", "30 deg 2", "30 degrees", "pi pi", "q1", "0x10", "1,5", "Infinity", "constructor(1)", "alert(1)", "1.2.3", "(".repeat(100000)]) assert.ok(!Number.isFinite(typed(text)), text);
 });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { laidOver, plots, sampleAt } from "../logs.mjs";
+import { laidOver, plots, sampleAt, tickLabels } from "../logs.mjs";
 import { sequence } from "../search.mjs";
 
 test("columns of one kind and unit share a plot", () => {
@@ -21,6 +21,15 @@ test("columns of one kind and unit share a plot", () => {
 test("the sample of a time is the last one before it", () => {
     const times = [0, 0.5, 1, 4];
     assert.deepEqual([-1, 0, 0.6, 1, 3.9, 4, 9].map((t) => sampleAt(times, t)), [0, 0, 1, 2, 2, 3, 3]);
+});
+
+test("no two ticks of an axis have the same label", () => {
+    const ticks = (first, step) => tickLabels(Array.from({ length: 6 }, (_, k) => first + k * step));
+    assert.deepEqual(ticks(0, 0.0005), ["0", "0.0005", "0.001", "0.0015", "0.002", "0.0025"]);
+    assert.deepEqual(ticks(-1, 0.25), ["−1", "−0.75", "−0.5", "−0.25", "0", "0.25"]);
+    assert.deepEqual(ticks(12.3456, 0.00002).slice(0, 2), ["12.3456", "12.34562"]);
+    assert.deepEqual(ticks(0, 2e-7).slice(0, 2), ["0", "2·10⁻⁷"]);
+    for (const step of [0.001, 0.002, 0.0025, 0.005, 0.1, 2, 50]) for (const first of [0, 0.1, 7, 100]) assert.equal(new Set(ticks(first, step)).size, 6, `${first} ${step}`);
 });
 
 test("the sequence fills every box of a grid", () => {

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { roots, setOf } from "../singular.mjs";
+import { refined, roots, setOf } from "../singular.mjs";
 
 test("zeros of a function of an angle are all found, also where it touches zero", () => {
     const near = (found, expected) => {
@@ -13,6 +13,13 @@ test("zeros of a function of an angle are all found, also where it touches zero"
     near(roots((x) => 1 - Math.cos(x - 0.123), 1e-14), [0.123]);
     near(roots((x) => 1.0001 - Math.cos(x), 1e-14), []);
     near(roots((x) => Math.abs(Math.sin(x - 1)), 1e-7, 120), [1 - Math.PI, 1]);
+});
+
+test("a zero is refined to the digits that the function has there", () => {
+    assert.ok(Math.abs(refined((x) => Math.abs(Math.sin(x)), Math.PI + 3e-8) - Math.PI) < 1e-15);
+    const bent = (x) => Math.abs(Math.sin(x - 0.3) + 0.5 * (x - 0.3) ** 2);
+    assert.ok(Math.abs(refined(bent, 0.3 + 2e-8) - 0.3) < 1e-15);
+    assert.equal(refined((x) => Math.abs(Math.sin(x)), 3e-9), 0);
 });
 
 test("a set is said with numbers where no formula says it", () => {

@@ -114,3 +114,11 @@ test("lines are read, and what is none is said", () => {
     assert.deepEqual(measured.map((one) => [one.q, one.position, one.frame !== null]), [[[1, 2], [3, 4, 5], false], [[1, 2], [3, 4, 5], true]]);
     assert.deepEqual(faults.map((fault) => fault.slice(0, 6)), ["line 3", "line 4"]);
 });
+
+test("commas for points are named", () => {
+    const fault = (text) => read(text, 2, (x) => x, ["rad", "rad"]).faults[0] ?? "";
+    const said = "line 1: 10 numbers; 2 joints and x y z are 5, with roll pitch yaw 8. Commas were read as separators: write points, 0.4 -1.1 …";
+    assert.equal(fault("0,4 -1,1 0,5; 0,25\t1,0"), said);
+    assert.equal(fault("1, 2, 3"), "line 1: 3 numbers; 2 joints and x y z are 5, with roll pitch yaw 8");
+    assert.ok(!fault("0.1,0.2,0.3").includes("Commas") && !fault("1,2,3").includes("Commas"));
+});
