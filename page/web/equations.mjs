@@ -58,8 +58,9 @@ export function equations(data, state, shown) {
     /** An equation; its packet is unpacked once. @param {string} name @returns {Promise<Equation>} */
     const load = async (name) => {
         const k = data.equations.of[name];
-        if (!packets.has(k)) packets.set(k, unpack(data.equations.packets[k]).then((text) => JSON.parse(text)));
-        return (await packets.get(k))[name];
+        const packet = packets.get(k) ?? unpack(data.equations.packets[k]).then((text) => JSON.parse(text));
+        packets.set(k, packet);
+        return (await packet)[name];
     };
     /** The entries that were chosen, by the names of their equations. @type {Map<string, string>} */
     const entries = new Map();

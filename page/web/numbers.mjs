@@ -275,6 +275,7 @@ function lightNames(table) {
 
 /** An entry under the pointer lights its equation, where that is open. @param {HTMLElement} table @param {string} name */
 function lightEquation(table, name) {
+    /** @type {Element | null} */
     let lit = null;
     table.addEventListener("pointerover", (event) => {
         lit?.classList.remove("used");
