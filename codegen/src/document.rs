@@ -12,7 +12,7 @@ pub mod reader;
 pub mod yaml;
 
 pub(crate) use expression::out_of_range;
-pub use expression::{parse as parse_expression, Expression, ExpressionKind, Operator};
+pub use expression::{multiple_of_pi, parse as parse_expression, Expression, ExpressionKind, Operator};
 
 /// `text` shortened for a message, control characters replaced by blanks.
 pub fn excerpt(text: &str) -> String {

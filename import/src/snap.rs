@@ -5,6 +5,7 @@
 
 use std::f64::consts::PI;
 
+use armgen_codegen::document::multiple_of_pi;
 use armgen_codegen::source::Span;
 
 use crate::number::Decimal;
@@ -284,31 +285,6 @@ fn cube_turn([w, x, y, z]: [f64; 4]) -> [i64; 3] {
     // Only the sum or difference of roll and yaw counts.
     let yaw = right(-entry(2.0 * (x * y - w * z)), entry(w * w - x * x + y * y - z * z));
     [0, -6 * down, yaw]
-}
-
-/// `n` twelfths of pi as an expression.
-pub(crate) fn multiple_of_pi(n: i64) -> String {
-    let gcd = |mut a: i64, mut b: i64| {
-        while b != 0 {
-            (a, b) = (b, a % b);
-        }
-        a.abs()
-    };
-    if n == 0 {
-        return "0".into();
-    }
-    let common = gcd(n, 12);
-    let (above, below) = (n / common, 12 / common);
-    let start = match above {
-        1 => "pi".to_owned(),
-        -1 => "-pi".to_owned(),
-        n => format!("{n}*pi"),
-    };
-    if below == 1 {
-        start
-    } else {
-        format!("{start}/{below}")
-    }
 }
 
 #[cfg(test)]

@@ -30,6 +30,23 @@ const MAX_DIGITS: usize = 200;
 /// Powers of ten of a decimal, either way.
 const MAX_POWER: i64 = 1000;
 
+/// The expression of n pi/12, in lowest terms: `-5*pi/6`.
+pub fn multiple_of_pi(n: i64) -> String {
+    let fraction = Rational::from(n) / Rational::from(12);
+    let (numerator, denominator) = (fraction.numerator().to_string(), fraction.denominator().to_string());
+    let start = match numerator.as_str() {
+        "0" => return "0".to_owned(),
+        "1" => "pi".to_owned(),
+        "-1" => "-pi".to_owned(),
+        n => format!("{n}*pi"),
+    };
+    if denominator == "1" {
+        start
+    } else {
+        format!("{start}/{denominator}")
+    }
+}
+
 /// An expression and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {

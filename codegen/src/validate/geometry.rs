@@ -12,7 +12,7 @@ use super::number::text_of;
 use super::Context;
 use crate::description::{Convention, JointDescription, PoseDescription, RotationDescription, Value};
 use crate::diagnostic::Code;
-use crate::document::Expression;
+use crate::document::{multiple_of_pi, Expression};
 use crate::exact::{Angle, Number, Polynomial, Rational};
 use crate::manipulator::{Placement, Pose, Row};
 use crate::source::Span;
@@ -96,22 +96,6 @@ fn doubt_rounded(written: Span, radians: &Number, what: &str, context: &mut Cont
     let message = format!("{what}: {} rad is nearly, but not, {meant} (off by {:.1e} rad)", text_of(radians), off.abs());
     let help = format!("write `{meant}` if that is meant; it has an exact sine and cosine. The decimal is taken as written");
     context.report(Code::RoundedAngle, written, message, format!("`{meant}`?"), help);
-}
-
-/// `n` twelfths of pi as one writes it.
-fn multiple_of_pi(n: i64) -> String {
-    let fraction = Rational::from(n) / Rational::from(12);
-    let (numerator, denominator) = (fraction.numerator().to_string(), fraction.denominator().to_string());
-    let start = match numerator.as_str() {
-        "1" => "pi".to_owned(),
-        "-1" => "-pi".to_owned(),
-        n => format!("{n}*pi"),
-    };
-    if denominator == "1" {
-        start
-    } else {
-        format!("{start}/{denominator}")
-    }
 }
 
 fn rounded(value: f64, digits: i32) -> f64 {

@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
+use armgen_codegen::document::multiple_of_pi;
 use armgen_codegen::exact::{Angle, Number, Rational};
 use armgen_codegen::manipulator::Placement;
 
 use crate::number::ending;
-use crate::snap::multiple_of_pi;
 
 /// Digits of a numerator or denominator.
 const MAX_DIGITS: usize = 12;

@@ -1,5 +1,6 @@
 //! Rotations in the five writings of MJCF: `quat`, `axisangle`, `xyaxes`, `zaxis`, `euler`.
 
+use armgen_codegen::document::multiple_of_pi;
 use armgen_codegen::source::Span;
 
 use super::classes::Element;
@@ -118,7 +119,7 @@ fn about(axis: [Written; 3], axis_offset: f64, angle: Written) -> Turn {
 fn z_axis(v: [Written; 3], offset: f64, span: Span) -> Turn {
     let given: Vec<usize> = (0..3).filter(|&k| !v[k].is_zero()).collect();
     let right = |twelfths: i64| Written {
-        text: crate::snap::multiple_of_pi(twelfths),
+        text: multiple_of_pi(twelfths),
         value: twelfths as f64 * std::f64::consts::PI / 12.0,
         offset: offset * 2.0,
         twelfths: Some(twelfths),
