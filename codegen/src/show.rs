@@ -13,15 +13,21 @@
 //! asked for. Nothing is ever left out.
 //!
 //! ```text
-//! show.rs        which quantities, their derivations and forms
-//! show/steps.rs  an expression as numbered steps
-//! show/lines.rs  long formulas in several lines
-//! show/minors.rs what is left of the minors of a Jacobian that is not square
-//! show/json.rs   for programs
-//! show/text.rs   for a terminal
-//! show/latex.rs  for a paper
+//! show.rs         sheets of quantities
+//! show/item.rs    what can be asked for by name
+//! show/derived.rs its entries, derived
+//! show/forms.rs   its matrices, each in a form
+//! show/steps.rs   an expression as numbered steps
+//! show/lines.rs   long formulas in several lines
+//! show/minors.rs  what is left of the minors of a Jacobian that is not square
+//! show/json.rs    for programs
+//! show/text.rs    for a terminal
+//! show/latex.rs   for a paper
 //! ```
 
+mod derived;
+mod forms;
+mod item;
 mod json;
 mod latex;
 mod lines;
@@ -32,42 +38,18 @@ mod text;
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use armgen_algebra::optimise::optimise;
+pub use derived::ASK_THE_PAGE;
+pub use item::Item;
 
-use crate::catalogue::quantities::regressor::{KNOWN_TORQUE, REGRESSOR};
-use crate::catalogue::{self, Absent, Length, Quantity, ResultPart, Typeset};
-use crate::derive::arm::Arm;
-use crate::derive::derivation::{Derivation, CLOSED_FORM_TERMS};
-use crate::derive::newton_euler::{inverse_dynamics, Motion};
-use crate::derive::parameters::{ParameterKind, View};
-use crate::derive::regressor::{derivative_by_parameter, regressor};
-use crate::derive::{
-    self,
-    determinant::minors::{minors, NoMinors, Product},
-    determinant::{Factor, Zeros},
-};
+use crate::catalogue::Absent;
+use crate::derive::derivation::Derivation;
+use crate::derive::determinant::minors::Product;
+use crate::derive::determinant::{Factor, Zeros};
 use crate::exact::Number;
 use crate::parallel::parallel_map;
 use crate::ring::normal_form::NormalForm;
 use crate::ring::print::{Notation, Printer};
-use crate::ring::{AngleSum, ExprId, Pool, Symbol};
 use crate::Model;
-
-/// What can be asked for by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Item {
-    /// A function of the emitted module.
-    Plain(&'static Quantity),
-    /// Its form with the parameters as arguments.
-    With(&'static Quantity),
-    /// Of a function that returns a list of matrices one of these, by index: the frame of a link.
-    Element(&'static Quantity, usize),
-    /// The determinant of the task Jacobian.
-    Determinant,
-}
-
-/// The name of the determinant of the task Jacobian, which is no emitted function.
-const DETERMINANT: &str = "determinant";
 
 /// Numbers or names for the parameters of the description.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +109,7 @@ pub struct Shown {
     pub column_names: Option<Vec<String>>,
     /// The entries, row by row.
     pub content: Content,
-    /// Names of the symbols [`Symbol::Parameter`], by index.
+    /// Names of the symbols [`Symbol::Parameter`](crate::ring::Symbol::Parameter), by index.
     pub parameters: Vec<String>,
     /// Stribeck velocities of the joints; 1 where there is no such friction.
     pub velocities: Vec<Number>,
@@ -159,64 +141,6 @@ pub struct Formulas {
     pub entries: Vec<String>,
 }
 
-impl Item {
-    /// All that is shown where nothing is asked for: every function but those that only gather others, and the determinant.
-    pub fn all() -> Vec<Item> {
-        let functions = catalogue::quantities().filter(|quantity| quantity.gathers.is_empty()).map(Item::Plain);
-        functions.chain([Item::Determinant]).collect()
-    }
-
-    /// Whether it is said of an arm that lacks it, asked or not.
-    fn said_missing(self) -> bool {
-        match self {
-            Item::Plain(quantity) | Item::Element(quantity, _) | Item::With(quantity) => quantity.documentation.said_missing,
-            Item::Determinant => true,
-        }
-    }
-
-    /// What a name stands for; nothing if it is no name of a quantity of an arm with `dof` joints.
-    pub fn named(name: &str, dof: usize) -> Vec<Item> {
-        if name == DETERMINANT {
-            return vec![Item::Determinant];
-        }
-        let element = |quantity: &'static Quantity| {
-            let number = name.strip_prefix(element_of(quantity)?.name)?.strip_prefix('_')?.parse::<usize>().ok()?;
-            (1..=dof).contains(&number).then(|| Item::Element(quantity, number - 1))
-        };
-        if let Some(item) = catalogue::quantities().find_map(element) {
-            return vec![item];
-        }
-        let Some((quantity, with)) = catalogue::named(name) else { return Vec::new() };
-        let parts = if quantity.gathers.is_empty() { &[quantity][..] } else { quantity.gathers };
-        parts.iter().map(|&quantity| if with { Item::With(quantity) } else { Item::Plain(quantity) }).collect()
-    }
-
-    /// Every name that [`Item::named`] knows, but those of single matrices of a list.
-    pub fn names() -> Vec<String> {
-        let forms = [false, true].into_iter().flat_map(|with| catalogue::functions().filter(move |(_, form)| *form == with));
-        forms.map(|(quantity, with)| quantity.function_name(with)).chain([DETERMINANT.to_string()]).collect()
-    }
-
-    /// What the names of single matrices of a list begin with, before an underscore and a number from 1 to that of the joints.
-    pub fn lists() -> Vec<&'static str> {
-        catalogue::quantities().filter_map(element_of).map(|element| element.name).collect()
-    }
-
-    fn name(self) -> String {
-        match self {
-            Item::Plain(quantity) => quantity.name.into(),
-            Item::With(quantity) => quantity.function_name(true),
-            Item::Element(quantity, i) => format!("{}_{}", element_of(quantity).map_or(quantity.name, |of| of.name), i + 1),
-            Item::Determinant => DETERMINANT.into(),
-        }
-    }
-}
-
-/// One matrix of a function that returns a list of them.
-fn element_of(quantity: &Quantity) -> Option<catalogue::Element> {
-    quantity.result.iter().find_map(|part| part.element)
-}
-
 impl Sheet {
     /// The quantities asked for, each once, in the order of asking: each in its shortest form, with exact constants.
     pub fn new(model: &Model, items: &[Item], reading: Reading) -> Sheet {
@@ -225,7 +149,7 @@ impl Sheet {
 
     /// The same in another style.
     pub fn in_style(model: &Model, items: &[Item], reading: Reading, style: Style) -> Sheet {
-        let all = parallel_map(items, |&item| Ok(derived(model, item, reading)?.shown(model, item, style)));
+        let all = parallel_map(items, |&item| Ok(derived::derived(model, item, reading)?.shown(model, item, style)));
         Sheet::of(model, items, all)
     }
 
@@ -237,7 +161,7 @@ impl Sheet {
             return [nominal, symbolic];
         }
         let named = parallel_map(items, |&item| {
-            let derived = derived(model, item, Reading::Symbolic)?;
+            let derived = derived::derived(model, item, Reading::Symbolic)?;
             let named = derived.derivation.pool.has_parameters(&derived.derivation.entries);
             Ok(if named { derived.shown(model, item, style) } else { Vec::new() })
         });
@@ -381,268 +305,6 @@ impl Shown {
             _ => format!("{letter}{}_{}", row + 1, column + 1),
         }
     }
-}
-
-/// What is shown of an item, before it has a form.
-struct Derived {
-    derivation: Derivation,
-    /// Of the determinant.
-    factored: Option<Factored>,
-}
-
-/// The determinant of the task Jacobian, or its minors.
-enum Factored {
-    /// Its closed form where it is short, and its factors.
-    Determinant(Option<NormalForm>, Vec<Factor>),
-    /// The factors that all minors share, and what is left of each.
-    Minors(Vec<Factor>, Vec<Product>),
-}
-
-/// The entries of an item, or why there is none.
-fn derived(model: &Model, item: Item, reading: Reading) -> Result<Derived, String> {
-    let view = match (item, reading) {
-        (Item::With(_), _) => View::Vector(&model.parameters),
-        (_, Reading::Nominal) => View::Nominal,
-        (_, Reading::Symbolic) => View::Symbolic,
-    };
-    let (quantity, with) = match item {
-        Item::Determinant => {
-            let of = |pool, entries| Derivation { pool, entries, method: "minors", parallel: Vec::new() };
-            return Ok(match derive::determinant::determinant(model, view) {
-                Some(found) => {
-                    let closed = found.form.filter(|form| form.len() <= CLOSED_FORM_TERMS);
-                    let factored = Factored::Determinant(closed, found.factors);
-                    Derived { derivation: of(found.pool, vec![found.value]), factored: Some(factored) }
-                }
-                None => {
-                    let found = minors(model, view).map_err(|why| no_minors(model, &why))?;
-                    let factored = Factored::Minors(found.common, found.left);
-                    Derived { derivation: of(found.pool, found.values), factored: Some(factored) }
-                }
-            });
-        }
-        Item::Plain(quantity) | Item::Element(quantity, _) => (quantity, false),
-        Item::With(quantity) => (quantity, true),
-    };
-    (quantity.missing)(model, with).map_or(Ok(()), Err)?;
-    let plain = matches!(item, Item::Plain(_));
-    let of_names = plain && [&REGRESSOR, &KNOWN_TORQUE].contains(&quantity) && reading == Reading::Symbolic;
-    let derivation = if of_names { symbolic_regressor(model, quantity) } else { None };
-    Ok(Derived { derivation: derivation.unwrap_or_else(|| quantity.by_recursion(model, view)), factored: None })
-}
-
-impl Derived {
-    /// The matrices of the item that it was derived for.
-    fn shown(self, model: &Model, item: Item, style: Style) -> Vec<Shown> {
-        let parameters = match item {
-            Item::With(_) => model.parameters.entries.iter().map(|entry| entry.name.clone()).collect(),
-            _ => model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect(),
-        };
-        let names = Names { parameters, style };
-        match item {
-            Item::Determinant => vec![determinant(model, self, &names)],
-            Item::Plain(quantity) => parts(model, quantity, quantity.name, self.derivation, &names),
-            Item::Element(quantity, i) => {
-                let all = parts(model, quantity, quantity.name, self.derivation, &names);
-                all.into_iter().skip(i).take(1).collect()
-            }
-            Item::With(quantity) => parts(model, quantity, &quantity.function_name(true), self.derivation, &names),
-        }
-    }
-}
-
-/// What symbols are called, and how quantities are shown.
-struct Names {
-    parameters: Vec<String>,
-    style: Style,
-}
-
-/// The matrices of a quantity: of each part of its result, or of each element of a list.
-fn parts(model: &Model, quantity: &Quantity, name: &str, derivation: Derivation, names: &Names) -> Vec<Shown> {
-    let sizes = model.sizes();
-    let all_entries = derivation.entries.clone();
-    let mut entries = all_entries.as_slice();
-    let mut all = Vec::new();
-    let of = |entries: &[ExprId]| Derivation { entries: entries.to_vec(), ..derivation.clone() };
-    for part in quantity.result {
-        let (own, rest) = entries.split_at(part.len(&sizes));
-        entries = rest;
-        match part.element {
-            Some(element) => {
-                let size = part.rows().of(&sizes) * part.columns().of(&sizes);
-                all.extend(own.chunks(size).enumerate().map(|(i, entries)| {
-                    let i = i + 1;
-                    let symbol = [format!("{}_{i}(q)", element.letter), format!("{}_{{{i}}}(q)", element.letter)];
-                    matrix(model, part, format!("{}_{i}", element.name), symbol, of(entries), names)
-                }));
-            }
-            None => {
-                let Typeset { text, latex } = part.symbol;
-                let name = if part.name == ResultPart::RESULT { name.to_owned() } else { format!("{name}_{}", part.name) };
-                all.push(matrix(model, part, name, [text.into(), latex.into()], of(own), names));
-            }
-        }
-    }
-    all
-}
-
-/// The determinant with its factors, its closed form if that is not too long; or the minors with those that they share.
-fn determinant(model: &Model, derived: Derived, names: &Names) -> Shown {
-    let shown = |symbol: [&str; 2], letter, rows, factors: Vec<Factor>| Shown {
-        name: DETERMINANT.into(),
-        symbol: symbol.map(String::from),
-        letter,
-        rows,
-        columns: 1,
-        column_names: None,
-        factors: (!factors.is_empty()).then_some(factors),
-        content: Content::Closed(Vec::new()),
-        parameters: names.parameters.clone(),
-        velocities: model.manipulator.stribeck_velocities(),
-        digits: names.style.digits,
-        text: OnceLock::new(),
-    };
-    let of_determinant = |factors| shown(["det J(q)", "\\det J(q)"], ["det J", "\\det J"], 1, factors);
-    match derived.factored {
-        Some(Factored::Minors(common, left)) => {
-            Shown { content: Content::Minors(left.clone()), ..shown(["d(q)"; 2], ["d"; 2], left.len(), common) }
-        }
-        Some(Factored::Determinant(closed, factors)) => {
-            in_form(of_determinant(factors), closed.map(|form| vec![form]), derived.derivation, names.style.form)
-        }
-        None => in_form(of_determinant(Vec::new()), None, derived.derivation, names.style.form),
-    }
-}
-
-/// Where a reader sees whether a posture is singular if no formula says so.
-pub const ASK_THE_PAGE: &str =
-    "`armgen page ROBOT.yaml --out robot.html` shows w = sqrt(det(J J')) at any posture, 0 where J loses rank";
-
-/// Why there are no minors, and what to do instead.
-fn no_minors(model: &Model, why: &NoMinors) -> String {
-    let (rows, joints) = (model.manipulator.task.len(), model.manipulator.dof());
-    let number = |n: usize, of: &str| format!("{n} {of}{}", if n == 1 { "" } else { "s" });
-    let (rows, joints) = (number(rows, "row"), number(joints, "joint"));
-    let head = format!("the task has {rows} and the arm {joints}: ");
-    const FEWER: &str = "name fewer rows under `task`";
-    match why {
-        NoMinors::NotRedundant | NoMinors::AllZero => format!("{head}its Jacobian never has as many independent rows; {FEWER}"),
-        NoMinors::TooMany => format!("{head}its Jacobian is not square; {ASK_THE_PAGE}"),
-        NoMinors::TooLong(common) if common.is_empty() => {
-            format!("{head}the minors of its Jacobian are too long; {ASK_THE_PAGE}")
-        }
-        NoMinors::TooLong(common) => {
-            let parameters: Vec<String> = model.manipulator.parameters.iter().map(|parameter| parameter.name.clone()).collect();
-            let printer = Printer { notation: Notation::Text, parameters: &parameters, velocities: &[], digits: None };
-            let factor = |factor: &Factor| format!("{} is {}", printer.form(&factor.form), factor.zeros.sentence());
-            let common = common.iter().map(factor).collect::<Vec<_>>().join(", ");
-            format!("{head}its Jacobian loses rank where a factor of all its minors is 0 ({common}); what is left of these is too long; {ASK_THE_PAGE}")
-        }
-    }
-}
-
-fn matrix(model: &Model, part: &ResultPart, name: String, symbol: [String; 2], derivation: Derivation, names: &Names) -> Shown {
-    let sizes = model.sizes();
-    let columns_of = match part.columns() {
-        Length::Parameters => Some(&model.parameters),
-        Length::BaseParameters => Some(model.base_parameters()),
-        _ => None,
-    };
-    let closed = if names.style.form == Form::Steps { None } else { derivation.closed_forms() };
-    let shown = Shown {
-        name,
-        symbol,
-        letter: [part.letter.text, part.letter.latex],
-        rows: part.rows().of(&sizes),
-        columns: part.columns().of(&sizes),
-        column_names: columns_of.map(|vector| vector.entries.iter().map(|entry| entry.name.clone()).collect()),
-        content: Content::Closed(Vec::new()),
-        parameters: names.parameters.clone(),
-        velocities: model.manipulator.stribeck_velocities(),
-        factors: None,
-        digits: names.style.digits,
-        text: OnceLock::new(),
-    };
-    in_form(shown, closed, derivation, names.style.form)
-}
-
-/// The quantity with its content in a form.
-fn in_form(shown: Shown, closed: Option<Vec<NormalForm>>, derivation: Derivation, form: Form) -> Shown {
-    let closed = closed.filter(|_| form != Form::Steps).map(Content::Closed);
-    let closed = match closed {
-        Some(content) if form == Form::Closed => return Shown { content, ..shown },
-        Some(content) => {
-            let shown = Shown { content, ..shown.clone() };
-            if shown.is_table() {
-                return shown;
-            }
-            Some(shown.content)
-        }
-        None => None,
-    };
-    let derivation = without_turn(derivation);
-    let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &[]);
-    let fewer = Derivation { pool, entries, method: derivation.method, parallel: derivation.parallel.clone() };
-    let steps = [derivation, fewer].map(|derivation| Content::Program(Box::new(derivation)));
-    shown.with_shortest(closed.into_iter().chain(steps))
-}
-
-/// The same without the constant angle that the last link may be rotated by: its sine and cosine are constants that people can read.
-fn without_turn(derivation: Derivation) -> Derivation {
-    let Some(turn) = derivation.pool.field().turn().cloned() else { return derivation };
-    let mut pool = Pool::new(derivation.pool.field().clone());
-    let entries = derivation.pool.substitute_into(&mut pool, &derivation.entries, &|pool, symbol| {
-        let plain = |sum: AngleSum| AngleSum { turned: false, ..sum };
-        let (sum, is_sine) = match symbol {
-            Symbol::SineOf(sum) if sum.turned => (plain(sum), true),
-            Symbol::CosineOf(sum) if sum.turned => (plain(sum), false),
-            _ => return pool.symbol(symbol),
-        };
-        let (s, c) = (pool.symbol(Symbol::SineOf(sum)), pool.symbol(Symbol::CosineOf(sum)));
-        let (sine, cosine) = (pool.constant(&turn.sine), pool.constant(&turn.cosine));
-        let (first, second) =
-            if is_sine { (pool.mul(s, cosine), pool.mul(c, sine)) } else { (pool.mul(c, cosine), -pool.mul(s, sine)) };
-        pool.add(first, second)
-    });
-    Derivation { pool, entries, ..derivation }
-}
-
-/// Y or the known rest with all names of the description as symbols: Y_k = ∂tau/∂name_k, and the rest is tau - Y pi.
-///
-/// None where the rest of a base parameter set is asked for: its combinations hold the description's numbers.
-fn symbolic_regressor(model: &Model, quantity: &Quantity) -> Option<Derivation> {
-    let (manipulator, vector) = (&model.manipulator, &model.parameters);
-    let mut pool = Pool::new(model.field.clone());
-    let arm = Arm::new(&mut pool, manipulator, View::Symbolic);
-    let motion = Motion::with_reference(&mut pool, &arm);
-    let (y, pi): (Vec<Vec<ExprId>>, Vec<ExprId>) = match &vector.kind {
-        ParameterKind::Names(names) => {
-            let tau = inverse_dynamics(&mut pool, &arm, &motion);
-            let symbols: Vec<u16> = names.iter().map(|id| id.0 as u16).collect();
-            let columns: Vec<_> = symbols.iter().map(|&k| derivative_by_parameter(&mut pool, &tau, k)).collect();
-            let y = (0..arm.dof()).map(|i| columns.iter().map(|column| column[i]).collect()).collect();
-            (y, symbols.into_iter().map(|k| pool.symbol(Symbol::Parameter(k))).collect())
-        }
-        ParameterKind::Standard(all) => {
-            let pi = all.iter().map(|&p| View::Symbolic.standard(&mut pool, manipulator, p)).collect();
-            (regressor(&mut pool, &arm, vector), pi)
-        }
-        ParameterKind::Base(_) if *quantity == REGRESSOR => (regressor(&mut pool, &arm, vector), Vec::new()),
-        ParameterKind::Base(_) => return None,
-    };
-    let entries = if *quantity == REGRESSOR {
-        y.concat()
-    } else {
-        let tau = inverse_dynamics(&mut pool, &arm, &motion);
-        tau.iter()
-            .zip(&y)
-            .map(|(&tau, row)| {
-                let known = pool.dot(row, &pi);
-                pool.sub(tau, known)
-            })
-            .collect()
-    };
-    Some(Derivation { pool, entries, method: "derivatives by the names", parallel: Vec::new() })
 }
 
 fn is_number(text: &str) -> bool {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::catalogue::Absent;
+use crate::ring::Symbol;
 use crate::source::Source;
 use crate::validate;
 

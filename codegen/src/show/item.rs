@@ -1,0 +1,77 @@
+//! What can be asked for by name.
+
+use crate::catalogue::{self, Quantity};
+
+/// What can be asked for by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// A function of the emitted module.
+    Plain(&'static Quantity),
+    /// Its form with the parameters as arguments.
+    With(&'static Quantity),
+    /// Of a function that returns a list of matrices one of these, by index: the frame of a link.
+    Element(&'static Quantity, usize),
+    /// The determinant of the task Jacobian.
+    Determinant,
+}
+
+/// The name of the determinant of the task Jacobian, which is no emitted function.
+pub(super) const DETERMINANT: &str = "determinant";
+
+impl Item {
+    /// All that is shown where nothing is asked for: every function but those that only gather others, and the determinant.
+    pub fn all() -> Vec<Item> {
+        let functions = catalogue::quantities().filter(|quantity| quantity.gathers.is_empty()).map(Item::Plain);
+        functions.chain([Item::Determinant]).collect()
+    }
+
+    /// Whether it is said of an arm that lacks it, asked or not.
+    pub(super) fn said_missing(self) -> bool {
+        match self {
+            Item::Plain(quantity) | Item::Element(quantity, _) | Item::With(quantity) => quantity.documentation.said_missing,
+            Item::Determinant => true,
+        }
+    }
+
+    /// What a name stands for; nothing if it is no name of a quantity of an arm with `dof` joints.
+    pub fn named(name: &str, dof: usize) -> Vec<Item> {
+        if name == DETERMINANT {
+            return vec![Item::Determinant];
+        }
+        let element = |quantity: &'static Quantity| {
+            let number = name.strip_prefix(element_of(quantity)?.name)?.strip_prefix('_')?.parse::<usize>().ok()?;
+            (1..=dof).contains(&number).then(|| Item::Element(quantity, number - 1))
+        };
+        if let Some(item) = catalogue::quantities().find_map(element) {
+            return vec![item];
+        }
+        let Some((quantity, with)) = catalogue::named(name) else { return Vec::new() };
+        let parts = if quantity.gathers.is_empty() { &[quantity][..] } else { quantity.gathers };
+        parts.iter().map(|&quantity| if with { Item::With(quantity) } else { Item::Plain(quantity) }).collect()
+    }
+
+    /// Every name that [`Item::named`] knows, but those of single matrices of a list.
+    pub fn names() -> Vec<String> {
+        let forms = [false, true].into_iter().flat_map(|with| catalogue::functions().filter(move |(_, form)| *form == with));
+        forms.map(|(quantity, with)| quantity.function_name(with)).chain([DETERMINANT.to_string()]).collect()
+    }
+
+    /// What the names of single matrices of a list begin with, before an underscore and a number from 1 to that of the joints.
+    pub fn lists() -> Vec<&'static str> {
+        catalogue::quantities().filter_map(element_of).map(|element| element.name).collect()
+    }
+
+    pub(super) fn name(self) -> String {
+        match self {
+            Item::Plain(quantity) => quantity.name.into(),
+            Item::With(quantity) => quantity.function_name(true),
+            Item::Element(quantity, i) => format!("{}_{}", element_of(quantity).map_or(quantity.name, |of| of.name), i + 1),
+            Item::Determinant => DETERMINANT.into(),
+        }
+    }
+}
+
+/// One matrix of a function that returns a list of them.
+fn element_of(quantity: &Quantity) -> Option<catalogue::Element> {
+    quantity.result.iter().find_map(|part| part.element)
+}
