@@ -21,7 +21,7 @@ impl InverseKinematics {
             Some(Redundancy::Swivel) => format!("{target} and psi, the turn of the elbow about the line from shoulder to wrist"),
         };
         let mut text = format!("inverse_kinematics: {}, at most {} solutions\n  {target}\n", self.class, self.most);
-        let (steps, singular) = self.steps();
+        let Steps { steps, singular } = self.steps();
         let last = steps.len();
         for (i, step) in steps.iter().enumerate() {
             text += &format!("  {:width$}  {step}\n", i + 1, width = last.to_string().len());
@@ -32,132 +32,159 @@ impl InverseKinematics {
         text
     }
 
-    fn steps(&self) -> (Vec<String>, Vec<String>) {
-        let (mut steps, mut singular) = (Vec::new(), Vec::new());
-        let mut add = |(more, places): (Vec<String>, Vec<String>)| {
-            steps.extend(more);
-            singular.extend(places);
+    fn steps(&self) -> Steps {
+        let mut all = match &self.construction {
+            Construction::SphericalTriple(way, case) => spherical_triple(way, case),
+            Construction::ThreeParallel(way, polished) => three_parallel(way, *polished),
+            Construction::ParallelTurns(way, case) => parallel_turns(way, case),
+            Construction::Position(way, case) => Steps::new([read(way)], []).then(case.steps(way)),
+            Construction::ThreePrismatic(way, turning) => three_prismatic(way, *turning),
+            Construction::TwoSlides(way, slides) => two_slides(way, *slides),
+            Construction::ShoulderElbowWrist(_) => shoulder_elbow_wrist(),
+            Construction::General(ways) => general(ways),
         };
-        match &self.construction {
-            Construction::SphericalTriple(way, case) => {
-                let [_, _, _, d, e, f] = numbers(way);
-                let point = format!("the point in which axes {d}, {e} and {f} meet does not feel them: where the pose takes it");
-                add((vec![read(way), point], vec![]));
-                add(case.steps(way));
-                add((
-                    vec![
-                        format!("q{e} from the cosine between axes {d} and {f}: a cos q{e} = b                wrist: + / -"),
-                        format!("q{d} and q{f} from the rotation that is left"),
-                    ],
-                    vec![format!("axes {d} and {f} parallel (q{d} and q{f} free together)")],
-                ));
-            }
-            Construction::ThreeParallel(way, polished) => {
-                let [a, x, y, z, b, c] = numbers(way);
-                let pair = format!("across axes {x}, {y} and {z} nothing moves but q{a} and q{b}: two equations linear in their sines and cosines");
-                let roots = if *polished {
-                    format!("eliminated to one of degree 2 on the circle of q{a} or q{b}: at most four roots; Newton's method for the last digits")
-                } else {
-                    format!("one of them free of one angle: q{a}, then q{b}, each a cos q + b sin q = d            + / -")
-                };
-                add((
-                    vec![
-                        read(way),
-                        pair,
-                        roots,
-                        format!("q{c} from the direction of axes {x}, {y} and {z}"),
-                        format!("q{y} and q{x}: two links in the plane                    elbow: + / -"),
-                        format!("q{z} from the turn that is left"),
-                    ],
-                    vec![
-                        format!("elbow stretched or folded (sin q{y} = 0 in the loop)"),
-                        format!("axis {c} parallel to axis {x} (q{c} free)"),
-                    ],
-                ));
-            }
-            Construction::ParallelTurns(way, case) => {
-                let [.., d] = numbers::<4>(way);
-                add((vec![read(way), format!("the origin of joint {d} does not feel it: where the pose takes it")], vec![]));
-                add(case.steps(way));
-                add((vec![format!("q{d} from the turn that is left; none if R is tilted against the axes")], vec![]));
-            }
-            Construction::Position(way, case) => {
-                add((vec![read(way)], vec![]));
-                add(case.steps(way));
-            }
-            Construction::ThreePrismatic(way, turning) => {
-                let joints = numbers::<6>(way);
-                let [r1, r2, r3] = turning.map(|place| joints[place]);
-                add((
-                    vec![
-                        read(way),
-                        format!("the rotation does not feel the slides: q{r2} from the cosine between axes {r1} and {r3}        wrist: + / -"),
-                        format!("q{r1} and q{r3} from the rotation that is left"),
-                        "the slides from three linear equations".into(),
-                    ],
-                    vec![format!("axes {r1} and {r3} parallel (q{r1} and q{r3} free together)"), "slides in one plane".into()],
-                ));
-            }
-            Construction::TwoSlides(way, slides) => {
-                let joints = numbers::<6>(way);
-                let [a, b] = slides.map(|place| joints[place]);
-                let turning: Vec<usize> = (1..6).filter(|place| !slides.contains(place)).map(|place| joints[place]).collect();
-                let (first, [r1, r2, r3]) = (joints[0], [turning[0], turning[1], turning[2]]);
-                add((
-                    vec![
-                        read(way),
-                        format!("with q{first}, q{r2} from the cosine between axes {r1} and {r3}, with either sign of its sine; q{r1} and q{r3} from the rotation that is left"),
-                        format!("what is left to slide has to be in the plane of joints {a} and {b}: f(q{first}) = 0, the product of f for both signs of degree 4 on the circle (8 roots), from 12 samples"),
-                        format!("at each real root q{a} and q{b} from two linear equations"),
-                        "Newton's method on the six equations of the pose".into(),
-                    ],
-                    vec!["det J = 0 (solutions meet)".into()],
-                ));
-            }
-            Construction::ShoulderElbowWrist(_) => add((
-                vec![
-                    "S, in which axes 1, 2 and 3 meet, and W, in which axes 5, 6 and 7 meet, from the pose".into(),
-                    "q4 by the distance from S to W: two links in the plane across axis 4        elbow: + / -".into(),
-                    "the elbow E, the point of axis 4 nearest to axis 3, by psi: the rotation that takes the triangle S E W to its place".into(),
-                    "q1, q2 and q3 from that rotation        shoulder: + / -".into(),
-                    "q5, q6 and q7 from the rotation that is left        wrist: + / -".into(),
-                ],
-                vec![
-                    "S, E and W in one line (psi has no meaning)".into(),
-                    "W straight below S (the reference of psi has its pole there)".into(),
-                    "axes 1 and 3 parallel (q1 and q3 free together)".into(),
-                    "axes 5 and 7 parallel (q5 and q7 free together)".into(),
-                ],
-            )),
-            Construction::General(ways) => {
-                let [a, b, c, d, e, f] = numbers(&ways[0]);
-                add((
-                    vec![
-                        read(&ways[0]),
-                        format!("14 equations of axis {f} as it is seen from behind link {b} both ways: free of q{f}, bilinear in ({d} {e}) and ({a} {b})"),
-                        format!("q{a} and q{b} eliminated by linear algebra; M(q{c}), 12 x 12, is left"),
-                        format!("det M(q{c}), of degree 8 on the circle (16 roots), from 24 samples"),
-                        format!("at each real root q{d} and q{e} from the kernel of M, q{a} and q{b} by a triangular solve, then q{f}"),
-                        "Newton's method on the six equations of the pose".into(),
-                        format!("where that is not certain to be complete, the same in the order {}, and both are joined", listed(&ways[1])),
-                    ],
-                    vec!["det J = 0 (solutions meet)".into()],
-                ));
-            }
-        }
         if self.own.is_some() {
             let way = &self.loops()[0];
             let last = way.order.len();
             let own = last - way.still;
             let dropped = if own + 1 == last { format!("q{last} has") } else { format!("q{} to q{last} have", own + 1) };
-            add((
-                vec![format!("{dropped} to be 0 up to rounding: Gauss and Newton's method on the other joints alone, by all six rows; what does not meet them is dropped")],
-                vec![],
-            ));
+            all.steps.push(format!("{dropped} to be 0 up to rounding: Gauss and Newton's method on the other joints alone, by all six rows; what does not meet them is dropped"));
         }
-        (steps, singular)
+        all
     }
 }
+
+/// Steps of a construction, in order, and the places at which it is singular.
+struct Steps {
+    steps: Vec<String>,
+    singular: Vec<String>,
+}
+
+impl Steps {
+    fn new<const S: usize, const P: usize>(steps: [String; S], singular: [String; P]) -> Steps {
+        Steps { steps: steps.into(), singular: singular.into() }
+    }
+
+    fn then(mut self, next: Steps) -> Steps {
+        self.steps.extend(next.steps);
+        self.singular.extend(next.singular);
+        self
+    }
+}
+
+fn spherical_triple(way: &Arrangement, case: &Regional) -> Steps {
+    let [_, _, _, d, e, f] = numbers(way);
+    let point = format!("the point in which axes {d}, {e} and {f} meet does not feel them: where the pose takes it");
+    let wrist = Steps::new(
+        [
+            format!("q{e} from the cosine between axes {d} and {f}: a cos q{e} = b                wrist: + / -"),
+            format!("q{d} and q{f} from the rotation that is left"),
+        ],
+        [format!("axes {d} and {f} parallel (q{d} and q{f} free together)")],
+    );
+    Steps::new([read(way), point], []).then(case.steps(way)).then(wrist)
+}
+
+fn three_parallel(way: &Arrangement, polished: bool) -> Steps {
+    let [a, x, y, z, b, c] = numbers(way);
+    let pair =
+        format!("across axes {x}, {y} and {z} nothing moves but q{a} and q{b}: two equations linear in their sines and cosines");
+    let roots = if polished {
+        format!("eliminated to one of degree 2 on the circle of q{a} or q{b}: at most four roots; Newton's method for the last digits")
+    } else {
+        format!("one of them free of one angle: q{a}, then q{b}, each a cos q + b sin q = d            + / -")
+    };
+    Steps::new(
+        [
+            read(way),
+            pair,
+            roots,
+            format!("q{c} from the direction of axes {x}, {y} and {z}"),
+            format!("q{y} and q{x}: two links in the plane                    elbow: + / -"),
+            format!("q{z} from the turn that is left"),
+        ],
+        [format!("elbow stretched or folded (sin q{y} = 0 in the loop)"), format!("axis {c} parallel to axis {x} (q{c} free)")],
+    )
+}
+
+fn parallel_turns(way: &Arrangement, case: &Regional) -> Steps {
+    let [.., d] = numbers::<4>(way);
+    Steps::new([read(way), format!("the origin of joint {d} does not feel it: where the pose takes it")], [])
+        .then(case.steps(way))
+        .then(Steps::new([format!("q{d} from the turn that is left; none if R is tilted against the axes")], []))
+}
+
+fn three_prismatic(way: &Arrangement, turning: [usize; 3]) -> Steps {
+    let joints = numbers::<6>(way);
+    let [r1, r2, r3] = turning.map(|place| joints[place]);
+    Steps::new(
+        [
+            read(way),
+            format!(
+                "the rotation does not feel the slides: q{r2} from the cosine between axes {r1} and {r3}        wrist: + / -"
+            ),
+            format!("q{r1} and q{r3} from the rotation that is left"),
+            "the slides from three linear equations".into(),
+        ],
+        [format!("axes {r1} and {r3} parallel (q{r1} and q{r3} free together)"), "slides in one plane".into()],
+    )
+}
+
+fn two_slides(way: &Arrangement, slides: [usize; 2]) -> Steps {
+    let joints = numbers::<6>(way);
+    let [a, b] = slides.map(|place| joints[place]);
+    let turning: Vec<usize> = (1..6).filter(|place| !slides.contains(place)).map(|place| joints[place]).collect();
+    let (first, [r1, r2, r3]) = (joints[0], [turning[0], turning[1], turning[2]]);
+    Steps::new(
+        [
+            read(way),
+            format!("with q{first}, q{r2} from the cosine between axes {r1} and {r3}, with either sign of its sine; q{r1} and q{r3} from the rotation that is left"),
+            format!("what is left to slide has to be in the plane of joints {a} and {b}: f(q{first}) = 0, the product of f for both signs of degree 4 on the circle (8 roots), from 12 samples"),
+            format!("at each real root q{a} and q{b} from two linear equations"),
+            NEWTON.into(),
+        ],
+        [SOLUTIONS_MEET.into()],
+    )
+}
+
+fn shoulder_elbow_wrist() -> Steps {
+    Steps::new(
+        [
+            "S, in which axes 1, 2 and 3 meet, and W, in which axes 5, 6 and 7 meet, from the pose",
+            "q4 by the distance from S to W: two links in the plane across axis 4        elbow: + / -",
+            "the elbow E, the point of axis 4 nearest to axis 3, by psi: the rotation that takes the triangle S E W to its place",
+            "q1, q2 and q3 from that rotation        shoulder: + / -",
+            "q5, q6 and q7 from the rotation that is left        wrist: + / -",
+        ]
+        .map(String::from),
+        [
+            "S, E and W in one line (psi has no meaning)",
+            "W straight below S (the reference of psi has its pole there)",
+            "axes 1 and 3 parallel (q1 and q3 free together)",
+            "axes 5 and 7 parallel (q5 and q7 free together)",
+        ]
+        .map(String::from),
+    )
+}
+
+fn general(ways: &[Arrangement; 2]) -> Steps {
+    let [a, b, c, d, e, f] = numbers(&ways[0]);
+    Steps::new(
+        [
+            read(&ways[0]),
+            format!("14 equations of axis {f} as it is seen from behind link {b} both ways: free of q{f}, bilinear in ({d} {e}) and ({a} {b})"),
+            format!("q{a} and q{b} eliminated by linear algebra; M(q{c}), 12 x 12, is left"),
+            format!("det M(q{c}), of degree 8 on the circle (16 roots), from 24 samples"),
+            format!("at each real root q{d} and q{e} from the kernel of M, q{a} and q{b} by a triangular solve, then q{f}"),
+            NEWTON.into(),
+            format!("where that is not certain to be complete, the same in the order {}, and both are joined", listed(&ways[1])),
+        ],
+        [SOLUTIONS_MEET.into()],
+    )
+}
+
+const NEWTON: &str = "Newton's method on the six equations of the pose";
+const SOLUTIONS_MEET: &str = "det J = 0 (solutions meet)";
 
 /// The numbers of the joints in the order of the loop, from 1.
 fn numbers<const N: usize>(way: &Arrangement) -> [usize; N] {
@@ -174,59 +201,58 @@ fn read(way: &Arrangement) -> String {
 
 impl Regional {
     /// The steps that bring a point to a point, and their singular places.
-    fn steps(&self, way: &Arrangement) -> (Vec<String>, Vec<String>) {
+    fn steps(&self, way: &Arrangement) -> Steps {
         let [a, b, c] = numbers(way);
-        let two = |steps: &[String], places: &[String]| (steps.to_vec(), places.to_vec());
         let elbow = format!("q{c} and q{b}: two links in the plane                    elbow: + / -");
         let stretched = format!("elbow stretched or folded (axis {b}, axis {c} and the point in one plane)");
         let on = |axis: usize| format!("the point on axis {axis} (q{axis} free)");
         match self.function {
-            "regional_elbow" => two(
-                &[format!("q{a} by the component along axis {b}: a cos q{a} + b sin q{a} = d    shoulder: + / -"), elbow],
-                &[stretched, on(a)],
+            "regional_elbow" => Steps::new(
+                [format!("q{a} by the component along axis {b}: a cos q{a} + b sin q{a} = d    shoulder: + / -"), elbow],
+                [stretched, on(a)],
             ),
-            "regional_crossing" => two(
-                &[
+            "regional_crossing" => Steps::new(
+                [
                     format!("q{c} by the distance from the point in which axes {a} and {b} meet: a cos q{c} + b sin q{c} = d    + / -"),
                     format!("q{b} by the height along axis {a}: a cos q{b} + b sin q{b} = d    + / -"),
                     format!("q{a} by the direction across axis {a}"),
                 ],
-                &[stretched, on(a), on(b)],
+                [stretched, on(a), on(b)],
             ),
-            "regional_slide_elbow" => two(&[elbow, format!("q{a}: the length that is left along joint {a}")], &[stretched]),
-            "regional_mid_slide_elbow" => two(
-                &[format!("q{b} by the height along axis {a}"), format!("q{c} and q{a}: two links in the plane        elbow: + / -")],
-                &["elbow stretched or folded".into(), on(a)],
+            "regional_slide_elbow" => Steps::new([elbow, format!("q{a}: the length that is left along joint {a}")], [stretched]),
+            "regional_mid_slide_elbow" => Steps::new(
+                [format!("q{b} by the height along axis {a}"), format!("q{c} and q{a}: two links in the plane        elbow: + / -")],
+                ["elbow stretched or folded".into(), on(a)],
             ),
-            "regional_slide_across" => two(
-                &[
+            "regional_slide_across" => Steps::new(
+                [
                     format!("q{c} by the component along axis {b}: a cos q{c} + b sin q{c} = d    + / -"),
                     format!("q{b} by the component across it: a cos q{b} + b sin q{b} = d    + / -"),
                     format!("q{a}: the length that is left along joint {a}"),
                 ],
-                &[on(b)],
+                [on(b)],
             ),
-            "regional_mid_slide_across" => two(
-                &[
+            "regional_mid_slide_across" => Steps::new(
+                [
                     format!("q{c} by the height along axis {a}: a cos q{c} + b sin q{c} = d    + / -"),
                     format!("q{b}: a line that meets a circle about axis {a}    + / -"),
                     format!("q{a} by the direction across axis {a}"),
                 ],
-                &[on(a)],
+                [on(a)],
             ),
             "regional_plane_then_turn" => {
-                two(&[format!("q{c} by the component normal to both slides    + / -"), format!("q{a} and q{b} are linear")], &[])
+                Steps::new([format!("q{c} by the component normal to both slides    + / -"), format!("q{a} and q{b} are linear")], [])
             }
             "regional_slide_turn_slide" => {
-                two(&[format!("q{b}: the slides and what is left in one plane    + / -"), format!("q{a} and q{c} are linear")], &[])
+                Steps::new([format!("q{b}: the slides and what is left in one plane    + / -"), format!("q{a} and q{c} are linear")], [])
             }
-            "regional_slides" => two(&[format!("q{a}, q{b} and q{c} from three linear equations")], &[]),
-            _ => two(
-                &[
+            "regional_slides" => Steps::new([format!("q{a}, q{b} and q{c} from three linear equations")], []),
+            _ => Steps::new(
+                [
                     format!("q{a} and q{b} eliminated from the squared length and the height: an equation of degree 2 on the circle of q{c}, at most four roots"),
                     format!("q{b} from two linear equations, q{a} from what is left; Newton's method for the last digits"),
                 ],
-                &[format!("double roots in q{c}"), on(a), on(b)],
+                [format!("double roots in q{c}"), on(a), on(b)],
             ),
         }
     }

@@ -79,119 +79,164 @@ fn is_rough(case: &str) -> bool {
 /// The most solutions of a construction with this loop, or why it may not be called with it. `refined`: its solutions are brought to the last
 /// digits later.
 pub(super) fn most(construction: &Construction, way: &Arrangement, closed: &Loop, refined: bool) -> Result<usize, String> {
-    let link = |place: usize| Link { frame: &closed.links[place], one: closed.modulus.one };
-    let joints = way.order.len();
-    let fail = |what: &str| Err(format!("the class is wrong: {what}"));
-    // The rotation between the joints that turn at two places is one about x.
-    let about_x = |from: usize, to: usize| {
-        let product = closed.links[from..to].iter().fold(closed.modulus.identity(), |f, g| closed.modulus.compose(&f, g));
-        let [x, y, z] = product;
-        x[..3] == [closed.modulus.one, 0, 0] && y[0] == 0 && z[0] == 0 && z[1] != 0
-    };
-    let of_case = |case: &str, kinds: &[bool]| {
-        if joints < 3 || kinds != &way.prismatic[..3] {
+    let asked = Asked { way, closed, joints: way.order.len() };
+    match construction {
+        Construction::SphericalTriple { kinds, case, polished } => asked.spherical_triple(kinds, case, *polished, refined),
+        Construction::ThreeParallel { polished } => asked.three_parallel(*polished, refined),
+        Construction::ParallelTurns { kinds, case } => asked.parallel_turns(kinds, case),
+        Construction::Position { case, polished } => asked.position(case, *polished),
+        Construction::ThreePrismatic { turning } => asked.three_prismatic(turning),
+        Construction::TwoSlides { slides } => asked.two_slides(slides),
+        Construction::ShoulderElbowWrist => asked.shoulder_elbow_wrist(),
+        Construction::General => asked.general(),
+    }
+    .map_err(|what| format!("the class is wrong: {what}"))
+}
+
+/// The loop that a construction is called with: one method for each construction, its most solutions or what is wrong.
+struct Asked<'a> {
+    way: &'a Arrangement,
+    closed: &'a Loop,
+    joints: usize,
+}
+
+impl Asked<'_> {
+    fn link(&self, place: usize) -> Link<'_> {
+        Link { frame: &self.closed.links[place], one: self.closed.modulus.one }
+    }
+
+    /// Whether the axes on both sides of a link meet in one point.
+    fn crosses(&self, place: usize) -> bool {
+        self.link(place).is_normal() && self.link(place).meets() && !self.link(place).is_parallel()
+    }
+
+    /// Whether the rotation between the joints that turn at two places is one about x.
+    fn is_about_x(&self, from: usize, to: usize) -> bool {
+        let modulus = &self.closed.modulus;
+        let [x, y, z] = self.closed.links[from..to].iter().fold(modulus.identity(), |f, g| modulus.compose(&f, g));
+        x[..3] == [modulus.one, 0, 0] && y[0] == 0 && z[0] == 0 && z[1] != 0
+    }
+
+    /// The places of the joints of a kind, from the loop's `from`-th on.
+    fn places(&self, from: usize, prismatic: bool) -> Vec<usize> {
+        (from..self.joints).filter(|place| self.way.prismatic[*place] == prismatic).collect()
+    }
+
+    fn first_three(&self, case: &str, kinds: &[bool]) -> Result<usize, String> {
+        if self.joints < 3 || kinds != &self.way.prismatic[..3] {
             return Err("the kinds of the first three joints are not those of the loop".into());
         }
-        let constants = [way.is_constant(0), way.is_constant(1)];
-        regional(case, kinds, [&closed.links[0], &closed.links[1]], closed, constants)
-            .map_err(|what| format!("the class is wrong: {what}"))
-    };
-    match construction {
-        Construction::SphericalTriple { kinds, case, polished } => {
-            if joints != 6 || way.prismatic[3..].contains(&true) || !way.is_constant(3) || !way.is_constant(4) {
-                return fail("the last three axes are not joined by constant links");
-            }
-            let crosses = |place| link(place).is_normal() && link(place).meets() && !link(place).is_parallel();
-            if !crosses(3) || !crosses(4) || closed.links[4][2][3] != 0 {
-                return fail("the last three axes do not meet in a point");
-            }
-            if *polished != (is_rough(case) && !refined) {
-                return fail("Newton's method is called where it should not be, or is not");
-            }
-            Ok(2 * of_case(case, kinds)?)
+        let constants = [self.way.is_constant(0), self.way.is_constant(1)];
+        regional(case, kinds, [&self.closed.links[0], &self.closed.links[1]], self.closed, constants)
+    }
+
+    fn spherical_triple(&self, kinds: &[bool], case: &str, polished: bool, refined: bool) -> Result<usize, String> {
+        let way = self.way;
+        if self.joints != 6 || way.prismatic[3..].contains(&true) || !way.is_constant(3) || !way.is_constant(4) {
+            return Err("the last three axes are not joined by constant links".into());
         }
-        Construction::ThreeParallel { polished } => {
-            let flat =
-                |place| way.is_constant(place) && link(place).is_normal() && link(place).is_parallel() && !link(place).meets();
-            if joints != 6 || way.prismatic.contains(&true) || !flat(1) || !flat(2) {
-                return fail("there are no three parallel axes");
-            }
-            let related = |place| way.is_constant(place) && (link(place).meets() || link(place).is_parallel());
-            if *polished == (related(4) || related(5) || refined) {
-                return fail("Newton's method is called where it should not be, or is not");
-            }
-            Ok(8)
+        if !self.crosses(3) || !self.crosses(4) || self.closed.links[4][2][3] != 0 {
+            return Err("the last three axes do not meet in a point".into());
         }
-        Construction::ParallelTurns { kinds, case } => {
-            if joints != 4 || way.open != 3 || way.prismatic[3] {
-                return fail("the fourth joint does not turn before the pose");
-            }
-            let mut between = None;
-            for place in 0..4 {
-                if !way.prismatic[place] {
-                    if between.is_some_and(|frame: Frame| !Link { frame: &frame, one: 0 }.is_parallel()) {
-                        return fail("not all axes are parallel");
-                    }
-                    between = Some(closed.modulus.identity());
+        polishes(polished, is_rough(case) && !refined)?;
+        Ok(2 * self.first_three(case, kinds)?)
+    }
+
+    fn three_parallel(&self, polished: bool, refined: bool) -> Result<usize, String> {
+        let way = self.way;
+        let flat = |place| {
+            let link = self.link(place);
+            way.is_constant(place) && link.is_normal() && link.is_parallel() && !link.meets()
+        };
+        if self.joints != 6 || way.prismatic.contains(&true) || !flat(1) || !flat(2) {
+            return Err("there are no three parallel axes".into());
+        }
+        let related = |place| way.is_constant(place) && (self.link(place).meets() || self.link(place).is_parallel());
+        polishes(polished, !(related(4) || related(5) || refined))?;
+        Ok(8)
+    }
+
+    fn parallel_turns(&self, kinds: &[bool], case: &str) -> Result<usize, String> {
+        let (way, modulus) = (self.way, &self.closed.modulus);
+        if self.joints != 4 || way.open != 3 || way.prismatic[3] {
+            return Err("the fourth joint does not turn before the pose".into());
+        }
+        let mut between = None;
+        for place in 0..4 {
+            if !way.prismatic[place] {
+                if between.is_some_and(|frame: Frame| !Link { frame: &frame, one: 0 }.is_parallel()) {
+                    return Err("not all axes are parallel".into());
                 }
-                between = between.map(|frame| closed.modulus.compose(&frame, &closed.links[place]));
+                between = Some(modulus.identity());
             }
-            of_case(case, kinds)
+            between = between.map(|frame| modulus.compose(&frame, &self.closed.links[place]));
         }
-        Construction::Position { case, polished } => {
-            if joints != 3 || way.open != 2 {
-                return fail("the position is not behind the third joint");
-            }
-            if *polished != is_rough(case) {
-                return fail("Newton's method is called where it should not be, or is not");
-            }
-            of_case(case, &way.prismatic)
+        self.first_three(case, kinds)
+    }
+
+    fn position(&self, case: &str, polished: bool) -> Result<usize, String> {
+        if self.joints != 3 || self.way.open != 2 {
+            return Err("the position is not behind the third joint".into());
         }
-        Construction::ThreePrismatic { turning } => {
-            let places: Vec<usize> = (0..joints).filter(|place| !way.prismatic[*place]).collect();
-            let [r1, r2, r3] = places[..] else { return fail("there are not three joints that turn") };
-            if joints != 6 || *turning != places || (r1..r3).contains(&way.open) {
-                return fail("the joints that turn are others, or the pose is between them");
-            }
-            if about_x(r1, r2) && about_x(r2, r3) {
-                Ok(2)
-            } else {
-                fail("the links between the joints that turn are no turns about x")
-            }
+        polishes(polished, is_rough(case))?;
+        self.first_three(case, &self.way.prismatic)
+    }
+
+    fn three_prismatic(&self, turning: &[usize]) -> Result<usize, String> {
+        let places = self.places(0, false);
+        let [r1, r2, r3] = places[..] else { return Err("there are not three joints that turn".into()) };
+        if self.joints != 6 || *turning != places || (r1..r3).contains(&self.way.open) {
+            return Err("the joints that turn are others, or the pose is between them".into());
         }
-        Construction::TwoSlides { slides } => {
-            let places = |prismatic: bool| (1..joints).filter(|place| way.prismatic[*place] == prismatic).collect::<Vec<_>>();
-            let [r1, r2, r3] = places(false)[..] else { return fail("there are not four joints that turn") };
-            if joints != 6 || way.prismatic[0] || *slides != places(true) || (r1..r3).contains(&way.open) {
-                return fail("the joints that slide are others, the first one does, or the pose is between those that turn");
-            }
-            if about_x(r1, r2) && about_x(r2, r3) {
-                Ok(8)
-            } else {
-                fail("the links between the joints that turn are no turns about x")
-            }
+        self.all_about_x([r1, r2, r3]).map(|()| 2)
+    }
+
+    fn two_slides(&self, slides: &[usize]) -> Result<usize, String> {
+        let [r1, r2, r3] = self.places(1, false)[..] else { return Err("there are not four joints that turn".into()) };
+        if self.joints != 6 || self.way.prismatic[0] || *slides != self.places(1, true) || (r1..r3).contains(&self.way.open) {
+            return Err("the joints that slide are others, the first one does, or the pose is between those that turn".into());
         }
-        Construction::ShoulderElbowWrist => {
-            let normal = |place: usize| link(place).is_normal();
-            let crosses = |place: usize| link(place).meets() && !link(place).is_parallel();
-            let through_one = |place: usize| crosses(place) && crosses(place + 1) && closed.links[place + 1][2][3] == 0;
-            if joints != 7 || way.prismatic.contains(&true) || way.backward || way.open != 6 || way.order != [0, 1, 2, 3, 4, 5, 6]
-            {
-                return fail("the loop is not that of seven turning joints, from the base on");
-            }
-            if (0..6).all(normal) && through_one(0) && through_one(4) {
-                Ok(8)
-            } else {
-                fail("there are not three axes through a point at either end")
-            }
+        self.all_about_x([r1, r2, r3]).map(|()| 8)
+    }
+
+    fn all_about_x(&self, [r1, r2, r3]: [usize; 3]) -> Result<(), String> {
+        if self.is_about_x(r1, r2) && self.is_about_x(r2, r3) {
+            Ok(())
+        } else {
+            Err("the links between the joints that turn are no turns about x".into())
         }
-        Construction::General => {
-            let p = &way.prismatic;
-            if p[2] || p[5] || (p[3] && p[4]) || ((p[0] || p[1]) && (p[3] || p[4])) {
-                fail("the determinant's joints do not turn")
-            } else {
-                Ok(16)
-            }
+    }
+
+    fn shoulder_elbow_wrist(&self) -> Result<usize, String> {
+        let way = self.way;
+        let turns = self.joints == 7 && !way.prismatic.contains(&true);
+        if !turns || way.backward || way.open != 6 || way.order != [0, 1, 2, 3, 4, 5, 6] {
+            return Err("the loop is not that of seven turning joints, from the base on".into());
         }
+        let through_one =
+            |place: usize| self.crosses(place) && self.crosses(place + 1) && self.closed.links[place + 1][2][3] == 0;
+        if (0..6).all(|place| self.link(place).is_normal()) && through_one(0) && through_one(4) {
+            Ok(8)
+        } else {
+            Err("there are not three axes through a point at either end".into())
+        }
+    }
+
+    fn general(&self) -> Result<usize, String> {
+        let p = &self.way.prismatic;
+        if p[2] || p[5] || (p[3] && p[4]) || ((p[0] || p[1]) && (p[3] || p[4])) {
+            Err("the determinant's joints do not turn".into())
+        } else {
+            Ok(16)
+        }
+    }
+}
+
+/// Whether Newton's method is called where it should be.
+fn polishes(polished: bool, wanted: bool) -> Result<(), String> {
+    if polished == wanted {
+        Ok(())
+    } else {
+        Err("Newton's method is called where it should not be, or is not".into())
     }
 }
