@@ -1,6 +1,7 @@
 //! Rust as C: the restricted Rust of the building blocks of inverse kinematics, as C99 that is C++11 too.
 
 mod calls;
+mod composed;
 mod infer;
 mod instances;
 mod items;
