@@ -1,5 +1,6 @@
 //! The HTML of a page: everything that is there without a script, and the places that the script fills.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 
 use armgen_codegen::description::{Convention, RobotDescription};
@@ -83,18 +84,18 @@ pub(crate) fn document(parts: &Parts<'_>) -> String {
 }
 
 /// The sections beside the picture: identifier, title, content.
-fn sections(parts: &Parts<'_>) -> Vec<(&'static str, &'static str, String)> {
+fn sections<'p>(parts: &'p Parts<'_>) -> Vec<(&'static str, &'static str, Cow<'p, str>)> {
     let table = sheet::table(parts.rows, convention(parts.description), &parts.warnings);
     let frames = "<details open><summary>Frames</summary><div id=\"frames\"></div></details>\n";
     let bodies = "<details open><summary>Bodies</summary><div id=\"bodies\"></div></details>\n";
     let mut all = vec![
-        ("data-sheet", "Data sheet", table + frames + bodies + parts.drives),
+        ("data-sheet", "Data sheet", (table + frames + bodies + parts.drives).into()),
         ("check", "Check against the real arm", CHECK.into()),
         ("numbers", "Numbers", NUMBERS.into()),
         ("equations", "Equations", parts.equations.into()),
         ("workspace", "Workspace", WORKSPACE.into()),
     ];
-    all.extend(parts.logs.clone().map(|(title, logs)| ("logs", title, logs)));
+    all.extend(parts.logs.iter().map(|(title, logs)| ("logs", *title, logs.into())));
     all.push(("cost", "Cost", parts.cost.into()));
     all
 }

@@ -54,7 +54,7 @@ export function check(data, state, picture) {
         for (const other of list.querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
         button?.setAttribute("aria-pressed", String(chosen));
         ghost = chosen ? { arm: suspect.arm, solids: new Arm({ ...data, ...suspect.arm }, "ghost suspect"), measured } : null;
-        picture.sight.keep("suspect", ghost && byId("check"));
+        picture.sticky.keep("suspect", ghost && byId("check"));
         if (!ghost) return picture.show([]);
         state.move(measured.q);
         place();

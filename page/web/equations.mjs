@@ -8,7 +8,7 @@ import { exact, inWords, short } from "./format.mjs";
 import { folded, parse } from "./formula.mjs";
 import { mathml, nameElement, symbolElement, termsOf } from "./mathml.mjs";
 import { withoutNoise } from "./noise.mjs";
-import { unpack } from "./pack.mjs";
+import { unpack } from "./unpack.mjs";
 
 /** Nodes that are set until somebody asks for more, and those of them that are set before the browser lays out what there is. */
 const NODES = 2500;

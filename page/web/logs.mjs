@@ -7,7 +7,7 @@
 import { byId, html, set, svg } from "./dom.mjs";
 import { short } from "./format.mjs";
 import { typed } from "./formula.mjs";
-import { unpack } from "./pack.mjs";
+import { unpack } from "./unpack.mjs";
 import { Arm } from "./scene.mjs";
 import { origin } from "./vector.mjs";
 
@@ -132,7 +132,7 @@ export function logs(data, state, picture) {
         byId("followed").textContent = run.places.length > 0 ? held : "";
         for (const control of [play, time, value]) control.disabled = false;
         said.textContent = run.places.length > 0 ? `The arm follows ${run.name}: the numbers take its ${own}, and the parameters of the data sheet, whatever the run had. ${held}` : `${run.name} has no joints: its plots are shown, and the arm stays.`;
-        picture.sight.keep("run", run.places.length > 0 ? byId("logs") : null);
+        picture.sticky.keep("run", run.places.length > 0 ? byId("logs") : null);
         show(again ? time.valueAsNumber : Number(times[0] ?? 0));
     };
     const layer = picture.layers.trail;
@@ -274,7 +274,7 @@ export function logs(data, state, picture) {
         byId("followed").textContent = "";
         timed.textContent = "time";
         said.textContent = "No run is followed.";
-        picture.sight.keep("run", null);
+        picture.sticky.keep("run", null);
         picture.redraw();
     };
     // On paper the curves are those of the light theme.

@@ -5,7 +5,7 @@ import { cost } from "./cost.mjs";
 import { byId } from "./dom.mjs";
 import { equations } from "./equations.mjs";
 import { logs } from "./logs.mjs";
-import { lostMotion } from "./lost.mjs";
+import { lostMotion } from "./lost_motion.mjs";
 import { numbers } from "./numbers.mjs";
 import { Picture } from "./picture.mjs";
 import { postures } from "./postures.mjs";

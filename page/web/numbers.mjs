@@ -7,7 +7,7 @@ import { byId, copy, html } from "./dom.mjs";
 import { exact, inWords, short, unitOfManipulability, variable } from "./format.mjs";
 import { bound, evaluate, parse, zeros } from "./formula.mjs";
 import { condition, determinant, gram, manipulability, ROUNDING, singular } from "./linear.mjs";
-import { VELOCITY } from "./lost.mjs";
+import { VELOCITY } from "./lost_motion.mjs";
 import { sizes, withoutNoise } from "./noise.mjs";
 import { formula, pairs, setOf, whereSingular } from "./singular.mjs";
 import { range } from "./state.mjs";
@@ -101,8 +101,8 @@ function quantities(data, state, arm) {
     // Where no factor of a determinant says so, as of an arm with more joints than its task asks for.
     const told = data.determinant?.factors?.length > 0 || data.task.length > n;
     const words = ["", "⚠ nearly singular", "⚠ singular"];
-    const singular = () => (told ? 0 : Number(condition(task()) >= SINGULAR) + Number(condition(task()) === Infinity));
-    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, unitOfManipulability(data), () => manipulability(task())), singular: true, near: singular, words });
+    const level = () => (told ? 0 : Number(condition(task()) >= SINGULAR) + Number(condition(task()) === Infinity));
+    list.push({ ...scalar("w", "w", `Manipulability √det(J Jᵀ) of the rows ${rows} of J`, unitOfManipulability(data), () => manipulability(task())), singular: true, near: level, words });
     list.push({ ...scalar("condition", "σ₁/σₘ", "Condition number of these rows, largest singular value by smallest", "", () => condition(task())), singular: true });
     if (has("inertia_matrix")) list.push({ ...matrix("inertia_matrix", "B", "Inertia matrix", "", n, n, () => robot.inertiaMatrix(state.q)), ...inertia(""), size: size.inertia, rowNames: joints, columnNames: joints });
     if (has("coriolis_matrix")) {

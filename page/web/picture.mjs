@@ -6,7 +6,7 @@ import { byId, set, svg } from "./dom.mjs";
 import { exact, short, withUnit } from "./format.mjs";
 import { box, settle } from "./labels.mjs";
 import { Arm, step, unit } from "./scene.mjs";
-import { narrow, Sight } from "./sight.mjs";
+import { narrow, StickyPicture } from "./sticky_picture.mjs";
 import { Ball, Box, drawSolids } from "./solids.mjs";
 import { along, column, compose, identity, norm, origin, place, subtract } from "./vector.mjs";
 import { HEIGHT, View, VIEWS, WIDTH } from "./view.mjs";
@@ -56,7 +56,7 @@ export class Picture {
         this.unit = 1;
         /** Points that were laid into the picture since a view was chosen. @type {number[][]} */
         this.seen = [];
-        this.sight = new Sight();
+        this.sticky = new StickyPicture();
         this.listen();
         state.on("motion", () => this.draw());
         state.on("units", () => this.draw());

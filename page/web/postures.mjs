@@ -79,7 +79,7 @@ export function postures(data, state, picture) {
             said.textContent = found.length === 1 ? `No other posture was found${beside}. ${searched}` : `${found.length} postures${beside}, pale in the picture. ${searched}`;
             table();
         }
-        picture.sight.keep("postures", found && found.length > 1 ? details : null);
+        picture.sticky.keep("postures", found && found.length > 1 ? details : null);
         picture.redraw();
     };
     let waiting = 0;
@@ -87,7 +87,7 @@ export function postures(data, state, picture) {
         at = null;
         list.replaceChildren();
         said.textContent = "";
-        if (!details.open) picture.sight.keep("postures", null);
+        if (!details.open) picture.sticky.keep("postures", null);
         picture.redraw();
     };
     state.on("motion", () => {

@@ -3,8 +3,8 @@ import test from "node:test";
 
 import { cuboid } from "../bodies.mjs";
 import { condition, determinant, eigen, lost, manipulability, outline } from "../linear.mjs";
-import { combination, line, stretch } from "../lost.mjs";
-import { atLine, needless } from "../why.mjs";
+import { combination, line, stretch } from "../lost_motion.mjs";
+import { axesAtLine, dependentAxes } from "../dependent_axes.mjs";
 
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12 * Math.max(1, Math.abs(b)), `${a} is not ${b}`);
 
@@ -64,17 +64,17 @@ test("what the axes do says why", () => {
     const slide = (k, direction) => ({ k, slides: true, direction, at: [0, 0, 0] });
     const [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
     const others = [turn(4, x, [0, 3, 1]), turn(5, y, [2, 0, 4])];
-    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, y, [1, 1, 0]), turn(3, z, [0, 0, 2]), ...others], 5, 1, null), "the axes of q₁ and q₃ lie on one line");
-    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, x, [0, 0, 0]), turn(3, [0.6, 0, 0.8], [0, 0, 0])], 3, 1, null), "the axes of q₁, q₂ and q₃ lie in one plane and go through one point");
-    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, x, [0, 0, 0]), turn(3, y, [0, 0, 0]), turn(4, [0.6, 0.48, 0.64], [0, 0, 0])], 4, 1, null), "the axes of q₁, q₂, q₃ and q₄ go through one point");
-    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, z, [1, 0, 0])], 2, 1, [2, 0, 5]), "the axes of q₁ and q₂ lie in one plane with the tip: the arm is stretched or folded");
-    assert.equal(needless([slide(1, x), slide(2, x), slide(3, y)], 3, 1, null), "q₁ and q₂ slide along one direction");
+    assert.equal(dependentAxes([turn(1, z, [0, 0, 0]), turn(2, y, [1, 1, 0]), turn(3, z, [0, 0, 2]), ...others], 5, 1, null), "the axes of q₁ and q₃ lie on one line");
+    assert.equal(dependentAxes([turn(1, z, [0, 0, 0]), turn(2, x, [0, 0, 0]), turn(3, [0.6, 0, 0.8], [0, 0, 0])], 3, 1, null), "the axes of q₁, q₂ and q₃ lie in one plane and go through one point");
+    assert.equal(dependentAxes([turn(1, z, [0, 0, 0]), turn(2, x, [0, 0, 0]), turn(3, y, [0, 0, 0]), turn(4, [0.6, 0.48, 0.64], [0, 0, 0])], 4, 1, null), "the axes of q₁, q₂, q₃ and q₄ go through one point");
+    assert.equal(dependentAxes([turn(1, z, [0, 0, 0]), turn(2, z, [1, 0, 0])], 2, 1, [2, 0, 5]), "the axes of q₁ and q₂ lie in one plane with the tip: the arm is stretched or folded");
+    assert.equal(dependentAxes([slide(1, x), slide(2, x), slide(3, y)], 3, 1, null), "q₁ and q₂ slide along one direction");
     // Three joints of which no two or three do the same, for a task of three rows; two on one line that the task has to spare.
-    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, z, [1, 0, 0]), turn(3, z, [0, 1, 0])], 3, 1, null), "");
-    assert.equal(needless([turn(1, z, [0, 0, 0]), turn(2, z, [0, 0, 1]), turn(3, z, [0, 1, 0]), turn(4, x, [0, 1, 7])], 3, 1, null), "");
+    assert.equal(dependentAxes([turn(1, z, [0, 0, 0]), turn(2, z, [1, 0, 0]), turn(3, z, [0, 1, 0])], 3, 1, null), "");
+    assert.equal(dependentAxes([turn(1, z, [0, 0, 0]), turn(2, z, [0, 0, 1]), turn(3, z, [0, 1, 0]), turn(4, x, [0, 1, 7])], 3, 1, null), "");
     const line = { at: [0, 0, 1], direction: x, kind: "move" };
-    assert.equal(atLine([turn(1, z, [0, 0, 0]), turn(2, x, [0, 5, 0]), slide(3, y)], line, 1), "no joint can move anything along the line that is drawn: the axis of q₁ meets it; the axis of q₂ is parallel to it; q₃ slides across it");
-    assert.equal(atLine([turn(1, z, [0, 1, 0])], line, 1), "");
+    assert.equal(axesAtLine([turn(1, z, [0, 0, 0]), turn(2, x, [0, 5, 0]), slide(3, y)], line, 1), "no joint can move anything along the line that is drawn: the axis of q₁ meets it; the axis of q₂ is parallel to it; q₃ slides across it");
+    assert.equal(axesAtLine([turn(1, z, [0, 1, 0])], line, 1), "");
 });
 
 test("the line of a wrench is where it has no moment across it", () => {

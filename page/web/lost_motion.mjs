@@ -11,7 +11,7 @@ import { settle } from "./labels.mjs";
 import { lost } from "./linear.mjs";
 import { add, along, cross, dot, norm, origin, scale } from "./vector.mjs";
 import { HEIGHT, WIDTH } from "./view.mjs";
-import { atLine, axes, needless } from "./why.mjs";
+import { axesAtLine, axes, dependentAxes } from "./dependent_axes.mjs";
 
 export const VELOCITY = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
 
@@ -118,9 +118,9 @@ export function lostMotion(data, state, picture) {
     byId("show-lost").addEventListener("input", draw);
 }
 
-/** Why, in a sentence; empty where it is nothing that is looked for. @param {import("./why.mjs").Axis[]} all @param {number[]} task @param {{at: number[], direction: number[], kind: string}[]} lines @param {number} size @param {number[]} tip */
+/** Why, in a sentence; empty where it is nothing that is looked for. @param {import("./dependent_axes.mjs").Axis[]} all @param {number[]} task @param {{at: number[], direction: number[], kind: string}[]} lines @param {number} size @param {number[]} tip */
 function reason(all, task, lines, size, tip) {
     const straight = lines.find(({ kind }) => kind !== "screw");
-    const words = needless(all, task.length, size, task.every((row) => row < 3) ? tip : null) || (straight ? atLine(all, straight, size) : "");
+    const words = dependentAxes(all, task.length, size, task.every((row) => row < 3) ? tip : null) || (straight ? axesAtLine(all, straight, size) : "");
     return words && `Why: ${words}.`;
 }

@@ -97,7 +97,7 @@ function kinds(size, tip) {
  *
  * @param {Axis[]} all @param {number} rows of the task @param {number} size the arm's length @param {number[] | null} tip where the task has no orientation
  */
-export function needless(all, rows, size, tip) {
+export function dependentAxes(all, rows, size, tip) {
     for (const { slides, count, spans, holds, words } of kinds(size, tip)) {
         const candidates = all.filter((axis) => axis.slides === slides);
         if (count > 2 && candidates.length > MANY) continue;
@@ -118,7 +118,7 @@ export function needless(all, rows, size, tip) {
 }
 
 /** What each axis does at a line along which nothing moves; empty where one does none of it. @param {Axis[]} all @param {{at: number[], direction: number[], kind: string}} line of kind move, or turn, about which nothing turns @param {number} size */
-export function atLine(all, line, size) {
+export function axesAtLine(all, line, size) {
     if (line.kind === "turn") return "every axis about which a joint turns is perpendicular to the line that is drawn";
     /** @type {Record<string, Axis[]>} */
     const doing = { meet: [], "are parallel to": [], "slide across": [] };

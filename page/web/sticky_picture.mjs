@@ -12,7 +12,7 @@ export const narrow = matchMedia("(max-width: 800px)");
 const PART = 0.3;
 const MOST = 256;
 
-export class Sight {
+export class StickyPicture {
     constructor() {
         /** What acts on the picture, by its kind. @type {Map<string, Element>} */
         this.acting = new Map();
