@@ -43,15 +43,20 @@ pub enum Rewrite {
 /// the square of their number.
 const GATES: usize = 8000;
 
-/// The same expressions with fewer operations, in a pool of their own. `parallel` has for each joint the one before it on a parallel axis, and
+/// The same expressions with fewer operations, in a pool of their own; none where they are left as they are. `parallel` has for each joint the one before it on a parallel axis, and
 /// whether that points the other way.
-pub fn optimise(pool: &Pool, entries: &[ExprId], parallel: &[Option<(u16, bool)>], without: &[Rewrite]) -> (Pool, Vec<ExprId>) {
+pub fn optimise(
+    pool: &Pool,
+    entries: &[ExprId],
+    parallel: &[Option<(u16, bool)>],
+    without: &[Rewrite],
+) -> Option<(Pool, Vec<ExprId>)> {
     // Torques of gravity are outputs here: their sizes and signs are taken.
     let (all, joints) = pool.with_gravity(entries);
-    let mut circuit = Circuit::of(pool, &all);
-    if circuit.gates.len() > GATES {
-        return (pool.clone(), entries.to_vec());
+    if pool.reachable(&all).into_iter().filter(|&needed| needed).count() > GATES {
+        return None;
     }
+    let mut circuit = Circuit::of(pool, &all);
     let has = |rewrite| !without.contains(&rewrite);
     if has(Rewrite::AngleSums) {
         angles::sums_of_angles(&mut circuit, parallel);
@@ -86,7 +91,7 @@ pub fn optimise(pool: &Pool, entries: &[ExprId], parallel: &[Option<(u16, bool)>
         assert_eq!(pool.fingerprint(before), built.fingerprint(after), "an optimised expression is the one that it replaces");
     }
     built.take_gravity(&mut found, &joints);
-    (built, found)
+    Some((built, found))
 }
 
 #[cfg(test)]
@@ -111,7 +116,7 @@ mod tests {
         more: usize,
     ) {
         let count = |without: &[Rewrite]| {
-            let (pool, entries) = optimise(pool, entries, parallel, without);
+            let (pool, entries) = optimise(pool, entries, parallel, without).expect("few gates");
             pool.operations(&entries, 1)
         };
         assert_eq!(count(&[]), operations);

@@ -223,7 +223,7 @@ pub struct Pool {
     fingerprints: Vec<Fingerprint>,
     constants: Vec<Arc<Number>>,
     constant_nodes: BTreeMap<Arc<Number>, ExprId>,
-    /// Look-up only: its order reaches nothing.
+    /// By the lesser of a value and its negative. Look-up only: its order reaches nothing.
     known: HashMap<Fingerprint, ExprId, BuildHasherDefault<FingerprintHasher>>,
     at_origin: Vec<Option<Arc<Number>>>,
     symbols: BTreeMap<Symbol, ExprId>,
@@ -401,10 +401,7 @@ impl Pool {
 
     fn new_symbol(&mut self, symbol: Symbol) -> ExprId {
         let fingerprint = [0, 1].map(|point| self.symbol_value(symbol, point));
-        if let Some(&expr) = self.known.get(&fingerprint) {
-            return expr;
-        }
-        self.push(Node::Symbol(symbol), fingerprint)
+        self.known(fingerprint).unwrap_or_else(|| self.push(Node::Symbol(symbol), fingerprint))
     }
 
     /// An input, even if another node has its value.
@@ -544,11 +541,8 @@ impl Pool {
         if fingerprint.iter().all(|&x| x == self.field.zero()) {
             return ExprId::ZERO;
         }
-        if let Some(&expr) = self.known.get(&fingerprint) {
+        if let Some(expr) = self.known(fingerprint) {
             return expr;
-        }
-        if let Some(&expr) = self.known.get(&self.negated(fingerprint)) {
-            return -expr;
         }
         // The two points differ in every symbol: where both give the same, no symbol is left in the polynomial.
         if fingerprint[0] == fingerprint[1] {
@@ -568,8 +562,15 @@ impl Pool {
         self.nodes.push(node);
         self.fingerprints.push(fingerprint);
         self.at_origin.push(None);
-        self.known.entry(fingerprint).or_insert(expr);
+        let (size, negative) = self.field.size(fingerprint);
+        self.known.entry(size).or_insert(expr.signed(negative));
         expr
+    }
+
+    /// The expression of a value.
+    fn known(&self, fingerprint: Fingerprint) -> Option<ExprId> {
+        let (size, negative) = self.field.size(fingerprint);
+        self.known.get(&size).map(|expr| expr.signed(negative))
     }
 
     /// a + b + ...

@@ -2,7 +2,7 @@
 
 mod selection;
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use armgen_algebra::optimise::optimise;
 
@@ -104,8 +104,12 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
         .filter(|closed| operations(closed) <= most)
         .chain([recursion])
         .map(|derivation| {
-            let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &without.rewrites());
-            lower(&model.manipulator, quantity, with_parameters, &Derivation { pool, entries, ..derivation })
+            let fewer = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &without.rewrites());
+            let derivation = match fewer {
+                Some((pool, entries)) => Derivation { pool, entries, ..derivation },
+                None => derivation,
+            };
+            lower(&model.manipulator, quantity, with_parameters, &derivation)
         })
         .min_by_key(|function| Cost::of(function).weight())
         .map(|function| Function { fuse: options.fuse, ..function })
@@ -132,11 +136,12 @@ fn lower(manipulator: &Manipulator, quantity: &'static Quantity, with_parameters
 /// The steps that the expressions need, each after its operands, in the order in which the expressions ask for them.
 fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
     let mut steps: Vec<Step> = Vec::new();
-    let mut done: HashMap<usize, Operand> = HashMap::new();
+    // By the index of the node.
+    let mut done: Vec<Option<Operand>> = vec![None; pool.len()];
     for &expr in exprs {
         let mut stack = vec![(expr.unsigned(), false)];
         while let Some((expr, ready)) = stack.pop() {
-            if done.contains_key(&expr.index()) {
+            if done[expr.index()].is_some() {
                 continue;
             }
             let (operation, a, b) = match pool.node(expr) {
@@ -155,7 +160,7 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
                         let sign = Operand::Step(steps.len() as u32 - 1);
                         steps.push(Step { operation: Operation::Multiply, left: sign, right: own });
                     }
-                    done.insert(expr.index(), Operand::Step(steps.len() as u32 - 1));
+                    done[expr.index()] = Some(Operand::Step(steps.len() as u32 - 1));
                     continue;
                 }
                 Node::Constant(_) | Node::Symbol(_) => continue,
@@ -172,7 +177,7 @@ fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
                         Operand::Step(steps.len() as u32 - 1)
                     }
                 };
-                done.insert(expr.index(), value);
+                done[expr.index()] = Some(value);
             } else {
                 stack.extend([(expr, true), (b.unsigned(), false), (a.unsigned(), false)]);
             }
@@ -206,11 +211,12 @@ fn folded(operation: Operation, left: &Operand, right: &Operand) -> Option<Numbe
 }
 
 /// An operand without its sign: signs sit in the operation or in the output.
-fn operand(pool: &Pool, done: &HashMap<usize, Operand>, expr: ExprId) -> Operand {
+fn operand(pool: &Pool, done: &[Option<Operand>], expr: ExprId) -> Operand {
+    let known = || done[expr.index()].clone().expect("each step stands after its operands");
     match pool.node(expr) {
         Node::Constant(_) => Operand::Constant(pool.as_constant(expr.unsigned()).unwrap_or_else(Number::zero)),
-        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_)) => done[&expr.index()].clone(),
+        Node::Symbol(Symbol::GravitySize(_) | Symbol::GravitySign(_)) => known(),
         Node::Symbol(symbol) => Operand::Input(symbol),
-        Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => done[&expr.index()].clone(),
+        Node::Add(..) | Node::Mul(..) | Node::Reciprocal(_) => known(),
     }
 }

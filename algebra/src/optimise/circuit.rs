@@ -102,20 +102,7 @@ impl Circuit {
             filter: vec![0; FILTER_BITS / 64],
             leaves: HashMap::new(),
         };
-        let mut needed = vec![false; pool.len()];
-        entries.iter().for_each(|e| needed[e.index()] = true);
-        for index in (0..pool.len()).rev() {
-            if needed[index] {
-                match pool.node(pool.expr(index)) {
-                    Node::Add(a, b) | Node::Mul(a, b) => {
-                        needed[a.index()] = true;
-                        needed[b.index()] = true;
-                    }
-                    Node::Reciprocal(a) => needed[a.index()] = true,
-                    Node::Constant(_) | Node::Symbol(_) => {}
-                }
-            }
-        }
+        let needed = pool.reachable(entries);
         let mut ids: HashMap<usize, GateId> = HashMap::new();
         for index in (0..pool.len()).filter(|&i| needed[i]) {
             let expr = pool.expr(index);
@@ -151,15 +138,6 @@ impl Circuit {
         self.leaves.get(&expr).copied().filter(|&id| self.gates.get(id as usize) == Some(&Gate::Leaf(expr)))
     }
 
-    fn key(&self, value: &Fingerprint) -> (Fingerprint, bool) {
-        let negated = value.map(|x| self.field.neg(x));
-        if negated < *value {
-            (negated, true)
-        } else {
-            (*value, false)
-        }
-    }
-
     /// Indexes these gates by value, for `find`.
     pub(super) fn index(&mut self, gates: &[GateId]) {
         self.known.clear();
@@ -169,7 +147,7 @@ impl Circuit {
             for bit in [value, self.field.neg(value)].map(|x| x.bits() as usize % FILTER_BITS) {
                 self.filter[bit / 64] |= 1 << (bit % 64);
             }
-            let (key, negated) = self.key(&self.values[gate as usize]);
+            let (key, negated) = self.field.size(self.values[gate as usize]);
             self.known.entry(key).or_insert(Edge { gate, negated });
         }
     }
@@ -183,7 +161,7 @@ impl Circuit {
 
     /// The gate of a value, with the sign that it is found by.
     pub(super) fn find(&self, value: &Fingerprint) -> Option<Edge> {
-        let (key, negated) = self.key(value);
+        let (key, negated) = self.field.size(*value);
         self.known.get(&key).map(|edge| edge.flipped(negated))
     }
 

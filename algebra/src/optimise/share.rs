@@ -235,7 +235,7 @@ mod tests {
         let sum = pool.sum(terms);
         let without = [Rewrite::AngleSums, Rewrite::Cancellation, Rewrite::Sums, Rewrite::Resubstitution];
         // a b and x (a b (1 + e) + c + d): six operations.
-        let (pool, entries) = super::super::optimise(&pool, &[ab, sum], &[], &without);
+        let (pool, entries) = super::super::optimise(&pool, &[ab, sum], &[], &without).expect("few gates");
         assert_eq!(pool.operations(&entries, 1), 6);
     }
 

@@ -119,7 +119,7 @@ impl Pool {
     }
 
     /// Which nodes expressions need, by index.
-    pub(super) fn reachable(&self, exprs: &[ExprId]) -> Vec<bool> {
+    pub(crate) fn reachable(&self, exprs: &[ExprId]) -> Vec<bool> {
         let mut needed = vec![false; self.len()];
         exprs.iter().for_each(|e| needed[e.index()] = true);
         for index in (0..self.len()).rev() {

@@ -105,13 +105,7 @@ impl Pool {
         if value == self.field.zero() {
             return ExprId::ZERO;
         }
-        if let Some(&expr) = self.known.get(&fingerprint) {
-            return expr;
-        }
-        if let Some(&expr) = self.known.get(&self.negated(fingerprint)) {
-            return -expr;
-        }
-        self.push(Node::Constant(ConstantId(u32::MAX)), fingerprint)
+        self.known(fingerprint).unwrap_or_else(|| self.push(Node::Constant(ConstantId(u32::MAX)), fingerprint))
     }
 
     /// A constant with its value in the field, and whether it is negative if that is known.
@@ -154,13 +148,11 @@ impl Pool {
         if element == self.field.zero() && value.is_shared() && value.is_near(&Number::zero()) {
             return Some(ExprId::ZERO);
         }
-        [(element, false), (self.field.neg(element), true)].into_iter().find_map(|(element, negative)| {
-            let &expr = self.known.get(&[element; 2])?;
-            let Node::Constant(id) = self.node(expr) else { return None };
-            let other = &self.constants[id.0 as usize];
-            let same = (value.is_shared() || other.is_shared()) && self.is_near(value, other, negative);
-            same.then_some(expr.signed(negative))
-        })
+        let expr = self.known([element; 2])?;
+        let Node::Constant(id) = self.node(expr) else { return None };
+        let other = &self.constants[id.0 as usize];
+        let same = (value.is_shared() || other.is_shared()) && self.is_near(value, other, expr.is_negated());
+        same.then_some(expr)
     }
 
     fn is_near(&self, value: &Number, size: &Number, negative: bool) -> bool {

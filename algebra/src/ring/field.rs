@@ -47,8 +47,8 @@ pub struct Field {
     /// The root of a composite integer that is coprime to all other radicands: its sign is independent of theirs, as that of a prime's root is.
     coprime_radicand: Option<Atom>,
     p: u64,
-    /// -1/p mod 2^64.
-    minus_inverse: u64,
+    /// 1/p mod 2^64.
+    inverse: u64,
     /// 2^128 mod p.
     r_squared: u64,
     atoms: BTreeMap<Atom, Element>,
@@ -107,7 +107,7 @@ impl Field {
         let inverse = (0..6).fold(p, |x, _| x.wrapping_mul(2u64.wrapping_sub(p.wrapping_mul(x))));
         let r = (u128::MAX % u128::from(p) + 1) % u128::from(p);
         let (turn, coprime_radicand, atoms) = (None, None, BTreeMap::new());
-        Field { turn, coprime_radicand, p, minus_inverse: inverse.wrapping_neg(), r_squared: r as u64, atoms }
+        Field { turn, coprime_radicand, p, inverse, r_squared: r as u64, atoms }
     }
 
     /// The constant angle of sums that are turned.
@@ -141,17 +141,18 @@ impl Field {
         self.reduce(u128::from(a.0)).0
     }
 
+    /// t / 2^64 of a t below 2^64 p: with m = t/p mod 2^64 the lower half of t - m p is 0.
     fn reduce(&self, t: u128) -> Element {
-        let m = (t as u64).wrapping_mul(self.minus_inverse);
-        let (sum, overflow) = t.overflowing_add(u128::from(m) * u128::from(self.p));
-        let high = (sum >> 64) | (u128::from(overflow) << 64);
-        Element(if high >= u128::from(self.p) { (high - u128::from(self.p)) as u64 } else { high as u64 })
+        let m = (t as u64).wrapping_mul(self.inverse);
+        let less = ((u128::from(m) * u128::from(self.p)) >> 64) as u64;
+        self.sub(Element((t >> 64) as u64), Element(less))
     }
 
     /// a + b.
     pub fn add(&self, a: Element, b: Element) -> Element {
-        let sum = u128::from(a.0) + u128::from(b.0);
-        Element(if sum >= u128::from(self.p) { (sum - u128::from(self.p)) as u64 } else { sum as u64 })
+        let (sum, carried) = a.0.overflowing_add(b.0);
+        let (less, borrowed) = sum.overflowing_sub(self.p);
+        Element(if carried || !borrowed { less } else { sum })
     }
 
     /// -a.
@@ -161,7 +162,18 @@ impl Field {
 
     /// a - b.
     pub fn sub(&self, a: Element, b: Element) -> Element {
-        self.add(a, self.neg(b))
+        let (difference, borrowed) = a.0.overflowing_sub(b.0);
+        Element(if borrowed { difference.wrapping_add(self.p) } else { difference })
+    }
+
+    /// The lesser of a pair and its negative, and whether that is the negative.
+    pub(crate) fn size(&self, pair: [Element; 2]) -> ([Element; 2], bool) {
+        let negative = pair.map(|x| self.neg(x));
+        if negative < pair {
+            (negative, true)
+        } else {
+            (pair, false)
+        }
     }
 
     /// a b.

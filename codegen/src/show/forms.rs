@@ -137,9 +137,10 @@ fn in_form(shown: Shown, closed: Option<Vec<NormalForm>>, derivation: Derivation
         None => None,
     };
     let derivation = without_turn(derivation);
-    let (pool, entries) = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &[]);
-    let fewer = Derivation { pool, entries, method: derivation.method, parallel: derivation.parallel.clone() };
-    let steps = [derivation, fewer].map(|derivation| Content::Program(Box::new(derivation)));
+    let fewer = optimise(&derivation.pool, &derivation.entries, &derivation.parallel, &[]);
+    let (method, parallel) = (derivation.method, derivation.parallel.clone());
+    let fewer = fewer.map(|(pool, entries)| Derivation { pool, entries, method, parallel });
+    let steps = std::iter::once(derivation).chain(fewer).map(|derivation| Content::Program(Box::new(derivation)));
     shown.with_shortest(closed.into_iter().chain(steps))
 }
 
