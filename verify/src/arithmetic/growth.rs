@@ -37,11 +37,13 @@ impl Powers {
     }
 
     fn is_at_least(&self, other: &Powers) -> bool {
-        self.totals.iter().zip(&other.totals).all(|(a, b)| a >= b) && self.each.iter().zip(&other.each).all(|(a, b)| a >= b)
+        // All entries, which ends no earlier and takes many of them at a time.
+        let each = || self.each.iter().zip(&other.each).fold(true, |all, (a, b)| all & (a >= b));
+        self.totals.iter().zip(&other.totals).all(|(a, b)| a >= b) && each()
     }
 
     fn is_constant(&self) -> bool {
-        self.totals.iter().all(|degree| *degree == 0) && self.each.iter().all(|degree| *degree == 0)
+        self.totals.iter().all(|degree| *degree == 0) && self.each.iter().fold(0, |all, degree| all | degree) == 0
     }
 }
 

@@ -81,6 +81,8 @@ const JOINED: [&str; 25] = [
     "<<=", ">>=", "...", "..=", "&&", "||", "<<", ">>", "+=", "-=", "*=", "/=", "^=", "%=", "&=", "|=", "==", "!=", ">=", "<=",
     "->", "=>", "<-", "::", "..",
 ];
+/// The second characters of these.
+const SECOND: &[u8] = b"<>.&|=-:";
 const SINGLE: &str = "#[](){}<>,;:=+-*/&|!.^%";
 
 /// A place in a text, from which tokens are read.
@@ -147,7 +149,8 @@ impl<'a> Lexer<'a> {
                 Ok(self.split(Kind::Word, length))
             }
             _ => {
-                let joined = JOINED.iter().find(|sign| self.rest.starts_with(*sign));
+                let joins = self.rest.as_bytes().get(1).is_some_and(|second| SECOND.contains(second));
+                let joined = JOINED.iter().find(|sign| joins && self.rest.starts_with(*sign));
                 match joined.map(|sign| sign.len()).or_else(|| SINGLE.contains(first).then_some(1)) {
                     Some(length) => Ok(self.split(Kind::Sign, length)),
                     None => Err(self.fault(format!("the character {} outside of comments", name_of(first)))),
