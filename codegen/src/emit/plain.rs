@@ -44,20 +44,37 @@ pub(super) trait Syntax {
 
 /// A line or an entry of a result.
 pub(super) fn expression(of: &Expression, syntax: &dyn Syntax) -> String {
+    let mut text = String::new();
+    write(of, syntax, &mut text);
+    text
+}
+
+fn write(of: &Expression, syntax: &dyn Syntax, text: &mut String) {
     match of {
-        Expression::Input(symbol) => input(*symbol, syntax),
-        Expression::Constant(value) => syntax.number(value),
+        Expression::Input(symbol) => *text += &input(*symbol, syntax),
+        Expression::Constant(value) => *text += &syntax.number(value),
         Expression::Stribeck(i, velocity) => {
-            syntax.stribeck(&syntax.entry(Argument::Dq, usize::from(*i)), &syntax.number(velocity))
+            *text += &syntax.stribeck(&syntax.entry(Argument::Dq, usize::from(*i)), &syntax.number(velocity));
         }
-        Expression::Step(i) => Name::Step(*i).text(),
+        Expression::Step(i) => *text += &Name::Step(*i).text(),
         Expression::Operation(operation, left, right) => {
-            format!("{} {} {}", expression(left, syntax), syntax.operator(*operation), expression(right, syntax))
+            write(left, syntax, text);
+            for part in [" ", syntax.operator(*operation), " "] {
+                *text += part;
+            }
+            write(right, syntax, text);
         }
-        Expression::Fused(parts) => syntax.fused(parts.each_ref().map(|part| expression(part, syntax))),
-        Expression::Sign(inner) => syntax.sign(&expression(inner, syntax)),
-        Expression::Negation(inner) => format!("-{}", expression(inner, syntax)),
-        Expression::Brackets(inner) => format!("({})", expression(inner, syntax)),
+        Expression::Fused(parts) => *text += &syntax.fused(parts.each_ref().map(|part| expression(part, syntax))),
+        Expression::Sign(inner) => *text += &syntax.sign(&expression(inner, syntax)),
+        Expression::Negation(inner) => {
+            text.push('-');
+            write(inner, syntax, text);
+        }
+        Expression::Brackets(inner) => {
+            text.push('(');
+            write(inner, syntax, text);
+            text.push(')');
+        }
     }
 }
 

@@ -62,7 +62,7 @@ impl Text {
         });
         let private = private_block(module);
         let batches = module.batch.map(|lanes| batch::modules(module, lanes));
-        let functions = parallel_map(&module.functions, |f| formatted(function(module, f)));
+        let functions = parallel_map(&module.functions, |f| function(module, f));
         Text { before, functions, after: formatted(quote!(#private #batches)) }
     }
 
@@ -109,6 +109,11 @@ pub(in crate::emit) fn head(origin: &Origin, notes: &[String]) -> String {
 
 fn format(tokens: TokenStream) -> String {
     spaced(&formatted(tokens))
+}
+
+/// The tokens of a text that this program has put together.
+fn tokens(text: &str) -> TokenStream {
+    text.parse().expect("the emitted text is one of Rust")
 }
 
 fn formatted(tokens: TokenStream) -> String {
@@ -254,26 +259,23 @@ fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -
     })
 }
 
-/// A function without its documentation.
-fn function(module: &Module, function: &Function) -> TokenStream {
+/// A function without its documentation, and its parts.
+fn function(module: &Module, function: &Function) -> String {
     let name = format_ident!("{}", function.name());
     let arguments: Vec<TokenStream> = function.arguments.iter().map(typed).collect();
     let ignored = ignored(function);
     let sines = sincos::lines(module, function);
     let Body { parts, lines, entries } = body::body(module, function);
     let (returns, sizes) = (type_of(function.quantity), module.sizes());
+    let first = quote!(#ignored #(#sines)*);
     let own = match function.quantity.written(&sizes) {
         None => {
-            let result = result(function.quantity, &entries, &sizes);
-            quote! {
+            let frame = quote! {
                 #[allow(dead_code, clippy::all)]
-                pub fn #name(#(#arguments),*) -> #returns {
-                    #ignored
-                    #(#sines)*
-                    #(#lines)*
-                    #result
-                }
-            }
+                pub fn #name(#(#arguments),*) -> #returns {}
+            };
+            let entries: Vec<TokenStream> = entries.iter().map(|entry| tokens(entry)).collect();
+            body::framed(frame, &first, &lines, &result(function.quantity, &entries, &sizes))
         }
         Some([rows, columns]) => {
             let written = format_ident!("{}", function.name_into());
@@ -281,34 +283,26 @@ fn function(module: &Module, function: &Function) -> TokenStream {
             let names = function.arguments.iter().map(|&a| argument(a).0);
             let [height, width] = [rows, columns].map(length);
             let columns = columns.of(&sizes);
-            let assignments = entries.iter().enumerate().map(|(k, entry)| {
-                let [row, column] = [k / columns, k % columns].map(usize_literal);
-                quote!(y[#row][#column] = #entry;)
-            });
-            quote! {
+            let assignments =
+                entries.iter().enumerate().map(|(k, entry)| format!("y[{}][{}] = {entry};", k / columns, k % columns));
+            let lines: Vec<String> = lines.into_iter().chain(assignments).collect();
+            let allocated = formatted(quote! {
                 #[allow(dead_code, clippy::all)]
                 pub fn #name(#(#arguments),*) -> #returns {
                     let mut y = [[0.0; #width]; #height];
                     #written(#(#names,)* &mut y);
                     y
                 }
-
+            });
+            let frame = quote! {
                 #[doc = #documentation]
                 #[allow(dead_code, clippy::all)]
-                pub fn #written(#(#arguments,)* y: &mut #returns) {
-                    #ignored
-                    #(#sines)*
-                    #(#lines)*
-                    #(#assignments)*
-                }
-            }
+                pub fn #written(#(#arguments,)* y: &mut #returns) {}
+            };
+            allocated + &body::framed(frame, &first, &lines, &quote!())
         }
     };
-    quote! {
-        #own
-
-        #(#parts)*
-    }
+    parts.into_iter().fold(own, |text, part| text + &part)
 }
 
 /// The value of a result from its entries.
@@ -363,4 +357,49 @@ fn private_block(module: &Module) -> TokenStream {
         file.into_token_stream()
     });
     quote!(#sin_cos #sign #stribeck)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::{Operand, Operation, Output, Step};
+    use crate::schedule::{self, Options};
+    use crate::source::Source;
+    use crate::{validate, Model};
+
+    fn module(robot: &str, options: &Options) -> Module {
+        let path = format!("{}/../{robot}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let source = Source::new("robot.yaml", std::fs::read_to_string(path).expect("a robot"));
+        let (manipulator, _) = validate::read(&source).0.expect("it is valid");
+        schedule::module(&Model::new(manipulator), options)
+    }
+
+    /// Formatting the text of a function changes nothing; how many lines continue the one before.
+    fn check(module: &Module) -> usize {
+        for of in &module.functions {
+            let text = function(module, of);
+            assert_eq!(text, formatted(tokens(&text)), "{}", of.name());
+        }
+        let continues = |line: &&str| line.trim_start().starts_with(['+', '-', '*']) && line.starts_with("        ");
+        module.functions.iter().map(|of| function(module, of).lines().filter(continues).count()).sum()
+    }
+
+    #[test]
+    fn lines_are_written_as_the_formatter_writes_them() {
+        let fused = Options { fuse: true, scalar: Scalar::F32, ..Options::default() };
+        let everything = module("tests/robots/everything", &fused);
+        assert!(check(&everything) > 0);
+        let mut long = module("tests/robots/general_angles", &Options::default());
+        assert!(check(&long) > 0);
+        // So long that it comes in parts: each step is used twice.
+        let gravity = long.functions.iter_mut().find(|of| of.name() == "gravity").expect("every arm with mass has it");
+        let step =
+            |left: u32, right: u32| Step { operation: Operation::Add, left: Operand::Step(left), right: Operand::Step(right) };
+        let first = gravity.steps.len() as u32;
+        gravity.steps.extend((first..first + 9000).map(|i| step(i - 1, i - 2)));
+        let last = Output { operand: Operand::Step(first + 8999), negated: false };
+        gravity.outputs.iter_mut().for_each(|output| *output = last.clone());
+        assert!(function(&long, long.functions.iter().find(|of| of.name() == "gravity").expect("as before")).contains("_part_7("));
+        check(&long);
+    }
 }

@@ -332,10 +332,20 @@ fn names<'a>(expressions: impl Iterator<Item = &'a Expression>) -> BTreeSet<Name
 }
 
 /// An expression in the making, and how many operands it has.
-#[derive(Clone)]
 struct Made {
     expression: Expression,
     operands: usize,
+}
+
+impl Made {
+    /// For what needs it: of a line its name, everything else is needed once.
+    fn take(&mut self) -> Made {
+        let expression = match self.expression {
+            Expression::Step(line) => Expression::Step(line),
+            _ => std::mem::replace(&mut self.expression, Expression::Step(0)),
+        };
+        Made { expression, operands: self.operands }
+    }
 }
 
 impl Listing {
@@ -351,8 +361,8 @@ impl Listing {
             .collect();
         let fading: BTreeMap<u16, usize> = function.stribeck.keys().copied().zip(1..).collect();
         let mut made: Vec<Made> = Vec::with_capacity(function.steps.len());
-        let operand = |made: &[Made], operand: &Operand| match operand {
-            Operand::Step(i) => made[*i as usize].clone(),
+        let operand = |made: &mut [Made], operand: &Operand| match operand {
+            Operand::Step(i) => made[*i as usize].take(),
             Operand::Input(Symbol::Stribeck(i)) => Made { expression: Expression::Step(fading[i]), operands: 1 },
             Operand::Input(symbol) => Made { expression: Expression::Input(*symbol), operands: 1 },
             Operand::Constant(value) => Made { expression: Expression::Constant(value.clone()), operands: 1 },
@@ -360,7 +370,7 @@ impl Listing {
         for (i, (Step { operation, left, right }, uses)) in function.steps.iter().zip(uses).enumerate() {
             let is_fused = |operand: &Operand| matches!(operand, Operand::Step(i) if fused[*i as usize]);
             let takes = [is_fused(left), is_fused(right)];
-            let (left, right) = (operand(&made, left), operand(&made, right));
+            let (left, right) = (operand(&mut made, left), operand(&mut made, right));
             if let Operation::Sign | Operation::OppositeSign = operation {
                 let of = if *operation == Operation::Sign { left.expression } else { left.expression.negated() };
                 let expression = Expression::Sign(Box::new(of));
@@ -391,7 +401,7 @@ impl Listing {
             });
         }
         let entries = function.outputs.iter().map(|output| {
-            let value = operand(&made, &output.operand).expression;
+            let value = operand(&mut made, &output.operand).expression;
             if output.negated {
                 value.negated()
             } else {

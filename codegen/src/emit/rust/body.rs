@@ -1,28 +1,62 @@
 //! The body of an emitted function: the lines of its listing, and a long one in parts.
+//!
+//! A formatter of Rust holds many times the text that it writes, and takes a hundred times as long as it takes to write a line. Nearly every line of
+//! a body fits into one line of text, whose form is known: these are written as they are. What a line is too short for is left to the formatter.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::literal::literal;
-use super::signature::{argument, input, name, typed, usize_literal};
+use super::signature::{name, typed, usize_literal};
+use super::{formatted, tokens};
+use crate::emit::plain::{self, Syntax};
+use crate::exact::Number;
 use crate::kinds::Scalar;
-use crate::program::listing::{BodyPart, Expression, Line, Listing};
-use crate::program::{Function, Module, Operation};
+use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
+use crate::program::{Function, Module};
+
+/// What stands before a line of a body.
+const INDENT: &str = "    ";
+
+/// Characters of a line of formatted text.
+const WIDTH: usize = 89;
+
+/// How Rust writes what a line is made of.
+struct Rust(Scalar);
+
+impl Syntax for Rust {
+    fn number(&self, value: &Number) -> String {
+        decimal(value, self.0)
+    }
+
+    fn sign(&self, value: &str) -> String {
+        format!("sign({value})")
+    }
+
+    fn stribeck(&self, entry: &str, velocity: &str) -> String {
+        format!("stribeck({entry}, {velocity})")
+    }
+
+    fn fused(&self, [a, b, c]: [String; 3]) -> String {
+        format!("Real::mul_add({a}, {b}, {c})")
+    }
+}
 
 /// What stands in a function.
 pub(super) struct Body {
     /// Private functions that it calls.
-    pub(super) parts: Vec<TokenStream>,
+    pub(super) parts: Vec<String>,
     /// Its lines.
-    pub(super) lines: Vec<TokenStream>,
+    pub(super) lines: Vec<String>,
     /// The entries of the result.
-    pub(super) entries: Vec<TokenStream>,
+    pub(super) entries: Vec<String>,
 }
 
 /// The body of a function in one piece: its lines, and the entries of the result.
 pub(super) fn whole(module: &Module, function: &Function) -> (Vec<TokenStream>, Vec<TokenStream>) {
     let listing = Listing::of(function);
-    (lines(&listing.lines, module.scalar), entries(&listing, module.scalar))
+    let all = [lines(&listing.lines, module.scalar), entries(&listing, module.scalar)];
+    let [lines, entries] = all.map(|texts| texts.iter().map(|text| tokens(text)).collect());
+    (lines, entries)
 }
 
 /// The body of a function.
@@ -38,78 +72,55 @@ pub(super) fn body(module: &Module, function: &Function) -> Body {
 }
 
 /// A part of a long function, and the line that calls it.
-fn of_part(module: &Module, function: &Function, part: &BodyPart, number: usize) -> (TokenStream, TokenStream) {
-    let idents = |names: &[_]| names.iter().copied().map(name).collect::<Vec<Ident>>();
+fn of_part(module: &Module, function: &Function, part: &BodyPart, number: usize) -> (String, String) {
+    let idents = |names: &[Name]| names.iter().copied().map(name).collect::<Vec<Ident>>();
     let (taken, given) = (idents(&part.taken), idents(&part.given));
     let own = format_ident!("{}_part_{}", function.name(), number);
     let (takes, gives) = (usize_literal(taken.len()), usize_literal(given.len()));
     let signature = part.arguments.iter().map(typed);
-    let inner = lines(&part.lines, module.scalar);
     let documentation = format!(" Part {number} of `{}`.", function.name());
-    let text = quote! {
+    let frame = quote! {
         #[doc = #documentation]
         #[allow(dead_code, clippy::all)]
         #[inline(never)]
-        fn #own(#(#signature,)* values: [Real; #takes]) -> [Real; #gives] {
-            let [#(#taken),*] = values;
-            #(#inner)*
-            [#(#given),*]
-        }
+        fn #own(#(#signature,)* values: [Real; #takes]) -> [Real; #gives] {}
     };
-    let passed = part.arguments.iter().map(|&a| argument(a).0);
-    (text, quote!(let [#(#given),*] = #own(#(#passed,)* [#(#taken),*]);))
+    let text = framed(frame, &quote!(let [#(#taken),*] = values;), &lines(&part.lines, module.scalar), &quote!([#(#given),*]));
+    let list = |names: &[Name]| names.iter().map(|name| name.text()).collect::<Vec<String>>().join(", ");
+    let passed: String = part.arguments.iter().map(|argument| format!("{}, ", argument.name())).collect();
+    (text, format!("let [{}] = {own}({passed}[{}]);", list(&part.given), list(&part.taken)))
+}
+
+/// The text of a function that has an empty body in `frame`, and in the text these lines between what stands before and behind them.
+pub(super) fn framed(frame: TokenStream, before: &TokenStream, lines: &[String], behind: &TokenStream) -> String {
+    let mut text = formatted(frame);
+    text.truncate(text.trim_end().trim_end_matches('}').len());
+    text.push('\n');
+    text += &inside(before);
+    for line in lines {
+        if INDENT.len() + line.len() <= WIDTH {
+            for part in [INDENT, line, "\n"] {
+                text += part;
+            }
+        } else {
+            text += &inside(&tokens(line));
+        }
+    }
+    text + &inside(behind) + "}\n"
+}
+
+/// Formatted statements of a body.
+fn inside(statements: &TokenStream) -> String {
+    let text = formatted(quote!(fn body() { #statements }));
+    let lines = text.split_once('\n').and_then(|(_, lines)| lines.strip_suffix("}\n"));
+    lines.unwrap_or_default().into()
 }
 
 /// `let tN = ...;`
-fn lines(lines: &[Line], scalar: Scalar) -> Vec<TokenStream> {
-    let line = |line: &Line| {
-        let (name, value) = (format_ident!("t{}", line.name), expression(&line.value, scalar));
-        quote!(let #name = #value;)
-    };
-    lines.iter().map(line).collect()
+fn lines(lines: &[Line], scalar: Scalar) -> Vec<String> {
+    lines.iter().map(|line| format!("let t{} = {};", line.name, plain::expression(&line.value, &Rust(scalar)))).collect()
 }
 
-fn entries(listing: &Listing, scalar: Scalar) -> Vec<TokenStream> {
-    listing.entries.iter().map(|entry| expression(entry, scalar)).collect()
-}
-
-fn expression(of: &Expression, scalar: Scalar) -> TokenStream {
-    match of {
-        Expression::Input(symbol) => input(*symbol),
-        Expression::Constant(value) => literal(value, scalar),
-        Expression::Stribeck(i, velocity) => {
-            let (index, velocity) = (usize_literal(usize::from(*i)), literal(velocity, scalar));
-            quote!(stribeck(dq[#index], #velocity))
-        }
-        Expression::Step(i) => {
-            let name = format_ident!("t{i}");
-            quote!(#name)
-        }
-        Expression::Operation(operation, left, right) => {
-            let (a, b) = (expression(left, scalar), expression(right, scalar));
-            match operation {
-                Operation::Add => quote!(#a + #b),
-                Operation::Subtract => quote!(#a - #b),
-                Operation::Multiply => quote!(#a * #b),
-                Operation::Divide => quote!(#a / #b),
-                Operation::Sign | Operation::OppositeSign => unreachable!("a listing writes the sign of one operand"),
-            }
-        }
-        Expression::Fused(parts) => {
-            let [a, b, c] = parts.each_ref().map(|part| expression(part, scalar));
-            quote!(Real::mul_add(#a, #b, #c))
-        }
-        Expression::Sign(inner) => {
-            let inner = expression(inner, scalar);
-            quote!(sign(#inner))
-        }
-        Expression::Negation(inner) => {
-            let inner = expression(inner, scalar);
-            quote!(-#inner)
-        }
-        Expression::Brackets(inner) => {
-            let inner = expression(inner, scalar);
-            quote!((#inner))
-        }
-    }
+fn entries(listing: &Listing, scalar: Scalar) -> Vec<String> {
+    listing.entries.iter().map(|entry| plain::expression(entry, &Rust(scalar))).collect()
 }

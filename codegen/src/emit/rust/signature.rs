@@ -6,7 +6,6 @@ use quote::{format_ident, quote, ToTokens};
 use crate::catalogue::{Argument, Length, Quantity, ResultPart};
 use crate::program::listing::Name;
 use crate::program::{Function, Module};
-use crate::ring::Symbol;
 
 pub(super) fn usize_literal(value: usize) -> Literal {
     Literal::usize_unsuffixed(value)
@@ -62,29 +61,6 @@ pub(super) fn length(length: Length) -> TokenStream {
         Length::Fixed(value) => usize_literal(value).into_token_stream(),
         named => format_ident!("{}", named.constant()).into_token_stream(),
     }
-}
-
-pub(super) fn input(symbol: Symbol) -> TokenStream {
-    let (argument_kind, index) = match symbol {
-        Symbol::Sine(_) | Symbol::Cosine(_) | Symbol::SineOf(_) | Symbol::CosineOf(_) => {
-            let name = name(Name::SineOrCosine(symbol));
-            return quote!(#name);
-        }
-        Symbol::RateSign(i) => {
-            let index = usize_literal(usize::from(i));
-            return quote!(sign(dq[#index]));
-        }
-        Symbol::Stribeck(_) | Symbol::GravitySize(_) | Symbol::GravitySign(_) => unreachable!("a listing has a line for it"),
-        Symbol::Position(i) => (Argument::Q, i),
-        Symbol::Rate(i) => (Argument::Dq, i),
-        Symbol::Acceleration(i) => (Argument::Ddq, i),
-        Symbol::ReferenceRate(i) => (Argument::Dqr, i),
-        Symbol::ReferenceAcceleration(i) => (Argument::Ddqr, i),
-        Symbol::Torque(i) => (Argument::Tau, i),
-        Symbol::Parameter(i) => (Argument::Pi, i),
-    };
-    let ((name, _), index) = (argument(argument_kind), usize_literal(usize::from(index)));
-    quote!(#name[#index])
 }
 
 /// The line `let _ = ...;` for unused arguments.
