@@ -105,13 +105,13 @@ macro_rules! blocks {
 }
 
 /// The blocks in double precision.
-#[allow(clippy::approx_constant, clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
+#[allow(clippy::approx_constant, clippy::eq_op, clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
 pub mod f64 {
     blocks!("f64");
 }
 
 /// The blocks in single precision.
-#[allow(clippy::approx_constant, clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
+#[allow(clippy::approx_constant, clippy::eq_op, clippy::excessive_precision, clippy::neg_cmp_op_on_partial_ord)]
 pub mod f32 {
     blocks!("f32");
 }

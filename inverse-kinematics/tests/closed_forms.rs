@@ -49,6 +49,9 @@ in_both_scalars! {
             assert_eq!(angle(point), wanted * HALF_TURN);
         }
         assert_eq!(angle([-1.0, -0.01 * UNIT_ROUNDOFF]), HALF_TURN, "-pi is pi");
+        for off in [Real::NAN, Real::INFINITY, Real::NEG_INFINITY] {
+            assert!(angle([off, 0.0]).is_nan() && angle([0.5, off]).is_nan() && angle([off, off]).is_nan());
+        }
     }
 
     #[test]
@@ -225,6 +228,23 @@ in_both_scalars! {
                     assert!((found.elbow[0][1] - s).abs() <= 8.0 * UNIT_ROUNDOFF * s, "10^-{k}: {} {s}", found.elbow[0][1]);
                 } else {
                     assert_eq!((found.count, found.double, found.elbow[0][1]), (1, true, 0.0), "10^-{k}");
+                }
+            }
+        }
+    }
+
+    /// Near p = 0 what is computed of (x, y) has few digits of its own; its direction has length 1 all the same.
+    #[test]
+    fn two_links_nearly_folded_onto_the_shoulder() {
+        let random = &mut Random(7);
+        for k in 0..=14 {
+            for _ in 0..100 {
+                let (l, distance) = (real(random, 0.5, 1.0), tenth(k) * real(random, 0.1, 0.9));
+                let [x, y] = point(random.angle());
+                let found = two_links(l, l, [distance * x, distance * y], 4.0 * UNIT_ROUNDOFF, 0.0);
+                if distance > 8.0 * UNIT_ROUNDOFF {
+                    assert_eq!(found.count, 2, "10^-{k}");
+                    found.shoulder.into_iter().for_each(on_circle);
                 }
             }
         }

@@ -39,8 +39,11 @@ mod arm {
         assert_eq!((none.miss, none.count), (0.25, 0));
         assert_eq!(conclude(&Branches { miss: 0.25, ..with(&[regular]) }, false).miss, 0.0);
         // Not a number is no solution, and nothing is certain then.
-        let lost = conclude(&with(&[branch(Real::NAN, 0.0, 0), regular]), false);
-        assert_eq!((lost.count, lost.verdict), (1, Verdict::NearDouble));
+        let infinite = Branch { joints: [[0.0, Real::INFINITY], [0.5, 0.0], [1.0, 0.0]], ..regular };
+        for off in [branch(Real::NAN, 0.0, 0), infinite, branch(1.0, Real::NEG_INFINITY, 0)] {
+            let lost = conclude(&with(&[off, regular]), false);
+            assert_eq!((lost.count, lost.verdict, lost.all[1].q), (1, Verdict::NearDouble, [0.0; 2]));
+        }
     }
 
     #[test]
@@ -95,7 +98,17 @@ mod arm {
         let mut t = IDENTITY;
         t[2][2] = -1.0;
         assert!(!is_pose(&rows(t)), "left-handed");
-        for (row, column, entry) in [(0, 0, 1.0 + 2e-6), (0, 1, 2e-6), (1, 3, Real::INFINITY), (2, 2, Real::NAN)] {
+        for (row, column, entry) in [
+            (0, 0, 1.0 + 2e-6),
+            (0, 1, 2e-6),
+            (1, 1, 1.0 - 2e-6),
+            (2, 0, 2e-6),
+            (2, 1, -2e-6),
+            (2, 2, 1.0 + 2e-6),
+            (2, 2, -1.0),
+            (1, 3, Real::INFINITY),
+            (2, 2, Real::NAN),
+        ] {
             let mut t = IDENTITY;
             t[row][column] = entry;
             assert!(!is_pose(&rows(t)), "{row} {column} {entry}");

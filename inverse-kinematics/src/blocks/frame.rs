@@ -21,8 +21,9 @@ pub fn dot(u: Vector, v: Vector) -> Real {
 }
 
 /// sum + k x; the sum alone where k is 0. For a constant k of the arm: where it is known at compile time, products with 0 cost nothing, which the
-/// rules of floats forbid a compiler to leave out. Sums begin with -0.0, to which anything can be added as it is.
-#[inline]
+/// rules of floats forbid a compiler to leave out. Sums begin with -0.0, to which anything can be added as it is. What takes constants
+/// is always inlined: behind a call nothing is known of them.
+#[inline(always)]
 pub fn plus_product(sum: Real, k: Real, x: Real) -> Real {
     if k == 0.0 {
         sum
@@ -32,7 +33,7 @@ pub fn plus_product(sum: Real, k: Real, x: Real) -> Real {
 }
 
 /// k · v for a constant k of the arm.
-#[inline]
+#[inline(always)]
 pub fn dot_constant(k: Vector, v: Vector) -> Real {
     plus_product(plus_product(plus_product(-0.0, k[0], v[0]), k[1], v[1]), k[2], v[2])
 }
@@ -55,10 +56,20 @@ pub fn length(x: Real, y: Real) -> Real {
     sqrt(x * x + y * y)
 }
 
-/// The direction of a vector of the plane of this length; (1, 0) where that is noise.
+/// The length of (x, y) where y is 0 for most arms, known at compile time: then no root is taken.
 #[inline]
-pub fn direction([x, y]: [Real; 2], length: Real, noise: Real) -> [Real; 2] {
-    if length > noise {
+pub fn length_on_axis(x: Real, y: Real) -> Real {
+    if y == 0.0 {
+        x.abs()
+    } else {
+        length(x, y)
+    }
+}
+
+/// The direction of a vector of the plane of this length; (1, 0) of none.
+#[inline]
+pub fn direction([x, y]: [Real; 2], length: Real) -> [Real; 2] {
+    if length > 0.0 {
         let over = 1.0 / length;
         [x * over, y * over]
     } else {
@@ -104,7 +115,7 @@ pub fn compose(f: &Frame, g: &Frame) -> Frame {
 }
 
 /// First `g`, then a constant `f` of the arm.
-#[inline]
+#[inline(always)]
 pub fn compose_constant(f: &Frame, g: &Frame) -> Frame {
     let row = |r: &[Real; 4]| {
         let entry = |j: usize| dot_constant([r[0], r[1], r[2]], column(g, j));
@@ -114,7 +125,7 @@ pub fn compose_constant(f: &Frame, g: &Frame) -> Frame {
 }
 
 /// First a constant `g` of the arm, then `f`.
-#[inline]
+#[inline(always)]
 pub fn constant_then(f: &Frame, g: &Frame) -> Frame {
     let row = |r: &[Real; 4]| {
         let entry = |j: usize| dot_constant(column(g, j), [r[0], r[1], r[2]]);
@@ -124,7 +135,7 @@ pub fn constant_then(f: &Frame, g: &Frame) -> Frame {
 }
 
 /// R' v for a constant frame of the arm.
-#[inline]
+#[inline(always)]
 pub fn rotate_back_constant(f: &Frame, v: Vector) -> Vector {
     [dot_constant(column(f, 0), v), dot_constant(column(f, 1), v), dot_constant(column(f, 2), v)]
 }
@@ -146,6 +157,13 @@ pub fn inverse(f: &Frame) -> Frame {
 pub fn back_on_circle([c, s]: [Real; 2]) -> [Real; 2] {
     let over = 1.5 - 0.5 * (c * c + s * s);
     [c * over, s * over]
+}
+
+/// First Rz of the angle of (c, s), then `f`.
+#[inline]
+pub fn after_turn(f: &Frame, [c, s]: [Real; 2]) -> Frame {
+    let row = |r: &[Real; 4]| [c * r[0] + s * r[1], c * r[1] - s * r[0], r[2], r[3]];
+    [row(&f[0]), row(&f[1]), row(&f[2])]
 }
 
 /// Rz(angle) v for the angle of (c, s).
@@ -184,6 +202,13 @@ pub fn joint_back(prismatic: bool, value: [Real; 2], v: Vector) -> Vector {
 pub fn seen_behind(prismatic: bool, [c, s]: [Real; 2], link: &Frame, [x, y, z]: [Vector; 3]) -> [Vector; 3] {
     let seen = |v: Vector| rotate_back_constant(link, if prismatic { v } else { turn_vector(c, -s, v) });
     [seen(x), seen(y), seen(z)]
+}
+
+/// A constant direction of the arm as seen from behind a revolute joint and a constant link.
+#[inline(always)]
+pub fn constant_seen_behind([c, s]: [Real; 2], link: &Frame, v: Vector) -> Vector {
+    let turned = |x: Real, y: Real| plus_product(plus_product(-0.0, x, c), y, s);
+    rotate_back_constant(link, [turned(v[0], v[1]), turned(v[1], -v[0]), v[2]])
 }
 
 /// The sum of the absolute entries of the displacement.

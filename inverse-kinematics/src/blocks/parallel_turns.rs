@@ -25,11 +25,11 @@ pub fn parallel_turns(
     let behind = [compose(l1, &behind_2), behind_2, *l3];
     let seen = |v: Vector| rotate_back_constant(&behind[0], v);
     let (x, y, z) = (seen(column(&back, 0)), seen(column(&back, 1)), seen(column(&back, 2)));
-    let tilt = sqrt(x[2] * x[2] + y[2] * y[2] + z[0] * z[0] + z[1] * z[1]);
-    let met = tilt <= ROUNDING && z[2] > 0.0;
-    for branch in arm.found() {
+    let tilt = x[2] * x[2] + y[2] * y[2] + z[0] * z[0] + z[1] * z[1];
+    let met = tilt <= ROUNDING * ROUNDING && z[2] > 0.0;
+    for branch in arm.all.iter().take(arm.count) {
         if !met {
-            found.missed(if z[2] > 0.0 { tilt } else { 1.0 - z[2] });
+            found.missed(if z[2] > 0.0 { sqrt(tilt) } else { 1.0 - z[2] });
             continue;
         }
         let mut left = x;
@@ -40,8 +40,7 @@ pub fn parallel_turns(
             }
         }
         let [q1, q2, q3] = branch.joints;
-        let q4 = back_on_circle([left[0], left[1]]);
-        found.add(Branch { joints: [q1, q2, q3, q4], signs: branch.signs, double: branch.double, error: branch.error, free: branch.free });
+        found.add(Branch { joints: [q1, q2, q3, [left[0], left[1]]], signs: branch.signs, double: branch.double, error: branch.error, free: branch.free });
     }
     found
 }

@@ -103,16 +103,17 @@ fn square_of_third(b: &Frame, w: Vector) -> Affine {
 /// its sign, `double` and what is free (bits 1 and 2).
 #[inline]
 fn elbow(b: &Frame, w: Vector, [x, y]: [Real; 2], noise: Real, doubt: Real, mut found: impl FnMut([Real; 2], [Real; 2], u16, bool, u32)) -> Real {
-    let (l1, l2) = (b[0][3].abs(), length(w[0], w[1]));
+    let (l1, l2) = (b[0][3].abs(), length_on_axis(w[0], w[1]));
     // A negative length is a positive one turned by pi.
     let sign = if b[0][3] < 0.0 { -1.0 } else { 1.0 };
     let links = two_links(l1, l2, [x, y], noise, doubt);
     let free = if links.shoulder_free { 2 } else { 0 } | if links.elbow_free { 4 } else { 0 };
     // Rz(q3) w stands at the elbow's angle, seen through Rx(0 or pi).
-    let [wx, wy] = direction([w[0], w[1]], l2, noise);
+    let [wx, wy] = direction([w[0], w[1]], l2);
     for (i, ([c, s], [ce, se])) in links.shoulder.iter().zip(&links.elbow).enumerate().take(links.count) {
         let (x, y) = (sign * ce, sign * b[1][1] * se);
-        let q3 = back_on_circle([wx * x + wy * y, wx * y - wy * x]);
+        let along = |x: Real, y: Real| plus_product(plus_product(-0.0, wx, x), wy, y);
+        let q3 = [along(x, y), along(y, -x)];
         found([sign * c, sign * s], q3, i as u16, links.double, free);
     }
     links.miss
@@ -127,10 +128,11 @@ pub fn regional_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3,
     let mut found = Branches::new();
     let noise = ROUNDING * reach(a, b, w, p);
     let k = column(a, 2);
-    let along = b[2][3] + b[2][2] * w[2] + dot(k, column(a, 3)) - k[2] * p[2];
+    let along = plus_product(b[2][3] + b[2][2] * w[2] + dot(k, column(a, 3)), -k[2], p[2]);
     let across = [dot_constant([k[0], k[1], 0.0], p), dot_constant([-k[1], k[0], 0.0], p)];
     let line = line_and_circle(across[0], across[1], along, noise, 0.0);
     found.missed(line.miss);
+    let doubt = line.error * length(p[0], p[1]);
     for (sign, q1) in points(&line) {
         let v = minus(turn_vector(q1[0], -q1[1], p), column(a, 3));
         let (x, y) = (dot_constant(column(a, 0), v), dot_constant(column(a, 1), v));
@@ -139,7 +141,7 @@ pub fn regional_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3,
             let (double, error) = (line.double || double, line.error);
             found.add(Branch { joints: [q1, q2, q3], signs: sign | elbow << 1, double, error, free });
         };
-        let miss = elbow(b, w, [x, y], noise, line.error * length(p[0], p[1]), &mut add);
+        let miss = elbow(b, w, [x, y], noise, doubt, &mut add);
         found.missed(miss);
     }
     found

@@ -83,19 +83,21 @@ pub fn regional_mid_slide_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> B
     let noise = ROUNDING * reach(a, b, w, p);
     let chain = compose(a, b);
     let q2 = (p[2] - chain[2][3] - chain[2][2] * w[2]) / a[2][2];
-    let link = [chain[0][3] + q2 * a[0][2], chain[1][3] + q2 * a[1][2]];
-    let (l1, l2) = (length(link[0], link[1]), length(w[0], w[1]));
+    let link = [plus_product(chain[0][3], a[0][2], q2), plus_product(chain[1][3], a[1][2], q2)];
+    let (l1, l2) = (length_on_axis(link[0], link[1]), length_on_axis(w[0], w[1]));
     let links = two_links(l1, l2, [p[0], p[1]], noise, 0.0);
     found.missed(links.miss);
     // Directions of both links, in the first joint's frame and in the third one's.
-    let ([lx, ly], [wx, wy]) = (direction(link, l1, noise), direction([w[0], w[1]], l2, noise));
+    let ([lx, ly], [wx, wy]) = (direction(link, l1), direction([w[0], w[1]], l2));
+    // Most directions are axes.
+    let sum = |k: Real, x: Real, l: Real, y: Real| plus_product(plus_product(-0.0, k, x), l, y);
     let free = u32::from(links.shoulder_free) | u32::from(links.elbow_free) << 2;
     for (i, ([c, s], [ce, se])) in links.shoulder.iter().zip(&links.elbow).enumerate().take(links.count) {
-        let q1 = [c * lx + s * ly, s * lx - c * ly];
+        let q1 = [sum(lx, *c, ly, *s), sum(lx, *s, -ly, *c)];
         // The second link's direction, seen from the third joint.
-        let (x, y) = (ce * lx - se * ly, ce * ly + se * lx);
-        let (x, y) = (chain[0][0] * x + chain[1][0] * y, chain[0][1] * x + chain[1][1] * y);
-        let q3 = back_on_circle([wx * x + wy * y, wx * y - wy * x]);
+        let (x, y) = (sum(lx, *ce, -ly, *se), sum(lx, *se, ly, *ce));
+        let (x, y) = (sum(chain[0][0], x, chain[1][0], y), sum(chain[0][1], x, chain[1][1], y));
+        let q3 = [sum(wx, x, wy, y), sum(wx, y, -wy, x)];
         found.add(Branch { joints: [q1, [q2, 0.0], q3], signs: i as u16, double: links.double, error: 0.0, free });
     }
     found

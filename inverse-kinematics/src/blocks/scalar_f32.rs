@@ -14,8 +14,11 @@ pub const WEAK: Real = 1e3;
 /// Rounding of a pose by u moves a double root by sqrt(u) times a factor that depends on the arm and is seldom beyond 100.
 pub const SHALLOW: Real = 4e-3;
 
-/// The coefficients k, by twos, of atan t = t + t³ (k0 + k1 t² + ...) for |t| <= tan(pi/8), by Remez's exchange: right to 2^-25 of atan t.
-const ARCTANGENT: [[Real; 2]; 2] = [[-0.333329490109481651, 0.199777043524234629], [-0.13877610807446778, 0.080534843564990348]];
+/// k0 + k1 z + k2 z² + ... of atan t = t + t³ (k0 + k1 t² + ...) for z = t² and |t| <= tan(pi/8), by Remez's exchange: right to 2^-25 of atan t.
+#[inline]
+pub fn arctangent_series(z: Real) -> Real {
+    (-0.333329490109481651 + 0.199777043524234629 * z) + z * z * (-0.13877610807446778 + 0.080534843564990348 * z)
+}
 
 /// The square root, correctly rounded.
 #[inline]

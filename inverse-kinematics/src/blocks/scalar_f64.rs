@@ -14,14 +14,18 @@ pub const WEAK: Real = 1e6;
 /// Rounding of a pose by u moves a double root by sqrt(u) times a factor that depends on the arm and is seldom beyond 100.
 pub const SHALLOW: Real = 3e-6;
 
-/// The coefficients k, by twos, of atan t = t + t³ (k0 + k1 t² + ...) for |t| <= tan(pi/8), by Remez's exchange: right to 2^-54 of atan t.
-const ARCTANGENT: [[Real; 2]; 5] = [
-    [-0.333333333333301476673378, 0.199999999990882009572594],
-    [-0.142857141951965113026675, 0.111111066508488924083996],
-    [-0.0909078234704452012425791, 0.0769006735889993613091904],
-    [-0.0664111286747184634455237, 0.056924947974624523196288],
-    [-0.0435896602182311642813458, 0.0212582453852161084309592],
-];
+/// k0 + k1 z + k2 z² + ... of atan t = t + t³ (k0 + k1 t² + ...) for z = t² and |t| <= tan(pi/8), by Remez's exchange: right to 2^-54 of atan t.
+/// By powers of two, so that its terms are side by side.
+#[inline]
+pub fn arctangent_series(z: Real) -> Real {
+    let square = z * z;
+    let fourth = square * square;
+    let low = (-0.333333333333301476673378 + 0.199999999990882009572594 * z)
+        + square * (-0.142857141951965113026675 + 0.111111066508488924083996 * z);
+    let high = (-0.0909078234704452012425791 + 0.0769006735889993613091904 * z)
+        + square * (-0.0664111286747184634455237 + 0.056924947974624523196288 * z);
+    low + fourth * (high + fourth * (-0.0435896602182311642813458 + 0.0212582453852161084309592 * z))
+}
 
 /// The square root, correctly rounded.
 #[inline]

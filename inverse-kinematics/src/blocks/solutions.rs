@@ -124,10 +124,12 @@ fn is_pose(t: &[[Real; 4]; 4]) -> bool {
     let rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
     let near = |value: Real, wanted: Real| (value - wanted).abs() <= NO_ROTATION;
     let [u, v, w] = rows;
-    let right = near(dot(u, u), 1.0) && near(dot(v, v), 1.0) && near(dot(w, w), 1.0);
-    let square = near(dot(u, v), 0.0) && near(dot(v, w), 0.0) && near(dot(w, u), 0.0);
+    // Two unit vectors at a right angle, and the third is what they make it.
+    let square = near(dot(u, u), 1.0) && near(dot(v, v), 1.0) && near(dot(u, v), 0.0);
+    let third = cross(u, v);
+    let right = near(third[0], w[0]) && near(third[1], w[1]) && near(third[2], w[2]);
     let finite = [x[3], y[3], z[3]].iter().all(|p| p.is_finite());
-    finite && right && square && dot(cross(u, v), w) > 0.0
+    finite && square && right
 }
 
 /// How far from orthonormal a rotation may be.
@@ -140,53 +142,48 @@ fn conclude<const J: usize, const N: usize>(found: &Branches<J, N>, by_angle: bo
     let mut result = Solutions::none(Verdict::Complete);
     let mut near = found.near;
     let mut continuum = found.continuum;
-    // The points of all joints side by side; their angles then stand in the second places, in which slides have nothing.
-    let mut points = [[[1.0, 0.0]; DOF]; MAX_SOLUTIONS];
-    for branch in found.found() {
-        let sizes = branch.joints.iter().take(DOF).fold(0.0, |sum, [c, s]| sum + (c.abs() + s.abs()));
-        near |= branch.double;
-        // Not so of an infinity or NaN.
-        let finite = sizes < Real::INFINITY;
-        if !finite {
-            near = true;
-            continue;
+    // Branch and place of each, in this order. Few: by insertion.
+    let mut order = [0; N];
+    for (last, branch) in found.found().iter().enumerate() {
+        let mut place = last;
+        if let Some(slot) = order.get_mut(last) {
+            *slot = usize::from(branch.signs) * N + last;
         }
+        while place > 0 && place < N && order[place] < order[place - 1] {
+            order.swap(place, place - 1);
+            place -= 1;
+        }
+    }
+    for number in order.iter().take(found.count) {
+        let Some(branch) = found.all.get(number % N) else { continue };
+        near |= branch.double;
+        let mut q = [0.0; DOF];
+        for ((q, point), prismatic) in q.iter_mut().zip(&branch.joints).zip(PRISMATIC) {
+            *q = if prismatic { point[0] } else { angle(*point) };
+        }
+        let finite = q.iter().fold(0.0, |sum, q| sum + q).is_finite();
         let free = branch.free & FIRST_JOINTS;
-        continuum |= free != 0;
-        match (result.all.get_mut(result.count), points.get_mut(result.count)) {
-            (Some(slot), Some(points)) => {
-                *slot = Solution { q: [0.0; DOF], branch: branch.signs, double: branch.double, free };
-                for (point, value) in points.iter_mut().zip(&branch.joints) {
-                    *point = *value;
-                }
+        continuum |= finite && free != 0;
+        match result.all.get_mut(result.count) {
+            Some(slot) if finite => {
+                *slot = Solution { q, branch: branch.signs, double: branch.double, free };
                 result.count += 1;
             }
             _ => near = true,
         }
     }
-    // Of few solutions a number that is known makes better code.
-    let used = if MAX_SOLUTIONS > 2 { result.count } else { MAX_SOLUTIONS };
-    for point in points.as_flattened_mut().iter_mut().take(used * DOF) {
-        point[1] = angle(*point);
-    }
-    for (solution, points) in result.all.iter_mut().zip(&points).take(result.count) {
-        for ((q, [length, angle]), prismatic) in solution.q.iter_mut().zip(points).zip(PRISMATIC) {
-            *q = if prismatic { *length } else { *angle };
-        }
-    }
-    // Few: insertion. Only the part that counts, so that the zeros stay behind.
-    let before = |x: &Solution, y: &Solution| {
-        if !by_angle {
-            return x.branch < y.branch;
-        }
-        let mut pairs = x.q.iter().zip(&y.q);
-        pairs.find(|(x, y)| x != y).is_some_and(|(x, y)| x < y)
-    };
-    for last in 1..result.count {
-        let mut place = last;
-        while place > 0 && place < MAX_SOLUTIONS && before(&result.all[place], &result.all[place - 1]) {
-            result.all.swap(place, place - 1);
-            place -= 1;
+    if by_angle {
+        // Few: insertion. Only the part that counts, so that the zeros stay behind.
+        let before = |x: &Solution, y: &Solution| {
+            let mut pairs = x.q.iter().zip(&y.q);
+            pairs.find(|(x, y)| x != y).is_some_and(|(x, y)| x < y)
+        };
+        for last in 1..result.count {
+            let mut place = last;
+            while place > 0 && place < MAX_SOLUTIONS && before(&result.all[place], &result.all[place - 1]) {
+                result.all.swap(place, place - 1);
+                place -= 1;
+            }
         }
     }
     result.verdict = if continuum {

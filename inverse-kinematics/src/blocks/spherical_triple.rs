@@ -25,6 +25,8 @@ pub fn spherical_triple(
     let (mut first, mut behind) = ([Real::NAN; 2], whole);
     for branch in arm.found() {
         let [q1, q2, q3] = branch.joints;
+        // The elbow's, from a division by its lengths, may be off by more than a few units.
+        let q3 = if p3 { q3 } else { back_on_circle(q3) };
         if q1 != first {
             (first, behind) = (q1, seen_behind(p1, q1, l1, whole));
         }

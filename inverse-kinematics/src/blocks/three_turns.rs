@@ -35,14 +35,12 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
     let (z, h) = (r[2][2], length(r[0][2], r[1][2]));
     // The cosine `c` with the sine `s` less that of z with the sine h, and whether it is 0 to rounding.
     let difference = |c: Real, s: Real| {
-        let sum = c + z;
+        let (sum, d, e) = (c + z, h - s.abs(), h + s.abs());
         // The cosine loses digits where both sines are small, the sines where both are near 1.
-        if sum.abs() > 1.0 {
-            let (d, e) = (h - s.abs(), h + s.abs());
-            (d * e / sum, d.abs() <= noise)
-        } else {
-            (c - z, (c - z).abs() <= noise)
-        }
+        let by_sines = sum.abs() > 1.0;
+        let (above, below) = if by_sines { (d * e, sum) } else { (c - z, 1.0) };
+        let off = if by_sines { d } else { c - z };
+        (above / below, off.abs() <= noise)
     };
     let (d1, zero1) = difference(ca * cb + sa * sb, sa * cb - ca * sb);
     let (d2, zero2) = difference(ca * cb - sa * sb, sa * cb + ca * sb);
@@ -67,7 +65,7 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
     found.free = parallel || nearly;
     found.double = double && !found.free;
     found.count = if double || found.free { 1 } else { 2 };
-    let (side, along) = (ca * c2 * sb + sa * cb, s2 * sb);
+    let (side, along) = (plus_product(sa * cb, ca * sb, c2), s2 * sb);
     // Block 2 of the third columns, of the same lengths for both signs of s2.
     let lengths = length(along, side) * h;
     let over = if lengths > 0.0 { 1.0 / lengths } else { 0.0 };
@@ -75,16 +73,16 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
     for turns in &mut found.turns {
         let (s2, along) = (sign * s2, sign * along);
         sign = -sign;
-        // Columns of Rx(alpha) Rz(t2) Rx(beta).
-        let first = [c2, ca * s2, sa * s2];
-        let second = [-s2 * cb, ca * c2 * cb - sa * sb, sa * c2 * cb + ca * sb];
         let t1 = if parallel || over == 0.0 {
             [1.0, 0.0]
         } else {
-            [(along * r[0][2] - side * r[1][2]) * over, (along * r[1][2] + side * r[0][2]) * over]
+            [plus_product(along * r[0][2], -side, r[1][2]) * over, plus_product(along * r[1][2], side, r[0][2]) * over]
         };
+        // R's first column, seen from before Rx(beta) Rz(t3).
         let x = turn_vector(t1[0], -t1[1], column(r, 0));
-        *turns = [t1, [c2, s2], back_on_circle([dot(first, x), dot(second, x)])];
+        let (y, z) = (plus_product(plus_product(-0.0, ca, x[1]), sa, x[2]), plus_product(plus_product(-0.0, ca, x[2]), -sa, x[1]));
+        let (x, y) = (c2 * x[0] + s2 * y, c2 * y - s2 * x[0]);
+        *turns = [t1, [c2, s2], back_on_circle([x, plus_product(plus_product(-0.0, cb, y), sb, z)])];
     }
     found
 }

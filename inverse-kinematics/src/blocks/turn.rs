@@ -19,7 +19,12 @@ pub struct Turn {
 /// - |x|, |y| <= noise: `free`. Lengths that differ by more than noise: `miss`, and the turn that takes the directions to each other.
 #[inline]
 pub fn turn(x: [Real; 2], y: [Real; 2], noise: Real) -> Turn {
-    let (m, n) = (length(x[0], x[1]), length(y[0], y[1]));
+    turn_of_lengths((x, length(x[0], x[1])), (y, length(y[0], y[1])), noise)
+}
+
+/// [`turn`] of vectors whose lengths are known.
+#[inline]
+pub fn turn_of_lengths((x, m): ([Real; 2], Real), (y, n): ([Real; 2], Real), noise: Real) -> Turn {
     let difference = (m - n).abs();
     let miss = if difference <= noise { 0.0 } else { difference };
     if m > noise && n > noise {
