@@ -8,8 +8,10 @@
 //!   = rho z / epsilon            inside, where chattering would begin
 //! ```
 //!
-//! as long as rho exceeds |eta|. Inside the layer the law is linear, with gains K_P + rho/epsilon Q12 and K_D + rho/epsilon Q22:
-//! the error does not vanish under a constant uncertainty, it is bounded.
+//! as long as rho exceeds |eta|. Since eta holds w, of norm up to rho, this needs |1 - B^-1 B^| < 1.
+//!
+//! Inside the layer the law is linear, with gains K_P + rho/epsilon Q12 and K_D + rho/epsilon Q22: the error does not vanish under a
+//! constant uncertainty, it is bounded.
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{

@@ -55,6 +55,7 @@ pub static CENTER_OF_MASS: Quantity = Quantity {
             "p_c(q) = sum_i m_i p_li / m,  m = sum_i m_i,  U(q) = - m g0' p_c",
             "its x, y and z, m.",
         )
+        .with_springs("In {potential_energy} springs have their energies besides.")
     },
     recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, input| {
         let (first, mass) = (first_moment(pool, arm), total_mass(pool, arm, input.model, input.view));

@@ -62,7 +62,8 @@ pub static CORIOLIS_TRANSPOSE_TIMES: Quantity = Quantity {
         "C(q, dq)' dq with C by Christoffel symbols, for a momentum observer.",
         "C' dq = dT/dq = (dB/dt) dq - C dq,  dp/dt = tau + C' dq - F - g    (De Luca and Mattone 2003)",
         "a torque, N m (revolute), or a force, N (prismatic), for each joint, on the right of the equation of dp/dt.",
-    ),
+    )
+    .with_load("F is {friction} and {load_friction} together."),
     recursion: Recursion::new(RewriteScope::Dynamics, |pool, arm, _, _| coriolis_transpose_times(pool, arm)),
     missing: Quantity::MISSING_WITHOUT_MASS,
     gathers: &[],
