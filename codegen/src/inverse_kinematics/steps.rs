@@ -49,6 +49,7 @@ impl InverseKinematics {
             let own = last - way.still;
             let dropped = if own + 1 == last { format!("q{last} has") } else { format!("q{} to q{last} have", own + 1) };
             all.steps.push(format!("{dropped} to be 0 up to rounding: Gauss and Newton's method on the other joints alone, by all six rows; what does not meet them is dropped"));
+            all.singular = vec!["the arm's own Jacobian loses rank".into()];
         }
         all
     }
@@ -103,7 +104,11 @@ fn three_parallel(way: &Arrangement, polished: bool) -> Steps {
             format!("q{y} and q{x}: two links in the plane                    elbow: + / -"),
             format!("q{z} from the turn that is left"),
         ],
-        [format!("elbow stretched or folded (sin q{y} = 0 in the loop)"), format!("axis {c} parallel to axis {x} (q{c} free)")],
+        [
+            format!("the two q{a} or the two q{b} of step 3 meet"),
+            format!("elbow stretched or folded (sin q{y} = 0 in the loop)"),
+            format!("axis {c} parallel to axis {x} (q{c} free)"),
+        ],
     )
 }
 
@@ -185,6 +190,7 @@ fn general(ways: &[Arrangement; 2]) -> Steps {
 
 const NEWTON: &str = "Newton's method on the six equations of the pose";
 const SOLUTIONS_MEET: &str = "det J = 0 (solutions meet)";
+const DIRECTIONS: &str = "the three directions in which the joints move the point in one plane (solutions meet)";
 
 /// The numbers of the joints in the order of the loop, from 1.
 fn numbers<const N: usize>(way: &Arrangement) -> [usize; N] {
@@ -204,12 +210,18 @@ impl Regional {
     fn steps(&self, way: &Arrangement) -> Steps {
         let [a, b, c] = numbers(way);
         let elbow = format!("q{c} and q{b}: two links in the plane                    elbow: + / -");
-        let stretched = format!("elbow stretched or folded (axis {b}, axis {c} and the point in one plane)");
-        let on = |axis: usize| format!("the point on axis {axis} (q{axis} free)");
+        let stretched = |a: usize, b: usize| format!("elbow stretched or folded (axis {a}, axis {b} and the point in one plane)");
+        // The two roots q of an equation for a component of the point along a direction meet where turning about the axis of q does not change it.
+        let along = |axis: usize, other: usize| {
+            format!("the point in the plane through axis {axis} that is parallel to axis {other} (the two q{axis} meet)")
+        };
+        let across = |axis: usize, slide: usize, roots: usize| {
+            format!("the point in the plane through axis {axis} normal to the direction of joint {slide} (the two q{roots} meet)")
+        };
         match self.function {
             "regional_elbow" => Steps::new(
                 [format!("q{a} by the component along axis {b}: a cos q{a} + b sin q{a} = d    shoulder: + / -"), elbow],
-                [stretched, on(a)],
+                [stretched(b, c), along(a, b)],
             ),
             "regional_crossing" => Steps::new(
                 [
@@ -217,12 +229,17 @@ impl Regional {
                     format!("q{b} by the height along axis {a}: a cos q{b} + b sin q{b} = d    + / -"),
                     format!("q{a} by the direction across axis {a}"),
                 ],
-                [stretched, on(a), on(b)],
+                [
+                    format!("the point in one plane with axis {c} and the point in which axes {a} and {b} meet (the two q{c} meet)"),
+                    format!("the point in the plane of axes {a} and {b} (the two q{b} meet; q{a} or q{b} is free where it is on that axis)"),
+                ],
             ),
-            "regional_slide_elbow" => Steps::new([elbow, format!("q{a}: the length that is left along joint {a}")], [stretched]),
+            "regional_slide_elbow" => {
+                Steps::new([elbow, format!("q{a}: the length that is left along joint {a}")], [stretched(b, c)])
+            }
             "regional_mid_slide_elbow" => Steps::new(
                 [format!("q{b} by the height along axis {a}"), format!("q{c} and q{a}: two links in the plane        elbow: + / -")],
-                ["elbow stretched or folded".into(), on(a)],
+                [stretched(a, c)],
             ),
             "regional_slide_across" => Steps::new(
                 [
@@ -230,7 +247,7 @@ impl Regional {
                     format!("q{b} by the component across it: a cos q{b} + b sin q{b} = d    + / -"),
                     format!("q{a}: the length that is left along joint {a}"),
                 ],
-                [on(b)],
+                [along(c, b), across(b, a, b)],
             ),
             "regional_mid_slide_across" => Steps::new(
                 [
@@ -238,21 +255,23 @@ impl Regional {
                     format!("q{b}: a line that meets a circle about axis {a}    + / -"),
                     format!("q{a} by the direction across axis {a}"),
                 ],
-                [on(a)],
+                [along(c, a), across(a, b, b)],
             ),
-            "regional_plane_then_turn" => {
-                Steps::new([format!("q{c} by the component normal to both slides    + / -"), format!("q{a} and q{b} are linear")], [])
-            }
-            "regional_slide_turn_slide" => {
-                Steps::new([format!("q{b}: the slides and what is left in one plane    + / -"), format!("q{a} and q{c} are linear")], [])
-            }
+            "regional_plane_then_turn" => Steps::new(
+                [format!("q{c} by the component normal to both slides    + / -"), format!("q{a} and q{b} are linear")],
+                [format!("the point in the plane through axis {c} that contains the normal of both slides (the two q{c} meet)")],
+            ),
+            "regional_slide_turn_slide" => Steps::new(
+                [format!("q{b}: the slides and what is left in one plane    + / -"), format!("q{a} and q{c} are linear")],
+                [DIRECTIONS.into()],
+            ),
             "regional_slides" => Steps::new([format!("q{a}, q{b} and q{c} from three linear equations")], []),
             _ => Steps::new(
                 [
                     format!("q{a} and q{b} eliminated from the squared length and the height: an equation of degree 2 on the circle of q{c}, at most four roots"),
                     format!("q{b} from two linear equations, q{a} from what is left; Newton's method for the last digits"),
                 ],
-                [format!("double roots in q{c}"), on(a), on(b)],
+                [DIRECTIONS.into()],
             ),
         }
     }

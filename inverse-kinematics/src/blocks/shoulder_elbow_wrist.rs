@@ -55,7 +55,7 @@ pub fn swivel_angle(way: &Arrangement<7>, q: &[Real; 7]) -> Real {
 ///
 /// - `way`: the loop. `t`: the pose. `swivel`: the angle, rad.
 /// - At most 8 solutions; `signs`: bit 0 elbow (that of block 4), bit 1 shoulder (the sign of sin q2), bit 2 wrist (the sign of sin q6).
-/// - S, E, W in one line: the swivel angle has no meaning; all joints but joint 4 are free. W at the shoulder: a continuum, of which none is given.
+/// - S, E, W in one line: the swivel angle has no meaning; joints 1 to 3 and 5 to 7 are free, of either three the one about that line alone if there is one. W at the shoulder: a continuum, of which none is given.
 /// - W below S, at the pole of the reference: `near`, with a swivel angle from any direction.
 pub fn shoulder_elbow_wrist(way: &Arrangement<7>, t: &Frame, swivel: Real) -> Branches<7, 8> {
     let mut found = Branches::new();
@@ -116,7 +116,9 @@ pub fn shoulder_elbow_wrist(way: &Arrangement<7>, t: &Frame, swivel: Real) -> Br
         found.missed(shoulder.miss);
         found.missed(wrist.miss);
         let free = if shoulder.free { 0b101 } else { 0 } | if wrist.free { 0b1010000 } else { 0 };
-        let free = if straight { 0b1110111 } else { free } | u32::from(links.elbow_free) << 3;
+        // About the line S E W joint 3 turns alone where that is its axis, as joint 5 does.
+        let about_line = if l3[0][3] == 0.0 { 0b100 } else { 0b111 } | if l4[0][3] == 0.0 { 0b10000 } else { 0b1110000 };
+        let free = free | if straight { about_line } else { 0 } | u32::from(links.elbow_free) << 3;
         for (second, [q1, q2, q3]) in shoulder.turns.iter().enumerate().take(shoulder.count) {
             for (last, [q5, q6, q7]) in wrist.turns.iter().enumerate().take(wrist.count) {
                 found.add(Branch {

@@ -4,9 +4,9 @@
 /// What is known of all the solutions at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// These are all solutions; a change of the pose by its rounding keeps their number.
+    /// These are all solutions, as far as the construction can tell; a change of the pose by its rounding keeps their number.
     Complete,
-    /// There is no solution.
+    /// No solution was found, and none is near.
     Unreachable,
     /// A change of the pose by its own rounding could change the number of solutions; two that have met are listed once, as `double`.
     NearDouble,
@@ -25,7 +25,8 @@ pub struct Solution {
     pub branch: u16,
     /// Two solutions meet here.
     pub double: bool,
-    /// Bit i: joint i + 1 can move while the end effector stays.
+    /// Bit i: joint i + 1 has one of many values, which the construction chose: some joints can move while the end effector stays. The null space of
+    /// the Jacobian says which; one that has to move along with these may be without a bit.
     pub free: u32,
 }
 

@@ -6,9 +6,9 @@ use nalgebra::{ComplexField, Matrix4, RealField, SVector};
 /// What is known of all the postures at a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// These are all; a change of the pose by its rounding keeps their number.
+    /// These are all, as far as the construction can tell; a change of the pose by its rounding keeps their number.
     Complete,
-    /// There is none.
+    /// None was found, and none is near.
     Unreachable,
     /// A change of the pose by its own rounding could change their number; two that have met are listed once, as `double`.
     NearDouble,
@@ -27,7 +27,8 @@ pub struct Posture<T, const N: usize> {
     pub branch: u16,
     /// Two postures meet here.
     pub double: bool,
-    /// Bit i: joint i + 1 can move while the end effector stays.
+    /// Bit i: joint i + 1 has one of many values, which the construction chose: some joints can move while the end effector stays. The null space of
+    /// the Jacobian says which; one that has to move along with these may be without a bit.
     pub free: u32,
 }
 

@@ -13,8 +13,8 @@ use crate::program::Module;
 
 /// The verdicts in the order of their numbers, and what C is told of each.
 const VERDICTS: [(&str, &str); 5] = [
-    ("Complete", "all solutions are listed"),
-    ("Unreachable", "there is none; `miss` says by how much the construction missed"),
+    ("Complete", "all solutions are listed, as far as the construction can tell"),
+    ("Unreachable", "none was found; `miss` says by how much the construction missed"),
     ("NearDouble", "the rounding of t decides about some"),
     ("Continuum", "some joints can move while the end effector stays"),
     ("Invalid", "an entry of t is not finite, or its rotation none"),
@@ -87,7 +87,7 @@ pub(super) fn types(names: &Names, found: &InverseKinematics) -> String {
         "\n/* One posture. */\ntypedef struct {{\n    {real} q[{dof}]; /* joint variables: angles in (-pi, pi], rad; lengths, m */\n    \
          uint32_t branch; /* which of the construction's ways leads here */\n    \
          uint32_t is_double; /* 1: two solutions meet here */\n    \
-         uint32_t free; /* bit i: joint i + 1 can move while the end effector stays */\n}} {robot}_solution;\n\n\
+         uint32_t free; /* bit i: joint i + 1 has one of many values, which the construction chose */\n}} {robot}_solution;\n\n\
          /* All postures at a pose. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
          {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
          {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"

@@ -272,7 +272,8 @@ pub(in crate::emit) fn meanings(found: &InverseKinematics) -> Vec<String> {
     }
     let mut lines = vec![
         " What a solution's `branch` says, by its number; empty where no solution has it. A bit is 0 in the first of its ways, where the sign".into(),
-        " that is named is positive (angles as the loop has them: with the `offsets` of `LOOP`):".into(),
+        " that is named is positive (angles as the loop has them: with the `offsets` of `LOOP`). The words are names of the signs, not of the looks of".into(),
+        " the arm:".into(),
         String::new(),
     ];
     for choice in &found.choices {
@@ -386,7 +387,9 @@ fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
         ///
         /// The verdict says what is known: `Complete`, all solutions are listed; `Unreachable`, there is none, and `miss` says by how much
         /// the construction missed; `NearDouble`, the rounding of t decides about some; `Continuum`, some joints can move while the end
-        /// effector stays (bit i of `free`: joint i + 1).
+        /// effector stays, and those whose values the construction chose have a bit in `free` (bit i: joint i + 1). What `armgen verify` says
+        /// of this text holds in exact arithmetic at general poses; in floats, next to poses where solutions meet, the first two can be
+        /// wrong.
         #[doc = #invalid]
         ///
         /// Angles are in (-pi, pi]; limits are not looked at (`within_limits` does). T(q) differs from t by roundings, of the order of 100
