@@ -357,6 +357,9 @@ fn other_texts_are_refused() {
     assert!(fault("    if !is_pose(t) {", "    if false {").contains("should stand where"));
     assert!(fault("    backward: false", "    backward: true").contains("not the loop of this arm"));
     assert!(fault("\nmod all_solutions {", "\nmod others {").contains("should stand where"));
+    // No depth of brackets exhausts the stack.
+    let names = "pub const BRANCHES: [&str; 8] = [";
+    assert!(fault(names, &(names.to_owned() + &"[".repeat(1 << 20))).contains("nested more than"));
 }
 
 /// The same of slides: a lost branch, a sign, a degenerate case, a wrong class.

@@ -94,6 +94,9 @@ fn squeezed(text: &str) -> String {
     all
 }
 
+/// Lists and structs of a constant may nest so deep: two loops of links of rows of entries take six levels.
+const DEEPEST: usize = 8;
+
 struct Reader<'a> {
     rest: &'a str,
 }
@@ -120,10 +123,15 @@ impl<'a> Reader<'a> {
     }
 
     fn value(&mut self) -> Result<Value, String> {
+        self.value_within(DEEPEST)
+    }
+
+    fn value_within(&mut self, depth: usize) -> Result<Value, String> {
+        let Some(depth) = depth.checked_sub(1) else { return Err(format!("a value is nested more than {DEEPEST} deep")) };
         if self.take("[") {
             let mut list = Vec::new();
             while !self.take("]") {
-                list.push(self.value()?);
+                list.push(self.value_within(depth)?);
                 self.take(",");
             }
             return Ok(Value::List(list));
@@ -138,7 +146,7 @@ impl<'a> Reader<'a> {
             let mut fields = Vec::new();
             while !self.take("}") {
                 let name = self.until(':')?.to_owned();
-                fields.push((name, self.value()?));
+                fields.push((name, self.value_within(depth)?));
                 self.take(",");
             }
             return Ok(Value::Fields(fields));

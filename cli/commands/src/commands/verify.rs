@@ -128,7 +128,9 @@ fn postures(source: &Source, module: &Path, text: &str) -> Result<u8, u8> {
     match report.faults.first() {
         None => Ok(code),
         Some(fault) => {
-            terminal::error(&format!("{}: {fault}", module.display()));
+            let (line, fault) = placed(text, Language::Rust, fault);
+            let line = line.map_or(String::new(), |line| format!(":{line}"));
+            terminal::error(&format!("{}{line}: {fault}", module.display()));
             Err(FAULTY)
         }
     }

@@ -201,6 +201,9 @@ impl<'a> Lower<'a, '_> {
         match value {
             Expr::Paren(inner) => self.option(&inner.expr),
             Expr::Call(call) => {
+                if !matches!(&*call.func, Expr::Path(path) if last(&path.path) == "Some") {
+                    return Err("an option that a function gives".into());
+                }
                 let inner = call.args.first().ok_or("`Some` of nothing")?;
                 Ok(Item::Option("true".into(), Box::new(self.item(inner)?)))
             }
