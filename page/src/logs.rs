@@ -1,5 +1,6 @@
 //! Logs of motions, as the page plays them: columns over time, thinned and packed, with what was expected of the run and its figures.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use serde_json::{json, Map, Value};
@@ -9,6 +10,9 @@ use crate::rows::Row;
 
 /// At most so many samples are kept of a log: more are not seen.
 pub const SAMPLES: usize = 2000;
+
+/// At most so many columns: several times those of the longest arm with all of its parameters.
+const COLUMNS: usize = 4096;
 
 /// What begins the name of the column of a joint's position.
 const POSITION: &str = "q_";
@@ -74,7 +78,14 @@ impl Log {
         if names[0] != "t" {
             return Err(format!("the first column is `{}`; it must be `t`, the time in s", names[0]));
         }
-        if let Some(name) = names.iter().enumerate().find_map(|(i, name)| names[..i].contains(name).then_some(name)) {
+        if names.len() > COLUMNS {
+            return Err(format!(
+                "{} columns are more than the {COLUMNS} of a page: leave out those that are not looked at",
+                names.len()
+            ));
+        }
+        let mut seen = BTreeSet::new();
+        if let Some(name) = names.iter().find(|name| !seen.insert(*name)) {
             return Err(format!("two columns are called `{name}`"));
         }
         let mut rows: Vec<Vec<f64>> = Vec::new();
@@ -111,19 +122,29 @@ impl Log {
         Err(format!("its joints are {}, and the arm's are {}", own.join(", "), joints.join(", ")))
     }
 
-    /// With seven digits, packed; `rows` say which of two units is that of a joint's column.
+    /// The columns with the digits of the page; none where a number is not finite.
+    fn written(&self) -> Vec<Vec<Option<f64>>> {
+        let digits = |x: f64| format!("{x:.6e}").parse().unwrap_or(x);
+        let column = |(j, column): (usize, &Vec<f64>)| {
+            column.iter().map(|&x| Some(if j == 0 { x } else { digits(x) }).filter(|x| x.is_finite())).collect()
+        };
+        self.columns.iter().enumerate().map(column).collect()
+    }
+
+    /// The time with all of its digits, since a log may begin late, and the others with seven, packed; `rows` say which of two units is that of
+    /// a joint's column.
     fn packed(&self, rows: &[Row]) -> String {
         let units: Vec<&str> = self.names.iter().zip(&self.units).map(|(name, unit)| of_joint(name, unit, rows)).collect();
-        let digits = |x: &f64| format!("{x:.6e}").parse::<f64>().ok().filter(|x| x.is_finite());
-        let columns: Vec<Vec<Option<f64>>> = self.columns.iter().map(|column| column.iter().map(digits).collect()).collect();
-        pack(&json!({"names": self.names, "units": units, "columns": columns}).to_string())
+        pack(&json!({"names": self.names, "units": units, "columns": self.written()}).to_string())
     }
 }
 
 /// Of a unit such as `rad, m` the first for a joint that turns and the second for one that slides, where the column is that of a joint.
 fn of_joint<'u>(name: &str, unit: &'u str, rows: &[Row]) -> &'u str {
     let Some((turning, sliding)) = unit.split_once(", ") else { return unit };
-    let joint = rows.iter().find(|row| name.strip_suffix(&row.name).is_some_and(|kind| kind.ends_with('_')));
+    let ends_with = |row: &&Row| name.strip_suffix(&row.name).is_some_and(|kind| kind.ends_with('_'));
+    // `q_b_a` is of the joint `b_a`, also beside a joint `a`.
+    let joint = rows.iter().filter(ends_with).max_by_key(|row| row.name.len());
     joint.map_or(unit, |row| if row.revolute { turning } else { sliding })
 }
 
@@ -236,6 +257,36 @@ mod tests {
         assert_eq!(fault("t,x\n0,1\n0,2\n"), "line 3: the time does not grow");
         assert_eq!(fault("t,x\n0,one\n"), "line 2: an entry is no number");
         assert!(fault("").contains("empty"));
+        let columns = |count: usize| format!("t{}\n", (1..count).map(|k| format!(",x{k}")).collect::<String>());
+        assert!(fault(&columns(4097)).starts_with("4097 columns are more than the 4096 of a page"));
+        assert!(read(&columns(4096)).is_ok());
+    }
+
+    /// Seconds since 1970, as robots' clocks write them.
+    #[test]
+    fn a_time_that_begins_late_keeps_its_digits() {
+        let log = read("t,x\n1764118000.0,1.23456789\n1764118000.1,inf\n").unwrap();
+        assert_eq!(log.written(), [[Some(1764118000.0), Some(1764118000.1)], [Some(1.234568), None]]);
+    }
+
+    #[test]
+    fn a_column_has_the_unit_of_the_joint_whose_whole_name_it_has() {
+        let row = |name: &str, revolute: bool| Row {
+            name: name.into(),
+            revolute,
+            denavit_hartenberg: None,
+            urdf: None,
+            before: Vec::new(),
+            axis: [0.0, 0.0, 1.0],
+            after: Vec::new(),
+            limits: None,
+            limits_written: String::new(),
+            line: 0,
+        };
+        for rows in [[row("a", true), row("b_a", false)], [row("b_a", false), row("a", true)]] {
+            let of = |name: &str| of_joint(name, "rad, m", &rows);
+            assert_eq!(["q_a", "eq_a", "q_b_a", "q_c"].map(of), ["rad", "rad", "m", "rad, m"]);
+        }
     }
 
     #[test]

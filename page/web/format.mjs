@@ -15,6 +15,11 @@ export function short(value) {
     return text.replaceAll("-", "−");
 }
 
+/** A time, s: to a microsecond, however late it is. @param {number} t */
+export function instant(t) {
+    return Math.abs(t) < 1e-4 ? short(t) : String(Number(t.toFixed(6))).replace("-", "−");
+}
+
 /** An exponent. @param {number} exponent */
 function raised(exponent) {
     return String(exponent).replace(/./g, (digit) => (digit === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[Number(digit)]));

@@ -5,7 +5,7 @@
  */
 
 import { byId, html, set, svg } from "./dom.mjs";
-import { short } from "./format.mjs";
+import { instant, short } from "./format.mjs";
 import { typed } from "./formula.mjs";
 import { unpack } from "./unpack.mjs";
 import { Arm } from "./scene.mjs";
@@ -109,7 +109,7 @@ export function logs(data, state, picture) {
         k = sampleAt(log.columns[0], t);
         time.value = String(t);
         // That of the sample which is shown, as in the legends.
-        value.value = short(shownTime());
+        value.value = instant(shownTime());
         time.setAttribute("aria-valuetext", `${value.value} s`);
         if (active.places.length > 0) {
             const q = active.places.map((place) => log.columns[place][k]);
@@ -300,7 +300,9 @@ const HEIGHT = 190;
 export function tickLabels(all) {
     const step = all.length > 1 ? all[1] - all[0] : 0;
     const size = Math.max(...all.map(Math.abs));
-    if (size < 1e-4 || size >= 1e6) return all.map((x) => short(Number(x.toPrecision(6))));
+    const few = all.map((x) => short(Number(x.toPrecision(6))));
+    // Times since 1970 differ behind these digits.
+    if (size < 1e-4 || (size >= 1e6 && new Set(few).size === all.length)) return few;
     let digits = 0;
     while (digits < 12 && Math.abs(step - Number(step.toFixed(digits))) > 1e-6 * step) digits++;
     return all.map((x) => String(Number(x.toFixed(digits))).replace("-", "−"));
@@ -377,7 +379,7 @@ function chart(host, log, plot, name, over) {
         // Its values stand in the legend; a line across would lie where nothing is.
         cursor: { y: false, sync: { key: name }, points: { stroke: colour, fill: colour } },
         legend: { markers: { stroke: colour, dash: (_, k) => (k > 0 && series[k - 1].dash ? "dotted" : "solid") } },
-        series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${short(x)} s`) }, ...series],
+        series: [{ label: "t", value: (_, x) => (x === null ? "–" : `${instant(x)} s`) }, ...series],
         axes: [{ ...axis("t, s"), size: 30 }, { ...axis(plot.unit), size: 64 }],
     };
     const drawn = new uPlot(options, [log.columns[0], ...values], host);

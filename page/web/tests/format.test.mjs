@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { digitsIn, fromUnit, unitOfManipulability, units } from "../format.mjs";
+import { digitsIn, fromUnit, instant, unitOfManipulability, units } from "../format.mjs";
 import { listed, meant } from "../sliders.mjs";
 
 test("degrees stand as they were typed, and all digits of others are the same angle again", () => {
@@ -16,6 +16,10 @@ test("degrees stand as they were typed, and all digits of others are the same an
     }
     units.angle = "rad";
     assert.equal(digitsIn(0.1 + 0.2, "rad"), "0.30000000000000004");
+});
+
+test("late times differ, and early ones have no digits of rounding", () => {
+    assert.deepEqual([0, 2e-5, 0.1 + 0.2, 1000.001, 1764118000.1, -2.5].map(instant), ["0", "2·10⁻⁵", "0.3", "1000.001", "1764118000.1", "−2.5"]);
 });
 
 test("w of as many rows as joints is in m for each velocity, less the joints that slide", () => {

@@ -29,6 +29,7 @@ test("no two ticks of an axis have the same label", () => {
     assert.deepEqual(ticks(-1, 0.25), ["−1", "−0.75", "−0.5", "−0.25", "0", "0.25"]);
     assert.deepEqual(ticks(12.3456, 0.00002).slice(0, 2), ["12.3456", "12.34562"]);
     assert.deepEqual(ticks(0, 2e-7).slice(0, 2), ["0", "2·10⁻⁷"]);
+    assert.deepEqual(ticks(1764118000, 0.05).slice(0, 3), ["1764118000", "1764118000.05", "1764118000.1"]);
     for (const step of [0.001, 0.002, 0.0025, 0.005, 0.1, 2, 50]) for (const first of [0, 0.1, 7, 100]) assert.equal(new Set(ticks(first, step)).size, 6, `${first} ${step}`);
 });
 
