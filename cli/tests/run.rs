@@ -81,6 +81,30 @@ fn a_file_that_is_not_there_gives_code_2() {
     assert_eq!(run(&folder("run_absent"), &[Path::new("experiments/absent.yaml")]).status.code(), Some(2));
 }
 
+/// What is wrong with a path's text is said of it, also where its end, which is not read, falls within a character.
+#[test]
+fn a_path_that_is_too_long_or_no_text_is_said_to_be_that() {
+    let folder = folder("run_path");
+    let arm = armgen_instance::built();
+    let robot = &arm.robot().name;
+    let expect = "expect:\n  - {quantity: stops, at_most: 1}\n";
+    let file = folder.join("path.yaml");
+    fs::write(&file, format!("robot: {robot}\ntitle: A path\npath: way.txt\nsampling: 0.01\n{expect}")).expect("a file");
+    let said = |way: &[u8]| {
+        fs::write(folder.join("way.txt"), way).expect("a file");
+        let output = run(&folder, &[&file]);
+        assert_eq!(output.status.code(), Some(1), "{output:?}");
+        err(&output)
+    };
+    let most = armgen_experiments::read::MAX_TEXT;
+    for character in ["\u{e4}", "\u{20ac}", "\u{1f9be}"] {
+        let long = said(&["#".repeat(most), character.repeat(9)].concat().into_bytes());
+        assert!(long.contains("error[too-large]") && long.contains("more than the"), "{long}");
+    }
+    let latin = said(b"start: [0, 0, 0]\n# \xe4\n");
+    assert!(latin.contains("cannot be read: it is not UTF-8: line 2 holds a byte"), "{latin}");
+}
+
 #[test]
 fn an_experiment_for_another_robot_is_skipped_and_said_to_be() {
     let folder = folder("run_another");

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use crate::draw::{self, OutputFile};
 use crate::judge::{judge, Line};
-use crate::model::{Body, Experiment, Quantity, Record};
+use crate::model::{Body, Ended, Experiment, Record};
 use crate::run::{Arm, Run};
 
 /// One experiment and what is known of it.
@@ -75,13 +75,13 @@ impl<'a> Job<'a> {
         OutputFile { name: format!("{}.csv", self.experiment.name), text: self.record.csv() }
     }
 
-    /// The lines of the table; a run that ended early is one of them, unless an expectation is about `lost_at` or `branch_ends_at`.
+    /// The lines of the table; a run that ended early is one of them, unless an expectation is about the number that tells of this end.
     pub fn lines(&self) -> Vec<Line> {
         let expect = &self.experiment.expect;
         let mut lines: Vec<Line> = expect.iter().map(|expectation| judge(expectation, &self.record)).collect();
-        let accounted = expect.iter().any(|e| matches!(e.channel.quantity, Quantity::LostAt | Quantity::BranchEndsAt));
-        if let Some(ended) = self.record.ended.as_ref().filter(|_| !accounted) {
-            lines.push(Line::unmet("runs to the end", ended.clone(), "yes"));
+        let expected = |end: &Ended| expect.iter().any(|e| end.told_by == Some(e.channel.quantity));
+        if let Some(ended) = self.record.ended.as_ref().filter(|end| !expected(end)) {
+            lines.push(Line::unmet("runs to the end", ended.why.clone(), "yes"));
         }
         lines
     }

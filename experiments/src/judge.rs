@@ -99,7 +99,8 @@ fn find(Expectation { channel, take, .. }: &Expectation, record: &Record) -> f64
         Take::Peak(a, b) => whole(a, b, &|within| log.peak(name, within)),
         Take::Highest(a, b) => whole(a, b, &|within| log.highest(name, within)),
         Take::Lowest(a, b) => whole(a, b, &|within| log.lowest(name, within)),
-        Take::Decay(a, b) => (at(a) / at(b)).ln() / (b - a),
+        // No exponential goes through 0 or changes its sign: there is no rate then, and not an infinite one.
+        Take::Decay(a, b) => Some((at(a) / at(b)).ln() / (b - a)).filter(|rate| rate.is_finite()).unwrap_or(f64::NAN),
     }
 }
 
@@ -144,6 +145,10 @@ mod tests {
             }
             for take in [Take::Peak(0.0, 3.0), Take::Highest(0.0, 3.0), Take::Lowest(0.0, 3.0), Take::At(2.0)] {
                 assert!(!judged([1.0, 2.0, f64::NAN, 1.0], take, target).met, "{take:?} of a NaN");
+            }
+            for ends in [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [1.0, -1.0]] {
+                let found = judged([ends[0], 0.0, 0.0, ends[1]], Take::Decay(0.0, 3.0), target);
+                assert!(!found.met, "decay from {} to {} is {}", ends[0], ends[1], found.found);
             }
             assert!(judged([1.0, 2.0, f64::NAN, 1.0], Take::Peak(0.0, 1.0), target).met);
         }

@@ -19,6 +19,6 @@ pub use experiment::{
 pub use law::{Adaptation, ControlLaw, ControlLawKind, EstimateBounds, Gain, Per};
 pub use motion::{Motion, Sheet, Trajectory};
 pub use number::{digits, number};
-pub use record::{Peak, Record, Shape, Shapes, Speed};
+pub use record::{Ended, Peak, Record, Shape, Shapes, Speed};
 pub use robot::{Joint, Parameter, Robot};
 pub use unit::Unit;

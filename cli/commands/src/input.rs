@@ -46,11 +46,18 @@ fn text(path: &Path, of_long: &str) -> Result<String, u8> {
         terminal::error(&format!("{name} is longer than {} MiB: {of_long}", LONGEST >> 20));
         return Err(UNREADABLE);
     }
+    decoded(bytes).map_err(|fault| {
+        terminal::error(&format!("{name} {fault}"));
+        UNREADABLE
+    })
+}
+
+/// Bytes as a text, or what they are that are none.
+pub(crate) fn decoded(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count() + 1;
-        terminal::error(&format!("{name} is not UTF-8: line {line} holds a byte that belongs to no character; save it as UTF-8"));
-        UNREADABLE
+        format!("is not UTF-8: line {line} holds a byte that belongs to no character; save it as UTF-8")
     })
 }
 

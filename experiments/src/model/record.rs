@@ -21,10 +21,26 @@ pub struct Record {
     pub shapes: Shapes,
     /// How fast and how hard each joint worked, where a controller drove it.
     pub peaks: Vec<Peak>,
-    /// Why the run ended early, if it did.
-    pub ended: Option<String>,
+    /// How the run ended early, if it did.
+    pub ended: Option<Ended>,
     /// How fast it was simulated, where something was.
     pub speed: Speed,
+}
+
+/// How a run ended early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ended {
+    /// Why, in words.
+    pub why: String,
+    /// The number of the run that tells when what ended it came about, where one does: who expects something of it expects the end.
+    pub told_by: Option<Quantity>,
+}
+
+impl Ended {
+    /// An end of which no number of the run tells.
+    pub fn untold(why: String) -> Ended {
+        Ended { why, told_by: None }
+    }
 }
 
 /// The largest sizes of a joint's rate and of its torque or force.
@@ -80,7 +96,7 @@ impl Record {
 
     /// A record without samples: why there is none.
     pub fn without_samples(reason: String) -> Record {
-        Record { ended: Some(reason), ..Record::default() }
+        Record { ended: Some(Ended::untold(reason)), ..Record::default() }
     }
 
     /// Appends a sample: `value` is asked for every channel in turn.

@@ -17,7 +17,7 @@ armgen_codegen::codes! {
         Negative Error "negative",
         /// A number that is 0 or below.
         NotPositive Error "not-positive",
-        /// An interval that ends before it begins.
+        /// An interval that ends before it begins, or in which nothing can be.
         EmptyInterval Error "empty-interval",
         /// Keys that make no time law.
         TimeLaw Error "time-law",
@@ -33,7 +33,7 @@ armgen_codegen::codes! {
 }
 
 /// The other codes that a reader of experiments reports itself; those of YAML and of expressions come on top.
-pub const SHARED: [armgen_codegen::diagnostic::Code; 12] = {
+pub const SHARED: [armgen_codegen::diagnostic::Code; 14] = {
     use armgen_codegen::diagnostic::Code;
     [
         Code::EmptyFile,
@@ -44,6 +44,8 @@ pub const SHARED: [armgen_codegen::diagnostic::Code; 12] = {
         Code::WrongLength,
         Code::EmptyList,
         Code::UnknownName,
+        Code::BadName,
+        Code::DuplicateName,
         Code::NotFinite,
         Code::OutOfRange,
         Code::DuplicateTaskRow,

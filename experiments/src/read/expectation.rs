@@ -64,6 +64,11 @@ impl Reader<'_> {
             self.report(Code::EmptyInterval, fields.place(name), message, "this one", "write the earlier time first");
             return None;
         }
+        if name == "decay" && from == to {
+            let help = "write a later time second: a rate is taken from one time to another";
+            self.report(Code::EmptyInterval, fields.place(name), "the interval of `decay` has no length", "this one", help);
+            return None;
+        }
         Some(match name {
             "peak" => Take::Peak(from, to),
             "highest" => Take::Highest(from, to),

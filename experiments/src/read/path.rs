@@ -7,7 +7,7 @@ use armgen_codegen::document::reader::{self, first_key, optional, required, Fiel
 use armgen_codegen::document::yaml::{self, Node};
 use armgen_codegen::source::{Source, Span};
 use armgen_runtime::nalgebra::Matrix3;
-use armgen_runtime::trajectory::{OperationalTrajectory, OrientationProfile, Path, PlanFault, Segment, TimeLaw, Turn};
+use armgen_runtime::trajectory::{OperationalTrajectory, OrientationProfile, Path, PlanError, PlanFault, Segment, TimeLaw, Turn};
 
 use super::values::{optionals, Allowed, Numbers, Reader};
 use super::Code;
@@ -103,8 +103,7 @@ impl Reader<'_> {
         let path = match Path::plan(start?, segments.into_iter().map(|(_, s)| s).collect::<Vec<_>>()) {
             Ok(path) => Some(path),
             Err(error) => {
-                let at = places.get(error.segment.wrapping_sub(1)).copied().unwrap_or(fields.place("start"));
-                self.cannot(at, &format!("segment {}", error.segment), error.fault);
+                self.cannot("segment", &places, fields.place("start"), error);
                 None
             }
         };
@@ -112,16 +111,20 @@ impl Reader<'_> {
         let orientation = match OrientationProfile::plan(frame, turns.into_iter().map(|(_, t)| t).collect::<Vec<_>>()) {
             Ok(orientation) => Some(orientation),
             Err(error) => {
-                let at = places.get(error.segment.wrapping_sub(1)).copied().unwrap_or(fields.place("frame"));
-                self.cannot(at, &format!("turn {}", error.segment), error.fault);
+                self.cannot("turn", &places, fields.place("frame"), error);
                 None
             }
         };
         Some(Motion { trajectory: OperationalTrajectory { path: path?, orientation: orientation? }, frame, sheet })
     }
 
-    fn cannot(&mut self, at: Span, what: &str, fault: PlanFault) {
-        let (why, help) = explain(fault);
+    /// Reports the element that cannot be planned, or what all of them start from.
+    fn cannot(&mut self, element: &str, places: &[Span], start: Span, error: PlanError) {
+        let (why, help) = explain(error.fault);
+        let (at, what) = match error.segment.checked_sub(1).and_then(|i| places.get(i)) {
+            Some(at) => (*at, format!("{element} {}", error.segment)),
+            None => (start, "the path".to_owned()),
+        };
         self.report(Code::Infeasible, at, format!("{what} cannot be planned: {why}"), "this one", help);
     }
 
@@ -200,10 +203,14 @@ impl Reader<'_> {
         let fields = self.mapping(node, "a segment", at, &keys)?;
         let anticipation = self.seconds(&fields, "anticipation", Allowed::Any).unwrap_or(Duration::ZERO);
         let segment = if fields.has("line") {
+            self.out_of_place(&fields, &["arc", "through", "centre", "axis", "sweep", "pause"], "the segment is a `line`");
             Segment::line(self.array(&fields, "line", XYZ, Allowed::Any)?, self.time_law(&fields)?)
         } else if fields.has("arc") {
+            self.out_of_place(&fields, &["pause"], "the segment is an `arc`");
             self.arc(&fields)?
         } else if fields.has("pause") {
+            self.out_of_place(&fields, &["through", "centre", "axis", "sweep"], "the segment is a `pause`");
+            self.out_of_place(&fields, &LAW, "a `pause` has no time law");
             Segment::pause(self.seconds(&fields, "pause", Allowed::Positive)?)
         } else {
             self.report(
@@ -221,6 +228,7 @@ impl Reader<'_> {
     fn arc(&mut self, fields: &Fields<'_>) -> Option<Segment<f64>> {
         let to = self.array(fields, "arc", XYZ, Allowed::Any)?;
         if fields.has("through") {
+            self.out_of_place(fields, &["centre", "axis", "sweep"], "three points are an arc: its start, `through` and its end");
             let via = self.array(fields, "through", XYZ, Allowed::Any)?;
             return Some(Segment::arc_through(via, to, self.time_law(fields)?));
         }
@@ -249,6 +257,8 @@ impl Reader<'_> {
         keys.extend(optionals(&LAW));
         let fields = self.mapping(node, "a turn", at, &keys)?;
         if fields.has("pause") {
+            self.out_of_place(&fields, &["angle", "axis"], "the turn is a `pause`");
+            self.out_of_place(&fields, &LAW, "a `pause` has no time law");
             return Some(Turn::pause(self.seconds(&fields, "pause", Allowed::Positive)?));
         }
         let example = "angle: pi, duration: 10, acceleration_time: 1";

@@ -1,8 +1,11 @@
 //! `postures`, `plane`, `grid`.
 
-use armgen_codegen::diagnostic::Code as Shared;
+use std::collections::BTreeMap;
+
+use armgen_codegen::diagnostic::{Code as Shared, Diagnostic};
+use armgen_codegen::document::excerpt;
 use armgen_codegen::document::reader::{required, Fields};
-use armgen_codegen::source::Span;
+use armgen_codegen::source::{Span, Spanned};
 use armgen_runtime::task::Row;
 
 use super::values::{Allowed, Numbers, Reader};
@@ -18,10 +21,11 @@ impl Reader<'_> {
         let (at, node) = fields.get("postures")?;
         let items = self.items(node, at, "postures", HELP)?;
         let keys = [required("name", "name: stretched"), required("q", "q: [0, pi/2, ...]")];
-        let mut list = Vec::new();
+        let (mut list, mut seen) = (Vec::new(), BTreeMap::new());
         for item in items {
             let fields = self.mapping(item, "a posture", item.span, &keys)?;
             let name = self.word(&fields, "name")?;
+            self.name(&name, &mut seen);
             list.push(Posture { name: name.value, q: self.joints(&fields, "q")? });
         }
         if list.is_empty() {
@@ -40,6 +44,22 @@ impl Reader<'_> {
         };
         let grid = fields.get("grid").and_then(|(at, _)| self.grid(fields, at));
         Some(Postures { list, plane, grid })
+    }
+
+    /// Names begin those of the quantities and stand in the log: `NAME.w,0.25`. Those `seen` before are taken.
+    fn name(&mut self, name: &Spanned<String>, seen: &mut BTreeMap<String, Span>) {
+        let shown = excerpt(&name.value);
+        let fits = |first: bool| move |c: char| c == '_' || c.is_alphabetic() || !first && c.is_numeric();
+        if !(name.value.starts_with(fits(true)) && name.value.chars().all(fits(false))) {
+            let message = format!("`{shown}` cannot be the name of a posture: it is not an identifier");
+            let help = "use letters, digits and `_`, a letter first: `elbow_up`";
+            self.report(Shared::BadName, name.span, message, "not an identifier", help);
+        } else if let Some(first) = seen.insert(name.value.clone(), name.span) {
+            let message = format!("two postures are called `{shown}`");
+            let help = "give each posture a name of its own: expectations and the log call it by that name";
+            let diagnostic = Diagnostic::new(Shared::DuplicateName, name.span, message, "the second one", help);
+            self.document.push(diagnostic.also(first, "the first one"));
+        }
     }
 
     fn grid(&mut self, fields: &Fields<'_>, at: Span) -> Option<[Vec<f64>; 2]> {

@@ -7,7 +7,7 @@ use armgen_runtime::nalgebra::SVector;
 
 use super::instance::Functions;
 use super::{Instance, Run};
-use crate::model::{Body, BranchRun, JointQuantity, Quantity, Record, Robot};
+use crate::model::{Body, BranchRun, Ended, JointQuantity, Quantity, Record, Robot};
 
 /// A branch that has been followed.
 struct Branch<'a, const N: usize> {
@@ -18,12 +18,12 @@ struct Branch<'a, const N: usize> {
     duration: f64,
     postures: usize,
     reached: f64,
-    ended: Option<String>,
+    ended: Option<Ended>,
 }
 
 impl<const N: usize> Run for Branch<'_, N> {
     fn warning(&self) -> Option<String> {
-        self.ended.clone()
+        self.ended.as_ref().map(|end| end.why.clone())
     }
 
     fn run(self: Box<Self>) -> Record {
@@ -62,11 +62,15 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let followed = (solver.follow)(&path, &start, &mut |s, q| way.push((s, *q, self.manipulability(q))));
         let joint = |joint: usize| &self.robot.joints[joint].name;
         let ended = followed.end.map(|end| {
+            // Else it does not end there: it has not begun, or could not be followed.
+            let is_end =
+                matches!(end, BranchEnd::Unreachable | BranchEnd::Singular | BranchEnd::Continuum | BranchEnd::Limit { .. });
             let why = match end {
                 BranchEnd::Limit { joint: number } => format!("joint `{}` comes to its limit", joint(number)),
                 end => end.to_string(),
             };
-            format!("the branch ends at {:.6} s of {duration} s: {why}", followed.s * duration)
+            let why = format!("the branch ends at {:.6} s of {duration} s: {why}", followed.s * duration);
+            Ended { why, told_by: is_end.then_some(Quantity::BranchEndsAt) }
         });
         let postures = (solver.count)(&path(0.0));
         Ok(Box::new(Branch { body, robot: &self.robot, way, duration, postures, reached: followed.s, ended }))

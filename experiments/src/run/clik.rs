@@ -16,7 +16,7 @@ use armgen_runtime::task::Row;
 
 use super::instance::{sized, task_of, Functions};
 use super::Instance;
-use crate::model::{Algorithm, Body, ClikRun, JointQuantity, Quantity, Record};
+use crate::model::{Algorithm, Body, ClikRun, Ended, Joint, JointQuantity, Quantity, Record};
 
 /// Rate, rad/s or m/s, at which a motion is cut where the description gives no limit, or a higher one.
 const FASTEST: f64 = 100.0;
@@ -57,6 +57,12 @@ impl<R: Kinematics<N, Real = f64>, const N: usize> Objective<R, N> for Climb<'_>
     }
 }
 
+/// The limits of the description, infinite positions where it gives none; rates of [`FASTEST`] there.
+pub(super) fn limits<const N: usize>(joints: &[Joint]) -> Result<JointLimits<f64, N>, SettingError> {
+    let position = |side: usize| std::array::from_fn(|i| joints[i].position[side]);
+    JointLimits::rates(std::array::from_fn(|i| joints[i].velocity.min(FASTEST)))?.with_range(position(0), position(1))
+}
+
 fn refused(error: SettingError) -> String {
     format!("the gains are refused: {error}")
 }
@@ -91,17 +97,6 @@ impl<const N: usize> Sample<'_, N> {
 }
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
-    /// The limits of the description; rates of [`FASTEST`] where it gives none.
-    pub(super) fn limits(&self) -> Result<JointLimits<f64, N>, SettingError> {
-        let joints = &self.robot.joints;
-        let limits = JointLimits::rates(std::array::from_fn(|i| joints[i].velocity.min(FASTEST)))?;
-        if joints.iter().flat_map(|joint| joint.position).all(f64::is_finite) {
-            limits.with_range(std::array::from_fn(|i| joints[i].position[0]), std::array::from_fn(|i| joints[i].position[1]))
-        } else {
-            Ok(limits)
-        }
-    }
-
     /// Second-order inverse kinematics of the task of the robot, as it makes joint references, too.
     pub(super) fn second_order(
         &self,
@@ -109,7 +104,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         period: f64,
         integration: Integration,
     ) -> Result<SecondOrder<f64, N, M>, SettingError> {
-        SecondOrder::new(self.task, sized(k_p), sized(k_d), period, integration, self.limits()?, [TOLERANCE; M])
+        SecondOrder::new(self.task, sized(k_p), sized(k_d), period, integration, limits(&self.robot.joints)?, [TOLERANCE; M])
     }
 
     /// Follows the path.
@@ -127,7 +122,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
                 followed.map(|limited| rate_limited_at = limited)
             }
         };
-        record.ended = outcome.err();
+        record.ended = outcome.err().map(Ended::untold);
         if record.ended.is_none() {
             record.numbers = body.numbers(&self.robot).into_iter().map(|channel| (channel, rate_limited_at)).collect();
         }
@@ -153,7 +148,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
                 Box::new(DampedLeastSquares::new(gains, damping).map_err(refused)?)
             }
         };
-        let limits = self.limits().map_err(refused)?;
+        let limits = limits(&self.robot.joints).map_err(refused)?;
         let clik = Clik::new(task, algorithm.as_ref(), period.as_secs_f64(), limits, [TOLERANCE; K]).map_err(refused)?;
         let mut q = self.start(&run.start, &run.sampling)?;
         let mut t = Duration::ZERO;
@@ -203,5 +198,21 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             t += period;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A joint that turns without end leaves the others their limits.
+    #[test]
+    fn a_joint_without_limits_takes_none_from_the_others() {
+        let joint = |position| Joint { name: String::new(), revolute: true, position, velocity: 1.0, effort: f64::INFINITY };
+        let joints = [joint([f64::NEG_INFINITY, f64::INFINITY]), joint([-1.0, 1.0]), joint([-1.0, f64::INFINITY])];
+        let limits = limits::<3>(&joints).expect("limits");
+        let (q, next) = (SVector::from([0.0; 3]), SVector::from([9.0, 1.5, 9.0]));
+        assert_eq!(limits.stop(&q, &next).q, SVector::from([9.0, 1.0, 9.0]));
+        assert_eq!(limits.stop(&q, &-next).q, SVector::from([-9.0, -1.0, -1.0]));
     }
 }

@@ -21,8 +21,8 @@ use armgen_runtime::stability::{
 use super::instance::{sized, Functions};
 use super::{Instance, Run};
 use crate::model::{
-    number, Body, ControlLaw, ControlLawKind, ControlRun, EstimateBounds, Experiment, JointQuantity, Peak, Quantity, Record,
-    ReferenceGains, Robot, Speed,
+    number, Body, ControlLaw, ControlLawKind, ControlRun, Ended, EstimateBounds, Experiment, JointQuantity, Peak, Quantity,
+    Record, ReferenceGains, Robot, Speed,
 };
 
 /// Distance between the postures at which the loop is linearised.
@@ -368,6 +368,17 @@ fn off<const N: usize>(desired: &SVector<f64, N>, found: &SVector<f64, N>) -> Re
     Ok(())
 }
 
+/// How a run ended. `lost_at` tells of it where a joint was given up or diverged and the arm itself, not its measurement alone, was lost.
+fn ended(error: RunError<Stop>, is_lost: bool, robot: &Robot) -> Ended {
+    use Divergence::{Position, Rate};
+    let of_a_joint = match &error {
+        RunError::Controller { error: Stop::GivenUp(_), .. } => true,
+        RunError::Diverged { divergence, .. } => matches!(divergence, Rate(_) | Position(_)),
+        _ => false,
+    };
+    Ended { why: explain(error, robot), told_by: (of_a_joint && is_lost).then_some(Quantity::LostAt) }
+}
+
 /// Why a run ended, when, and which joint it was.
 fn explain(error: RunError<Stop>, robot: &Robot) -> String {
     let s = |t: Duration| format!("{} s", number(t.as_secs_f64()));
@@ -466,6 +477,7 @@ where
             operational: &operational,
             record: Record::new(body.channels(&arm.robot)),
             lost_at: f64::INFINITY,
+            is_lost: false,
         };
         writer.record.peaks = vec![Peak::default(); N];
         let begun = Instant::now();
@@ -475,7 +487,7 @@ where
             Drive::Continuous(law) => writer.continuous(run, &law),
         };
         let took = begun.elapsed().as_secs_f64();
-        let Writer { mut record, lost_at, .. } = writer;
+        let Writer { mut record, lost_at, is_lost, .. } = writer;
         let limit = |report: &Report<f64>| match report.period {
             StablePeriod::UpTo(limit) | StablePeriod::AtLeast(limit) | StablePeriod::NotEvenAt(limit) => limit,
         };
@@ -493,7 +505,7 @@ where
             _ => f64::NAN,
         };
         record.numbers = body.numbers(&arm.robot).into_iter().map(|channel| (channel.clone(), value(channel.quantity))).collect();
-        record.ended = outcome.err().map(|error| explain(error, &arm.robot));
+        record.ended = outcome.err().map(|error| ended(error, is_lost, &arm.robot));
         if is_sampled {
             record.speed = Speed { simulated: record.end(), took };
         }
@@ -509,6 +521,8 @@ struct Writer<'a, R, W, const N: usize, const M: usize, const P: usize> {
     operational: &'a [OperationalReference<f64>],
     record: Record,
     lost_at: f64,
+    /// Whether a joint is off by more than [`LARGE_ERROR`] at the last sample.
+    is_lost: bool,
 }
 
 impl<R, W, const N: usize, const M: usize, const P: usize> Writer<'_, R, W, N, M, P>
@@ -517,12 +531,13 @@ where
     W: Functions<N, P>,
 {
     fn write(&mut self, index: usize, t: Duration, state: &State<f64, N>, tau: &SVector<f64, N>, watched: &[f64]) {
-        let Writer { arm, joints, operational, record, lost_at, .. } = self;
+        let Writer { arm, joints, operational, record, lost_at, is_lost, .. } = self;
         for (i, peak) in record.peaks.iter_mut().enumerate() {
             *peak = Peak { rate: peak.rate.max(state.dq[i].abs()), effort: peak.effort.max(tau[i].abs()) };
         }
         let e = joints[index].q - state.q;
-        if lost_at.is_infinite() && e.amax() > LARGE_ERROR {
+        *is_lost = e.amax() > LARGE_ERROR;
+        if lost_at.is_infinite() && *is_lost {
             *lost_at = t.as_secs_f64();
         }
         let pose = Pose::of(&arm.nominal, &state.q);

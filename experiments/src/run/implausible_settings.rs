@@ -1,24 +1,27 @@
 //! What can be seen of an experiment before anything moves: a start outside the limits, a path beyond reach, a start off the path.
 //!
-//! Reach is bounded by the chain of frame origins stretched out, from the origin of the base on: |p_e| <= |p_1| + sum |p_{i+1} - p_i|.
-//! These lengths do not change where joints turn, and change by the stroke where they slide. A path farther from the origin of the base is
-//! out of reach for certain; one that is nearer may be so still.
+//! Reach is bounded by the chain of frame origins stretched out, from the origin of the base on: |p_e| <= max |p_1| + sum |p_{i+1} - p_i|.
+//! These lengths do not change where joints turn, and change by the stroke where they slide. |p_1| changes where the first joint turns about an
+//! axis that passes the origin of the base at a distance r_0: with p_1 at the distance r from the axis, and h along it from the foot of the
+//! perpendicular on it, max |p_1|^2 = (r_0 + r)^2 + h^2. A path farther from the origin of the base is out of reach for certain; one that is
+//! nearer may be so still.
 
 use std::time::Duration;
 
-use armgen_runtime::nalgebra::{SVector, Vector3};
+use armgen_runtime::nalgebra::{Matrix4, SVector, Vector3};
 use armgen_runtime::reference::Pose;
+use armgen_runtime::robot::Kinematics;
 use armgen_runtime::task::Task;
 
 use super::instance::Functions;
 use super::Instance;
-use crate::model::{number, Body, Experiment, Sampling};
+use crate::model::{number, Body, Experiment, Joint, Sampling};
 
 /// A start off its path, m and rad, that closed-loop inverse kinematics is to bring onto it: beyond, the two hardly belong together.
 const OFF: (f64, f64) = (0.05, 0.2);
 /// An angle of a start, rad, beyond which it is in degrees rather than whole turns away.
 const DEGREES: f64 = 10.0;
-/// How often the path is looked at.
+/// How often the path is looked at, if it is not sampled less often.
 const STEP: Duration = Duration::from_millis(10);
 
 impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Instance<R, W, N, M, P> {
@@ -79,20 +82,12 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
 
     /// Where the path is farther away than the arm is long.
     fn beyond_reach(&self, q: &SVector<f64, N>, sampling: &Sampling) -> Option<String> {
-        let origin = |frame: &armgen_runtime::nalgebra::Matrix4<f64>| Vector3::new(frame[(0, 3)], frame[(1, 3)], frame[(2, 3)]);
-        let mut chain = vec![Vector3::zeros()];
-        chain.extend(self.nominal.link_frames(q).iter().map(origin));
-        chain.push(Pose::of(&self.nominal, q).position);
-        let mut reach: f64 = chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        for (joint, q) in self.robot.joints.iter().zip(q.iter()).filter(|(joint, _)| !joint.revolute) {
-            let [low, high] = joint.position;
-            reach += (low - q).abs().max((high - q).abs());
-        }
+        let reach = reach(&self.nominal, &self.robot.joints, q);
         if !reach.is_finite() {
             return None;
         }
         let trajectory = &sampling.motion.trajectory;
-        let end = sampling.duration.min(trajectory.duration());
+        let (end, step) = (sampling.duration.min(trajectory.duration()), STEP.max(sampling.period));
         let (mut t, mut first, mut nearest) = (Duration::ZERO, None, (f64::INFINITY, Duration::ZERO));
         while t <= end {
             let distance = trajectory.sample(t).pose.position.norm();
@@ -102,7 +97,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
             if distance < nearest.0 {
                 nearest = (distance, t);
             }
-            t += STEP;
+            t += step;
         }
         let (t, distance) = first?;
         Some(format!(
@@ -134,7 +129,75 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
     }
 }
 
+/// How far the end effector can be from the origin of the base, m; infinite where a joint slides without end.
+fn reach<R: Kinematics<N, Real = f64>, const N: usize>(robot: &R, joints: &[Joint], q: &SVector<f64, N>) -> f64 {
+    let origin = |frame: &Matrix4<f64>| Vector3::new(frame[(0, 3)], frame[(1, 3)], frame[(2, 3)]);
+    let mut chain: Vec<Vector3<f64>> = robot.link_frames(q).iter().map(origin).collect();
+    let tip = Pose::of(robot, q).position;
+    chain.push(tip);
+    let mut reach: f64 = chain.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let jacobian = robot.geometric_jacobian(q);
+    let [velocity, axis]: [Vector3<f64>; 2] = [0, 3].map(|row| jacobian.fixed_view::<3, 1>(row, 0).into_owned());
+    // The axis of the first joint, z = 0 where it slides: of z x (p_e - a) x z what is at right angles to z is left.
+    let along = |p: Vector3<f64>| axis * axis.dot(&p);
+    let foot = if joints[0].revolute { tip - along(tip) - velocity.cross(&axis) } else { Vector3::zeros() };
+    let (first, height) = (chain[0] - foot, along(chain[0]));
+    reach += (foot.norm() + (first - height).norm()).hypot(height.norm());
+    for (joint, q) in joints.iter().zip(q.iter()).filter(|(joint, _)| !joint.revolute) {
+        let [low, high] = joint.position;
+        reach += (low - q).abs().max((high - q).abs());
+    }
+    reach
+}
+
 /// Four digits after the point at most.
 fn rounded(x: f64) -> String {
     number((x * 1e4).round() / 1e4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use armgen_runtime::nalgebra::SMatrix;
+
+    /// A joint that turns a link of 0.5 m about z through (1, 0, 0), or that slides along y from there.
+    struct OneJoint(bool);
+
+    impl Kinematics<1> for OneJoint {
+        type Real = f64;
+
+        fn direct_kinematics(&self, q: &SVector<f64, 1>) -> Matrix4<f64> {
+            let (x, y) = if self.0 { (1.0 + 0.5 * q[0].cos(), 0.5 * q[0].sin()) } else { (1.0, q[0]) };
+            Matrix4::new_translation(&Vector3::new(x, y, 0.7))
+        }
+
+        fn link_frames(&self, q: &SVector<f64, 1>) -> [Matrix4<f64>; 1] {
+            [self.direct_kinematics(q)]
+        }
+
+        fn geometric_jacobian(&self, q: &SVector<f64, 1>) -> SMatrix<f64, 6, 1> {
+            if self.0 {
+                SMatrix::from([[-0.5 * q[0].sin(), 0.5 * q[0].cos(), 0.0, 0.0, 0.0, 1.0]])
+            } else {
+                SMatrix::from([[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]])
+            }
+        }
+
+        fn geometric_jacobian_dot(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>) -> SMatrix<f64, 6, 1> {
+            SMatrix::zeros()
+        }
+    }
+
+    /// At q = 0 the link is stretched away from the base, at pi it is folded back: the arm is as long in both, and in between.
+    #[test]
+    fn an_arm_beside_the_base_is_as_long_wherever_it_begins() {
+        let joint = |revolute, position| Joint { name: String::new(), revolute, position, velocity: 1.0, effort: 1.0 };
+        let turning = [joint(true, [f64::NEG_INFINITY, f64::INFINITY])];
+        for q in [0.0, 1.0, std::f64::consts::PI, -2.0] {
+            let found = reach(&OneJoint(true), &turning, &SVector::from([q]));
+            assert!((found - 1.5f64.hypot(0.7)).abs() < 1e-14, "{q}: {found}");
+        }
+        let found = reach(&OneJoint(false), &[joint(false, [0.0, 0.25])], &SVector::from([0.0]));
+        assert_eq!(found, 1.0f64.hypot(0.7) + 0.25);
+    }
 }

@@ -59,8 +59,11 @@ pub(super) fn run(sampling: &Sampling, body: &Body, robot: &Robot) -> Record {
     let miss = |i: usize, t: Duration| (trajectory.sample(t).pose.position - segments[i].to()).norm();
     let vias = sampling.motion.vias();
     let stops = || (0..segments.len()).filter(|i| !vias.contains(i)).map(|i| miss(i, segments[i].end())).fold(0.0, f64::max);
-    // The least distance while this segment and the next one are at work.
+    // The least distance while this segment and the next one are at work; what lies behind the end of the run is not looked at.
     let nearest = |i: usize| {
+        if segments[i].end() > *duration {
+            return f64::NAN;
+        }
         let (mut t, mut nearest) = (segments[i + 1].start(), f64::INFINITY);
         while t <= segments[i].end() {
             nearest = nearest.min(miss(i, t));

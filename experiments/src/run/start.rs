@@ -8,6 +8,7 @@ use armgen_runtime::linalg::Damping;
 use armgen_runtime::nalgebra::SVector;
 use armgen_runtime::reference::OperationalReference;
 
+use super::clik::limits;
 use super::instance::Functions;
 use super::Instance;
 use crate::model::{Sampling, Start};
@@ -39,7 +40,7 @@ impl<R: Functions<N, P>, W, const N: usize, const M: usize, const P: usize> Inst
         let refused = |error: &dyn std::fmt::Display| format!("there is no start on the path: {error}");
         let damping = Damping::below(DAMPING.0).at_most(DAMPING.1).map_err(|error| refused(&error))?;
         let algorithm = DampedLeastSquares::new([PART; M], damping).map_err(|error| refused(&error))?;
-        let limits = self.limits().map_err(|error| refused(&error))?;
+        let limits = limits(&self.robot.joints).map_err(|error| refused(&error))?;
         let clik = Clik::new(self.task, algorithm, 1.0, limits, [TOLERANCE; M]).map_err(|error| refused(&error))?;
         let goal = OperationalReference::at_rest(sampling.motion.trajectory.sample(Duration::ZERO).pose);
         let mut nearest = f64::INFINITY;

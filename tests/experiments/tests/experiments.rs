@@ -2,11 +2,15 @@
 
 mod common;
 
+use std::path::Path;
+
+use armgen_codegen::source::Source;
 use armgen_experiments::campaign::{in_parallel, Job};
 use armgen_experiments::draw::OutputFile;
 use armgen_experiments::model::{ControlLawKind, Experiment, JointQuantity, Quantity};
+use armgen_experiments::read::{self, Parsed};
 use armgen_experiments::run::Arm;
-use common::{experiment, files, folder, text_of};
+use common::{experiment, files, folder, said, text_of};
 
 /// How many experiments and expectations there are: none gets lost unseen.
 const EXPERIMENTS: usize = 29;
@@ -47,6 +51,60 @@ fn every_experiment_gives_what_is_expected() {
         }
     }
     assert_eq!(lines, EXPECTATIONS);
+}
+
+/// An end that no number which is expected tells of is a failure, whatever else is expected.
+#[test]
+fn a_run_that_ends_for_another_reason_is_not_as_expected() {
+    let arm = armgen_experiment_tests::scara();
+    let ends = |name: &str, text: &str| {
+        let experiment = experiment(name, text, arm.robot());
+        let mut job = Job::new(&experiment, &*arm);
+        job.run();
+        let lines = job.lines();
+        assert!(lines[0].met, "{name}: {lines:?}");
+        lines.get(1).map(|line| (line.what.clone(), line.found.clone()))
+    };
+    let expect = |text: &str, quantity: &str| {
+        let (head, _) = text.split_once("expect:").expect("expectations");
+        format!("{head}expect:\n  - {{quantity: {quantity}}}\n")
+    };
+    let reported = text_of(&folder(), "inverse_dynamics_reported.yaml").replace("duration: 22", "duration: 0.5");
+    let noisy = reported.replace("controller:", "sensor: {position_deviation: 2}\ncontroller:");
+    // The measurement is off, and the arm never is.
+    let (what, found) = ends("noisy.yaml", &expect(&noisy, "lost_at, at_least: 0.1")).expect("it ends early");
+    assert!(
+        what == "runs to the end" && found.starts_with("given up at ") && found.contains(" is off by more than 1 "),
+        "{found}"
+    );
+    // The arm is off, and is expected to be.
+    let lost = text_of(&folder(), "adaptive_reported.yaml");
+    assert_eq!(ends("lost.yaml", &expect(&lost, "lost_at, at_most: 1")), None);
+    assert!(ends("radius.yaml", &expect(&lost, "radius, at_least: 1")).is_some(), "nothing expected of it");
+    // A branch that has not begun does not end.
+    let branch =
+        text_of(&folder(), "branch_pick_and_place.yaml").replace("{from: path, near: [-1, 1.5, 0.3, 0]}", "[0, 1, 0.3, 0]");
+    let (_, found) = ends("branch.yaml", &expect(&branch, "branch_ends_at, at_most: 1")).expect("no branch");
+    assert!(found.ends_with("the posture to start from does not reach the start of the path"), "{found}");
+}
+
+/// What lies behind the end of a run is not looked at, however long it is and however short the period.
+#[test]
+fn a_via_point_behind_the_end_of_the_run_is_not_met() {
+    let arm = armgen_experiment_tests::scara();
+    let path = "start: [0, 0, 0]\nsegments:\n  - {line: [1, 0, 0], duration: 20, law: cubic}\n  - {line: [1, 1, 0], duration: 20, law: cubic, anticipation: 10}\n";
+    let via = |duration: f64| {
+        let text = format!("robot: scara\ntitle: Two lines\npath: way\nsampling: {}\nduration: {duration}\nexpect:\n  - {{quantity: via_1, at_most: 1}}\n", duration / 100.0);
+        let parsed = read::experiment(Path::new("via.yaml"), &Source::new("via.yaml", text), arm.robot(), &|_| Ok(path.into()));
+        let Parsed::Experiment(experiment) = parsed else { panic!("{}", said(&parsed)) };
+        let mut job = Job::new(&experiment, &*arm);
+        job.run();
+        assert!(job.record().log().len() <= 101);
+        job.record().numbers.iter().find(|(channel, _)| channel.quantity == Quantity::Via(0)).expect("a via point").1
+    };
+    assert!(via(1e-3).is_nan() && via(19.0).is_nan());
+    // By symmetry the least distance is in the middle of both, where each line is 3/16 - 2/64 of its length from the point.
+    assert!((via(20.0) - 2.0f64.sqrt() * 0.15625).abs() < 1e-12, "{}", via(20.0));
 }
 
 /// What ends a branch is said before anything moves.

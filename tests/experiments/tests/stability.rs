@@ -113,5 +113,15 @@ fn a_start_in_degrees_and_a_path_beyond_reach_are_seen() {
     let far = said_of("paths/circle.yaml", "paths/far.yaml");
     assert!(far[0].starts_with("the path leaves the reach of the arm: at 0 s it is 5.0249 m from the base"), "{far:?}");
     assert!(far[0].ends_with("it is nearest at 4 s, 3.0414 m"), "{far:?}");
+    // A path that is sampled less often is looked at less often.
+    let rarely = said_of(
+        "paths/circle.yaml
+start: [0, -pi/2, pi/2, -pi/2, -pi/2, 0]
+sampling: 0.002",
+        "paths/far.yaml
+start: [0, -pi/2, pi/2, -pi/2, -pi/2, 0]
+sampling: 3",
+    );
+    assert!(rarely[0].contains("it is nearest at 3 s, "), "{rarely:?}");
     assert_eq!(said_of("k_p: [400, 400, 400, 400, 400, 400]", "k_p: 400"), said_of("", ""));
 }

@@ -102,9 +102,13 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
 /// The text of a file that an experiment names. At most one byte more than the reader accepts: the reader then reports the excess, and a
 /// file without an end is not waited for.
 fn text_of(path: &Path) -> std::io::Result<String> {
-    let mut text = String::new();
-    std::fs::File::open(path)?.take(read::MAX_TEXT as u64 + 1).read_to_string(&mut text)?;
-    Ok(text)
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(read::MAX_TEXT as u64 + 1).read_to_end(&mut bytes)?;
+    if bytes.len() > read::MAX_TEXT {
+        // It may be cut within a character. What stands for that is no shorter, so the text is still too long.
+        return Ok(String::from_utf8_lossy(&bytes).into_owned());
+    }
+    input::decoded(bytes).map_err(|fault| std::io::Error::new(std::io::ErrorKind::InvalidData, format!("it {fault}")))
 }
 
 fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
