@@ -288,6 +288,56 @@ fn a_companion_finds_its_module_whatever_the_file_is_called() {
     }
 }
 
+/// The text is put together in a file that was not there before.
+#[test]
+fn a_file_with_the_name_of_one_that_is_written_stays() {
+    let folder = folder("new");
+    let (description, before) = copied(&folder, "foo.new");
+    let (other, out) = (folder.join("foo.new1"), folder.join("foo"));
+    fs::write(&other, "other").expect("a file");
+    let paths = [&description, &out].map(|path| path.to_str().expect("UTF-8"));
+    check(&["export", paths[0], "--format", "urdf", "--out", paths[1]], 0);
+    assert!(fs::read_to_string(&out).expect("it is written").contains("<robot "));
+    assert_eq!(fs::read(&description).expect("still there"), before);
+    assert_eq!(fs::read(&other).expect("still there"), b"other");
+    let names = || {
+        let mut names: Vec<_> = fs::read_dir(&folder).expect("a folder").map(|e| e.expect("an entry").file_name()).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(), ["foo", "foo.new", "foo.new1"], "nothing half written is left");
+}
+
+#[test]
+fn one_file_is_not_written_twice_whatever_it_is_called() {
+    let folder = folder("twice");
+    let _ = fs::remove_dir_all(folder.join("made"));
+    let urdf = file("import/tests/urdf/everything.urdf");
+    let paths = ["a.yaml", "./a.yaml", "../twice/a.yaml", "made/a.yaml", "made/./a.yaml"].map(|path| folder.join(path));
+    let paths = paths.each_ref().map(|path| path.to_str().expect("UTF-8"));
+    for (out, report) in [(0, 1), (0, 2), (2, 1), (3, 4)] {
+        let chain = ["import", &urdf, "--base", "base", "--tip", "tip", "--lock", "finger=0.04"];
+        let output = check(&[&chain[..], &["--out", paths[out], "--report", paths[report]]].concat(), 2);
+        assert!(err(&output).contains("--out and --report name one file"), "{}", err(&output));
+        assert!(!Path::new(paths[out]).exists());
+    }
+}
+
+/// Of a link to the module the companion would go into the module.
+#[cfg(unix)]
+#[test]
+fn a_companion_is_not_written_through_a_link_to_its_module() {
+    let folder = folder("linked");
+    let (module, companion) = (folder.join("arm.rs"), folder.join("arm_bounds.rs"));
+    fs::write(&module, "").expect("a file");
+    let _ = fs::remove_file(&companion);
+    std::os::unix::fs::symlink(&module, &companion).expect("a link");
+    let description = file("tests/robots/single_joint.yaml");
+    let output = check(&["generate", &description, "--out", module.to_str().expect("UTF-8"), "--bounds"], 2);
+    assert!(err(&output).contains("two of the files to write would both be"), "{}", err(&output));
+    assert_eq!(fs::read(&module).expect("still there"), b"");
+}
+
 /// Valid numbers whose product no float holds.
 #[test]
 fn products_out_of_range_are_told_before_anything_is_printed() {

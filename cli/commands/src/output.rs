@@ -1,6 +1,8 @@
 //! Files that commands write.
 
-use std::path::Path;
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
 use crate::{terminal, DONE, UNREADABLE};
 
@@ -17,9 +19,21 @@ pub(crate) fn write_other(description: &Path, out: &Path, text: &str) -> u8 {
     DONE
 }
 
-/// Whether two paths lead to one file, whatever they are called.
+/// Whether two paths lead to one file, whatever they are called, and whether it is there or not.
 pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+    place(a) == place(b)
+}
+
+/// Where a path leads: the same for all paths of one file, be it there or not.
+pub(crate) fn place(path: &Path) -> PathBuf {
+    if let Ok(place) = path.canonicalize() {
+        return place;
+    }
+    match (path.parent(), path.file_name()) {
+        (Some(folder), Some(name)) if folder == Path::new("") => place(Path::new(".")).join(name),
+        (Some(folder), Some(name)) => place(folder).join(name),
+        _ => path.to_path_buf(),
+    }
 }
 
 /// Writes beside the file first and then renames: nobody ever finds half of it. A folder that is not there is made.
@@ -31,12 +45,26 @@ pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
     if path.symlink_metadata().is_ok_and(|found| !found.is_file()) {
         return std::fs::write(path, text);
     }
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".new");
-    let beside = path.with_file_name(name);
-    let written = std::fs::write(&beside, text).and_then(|()| std::fs::rename(&beside, path));
+    let (beside, mut file) = new_beside(path)?;
+    let written = file.write_all(text.as_bytes());
+    drop(file);
+    let written = written.and_then(|()| std::fs::rename(&beside, path));
     if written.is_err() {
         let _ = std::fs::remove_file(&beside);
     }
     written
+}
+
+/// A file that was not there before, beside another one.
+fn new_beside(path: &Path) -> std::io::Result<(PathBuf, File)> {
+    let mut number = 0;
+    loop {
+        let mut name = path.file_name().unwrap_or_default().to_os_string();
+        name.push(if number == 0 { ".new".to_owned() } else { format!(".new{number}") });
+        let beside = path.with_file_name(name);
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => number += 1,
+            opened => return Ok((beside, opened?)),
+        }
+    }
 }

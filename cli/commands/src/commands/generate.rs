@@ -1,5 +1,6 @@
 //! `armgen generate`: the module as a file or on standard output, and what stands beside the file on request.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Colour;
@@ -15,7 +16,7 @@ use armgen_verify::certificate::Certificate;
 use armgen_verify::reader::ModuleText;
 
 use super::verify::{certificate_beside, with_spinner};
-use crate::output::{same_file, write};
+use crate::output::{place, same_file, write};
 use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
 /// What the module is to be.
@@ -174,8 +175,9 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
 
 /// Writes files to different places, none of them the description's; into a `folder` that is made where there is none.
 fn write_all(files: &[Output], description: &Path, folder: Option<&Path>) -> Result<(), String> {
-    for (i, (path, _)) in files.iter().enumerate() {
-        if files[..i].iter().any(|(other, _)| other == path) || same_file(description, path) {
+    let mut taken = BTreeSet::from([place(description)]);
+    for (path, _) in files {
+        if !taken.insert(place(path)) {
             let path = path.display();
             return Err(format!(
                 "two of the files to write would both be {path}, or it is the description: choose another name for --out"

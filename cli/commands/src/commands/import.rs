@@ -92,7 +92,7 @@ pub(crate) fn run(file: &Path, choices: Choices, results: &Results) -> u8 {
             return UNREADABLE;
         }
     }
-    if results.out.is_some() && results.out == results.report {
+    if results.out.as_ref().zip(results.report.as_ref()).is_some_and(|(out, report)| same_file(out, report)) {
         terminal::error("--out and --report name one file");
         return UNREADABLE;
     }
