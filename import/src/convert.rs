@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! lines.rs   joint axes as lines, their common normals: a, alpha, d, theta
+//! names.rs   the parameters that the geometry names
 //! write.rs   exact numbers, angles and poses as expressions
 //! ```
 //!
@@ -9,18 +10,22 @@
 //! lines at q = 0, and rows are what their common normals say; bodies are attached where their frames were.
 
 mod lines;
+mod names;
 mod write;
 
+use std::collections::BTreeSet;
+
 use armgen_codegen::description::{
-    BodyDescription, Convention, FrictionDescription, JointDescription, PoseDescription, PoseElement, RegressorDescription,
-    RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
+    BodyDescription, Convention, FrictionDescription, JointDescription, PoseDescription, PoseElement, PosturesDescription,
+    RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
+use armgen_codegen::inverse_kinematics::{self, Redundancy};
 use armgen_codegen::kinds::{JointKind, TaskRow};
 use armgen_codegen::manipulator::{Manipulator, Placement};
-use armgen_codegen::source::Source;
+use armgen_codegen::source::{Source, Span};
 use armgen_codegen::validate;
 
 use self::write::Writer;
@@ -39,7 +44,14 @@ pub fn convert(source: &Source, to: Convention) -> (Option<Converted>, Diagnosti
     let (valid, mut diagnostics) = validate::read(source);
     let Some((arm, places)) = valid else { return (None, diagnostics) };
     let Some(description) = RobotDescription::parse(source).0 else { return (None, diagnostics) };
-    let converter = Converter { source, description: &description, arm: &arm, writer: Writer::default(), lines: Vec::new() };
+    let converter = Converter {
+        source,
+        description: &description,
+        arm: &arm,
+        writer: Writer::default(),
+        frozen: BTreeSet::new(),
+        lines: Vec::new(),
+    };
     let converted = converter.convert(to);
     if converted.is_none() {
         let message = "the common normals of the joint axes are too complex to be kept exactly";
@@ -54,27 +66,31 @@ struct Converter<'d> {
     description: &'d RobotDescription,
     arm: &'d Manipulator,
     writer: Writer,
+    /// Parameters whose values are written where their names stood.
+    frozen: BTreeSet<&'d str>,
     lines: Vec<String>,
 }
 
 /// What stands in a joint: its row, and where its old link frame is in the new one.
-struct Row {
+struct Row<'d> {
     /// Lines of the row.
     keys: Vec<String>,
     /// Poses of the old link frame in the new one, as they are written.
     poses: Vec<String>,
     /// The same.
     frame: Placement,
+    /// Parameters that these poses name.
+    named: Vec<&'d str>,
 }
 
 /// Rows, with `base` and `tool`.
-struct Rows {
+struct Rows<'d> {
     base: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<Row<'d>>,
     tool: Vec<String>,
 }
 
-impl Converter<'_> {
+impl<'d> Converter<'d> {
     fn convert(mut self, to: Convention) -> Option<Converted> {
         let description = self.description;
         let from = description.convention.as_ref()?.value;
@@ -101,7 +117,7 @@ impl Converter<'_> {
         text.extend(poses("base", &rows.base));
         text.push("joints:".into());
         let joints: &[JointDescription] = description.joints.as_ref().map_or(&[], |joints| &joints.value);
-        let mut before: Option<&Row> = None;
+        let mut before: Option<&Row<'_>> = None;
         for (k, (joint, row)) in joints.iter().zip(&rows.rows).enumerate() {
             self.joint(joint, k, row, before, &mut text);
             before = Some(row);
@@ -120,6 +136,24 @@ impl Converter<'_> {
         if moved && !named {
             self.lines.push("link frames are others: so are link_frames and the columns of the regressor".into());
         }
+        if from != to && self.swivel_is_from_another_point() {
+            self.lines.push(
+                "axes 3 and 4 are parallel: the elbow, from which inverse kinematics measures the swivel angle, is another point of axis 4 where d of row 3 is another".into(),
+            );
+        }
+        let frozen: Vec<String> = description
+            .parameters
+            .iter()
+            .map(|parameter| parameter.name.value.as_str())
+            .filter(|name| self.frozen.contains(name))
+            .map(|name| format!("`{name}`"))
+            .collect();
+        if !frozen.is_empty() {
+            self.lines.push(format!(
+                "where the geometry names parameters their values are written, so it no longer changes with them: {}",
+                frozen.join(", ")
+            ));
+        }
         if self.writer.rounded > 0 {
             self.lines
                 .push(format!("{} numbers are rounded to 17 digits: no short expression is equal to them", self.writer.rounded));
@@ -129,7 +163,7 @@ impl Converter<'_> {
     }
 
     /// The rows as they are.
-    fn same(&mut self) -> Rows {
+    fn same(&mut self) -> Rows<'d> {
         let joints = self.description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
         let rows = joints
             .iter()
@@ -140,14 +174,14 @@ impl Converter<'_> {
                 }
                 keys.extend(joint.origin.as_ref().and_then(|origin| poses("origin", &self.elements(Some(origin)))));
                 keys.extend(joint.axis.as_ref().map(|axis| format!("axis: {}", self.vector(&axis.value))));
-                Row { keys, poses: Vec::new(), frame: Placement::identity() }
+                Row { keys, poses: Vec::new(), frame: Placement::identity(), named: Vec::new() }
             })
             .collect();
         Rows { base: self.elements(self.description.base.as_ref()), rows, tool: self.elements(self.description.tool.as_ref()) }
     }
 
     /// Rows of Denavit and Hartenberg as poses and axes.
-    fn on_axes(&mut self, from: Convention) -> Rows {
+    fn on_axes(&mut self, from: Convention) -> Rows<'d> {
         let joints = self.description.joints.as_ref().map_or(&[][..], |joints| &joints.value);
         let mut before = Vec::new();
         let mut rows = Vec::new();
@@ -159,7 +193,8 @@ impl Converter<'_> {
             let mut keys: Vec<String> = poses("origin", &before).into_iter().collect();
             keys.push("axis: [0, 0, 1]".into());
             before = twist.filter(|_| standard).into_iter().collect();
-            rows.push(Row { keys, poses: before.clone(), frame: self.nominal(&valid.row.after.frame) });
+            let named = if standard { names::of_values([&joint.a, &joint.alpha]) } else { Vec::new() };
+            rows.push(Row { keys, poses: before.clone(), frame: self.nominal(&valid.row.after.frame), named });
         }
         before.extend(self.elements(self.description.tool.as_ref()));
         Rows { base: self.elements(self.description.base.as_ref()), rows, tool: before }
@@ -172,7 +207,10 @@ impl Converter<'_> {
     }
 
     /// Rows by common normals.
-    fn normals(&mut self, to: Convention) -> Option<Rows> {
+    fn normals(&mut self, to: Convention) -> Option<Rows<'d>> {
+        let description = self.description;
+        self.frozen.extend(description.joints.iter().flat_map(|joints| &joints.value).flat_map(names::of_row));
+        self.frozen.extend([&description.base, &description.tool].into_iter().flat_map(|pose| names::of_pose(pose.as_ref())));
         let joints: Vec<lines::Axis> = self
             .arm
             .joints
@@ -215,7 +253,7 @@ impl Converter<'_> {
             ];
             let link = if standard { &normals[i].far } else { &normals[i].near };
             let frame = link.inverse().then(&joints[i - 1].after);
-            rows.push(Row { keys, poses: writer.pose(&frame).into_iter().collect(), frame });
+            rows.push(Row { keys, poses: writer.pose(&frame).into_iter().collect(), frame, named: Vec::new() });
         }
         // Rz and Tz about the z axes of base and end effector, and the twists that no row holds.
         let about_z = |writer: &mut Writer, h: &Number, turn: &(Number, Number)| {
@@ -241,7 +279,7 @@ impl Converter<'_> {
         Some(Rows { base, rows, tool })
     }
 
-    fn joint(&mut self, joint: &JointDescription, k: usize, row: &Row, before: Option<&Row>, text: &mut Vec<String>) {
+    fn joint(&mut self, joint: &'d JointDescription, k: usize, row: &Row<'d>, before: Option<&Row<'d>>, text: &mut Vec<String>) {
         let kind = if self.arm.joints[k].kind == JointKind::Prismatic { "prismatic" } else { "revolute" };
         text.push(format!("  - name: {}", self.arm.joints[k].name));
         text.push(format!("    type: {kind}"));
@@ -287,7 +325,7 @@ impl Converter<'_> {
     }
 
     /// The bodies of a link, in its new frame.
-    fn link(&mut self, joint: &JointDescription, k: usize, row: &Row, text: &mut Vec<String>) {
+    fn link(&mut self, joint: &JointDescription, k: usize, row: &Row<'_>, text: &mut Vec<String>) {
         let Some(link) = &joint.link else { return };
         let parts = &self.arm.joints[k].link;
         let own = [(None, None, link)].into_iter();
@@ -295,10 +333,14 @@ impl Converter<'_> {
         let mut bodies = Vec::new();
         for ((name, origin, body), part) in own.chain(others).zip(parts) {
             let frame = row.frame.then(&self.nominal(&part.frame.frame));
-            let written = if frame == Placement::identity() {
+            let steps = || row.poses.iter().cloned().chain(self.elements(origin)).collect();
+            let named = !row.named.is_empty() || !names::of_pose(origin).is_empty();
+            let written = if named {
+                steps()
+            } else if frame == Placement::identity() {
                 Vec::new()
             } else if row.poses.is_empty() || origin.is_none() {
-                row.poses.iter().cloned().chain(self.elements(origin)).collect()
+                steps()
             } else {
                 // One pose where it is exact, else the steps.
                 let before = self.writer.rounded;
@@ -336,7 +378,7 @@ impl Converter<'_> {
     }
 
     /// A rotor, whose place is given in the frame of the link before.
-    fn motor(&mut self, joint: &JointDescription, k: usize, before: Option<&Row>, text: &mut Vec<String>) {
+    fn motor(&mut self, joint: &'d JointDescription, k: usize, before: Option<&Row<'d>>, text: &mut Vec<String>) {
         let (Some(motor), Some(valid)) = (&joint.motor, &self.arm.joints[k].motor) else { return };
         text.push("    motor:".into());
         let mut line = |name: &str, words: String| text.push(format!("      {name}: {words}"));
@@ -353,6 +395,8 @@ impl Converter<'_> {
             (Some(position), None) => Some(self.vector(&position.value)),
             (None, None) => None,
             (_, Some(row)) if motor.mass.is_some() || motor.position.is_some() => {
+                self.frozen.extend(&row.named);
+                self.frozen.extend(names::of_values(motor.position.iter().flat_map(|position| &position.value)));
                 let point = row.frame.point(&valid.position.each_ref().map(|x| Polynomial::from(self.evaluated(x))));
                 let texts = point.each_ref().map(|x| self.evaluated(x)).map(|x| self.writer.number(&x));
                 Some(format!("[{}]", texts.join(", ")))
@@ -369,6 +413,8 @@ impl Converter<'_> {
                 match moved {
                     None => self.vector(&axis.value),
                     Some(row) => {
+                        self.frozen.extend(&row.named);
+                        self.frozen.extend(names::of_values(&axis.value));
                         let texts = row.frame.direction(&valid.axis).each_ref().map(|x| self.writer.number(x));
                         format!("[{}]", texts.join(", "))
                     }
@@ -390,26 +436,64 @@ impl Converter<'_> {
 
     /// What does not depend on frames.
     fn rest(&self, text: &mut Vec<String>) {
-        if let Some(task) = &self.description.task {
+        // Every key, so that none is left out unseen; the first ones are written before.
+        let RobotDescription {
+            name: _,
+            convention: _,
+            gravity: _,
+            parameters: _,
+            joints: _,
+            base: _,
+            tool: _,
+            payload: _,
+            task,
+            regressor,
+            inverse_kinematics,
+            allow,
+        } = self.description;
+        if let Some(task) = task {
             let rows: Vec<&str> = task.value.iter().map(|row| TaskRow::name(row.value)).collect();
             text.push(format!("task: [{}]", rows.join(", ")));
         }
-        text.extend(self.description.regressor.as_ref().map(|regressor| match &regressor.value {
+        text.extend(regressor.as_ref().map(|regressor| match &regressor.value {
             RegressorDescription::Standard => "regressor: standard".to_owned(),
             RegressorDescription::Base => "regressor: base".to_owned(),
             RegressorDescription::Names(names) => {
                 format!("regressor: [{}]", names.iter().map(|name| name.value.as_str()).collect::<Vec<_>>().join(", "))
             }
         }));
-        if !self.description.allow.is_empty() {
-            let kinds: Vec<&str> = self.description.allow.iter().map(|kind| kind.value.as_str()).collect();
+        text.extend(self.inverse_kinematics(inverse_kinematics));
+        if !allow.is_empty() {
+            let kinds: Vec<&str> = allow.iter().map(|kind| kind.value.as_str()).collect();
             text.push(format!("allow: [{}]", kinds.join(", ")));
         }
     }
 
+    /// Target and joint, which are the same in every convention.
+    fn inverse_kinematics(&self, asked: &PosturesDescription) -> Option<String> {
+        let PosturesDescription { target, given } = asked;
+        let mut parts = Vec::new();
+        parts.extend(target.as_ref().map(|target| format!("target: {}", self.written(target.span))));
+        parts.extend(given.as_ref().map(|given| format!("given: {}", given.value)));
+        (!parts.is_empty()).then(|| format!("inverse_kinematics: {{{}}}", parts.join(", ")))
+    }
+
+    /// Whether the swivel angle is given and rows say from where it is measured: the elbow is the point of axis 4 that is nearest to axis 3.
+    fn swivel_is_from_another_point(&self) -> bool {
+        let [_, _, third, fourth, ..] = &self.arm.joints[..] else { return false };
+        let step = third.row.after.frame.then(&fourth.row.before.frame);
+        lines::are_parallel(&third.row.axis, &step.direction(&fourth.row.axis))
+            && inverse_kinematics::of(self.arm).is_ok_and(|found| matches!(found.redundancy, Some(Redundancy::Swivel)))
+    }
+
     /// The expression as it is written.
     fn text(&self, expression: &Expression) -> String {
-        self.source.slice(expression.span).trim_matches(['"', '\'']).split_whitespace().collect::<Vec<_>>().join(" ")
+        self.written(expression.span)
+    }
+
+    /// A scalar as it is written, without quotes.
+    fn written(&self, span: Span) -> String {
+        self.source.slice(span).trim_matches(['"', '\'']).split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
     fn value(&self, value: &Value) -> String {

@@ -16,8 +16,8 @@ mod text;
 use std::collections::BTreeSet;
 
 use armgen_codegen::description::{
-    AttachedDescription, BodyDescription, Convention, JointDescription, PoseDescription, RegressorDescription, RobotDescription,
-    RotationDescription, Value,
+    AttachedDescription, BodyDescription, Convention, JointDescription, PoseDescription, PosturesDescription,
+    RegressorDescription, RobotDescription, RotationDescription, Value,
 };
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::document::Expression;
@@ -362,15 +362,32 @@ impl Writer<'_> {
             let any = joint.limits.position.is_some() || joint.limits.velocity.is_some() || joint.limits.effort.is_some();
             (any || prismatic) && (joint.limits.velocity.is_none() || joint.limits.effort.is_none())
         });
-        let gravity = description.gravity.as_ref().map(|gravity| gravity.value.each_ref().map(|x| self.value(x)));
+        // Every key, so that none is left out unsaid; the first ones are written.
+        let RobotDescription {
+            name: _,
+            convention: _,
+            gravity,
+            parameters,
+            joints: _,
+            base: _,
+            tool: _,
+            payload,
+            task,
+            regressor,
+            inverse_kinematics: PosturesDescription { target, given },
+            allow,
+        } = description;
+        let gravity = gravity.as_ref().map(|gravity| gravity.value.each_ref().map(|x| self.value(x)));
         if let Some(gravity) = gravity.filter(|gravity| *gravity != ["0", "0", "-9.81"].map(str::to_owned)) {
             lines.push(format!("a URDF has no gravity; who reads it takes 0 0 -9.81, not {}", gravity.join(" ")));
         }
         for (what, given) in [
-            ("the payload", description.payload.is_some()),
-            ("`task`", description.task.is_some()),
-            ("`regressor`", description.regressor.as_ref().is_some_and(|r| !matches!(r.value, RegressorDescription::Standard))),
-            ("the names under `parameters`, whose values are written", !description.parameters.is_empty()),
+            ("the payload", payload.is_some()),
+            ("`task`", task.is_some()),
+            ("`regressor`", regressor.as_ref().is_some_and(|r| !matches!(r.value, RegressorDescription::Standard))),
+            ("`inverse_kinematics`", target.is_some() || given.is_some()),
+            ("`allow`", !allow.is_empty()),
+            ("the names under `parameters`, whose values are written", !parameters.is_empty()),
         ] {
             if given {
                 lines.push(format!("left out: {what}"));

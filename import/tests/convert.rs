@@ -120,3 +120,65 @@ fn rows_are_those_of_the_rules() {
     let nearly = converted(&two("{xyz: [0.3, 0, 0], rpy: [0.0005, 0, 0]}", "revolute", "{}"), Standard);
     assert!(nearly.lines.iter().any(|line| line.starts_with("nearly-parallel")), "{:?}", nearly.lines);
 }
+
+/// What inverse kinematics is asked for is named, so it stays; and what is named by the geometry is said where its values stand instead.
+#[test]
+fn what_inverse_kinematics_is_asked_for_stays() {
+    let (_, panda) = arms().into_iter().find(|(name, _)| name.contains("panda7")).expect("a robot");
+    let joint = valid(&panda).joints[2].name.clone();
+    for asked in [format!("{{target: \"pose\", given: {joint}}}"), "{given: swivel}".to_owned(), "{target: position}".to_owned()]
+    {
+        let yaml = format!("{panda}\ninverse_kinematics: {asked}\n");
+        for to in [Standard, Modified, Urdf] {
+            let after = converted(&yaml, to).yaml;
+            assert_eq!(valid(&yaml).inverse_kinematics, valid(&after).inverse_kinematics, "{asked} {to:?}\n{after}");
+        }
+    }
+}
+
+/// With axes 3 and 4 parallel every point of axis 4 is as near to axis 3: the elbow is where the rows say.
+#[test]
+fn a_swivel_angle_from_another_point_is_said() {
+    let arm = |alpha: &str| {
+        let row = |k: usize, a: &str, alpha: &str, d: &str| {
+            format!("  - {{name: j{k}, type: revolute, a: {a}, alpha: {alpha}, d: {d}, theta: 0, link: {{mass: 0}}}}\n")
+        };
+        let rows = [
+            row(1, "0", "pi/2", "0"),
+            row(2, "0", "pi/2", "0"),
+            row(3, "0.3", alpha, "0.2"),
+            row(4, "0.25", "pi/2", "0.15"),
+            row(5, "0", "pi/2", "0"),
+            row(6, "0", "pi/2", "0"),
+            row(7, "0", "0", "0.1"),
+        ];
+        format!(
+            "name: a\nconvention: standard\ngravity: [0, 0, -9.81]\ninverse_kinematics: {{given: swivel}}\njoints:\n{}",
+            rows.concat()
+        )
+    };
+    let said = |alpha: &str, to| converted(&arm(alpha), to).lines.iter().any(|line| line.contains("swivel angle"));
+    assert!(said("0", Modified) && said("pi", Urdf));
+    assert!(!said("0", Standard) && !said("pi/2", Modified) && !said("pi/2", Urdf));
+}
+
+#[test]
+fn parameters_whose_values_are_written_are_named() {
+    let yaml = "name: named\nconvention: standard\ngravity: [0, 0, -9.81]\n\
+        parameters: {m: 2, l1: 0.5, turn: pi/2, h: 0.1, r: 0.2, t: 0.3}\n\
+        joints:\n  - {name: one, type: revolute, a: l1, alpha: turn, d: 0, theta: 0, link: {mass: m, com: [-l1, 0, 0], attached: [{origin: {xyz: [h, 0, 0]}, mass: 1}]}}\n  \
+        - {name: two, type: revolute, a: 0.3, alpha: 0, d: 0, theta: 0, link: {mass: m}, motor: {ratio: 2, inertia: 0.1, mass: 1, position: [r, 0, 0]}}\n\
+        tool: {xyz: [0, 0, t]}\n";
+    let said = |to| converted(yaml, to).lines.into_iter().find(|line| line.contains("parameters their values are written"));
+    let of = |to| said(to).and_then(|line| line.split_once(": ").map(|(_, names)| names.to_owned()));
+    assert_eq!(of(Standard), None);
+    assert_eq!(of(Modified).as_deref(), Some("`l1`, `turn`, `r`, `t`"));
+    // Poses keep their names; the place of a rotor is evaluated, through the row before it.
+    assert_eq!(of(Urdf).as_deref(), Some("`l1`, `turn`, `r`"));
+    let urdf = converted(yaml, Urdf).yaml;
+    assert!(urdf.contains("origin: [{xyz: [l1, 0, 0], rpy: [turn, 0, 0]}, {xyz: [h, 0, 0]}]"), "{urdf}");
+    for to in [Standard, Modified, Urdf] {
+        assert_same("named", &valid(yaml), &valid(&converted(yaml, to).yaml));
+        assert_same_joints("named", &valid(yaml), &valid(&converted(yaml, to).yaml));
+    }
+}

@@ -44,10 +44,13 @@ fn the_text_stays_the_same() {
 #[test]
 fn what_a_urdf_cannot_hold_is_named() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/robots/everything.yaml");
-    let lines = exported(&std::fs::read_to_string(path).expect("a readable file")).lines.join("\n");
+    let lines = exported(&std::fs::read_to_string(&path).expect("a readable file")).lines.join("\n");
     for what in ["rotors", "payload", "gravity", "`task`", "parameters", "velocity", "rounded"] {
         assert!(lines.contains(what), "{what}:\n{lines}");
     }
+    let text = std::fs::read_to_string(path.with_file_name("../../robots/panda7.yaml")).expect("a readable file");
+    let lines = exported(&format!("{text}\ninverse_kinematics: {{target: pose}}\nallow: [implausible-reach]\n")).lines.join("\n");
+    assert!(lines.contains("left out: `inverse_kinematics`") && lines.contains("left out: `allow`"), "{lines}");
     assert!(exported("name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {name: a, type: revolute, axis: [0, 0, 1], link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}}\n").lines.is_empty());
 }
 

@@ -166,6 +166,11 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
     })
 }
 
+/// Whether two directions are parallel or opposite.
+pub(super) fn are_parallel(a: &Vector, b: &Vector) -> bool {
+    cross(a, b).iter().all(is_zero)
+}
+
 fn plus(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|i| a[i].plus(&b[i]))
 }
