@@ -84,7 +84,7 @@ struct Placed<'a, 'i> {
 pub(crate) struct Mjcf<'a, 'i> {
     root: Node<'a, 'i>,
     compiler: Compiler,
-    classes: Classes<'a, 'i>,
+    classes: Classes<'a>,
     /// Each with the one around it.
     frames: Vec<(Node<'a, 'i>, Option<usize>)>,
     /// By index in the tree.

@@ -1,5 +1,6 @@
 //! The links and joints of a file as a tree, each with its place; numbers are read where they are needed (`format.rs`).
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
@@ -69,7 +70,14 @@ pub(crate) struct Tree {
     pub(crate) joints: Vec<Joint>,
     link_names: BTreeMap<String, usize>,
     joint_names: BTreeMap<String, usize>,
+    /// How many suggestions are still made.
+    guesses: Cell<usize>,
 }
+
+/// So many suggestions are made: each compares a name with all that there are.
+const GUESSES: usize = 8;
+/// Names of so many bytes and more are not compared.
+const COMPARED: usize = 256;
 
 impl Tree {
     /// A tree without links.
@@ -80,6 +88,7 @@ impl Tree {
             joints: Vec::new(),
             link_names: BTreeMap::new(),
             joint_names: BTreeMap::new(),
+            guesses: Cell::new(GUESSES),
         }
     }
 
@@ -117,7 +126,7 @@ impl Tree {
     }
 
     /// What may have been meant by the name of a link that does not exist: the one that hangs on a joint of that name, one of nearly that name, or
-    /// one of the last links.
+    /// one of the last links. Of the first few names only.
     pub(crate) fn meant_link(&self, name: &str) -> String {
         if let Some(joint) = self.joint(name).map(|joint| &self.joints[joint]) {
             let link = &self.links[joint.child];
@@ -125,15 +134,28 @@ impl Tree {
                 return format!("`{}` is a joint; the link that it moves is `{}`", shown(name), shown(&link.name));
             }
         }
+        if !self.guesses() {
+            return "name one of the file's links".to_owned();
+        }
         let mut named: Vec<&Link> = self.links.iter().filter(|link| link.role != Role::Between).collect();
         // Most often the tip is asked for.
         named.sort_by_key(|link| !link.below.is_empty());
         meant(name, &named.iter().map(|link| link.name.as_str()).collect::<Vec<_>>())
     }
 
-    /// What may have been meant by the name of a joint that does not exist.
+    /// What may have been meant by the name of a joint that does not exist. Of the first few names only.
     pub(crate) fn meant_joint(&self, name: &str) -> String {
+        if !self.guesses() {
+            return "name one of the file's joints".to_owned();
+        }
         meant(name, &self.joints.iter().map(|joint| joint.name.as_str()).filter(|name| !name.is_empty()).collect::<Vec<_>>())
+    }
+
+    /// Whether one more suggestion is made.
+    fn guesses(&self) -> bool {
+        let left = self.guesses.get();
+        self.guesses.set(left.saturating_sub(1));
+        left > 0
     }
 
     /// The joints from `base` down to `tip`; `None` if `tip` is not below.
@@ -219,7 +241,8 @@ impl Tree {
 }
 
 fn meant(name: &str, known: &[&str]) -> String {
-    match did_you_mean(name, known) {
+    let short: Vec<&str> = known.iter().copied().filter(|name| name.len() < COMPARED).collect();
+    match did_you_mean(name, &short) {
         Some(meant) => format!("did you mean `{}`?", shown(meant)),
         None => {
             let some: Vec<String> = known.iter().take(8).map(|name| format!("`{}`", shown(name))).collect();

@@ -1,7 +1,7 @@
 //! XML as a tree with places, within bounds that hold before anything is built from it.
 //!
-//! A scan of the text, linear in its length, counts elements, attributes of one element and nesting; what exceeds the bounds is never given
-//! to the parser, whose search for duplicate attributes is quadratic.
+//! A scan of the text, linear in its length, counts elements, attributes of one element, nesting and declarations of namespaces; what exceeds
+//! the bounds is never given to the parser, whose search for duplicate attributes is quadratic, and which keeps all namespaces at each element.
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::{Source, Span};
@@ -16,7 +16,9 @@ const MAX_ELEMENTS: usize = 100_000;
 /// Attributes of an element.
 const MAX_ATTRIBUTES: usize = 1000;
 /// Elements within each other.
-const MAX_DEPTH: usize = 256;
+pub(crate) const MAX_DEPTH: usize = 256;
+/// Declarations of namespaces.
+const MAX_NAMESPACES: usize = 100;
 
 /// The tree of a text; `None` with the fault reported.
 pub(crate) fn parse<'s>(source: &'s Source, diagnostics: &mut Diagnostics) -> Option<Document<'s>> {
@@ -65,9 +67,8 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             "see whether the rest of it is missing: each tag that is opened is closed".to_owned(),
         ),
         other => {
-            // The message ends with the place, which is shown anyway.
-            let text = other.to_string();
-            let text = text.rsplit_once(" at ").map_or(text.as_str(), |(start, _)| start).to_owned();
+            // The message holds the place, which is shown anyway.
+            let text = other.to_string().replacen(&format!(" at {}", other.pos()), "", 1);
             (
                 Code::XmlSyntax,
                 format!("not well-formed XML: {}", shown(&text)),
@@ -130,7 +131,7 @@ pub(crate) fn shown(text: &str) -> String {
 /// A tag of a text.
 enum Tag {
     /// `<name ...>`, or `<name .../>`, which is empty.
-    Opening { start: usize, attributes: usize, empty: bool },
+    Opening { start: usize, attributes: usize, namespaces: usize, empty: bool },
     /// `</name>`.
     Closing { start: usize },
 }
@@ -160,23 +161,32 @@ impl Iterator for Tags<'_> {
                 self.at = after(start + 2, ">");
                 return Some(Tag::Closing { start });
             } else {
-                let (mut quote, mut attributes, mut end) = (None, 0, start + 1);
+                let (mut quote, mut attributes, mut namespaces, mut end) = (None, 0, 0, start + 1);
                 while let Some(&byte) = bytes.get(end) {
                     match (quote, byte) {
                         (Some(open), _) if byte == open => quote = None,
                         (Some(_), _) => {}
                         (None, b'"' | b'\'') => quote = Some(byte),
-                        (None, b'=') => attributes += 1,
+                        (None, b'=') => {
+                            attributes += 1;
+                            namespaces += usize::from(name_before(&text[start..end]).starts_with("xmlns"));
+                        }
                         (None, b'>') => break,
                         _ => {}
                     }
                     end += 1;
                 }
                 self.at = (end + 1).min(bytes.len());
-                return Some(Tag::Opening { start, attributes, empty: bytes.get(end.wrapping_sub(1)) == Some(&b'/') });
+                let empty = bytes.get(end.wrapping_sub(1)) == Some(&b'/');
+                return Some(Tag::Opening { start, attributes, namespaces, empty });
             };
         }
     }
+}
+
+/// The name of an attribute whose sign of equality ends a text.
+fn name_before(text: &str) -> &str {
+    text.trim_end().rsplit(|c: char| c.is_whitespace() || matches!(c, '=' | '"' | '\'' | '<')).next().unwrap_or_default()
 }
 
 /// Counts; where something is too much, the place and what.
@@ -184,19 +194,23 @@ fn scan(text: &str) -> Result<(), (usize, String)> {
     if text.len() > MAX_BYTES {
         return Err((0, format!("{} bytes, more than {MAX_BYTES}", text.len())));
     }
-    let (mut elements, mut depth) = (0, 0usize);
+    let (mut elements, mut declared, mut depth) = (0, 0, 0usize);
     for tag in (Tags { text, at: 0 }) {
-        let Tag::Opening { start, attributes, empty } = tag else {
+        let Tag::Opening { start, attributes, namespaces, empty } = tag else {
             depth = depth.saturating_sub(1);
             continue;
         };
         elements += 1;
+        declared += namespaces;
         depth += usize::from(!empty);
         if elements > MAX_ELEMENTS {
             return Err((start, format!("more than {MAX_ELEMENTS} elements")));
         }
         if attributes > MAX_ATTRIBUTES {
             return Err((start, format!("an element with more than {MAX_ATTRIBUTES} attributes")));
+        }
+        if declared > MAX_NAMESPACES {
+            return Err((start, format!("more than {MAX_NAMESPACES} declarations of namespaces (`xmlns`)")));
         }
         if depth > MAX_DEPTH {
             return Err((start, format!("more than {MAX_DEPTH} elements within each other")));

@@ -95,6 +95,42 @@ fn too_much_of_anything_is_an_error() {
     check(arm(&format!("<origin xyz='{}'/>", "1 ".repeat(1_000_000))), Some(Code::WrongLength));
 }
 
+/// The parser keeps all namespaces of the elements around one at each.
+#[test]
+fn declarations_of_namespaces_are_counted_over_the_whole_file() {
+    let nested = |count: usize, end: &str| {
+        let open: String = (0..count).map(|k| format!("<visual a='=' xmlns:n{k}{end}'u{k}'>")).collect();
+        arm(&(open + &"</visual>".repeat(count)))
+    };
+    for end in ["=", " =\n"] {
+        check(nested(100, end), None);
+        check(nested(101, end), Some(Code::TooLarge));
+    }
+    let declared: String = (0..101).map(|k| format!("xmlns:n{k}='u' ")).collect();
+    check(format!("<robot {declared}/>"), Some(Code::TooLarge));
+}
+
+/// A suggestion compares a name with all others.
+#[test]
+fn of_many_unknown_names_the_first_few_get_a_suggestion() {
+    let joints = |element: &dyn Fn(usize) -> String| -> usize {
+        let text: String = (0..1000)
+            .map(|k| {
+                let parent = if k == 0 { "base".to_owned() } else { format!("link{}", k - 1) };
+                format!("<link name='link{k}'/><joint name='joint{k}' type='revolute'><child link='link{k}'/>{}<parent link='{parent}'/></joint>", element(k))
+            })
+            .collect();
+        let source = Source::new("robot.urdf", format!("<robot name='r'><link name='base'/>{text}</robot>"));
+        let options = Options { tip: Some("link0".into()), ..Options::default() };
+        let (imported, diagnostics) = import(&source, &options);
+        assert!(imported.is_none() && diagnostics.errors() > 990, "{}", diagnostics.errors());
+        assert!(diagnostics.iter().all(|diagnostic| !diagnostic.help.is_empty()));
+        diagnostics.iter().filter(|diagnostic| diagnostic.help.contains("did you mean")).count()
+    };
+    assert_eq!(joints(&|k| format!("<parent link='linc{k}'/>")), 8);
+    assert_eq!(joints(&|k| format!("<mimic joint='joinnt{k}'/>")), 8);
+}
+
 #[test]
 fn a_long_line_of_joints_is_walked_without_recursion() {
     let mut text = String::from("<robot name='r'><link name='l0'/>");
@@ -135,6 +171,10 @@ fn many_bodies_within_frames_are_read_in_bounded_time() {
         format!("<mujoco><default>{classes}</default><worldbody><body>{inertial}<joint class='c1'/></body></worldbody></mujoco>"),
         None,
     );
+    // A class that gives nothing is looked through for each attribute of each joint.
+    let joints = "<joint/>".repeat(30_000);
+    let bodies = format!("<body>{inertial}<joint/>{}</body>", "<body><joint/></body>".repeat(30_000));
+    check(format!("<mujoco><default>{joints}</default><worldbody>{bodies}</worldbody></mujoco>"), Some(Code::SeveralTips));
     let loop_of_classes = "<default class='a'><default class='b'><default class='a'><joint/></default></default></default>";
     check(format!("<mujoco>{loop_of_classes}<worldbody><body>{inertial}<joint class='b'/></body></worldbody></mujoco>"), None);
 }

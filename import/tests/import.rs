@@ -186,6 +186,23 @@ fn what_follows_a_locked_joint_stands_still() {
     assert!(imported.yaml.contains("inertia: {xx: 0.1, yy: 0.1, zz: 0.1}  # 1e-17 in line 1\n"), "{}", imported.yaml);
 }
 
+/// Of several elements of one kind in a class the last one holds, and a class comes before the one around it.
+#[test]
+fn the_last_default_of_the_innermost_class_holds() {
+    let axis = |class: &str| {
+        let model = format!(
+            "<mujoco><default><joint axis='1 0 0' damping='1'/><joint axis='0 1 0'/>\
+             <default class='inner'><joint axis='0 0 1'/><joint armature='2'/></default></default>\
+             <worldbody><body><inertial mass='1' pos='0 0 0' diaginertia='1 1 1'/><joint {class}/></body></worldbody></mujoco>"
+        );
+        let yaml = imported(&model, &Options::default()).yaml;
+        assert!(yaml.contains("viscous: 1"), "{yaml}");
+        assert_eq!(yaml.contains("armature: 2"), !class.is_empty(), "{yaml}");
+        ["axis: [0, 1, 0]", "axis: [0, 0, 1]"].map(|axis| yaml.contains(axis))
+    };
+    assert_eq!([axis(""), axis("class='inner'")], [[true, false], [false, true]]);
+}
+
 #[test]
 fn an_arm_costs_the_same_whatever_frames_its_links_have() {
     // The second file draws the first link's frame elsewhere: turned by right angles, and slid along the axis. The end effector is the same.

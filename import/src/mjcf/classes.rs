@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use armgen_codegen::source::Span;
 use roxmltree::Node;
 
-use crate::xml::attribute;
+use crate::xml::{attribute, MAX_DEPTH};
 
 /// An element of a body, with the class that the bodies around it give it.
 #[derive(Clone, Copy)]
@@ -14,24 +14,24 @@ pub(super) struct Element<'a, 'i> {
     pub(super) class: Option<&'a str>,
 }
 
-/// A class: the `default` elements of its name, and the class around it.
+/// A class: what the `default` elements of its name give, by element and attribute, and the class around it.
 #[derive(Default)]
-struct Class<'a, 'i> {
-    nodes: Vec<Node<'a, 'i>>,
+struct Class<'a> {
+    given: BTreeMap<(&'a str, &'a str), (&'a str, Span)>,
     outer: Option<&'a str>,
 }
 
 /// All classes by name.
-pub(super) struct Classes<'a, 'i> {
-    by_name: BTreeMap<&'a str, Class<'a, 'i>>,
+pub(super) struct Classes<'a> {
+    by_name: BTreeMap<&'a str, Class<'a>>,
 }
 
 /// The class that holds everywhere.
 const MAIN: &str = "main";
 
-impl<'a, 'i> Classes<'a, 'i> {
-    pub(super) fn read(root: Node<'a, 'i>) -> Classes<'a, 'i> {
-        let mut by_name: BTreeMap<&'a str, Class<'a, 'i>> = BTreeMap::new();
+impl<'a> Classes<'a> {
+    pub(super) fn read<'i>(root: Node<'a, 'i>) -> Classes<'a> {
+        let mut by_name: BTreeMap<&'a str, Class<'a>> = BTreeMap::new();
         let defaults = |node: Node<'a, 'i>| node.children().filter(|n| n.is_element() && n.tag_name().name() == "default");
         let mut open: Vec<(Node<'a, 'i>, Option<&'a str>)> = defaults(root).map(|node| (node, None)).collect();
         while let Some((node, outer)) = open.pop() {
@@ -40,30 +40,38 @@ impl<'a, 'i> Classes<'a, 'i> {
             let outer = outer.filter(|outer| *outer != name && !by_name.contains_key(name));
             open.extend(defaults(node).map(|inner| (inner, Some(name))));
             let class = by_name.entry(name).or_default();
-            class.nodes.push(node);
+            for inner in node.children().filter(Node::is_element) {
+                // The last one of several holds.
+                let tag = inner.tag_name().name();
+                let named = inner.attributes().filter(|attribute| attribute.namespace().is_none());
+                class.given.extend(named.map(|found| {
+                    let place = found.range_value();
+                    ((tag, found.name()), (found.value(), Span::new(place.start, place.end)))
+                }));
+            }
             class.outer = class.outer.or(outer);
         }
         // The class at the top may have a name of its own, by which it is called, too.
         for node in defaults(root) {
             if let Some(name) = node.attribute("class").filter(|name| *name != MAIN && !by_name.contains_key(name)) {
-                by_name.insert(name, Class { nodes: Vec::new(), outer: Some(MAIN) });
+                by_name.insert(name, Class { outer: Some(MAIN), ..Class::default() });
             }
         }
         Classes { by_name }
     }
 
     /// Text and place of an attribute: the element's own, or that of its class, or of one around that.
-    pub(super) fn attribute(&self, element: Element<'a, 'i>, name: &str) -> Option<(&'a str, Span)> {
+    pub(super) fn attribute(&self, element: Element<'a, '_>, name: &str) -> Option<(&'a str, Span)> {
         if let Some(own) = attribute(element.node, name) {
             return Some(own);
         }
         let tag = element.node.tag_name().name();
         let mut class = element.node.attribute("class").or(element.class).or(Some(MAIN));
-        for _ in 0..=self.by_name.len() {
+        // Classes stand within each other, so there are no more of them than elements may.
+        for _ in 0..=MAX_DEPTH {
             let found = self.by_name.get(class?).or_else(|| self.by_name.get(MAIN))?;
-            let inside = found.nodes.iter().flat_map(Node::children).filter(|n| n.is_element() && n.tag_name().name() == tag);
-            if let Some(given) = inside.filter_map(|node| attribute(node, name)).next_back() {
-                return Some(given);
+            if let Some(given) = found.given.get(&(tag, name)) {
+                return Some(*given);
             }
             class = found.outer;
         }
