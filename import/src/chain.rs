@@ -94,6 +94,8 @@ struct Builder<'r> {
     tree: &'r Tree,
     format: &'r dyn Format,
     locks: locks::Locks,
+    /// Where joints beside the chain stand that are not locked, those that were asked for.
+    led: BTreeMap<usize, locks::Led>,
     values: Values<'r>,
     /// Which joints lie on the chain.
     on_path: BTreeSet<usize>,
@@ -148,8 +150,9 @@ pub(crate) fn arm(
     }
     format.check(&Extent { moving: &moving, carriers: &moved(tree, &path, &moving), tree }, diagnostics);
     let on_path = path.iter().copied().collect();
+    let led = BTreeMap::new();
     let mut builder =
-        Builder { tree, format, locks, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
+        Builder { tree, format, locks, led, values, on_path, locked: Vec::new(), massless: Vec::new(), options, bodies: 0 };
     let (rows, tool) = builder.rows(&path)?;
     if rows.is_empty() && !builder.values.diagnostics.has_errors() {
         let message = format!("nothing moves between `{}` and `{}`", shown(&tree.links[base].name), shown(&tree.links[tip].name));
@@ -334,29 +337,6 @@ impl Builder<'_> {
         }
         let (axis, offset) = self.format.axis(index, &mut self.values)?;
         Some(Pose::of_joint(joint.kind == Kind::Prismatic, axis, offset, &lock.text, lock.value, lock.span))
-    }
-
-    /// Where a joint beside the chain stands that is not locked: at 0, or where the joint that it follows makes it.
-    fn following(&mut self, index: usize) -> Option<Lock> {
-        let joint = &self.tree.joints[index];
-        let zero = Lock::at_zero(joint);
-        let Some((leader, span)) = self.format.leader(index) else { return Some(zero) };
-        let Some(found) = self.tree.joint(leader) else {
-            let message = format!("`mimic` names `{}`, which is no joint of this file", shown(leader));
-            let help =
-                format!("{}; or lock it where it is to stand: `--lock {}=0`", self.tree.meant_joint(leader), shown(&joint.name));
-            self.values.report(Code::UnknownJoint, span, message, "", help);
-            return None;
-        };
-        let (factor, offset) = self.format.ratio(index, &mut self.values);
-        let at = self.locks.of(found).cloned();
-        if at.is_none() && self.on_path.contains(&found) && self.tree.joints[found].kind.moves() {
-            let message = format!("the joint `{}` follows `{}`, which moves", shown(&joint.name), shown(leader));
-            let help = format!("lock it where it is to stand: `--lock {}=0`", shown(&joint.name));
-            self.values.report(Code::Mimic, span, message, "", help);
-            return None;
-        }
-        Some(locks::follow(zero, at.as_ref(), factor.as_ref(), &offset))
     }
 
     /// What hangs on a link without moving against it: its own body if it is the moving link, and the others with their poses.

@@ -131,6 +131,37 @@ fn of_many_unknown_names_the_first_few_get_a_suggestion() {
     assert_eq!(joints(&|k| format!("<mimic joint='joinnt{k}'/>")), 8);
 }
 
+/// Each joint follows the one before it, and stands where that one does, twice as far: within bounds of a description, and of time.
+#[test]
+fn a_long_line_of_followers_is_refused_in_bounded_time() {
+    let line = |count: usize, last: &str, text: &str| {
+        let fingers: String = (0..count)
+            .map(|k| {
+                let leader = if k + 1 == count { last.to_owned() } else { format!("f{}", k + 1) };
+                format!(
+                    "<link name='f{k}'/><joint name='f{k}' type='continuous'><parent link='one'/><child link='f{k}'/>\
+                     <mimic joint='{leader}' {text}/></joint>"
+                )
+            })
+            .collect();
+        arm("").replace("</robot>", &format!("{fingers}</robot>"))
+    };
+    let import = |text: String, lock: Option<&str>| {
+        let lock = lock.map(|joint| (joint.to_owned(), "0.1".to_owned())).into_iter().collect();
+        let options = Options { tip: Some("one".into()), lock, ..Options::default() };
+        let (imported, diagnostics) = import(&Source::new("robot.urdf", text), &options);
+        assert_eq!(imported.is_some(), !diagnostics.has_errors());
+        diagnostics.iter().map(|diagnostic| diagnostic.code.name()).collect::<Vec<_>>()
+    };
+    let by_two = "multiplier='2' offset='0.1'";
+    assert_eq!(import(line(20, "none", by_two).replace(&format!("<mimic joint='none' {by_two}/>"), ""), None).len(), 0);
+    assert_eq!(import(line(10_000, "f0", by_two), None), ["mimic"]);
+    assert_eq!(import(line(10_000, "none", by_two), None), ["unknown-joint"]);
+    assert_eq!(import(line(10_000, "f9000", by_two), Some("f9999")), ["too-large"]);
+    assert!(import(line(900, "j", by_two), None).iter().all(|code| *code == "mimic"));
+    assert_eq!(import(line(900, "j", by_two), None).len(), 900);
+}
+
 #[test]
 fn a_long_line_of_joints_is_walked_without_recursion() {
     let mut text = String::from("<robot name='r'><link name='l0'/>");

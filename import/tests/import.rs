@@ -169,7 +169,9 @@ fn a_joint_of_the_chain_can_be_locked() {
 #[test]
 fn what_follows_a_locked_joint_stands_still() {
     let text = "<robot name='a'><link name='b'/><link name='l'><inertial><origin xyz='1e-14 0 0'/><mass value='1'/>\
-                <inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='1e-17' ixz='0' iyz='0'/></inertial></link><link name='m'/><link name='n'/>\
+                <inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='1e-17' ixz='0' iyz='0'/></inertial></link><link name='m'/><link name='n'/><link name='o'/>\
+                <joint name='three' type='prismatic'><parent link='n'/><child link='o'/><axis xyz='0 1 0'/>\
+                <limit lower='-1' upper='1' velocity='1' effort='1'/><mimic joint='two' multiplier='3'/></joint>\
                 <joint name='turn' type='revolute'><parent link='b'/><child link='l'/><axis xyz='0 1 0'/>\
                 <limit lower='-1' upper='1' velocity='1' effort='1'/></joint>\
                 <joint name='one' type='prismatic'><parent link='l'/><child link='m'/><axis xyz='0 1 0'/>\
@@ -179,11 +181,58 @@ fn what_follows_a_locked_joint_stands_still() {
     let options = Options { lock: vec![("one".into(), "0.04".into())], ..Options::default() };
     let imported = imported(text, &options);
     assert_eq!(valid(&imported.yaml).dof(), 1);
-    let locked = "joints that stand still: `one` at 0.04, `two` at (-2)*0.04 + 0.01";
+    let locked = "joints that stand still: `one` at 0.04, `two` at (-2)*0.04 + 0.01, `three` at 3*((-2)*0.04 + 0.01)";
     assert!(imported.report.lines().iter().any(|line| line == locked), "{:?}", imported.report.lines());
     // What was taken for 0 in a body stands beside it.
     assert!(imported.yaml.contains("com: [0, 0, 0]  # 1e-14 in line 1\n"), "{}", imported.yaml);
     assert!(imported.yaml.contains("inertia: {xx: 0.1, yy: 0.1, zz: 0.1}  # 1e-17 in line 1\n"), "{}", imported.yaml);
+}
+
+/// Fingers beside the chain: each joint with its leader, multiplier and offset, on the link that the joint `turn` of the chain moves.
+fn with_fingers(fingers: &[(&str, &str)]) -> String {
+    let body = "<inertial><mass value='1'/><inertia ixx='0.1' iyy='0.1' izz='0.1' ixy='0' ixz='0' iyz='0'/></inertial>";
+    let finger = |(name, mimic): &(&str, &str)| {
+        format!(
+            "<link name='{name}_link'>{body}</link><joint name='{name}' type='prismatic'><parent link='l'/><child link='{name}_link'/>\
+             <axis xyz='0 1 0'/><limit lower='-1' upper='1' velocity='1' effort='1'/>{mimic}</joint>"
+        )
+    };
+    format!(
+        "<robot name='a'><link name='b'/><link name='l'>{body}</link><joint name='turn' type='continuous'><parent link='b'/><child link='l'/>\
+         <axis xyz='0 0 1'/></joint>{}</robot>",
+        fingers.iter().map(finger).collect::<String>()
+    )
+}
+
+/// A leader that follows another joint itself: one = 0, two = one + 0.1, three = 2 two, whatever their order in the file.
+#[test]
+fn what_follows_a_follower_stands_where_that_one_does() {
+    let two = "<mimic joint='one' offset='0.1'/>";
+    let three = "<mimic joint='two' multiplier='2'/>";
+    let mut fingers = [("one", ""), ("two", two), ("three", three)];
+    for lock in [None, Some(("one", "0.3", 0.4)), Some(("two", "-0.2", -0.2))] {
+        for _ in 0..2 {
+            fingers.reverse();
+            let locks = lock.iter().map(|(joint, at, _)| (joint.to_string(), at.to_string())).collect();
+            let options = Options { tip: Some("l".into()), lock: locks, ..Options::default() };
+            let arm = valid(&imported(&with_fingers(&fingers), &options).yaml);
+            let mut places: Vec<f64> = arm.joints[0]
+                .link
+                .iter()
+                .map(|part| part.frame.frame.translation[1].as_number().map_or(f64::NAN, |y| y.to_f64()))
+                .collect();
+            places.sort_by(f64::total_cmp);
+            let second = lock.map_or(0.1, |(.., second)| second);
+            let first = if lock.is_some_and(|(joint, ..)| joint == "one") { 0.3 } else { 0.0 };
+            // The body of the link itself is at 0.
+            let mut expected = [0.0, first, second, 2.0 * second];
+            expected.sort_by(f64::total_cmp);
+            assert!(
+                places.len() == 4 && places.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15),
+                "{places:?} {expected:?}"
+            );
+        }
+    }
 }
 
 /// Of several elements of one kind in a class the last one holds, and a class comes before the one around it.
