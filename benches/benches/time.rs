@@ -24,8 +24,8 @@ fn sines(criterion: &mut Criterion, states: &[[f64; 8]]) {
         });
     };
     bench("fast/1", &|x| drop(black_box(emitted::f64::one(x[0]))));
-    bench("fast/4", &|x| drop(black_box(emitted::f64::four([x[0], x[1], x[2], x[3]]))));
-    bench("fast/8", &|x| drop(black_box(emitted::f64::eight(*x))));
+    bench("fast/4", &|x| drop(black_box(emitted::f64::four(4, [x[0], x[1], x[2], x[3]]))));
+    bench("fast/8", &|x| drop(black_box(emitted::f64::eight(8, *x))));
     for count in [1, 4, 8] {
         bench(&format!("libm/{count}"), &|x| x[..count].iter().for_each(|&x| drop(black_box(libm::sincos(x)))));
         bench(&format!("std/{count}"), &|x| x[..count].iter().for_each(|&x| drop(black_box(x.sin_cos()))));
