@@ -43,8 +43,8 @@ pub enum Rewrite {
 /// the square of their number.
 const GATES: usize = 8000;
 
-/// The same expressions with fewer operations, in a pool of their own; none where they are left as they are. `parallel` has for each joint the one before it on a parallel axis, and
-/// whether that points the other way.
+/// The same expressions with fewer operations, in a pool of their own; none where they are left as they are. `parallel` has for each joint the
+/// one before it on a parallel axis, and whether that points the other way.
 pub fn optimise(
     pool: &Pool,
     entries: &[ExprId],
