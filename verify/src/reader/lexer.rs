@@ -81,8 +81,15 @@ const JOINED: [&str; 25] = [
     "<<=", ">>=", "...", "..=", "&&", "||", "<<", ">>", "+=", "-=", "*=", "/=", "^=", "%=", "&=", "|=", "==", "!=", ">=", "<=",
     "->", "=>", "<-", "::", "..",
 ];
-/// The second characters of these.
-const SECOND: &[u8] = b"<>.&|=-:";
+/// Which characters are the second one of these, by their code.
+const SECOND: [bool; 128] = {
+    let (mut second, mut i) = ([false; 128], 0);
+    while i < JOINED.len() {
+        second[JOINED[i].as_bytes()[1] as usize] = true;
+        i += 1;
+    }
+    second
+};
 const SINGLE: &str = "#[](){}<>,;:=+-*/&|!.^%";
 
 /// A place in a text, from which tokens are read.
@@ -149,7 +156,7 @@ impl<'a> Lexer<'a> {
                 Ok(self.split(Kind::Word, length))
             }
             _ => {
-                let joins = self.rest.as_bytes().get(1).is_some_and(|second| SECOND.contains(second));
+                let joins = self.rest.as_bytes().get(1).is_some_and(|&second| SECOND.get(usize::from(second)) == Some(&true));
                 let joined = JOINED.iter().find(|sign| joins && self.rest.starts_with(*sign));
                 match joined.map(|sign| sign.len()).or_else(|| SINGLE.contains(first).then_some(1)) {
                     Some(length) => Ok(self.split(Kind::Sign, length)),
