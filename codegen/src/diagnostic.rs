@@ -331,6 +331,9 @@ pub enum Colour {
 /// At most so many are rendered: more of them come from a text that is no description at all.
 const RENDERED: usize = 500;
 
+/// Once the lines shown come to so many bytes, the rest is only counted: in a file that is one long line each diagnostic costs the whole of it.
+const RENDERED_BYTES: usize = 16 << 20;
+
 /// Diagnostics of one text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Diagnostics {
@@ -395,26 +398,32 @@ impl Diagnostics {
 
     /// All of them as text, each with `NAME:LINE:COLUMN` and the source line underlined, in the order of [`Diagnostics::iter`].
     pub fn render(&self, source: &Source, colour: Colour) -> String {
-        let mut text = String::new();
-        for diagnostic in self.list.iter().take(RENDERED) {
-            text.push_str(&render(diagnostic, source, colour));
+        let (mut text, mut rendered, mut bytes) = (String::new(), 0, 0);
+        for diagnostic in self.list.iter().take(RENDERED).take_while(|_| bytes < RENDERED_BYTES) {
+            let window = window(diagnostic, source);
+            text.push_str(&render(diagnostic, source, window, colour));
             text.push_str("\n\n");
+            rendered += 1;
+            bytes += window.end - window.start;
         }
-        if self.list.len() > RENDERED {
-            text.push_str(&format!("{}: {} more not shown\n\n", source.name(), self.list.len() - RENDERED));
+        if self.list.len() > rendered {
+            text.push_str(&format!("{}: {} more not shown\n\n", source.name(), self.list.len() - rendered));
         }
         text
     }
 }
 
-fn render(diagnostic: &Diagnostic, source: &Source, colour: Colour) -> String {
+/// The lines from the first label to the last: the renderer reads all the text that it is given.
+fn window(diagnostic: &Diagnostic, source: &Source) -> Span {
+    source.lines(diagnostic.labels.iter().map(|label| label.span).reduce(Span::to).expect("a diagnostic has a label"))
+}
+
+fn render(diagnostic: &Diagnostic, source: &Source, window: Span, colour: Colour) -> String {
     let Diagnostic { code, message, labels, help } = diagnostic;
     let level = match code.severity() {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
-    // The renderer reads all the text it is given, so it gets the lines from the first label to the last.
-    let window = source.lines(labels.iter().map(|label| label.span).reduce(Span::to).expect("a diagnostic has a label"));
     let within = |span: Span| span.start - window.start..span.end - window.start;
     // A carriage return would show as a symbol at the end of each line.
     let lines = source.slice(window).replace("\r\n", " \n");

@@ -42,6 +42,21 @@ fn diagnostics_stand_in_the_order_of_the_text_and_only_once() {
 }
 
 #[test]
+fn faults_of_one_long_line_are_counted_where_they_would_take_long_to_show() {
+    let line = "x".repeat(RENDERED_BYTES / 3 + 1);
+    let source = Source::new("robot.yaml", line);
+    let mut diagnostics = Diagnostics::new();
+    for start in 0..10 {
+        diagnostics.push(Diagnostic::new(Code::UnknownKey, Span::new(start, start + 1), "message", "label", "help"));
+    }
+    let rendered = diagnostics.render(&source, Colour::Never);
+    assert_eq!(rendered.matches("error[unknown-key]").count(), 3);
+    assert!(rendered.ends_with("robot.yaml: 7 more not shown\n\n"), "{}", rendered.len());
+    // The renderer shows the part of the line around the label alone.
+    assert!(rendered.len() < 2000, "{}", rendered.len());
+}
+
+#[test]
 fn an_empty_text_has_a_place_too() {
     let source = Source::new("robot.yaml", "");
     let mut diagnostics = Diagnostics::new();
