@@ -399,7 +399,10 @@ impl Diagnostics {
     /// All of them as text, each with `NAME:LINE:COLUMN` and the source line underlined, in the order of [`Diagnostics::iter`].
     pub fn render(&self, source: &Source, colour: Colour) -> String {
         let (mut text, mut rendered, mut bytes) = (String::new(), 0, 0);
-        for diagnostic in self.list.iter().take(RENDERED).take_while(|_| bytes < RENDERED_BYTES) {
+        for diagnostic in self.list.iter().take(RENDERED) {
+            if bytes >= RENDERED_BYTES {
+                break;
+            }
             let window = window(diagnostic, source);
             text.push_str(&render(diagnostic, source, window, colour));
             text.push_str("\n\n");
