@@ -1,6 +1,8 @@
 //! Closed-loop inverse kinematics: joint motions that follow a motion of the end effector.
 //!
-//! Integrating dq = J^-1 v alone drifts. Fed back, the error e = x_d - x(q) of the task's rows obeys de = v_d - J dq, and
+//! Integrating dq = J^-1 v alone drifts. Fed back, the error e = x_d - x(q) of the task's rows obeys de = v_d - J dq: linear rows exactly,
+//! angular rows to second order in the whole rotation error and where a turn that the task leaves free is 0
+//! ([`Task::error`](crate::task::Task::error)). So
 //!
 //! | algorithm | law | error | the book |
 //! |---|---|---|---|

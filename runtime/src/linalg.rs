@@ -12,7 +12,7 @@ pub use lyapunov::{diagonal_lyapunov, LyapunovBlocks};
 pub use right_inverse::{Damping, DampingBelow, DampingError, RightInverse, Solution};
 pub use singular::{left_singular, LeftSingular};
 
-use nalgebra::{RealField, SMatrix, SVector};
+use nalgebra::{RealField, SMatrix, SVector, Unit, Vector3};
 
 /// A decimal constant in the scalar `T`.
 #[inline]
@@ -30,6 +30,15 @@ pub(crate) fn to_f64<T: RealField>(x: T) -> Option<f64> {
 #[inline]
 pub fn is_finite<T: RealField + Copy, const R: usize, const C: usize>(m: &SMatrix<T, R, C>) -> bool {
     m.iter().all(|x| x.is_finite())
+}
+
+/// The direction of `v`, of any finite length but zero; the square of a length may be beyond the range of the scalar.
+pub(crate) fn direction<T: RealField + Copy>(v: &Vector3<T>) -> Option<Unit<Vector3<T>>> {
+    if !is_finite(v) {
+        return None;
+    }
+    let largest = v.amax();
+    (largest > T::zero()).then(|| Unit::new_normalize(v / largest))
 }
 
 /// A vector within its limits.

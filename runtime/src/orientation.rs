@@ -9,6 +9,7 @@
 //! sin(theta) r = 1/2 (n x n_d + s x s_d + a x a_d)  (the book, Sect. 3.7.3): vanishes again at pi
 //! sin(theta/2) r                                   vector part of the quaternion (the book, Sect. 3.7.3)
 //! atan2 about one axis                             the angle for tasks with a single angular row
+//! swing beside one axis                            the error for tasks with two angular rows: E but for a free turn about the third axis
 //! ```
 //!
 //! For small turns theta r and sin(theta) r agree, and sin(theta/2) r is half of them: it wants twice the gain.
@@ -26,7 +27,7 @@ fn axial<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
 /// Rotation vector theta r of the rotation matrix `e`, theta in [0, pi]; rad.
 ///
 /// Accurate to a few roundings for every angle, half a turn included, where the sign of r is free and the first component of r
-/// that is not zero is taken positive.
+/// of a size above 1e-3 is taken positive.
 pub fn rotation_vector<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
     let v = axial(e);
     let (sine, cosine) = (v.norm(), (e.trace() - T::one()) * lit::<T>(0.5));
@@ -57,19 +58,42 @@ pub fn rotation_vector<T: RealField + Copy>(e: &Matrix3<T>) -> Vector3<T> {
 /// Angle of the turn about base axis `axis` (0, 1, 2 for x, y, z) that comes nearest to the rotation `e`; rad, in (-pi, pi].
 ///
 /// It maximises the trace of `Rot(axis, angle)' e`: atan2(e_kj - e_jk, e_jj + e_kk) with j, k the other two axes in cyclic order.
-/// Where the axes are opposed (e turns `axis` over) every angle is as near, and the result is 0.
+/// Where the axes are opposed (e turns `axis` over), within 16 roundings, every angle is as near, and the result is 0.
 pub fn turn_about<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> T {
-    let (j, k) = match axis {
-        0 => (1, 2),
-        1 => (2, 0),
-        _ => (0, 1),
-    };
+    let [_, j, k] = cyclic(axis);
     let sine = e[(k, j)] - e[(j, k)];
     let cosine = e[(j, j)] + e[(k, k)];
-    if sine == T::zero() && cosine == T::zero() {
+    if sine.abs() + cosine.abs() <= T::default_epsilon() * lit(16.0) {
         return T::zero();
     }
     sine.atan2(cosine)
+}
+
+/// Rotation vector of the swing of `e` beside base axis `axis` (0, 1, 2 for x, y, z); rad, of a length in [0, pi], at right angles to `axis`.
+///
+/// `e` is a swing, about an axis at right angles to `axis`, and after it a turn about `axis`, which does not count. With i the axis and
+/// (i, j, k) in cyclic order the swing turns by phi = atan2(s, e_ii), s = hypot(e_ij, e_ik), and is (phi/s) (e_ik, -e_ij) in j and k. Where
+/// `e` turns `axis` over its direction is free, and j is taken.
+pub fn swing<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> Vector3<T> {
+    let [i, j, k] = cyclic(axis);
+    let (sine, cosine) = (e[(i, j)].hypot(e[(i, k)]), e[(i, i)]);
+    let mut swing = Vector3::zeros();
+    if sine > T::zero() {
+        let factor = sine.atan2(cosine) / sine;
+        (swing[j], swing[k]) = (factor * e[(i, k)], -factor * e[(i, j)]);
+    } else if cosine < T::zero() {
+        swing[j] = T::pi();
+    }
+    swing
+}
+
+/// An axis and the other two after it: 0, 1, 2 from any of them on.
+fn cyclic(axis: usize) -> [usize; 3] {
+    match axis {
+        0 => [0, 1, 2],
+        1 => [1, 2, 0],
+        _ => [2, 0, 1],
+    }
 }
 
 /// Orientation error e_O = 1/2 (n x n_d + s x s_d + a x a_d) = sin(theta) r of rotation matrices (the book, Sect. 3.7.3).
@@ -135,6 +159,40 @@ mod tests {
             assert!((sine_error(&desired, &actual) - axis.into_inner() * angle.sin()).norm() < 1e-15);
             let q = quaternion_error(&quaternion(&desired), &quaternion(&actual));
             assert!((q - axis.into_inner() * (angle / 2.0).sin()).norm() < 1e-15, "{angle}");
+        }
+    }
+
+    #[test]
+    fn an_axis_that_is_turned_over_has_no_turn_about_it() {
+        // Half a turn about any axis at right angles to the one asked for.
+        for degrees in 0..360 {
+            let (s, c) = f64::from(degrees).to_radians().sin_cos();
+            for (axis, over) in [(0, Vector3::new(0.0, c, s)), (1, Vector3::new(s, 0.0, c)), (2, Vector3::new(c, s, 0.0))] {
+                let e = rotation(&Unit::new_normalize(over), PI);
+                assert_eq!(turn_about(&e, axis), 0.0, "{degrees} degrees, {e}");
+                let swing = swing(&e, axis);
+                assert!((swing.norm() - PI).abs() < 1e-15 && swing.cross(&over).norm() < 1e-14, "{degrees} degrees, {swing}");
+            }
+        }
+        let over = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
+        assert_eq!((swing(&over, 0), swing(&over, 2)), (Vector3::zeros(), Vector3::x() * PI));
+    }
+
+    #[test]
+    fn a_swing_does_not_see_the_turn_after_it() {
+        for axis in 0..3 {
+            let [_, j, k] = cyclic(axis);
+            let mut unit = Vector3::zeros();
+            unit[axis] = 1.0;
+            for angle in [0.0, 1e-12, 0.3, 1.5, 3.0, PI - 1e-7] {
+                let mut expected = Vector3::zeros();
+                (expected[j], expected[k]) = (0.6 * angle, -0.8 * angle);
+                let about = Unit::new_normalize(if angle > 0.0 { expected } else { Vector3::x() });
+                for turn in [0.0, 0.5, -3.0, PI] {
+                    let e = rotation(&Unit::new_unchecked(unit), turn) * rotation(&about, angle);
+                    assert!((swing(&e, axis) - expected).norm() < 1e-15, "{axis} {angle} {turn}: {}", swing(&e, axis));
+                }
+            }
         }
     }
 

@@ -134,11 +134,16 @@ impl<const M: usize> Task<M> {
     /// Linear rows are differences of positions. Angular rows:
     /// - one angular row: the turn about that axis alone that brings the actual orientation nearest to the desired one,
     ///   [`orientation::turn_about`]. For an arm that can turn about this axis only it is the difference of the angles, in (-pi, pi];
-    /// - two or three: the rows of the rotation vector of R_d R', [`orientation::rotation_vector`].
+    /// - two: the swing of R_d R' beside the third axis, [`orientation::swing`]. The turn about the third axis is free and does not enter;
+    /// - three: the rotation vector of R_d R', [`orientation::rotation_vector`].
     ///
-    /// The derivative of an angular row is the difference w_d - w of the angular velocities up to a term of the size |w| |e|: for the
-    /// rotation vector it is w_d - w + (w_d + w)/2 x e + O(|e|^2), in which the added term is of second order where both velocities are
-    /// small with the error. It is exact for a single angular row of an arm that turns about that axis alone.
+    /// How angular rows change with the angular velocities w_d and w: let i be the axis that is left out, or of one row the axis of the row;
+    /// R_d R' the turn by theta about i after the swing by phi about r, and v = Rot(i, -theta) w_d. Then
+    /// - three rows: de = w_d - w + (w_d + w)/2 x e + O(|e|^2 (|w_d| + |w|)), where the added term is of second order where both velocities
+    ///   are small with the error;
+    /// - two rows: de = v - w + w_i i x e + O(|e|^2 (|v| + |w|)) in the rows, and d|e| = r.(v - w) exactly. So the error closes as fast
+    ///   whatever the free turn theta, but a velocity w_d that is fed forward is the right one where theta = 0 alone;
+    /// - one row: de = w_d,i - w_i - tan(phi/2) (v + w).(i x r) exactly, and w_d - w for an arm that turns about that axis alone.
     pub fn error<T: RealField + Copy>(&self, desired: &Pose<T>, actual: &Pose<T>) -> SVector<T, M> {
         let linear = desired.position - actual.position;
         let relative = || desired.rotation * actual.rotation.transpose();
@@ -151,8 +156,12 @@ impl<const M: usize> Task<M> {
                     e[i] = orientation::turn_about(&relative, row.index() - 3);
                 }
             }
-            _ => {
-                let turn = orientation::rotation_vector(&relative());
+            angular => {
+                let relative = relative();
+                let turn = match self.free_axis() {
+                    Some(axis) if angular == 2 => orientation::swing(&relative, axis),
+                    _ => orientation::rotation_vector(&relative),
+                };
                 for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| row.is_angular()) {
                     e[i] = turn[row.index() - 3];
                 }
@@ -160,11 +169,88 @@ impl<const M: usize> Task<M> {
         }
         e
     }
+
+    /// The first axis about which the task leaves the turn free.
+    fn free_axis(&self) -> Option<usize> {
+        [Row::Rx, Row::Ry, Row::Rz].iter().position(|row| !self.rows.contains(row))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn angular_rows_change_as_stated() {
+        use crate::orientation::rotation;
+        use nalgebra::{Unit, Vector3};
+        let about = |w: Vector3<f64>, t: f64| rotation(&Unit::new_normalize(w), w.norm() * t);
+        let (w_d, w) = (Vector3::new(0.3, -0.8, 0.5), Vector3::new(-0.7, 0.2, 0.4));
+        let (z, r) = (Vector3::z(), Vector3::new(0.6, -0.8, 0.0));
+        let p = z.cross(&r);
+        let pose = |rotation| Pose { position: Vector3::zeros(), rotation };
+        for theta in [-3.0, -1.0, 0.0, 2.0] {
+            for phi in [0.1f64, 1.0, 2.5] {
+                let e = about(z, theta) * about(r, phi);
+                let v = about(z, -theta) * w_d;
+                let rate = |task: &dyn Fn(&Pose<f64>, &Pose<f64>) -> Vector3<f64>| {
+                    let at = |t: f64| task(&pose(about(w_d, t) * e), &pose(about(w, t)));
+                    (at(1e-5) - at(-1e-5)) / 2e-5
+                };
+                let two = Task::new([Row::Rx, Row::Ry]).unwrap();
+                let found = rate(&|desired, actual| two.error(desired, actual).push(0.0));
+                // Without the expansion in |e|: phi / sin(phi) and phi cot(phi) are 1 to second order.
+                let across = phi / phi.sin() * v.dot(&p) - phi / phi.tan() * w.dot(&p) + phi * w.z;
+                assert!((found - r * (v - w).dot(&r) - p * across).norm() < 1e-8, "{theta} {phi}: {found}");
+                let one = Task::new([Row::Rz]).unwrap();
+                let found = rate(&|desired, actual| z * one.error(desired, actual)[0]).z;
+                assert!((found - (w_d.z - w.z - (phi / 2.0).tan() * (v + w).dot(&p))).abs() < 1e-8, "{theta} {phi}: {found}");
+            }
+        }
+        let all = Task::new([Row::Rx, Row::Ry, Row::Rz]).unwrap();
+        let turn = Vector3::new(1e-3, -2e-3, 3e-3);
+        let at = |t: f64| all.error(&pose(about(w_d, t) * about(turn, 1.0)), &pose(about(w, t)));
+        let found = (at(1e-5) - at(-1e-5)) / 2e-5;
+        assert!((found - (w_d - w + (w_d + w).cross(&turn) / 2.0)).norm() < 2.0 * turn.norm_squared(), "{found}");
+    }
+
+    /// dw = K_P e - K_D w with K_P = k^2, K_D = 2 k, and w = K e, of a body that nothing turns about the axis left out.
+    #[test]
+    fn a_free_turn_does_not_disturb_the_loop() {
+        use crate::orientation::rotation;
+        use nalgebra::{Unit, Vector3};
+        let task = Task::new([Row::Rx, Row::Ry]).unwrap();
+        let pose = |rotation| Pose { position: Vector3::zeros(), rotation };
+        let desired = pose(rotation(&Vector3::z_axis(), 0.4));
+        for theta in [0.0, 1.0, 2.0, 2.6, 3.0, 3.1, -3.0] {
+            let tilted = rotation(&Unit::new_normalize(Vector3::new(0.3, -0.4, 0.0)), 0.5);
+            let start = rotation(&Vector3::z_axis(), 0.4 - theta) * tilted;
+            let first = task.error(&desired, &pose(start)).norm();
+            for gain in [0.15, 1.0] {
+                let (mut r, mut size): (_, f64) = (start, first);
+                for sample in 0..20 {
+                    let e = task.error(&desired, &pose(r));
+                    r = e
+                        .push(0.0)
+                        .try_normalize(1e-12)
+                        .map_or(r, |axis| rotation(&Unit::new_unchecked(axis), gain * e.norm()) * r);
+                    size *= 1.0 - gain;
+                    let found = task.error(&desired, &pose(r)).norm();
+                    assert!((found - size).abs() < 1e-14, "turn {theta}, gain {gain}, sample {sample}: {found} {size}");
+                }
+            }
+            let (k, h) = (20.0, 1e-5);
+            let (mut r, mut w, mut worst) = (start, Vector3::zeros(), 0.0f64);
+            for step in 0..30_000 {
+                let e = task.error(&desired, &pose(r)).push(0.0);
+                let t = f64::from(step) * h;
+                worst = worst.max((e.norm() - first * (1.0 + k * t) * (-k * t).exp()).abs());
+                w += (e * (k * k) - w * (2.0 * k)) * h;
+                r = w.try_normalize(0.0).map_or(r, |axis| rotation(&Unit::new_unchecked(axis), w.norm() * h) * r);
+            }
+            assert!(worst < 1e-4, "turn {theta}: off the critically damped error by {worst}");
+        }
+    }
 
     #[test]
     fn a_row_named_twice_is_refused() {

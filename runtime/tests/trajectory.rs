@@ -1,12 +1,14 @@
-//! The ghost as planned: every stated number of the path, and requests that cannot be met.
+//! The ghost as planned: its path against a table, closed forms of its extremes, and requests that cannot be met.
 
 mod common;
 
 use armgen_runtime::{
+    orientation::rotation,
     robot::Kinematics,
-    trajectory::{Path, PlanFault, Reach, Segment, TimeLaw},
+    trajectory::{OrientationProfile, Path, PlanFault, Reach, Segment, TimeLaw, Turn},
 };
-use common::{below, close, ghost};
+use common::{close, ghost};
+use nalgebra::vector;
 use std::{f64::consts::PI, time::Duration};
 
 fn ms(k: u64) -> Duration {
@@ -58,17 +60,22 @@ fn reach_speed_and_acceleration() {
         step = step.max((s.velocity - earlier.velocity).fixed_rows::<3>(0).amax());
         earlier = s;
     }
-    close("least reach", reach.0, 0.4800, 5e-5);
-    close("greatest reach", reach.1, 0.7422, 5e-5);
-    close("peak speed", speed, 0.2289, 5e-5);
-    close("peak acceleration", acceleration, 1.477, 5e-4);
-    below("velocity step per sample", step, 1.04e-3);
+    // Of the line x = 0.48 the nearest point is that at y = 0, of the whole path the farthest is the corner (0.72, -0.18).
+    close("least reach", reach.0, 0.48, 1e-6);
+    close("greatest reach", reach.1, 0.72f64.hypot(0.18), 1e-12);
+    // Lines of a length L cruise at L / (T - t_c); the fastest is segment 10, by (0.075, 0.27, -0.1) in 1.5 s.
+    let d10 = vector![0.075, 0.27, -0.1];
+    close("peak speed", speed, d10.norm() / 1.3, 1e-12);
+    // They accelerate by L / (t_c (T - t_c)); segment 10 does while segment 9, up by 0.1 in 1 s, brakes.
+    let together = d10 / (0.2 * 1.3) - vector![0.0, 0.0, 0.1] / (0.2 * 0.8);
+    close("peak acceleration", acceleration, together.norm(), 1e-12);
+    close("velocity step per sample", step, together.amax() * 1e-3, 1e-12);
     assert_eq!(trajectory.check_reach(&ghost::reach(), ms(1)), Ok(()));
     // The determinant of the Jacobian is sin(theta2) / 4; from the law of cosines cos(theta2) = 2 r^2 - 1 with links of 0.5 m.
     let det = |r: f64| (1.0 - (2.0 * r * r - 1.0).powi(2)).sqrt() / 4.0;
     let all: Vec<f64> = (0..=20_000).map(|k| det(trajectory.sample(ms(k)).pose.position.xy().norm())).collect();
-    close("least det J", all.iter().copied().fold(1.0, f64::min), 0.2105, 5e-5);
-    close("greatest det J", all.iter().copied().fold(0.0, f64::max), 0.2500, 5e-5);
+    close("least det J", all.iter().copied().fold(1.0, f64::min), det(0.48), 1e-5);
+    close("greatest det J", all.iter().copied().fold(0.0, f64::max), 0.25, 1e-6);
 }
 
 #[test]
@@ -89,11 +96,22 @@ fn stops_and_via_points() {
         }
     }
     assert_eq!(missed.iter().map(|(i, _)| *i).collect::<Vec<_>>(), [5, 6, 7, 9, 12]);
-    for ((i, nearest), expected) in missed.iter().zip([3.750e-3, 3.750e-3, 3.750e-3, 6.681e-3, 5.580e-3]) {
-        close(&format!("via point {i} missed by"), *nearest, expected, 1e-5);
+    // A time u of the t_c into the blend the first segment lacks (t_c - u)^2 / (2 t_c (T - t_c)) of its way, and the second, the next one,
+    // has gone u^2 / (2 t_c (T - t_c)) of its own.
+    for (i, nearest) in missed {
+        let part = |segment: &Segment<f64>, u: f64| {
+            let (way, seconds) = (segment.to() - segment.from(), (segment.end() - segment.start()).as_secs_f64());
+            way * (u * u / (2.0 * 0.2 * (seconds - 0.2)))
+        };
+        let off = |k: u32| {
+            let u = f64::from(k) * 1e-3;
+            (part(&segments[i], u) - part(&segments[i - 1], 0.2 - u)).norm()
+        };
+        close(&format!("via point {i} missed by"), nearest, (0..=200).map(off).fold(f64::MAX, f64::min), 1e-12);
     }
 }
 
+/// Numbers that were stated with the path, in the specification of the SCARA project, as the table was (data/README.md).
 #[test]
 fn spot_values() {
     let trajectory = ghost::ghost::<f64>();
@@ -168,6 +186,45 @@ fn arcs_in_space_through_three_points() {
         let (a, b, c) = (path.sample(ms(k) - ms(1) / 100), path.sample(ms(k)), path.sample(ms(k) + ms(1) / 100));
         assert!(((c.position - a.position) / 2e-5 - b.velocity).norm() < 1e-5);
         assert!(((c.velocity - a.velocity) / 2e-5 - b.acceleration).norm() < 1e-4);
+    }
+}
+
+/// In single precision s rounds to 1 some time before the end: the arm still brakes there.
+#[test]
+fn an_arc_moves_to_its_end() {
+    fn quarter<T: nalgebra::RealField + Copy>() -> Path<T, [Segment<T>; 1]> {
+        let number = |x: f64| nalgebra::convert::<f64, T>(x);
+        let law = TimeLaw::Quintic { duration: ms(10_000) };
+        let (centre, axis) = ([0.0; 3].map(number), [0.0, 0.0, 1.0].map(number));
+        Path::plan([1.0, 0.0, 0.0].map(number), [Segment::arc(centre, axis, number(1.5), law)]).unwrap()
+    }
+    let (single, double) = (quarter::<f32>(), quarter::<f64>());
+    let last = |k: u64| ms(10_000 - k);
+    assert_eq!(single.sample(last(1)).position, single.segments()[0].to());
+    for k in 1..100 {
+        let (found, exact) = (single.sample(last(k)), double.sample(last(k)));
+        let close = |found: nalgebra::Vector3<f32>, exact: nalgebra::Vector3<f64>| {
+            (found.cast::<f64>() - exact).norm() < 1e-5 * exact.norm()
+        };
+        assert!(close(found.velocity, exact.velocity), "{k} ms before the end: {} {}", found.velocity, exact.velocity);
+        assert!(close(found.acceleration, exact.acceleration), "{k} ms before the end");
+    }
+}
+
+#[test]
+fn an_axis_of_any_length_has_a_direction() {
+    let law = TimeLaw::Quintic { duration: ms(1000) };
+    for length in [1e-40, 1e-23, 3e19, 3e38f32] {
+        let path = Path::plan([1.0f32, 0.0, 0.0], [Segment::arc([0.0; 3], [0.0, 0.0, length], 1.0, law)]).unwrap();
+        assert!((path.segments()[0].to() - vector![1f32.cos(), 1f32.sin(), 0.0]).norm() < 1e-6, "{length}");
+        let turn = OrientationProfile::plan(nalgebra::Matrix3::identity(), [Turn::about([0.0, length, 0.0], 1.0, law)]).unwrap();
+        let turned = turn.sample(ms(2000)).rotation;
+        assert!((turned - rotation(&nalgebra::Vector3::y_axis(), 1.0)).norm() < 1e-6, "{length}");
+        let reach = Reach::about_axis([0.0f32; 3], [length, 0.0, 0.0], 0.0, 1.0).unwrap();
+        assert_eq!(reach.distance(&vector![5.0, 3.0, 4.0]), 5.0);
+    }
+    for nowhere in [[0.0f32; 3], [f32::NAN, 1.0, 0.0], [0.0, f32::INFINITY, 0.0]] {
+        assert!(Reach::about_axis([0.0; 3], nowhere, 0.0, 1.0).is_none());
     }
 }
 

@@ -6,8 +6,8 @@
 //! y = J^+ (a_d + K_D de + K_P e + K_I int e dt - dJ dq) + (I - J^+ J) y_0
 //! ```
 //!
-//! a perfect model leaves dde + K_D de + K_P e + K_I int e = 0 in each task row. The integral takes away the error under a constant
-//! uncertainty such as an unknown load. J^+ is the right pseudo-inverse of the task rows (the inverse where M = N); y_0 shapes what an
+//! a perfect model leaves dde + K_D de + K_P e + K_I int e = 0 in each linear row, and to second order in the whole rotation error in the
+//! angular rows ([`Task::error`]). The integral takes away the error under a constant uncertainty such as an unknown load. J^+ is the right pseudo-inverse of the task rows (the inverse where M = N); y_0 shapes what an
 //! arm with more joints than task rows does meanwhile, and vanishes where M = N.
 //!
 //! The integral runs away while a torque limit keeps the error from closing. So, while a torque is cut, a row of the integral moves

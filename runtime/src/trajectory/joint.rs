@@ -47,8 +47,11 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
         Self::with(to.into(), Pace::Law(law))
     }
 
-    /// To `to` by the shortest trapezoidal speed within these limits of every joint; all joints start and end together. A limit of velocity
-    /// may be infinite.
+    /// To `to`, rad or m, by the shortest trapezoidal speed within these limits of every joint, `velocity` in rad/s or m/s and
+    /// `acceleration` in rad/s^2 or m/s^2; all joints start and end together. A limit of velocity may be infinite.
+    ///
+    /// They are limits of this segment alone: while it overlaps with another one ([`JointSegment::anticipating`]) the rates and the
+    /// accelerations of both add.
     pub fn within_limits(to: [T; N], velocity: [T; N], acceleration: [T; N]) -> Self {
         Self::with(to.into(), Pace::Limits { velocity: velocity.into(), acceleration: acceleration.into() })
     }
@@ -59,6 +62,8 @@ impl<T: RealField + Copy, const N: usize> JointSegment<T, N> {
     }
 
     /// The same segment, starting `anticipation` before the previous one ends: the point between them becomes a via point.
+    ///
+    /// Until then the rates and the accelerations of both add, also beyond the limits of [`JointSegment::within_limits`].
     #[must_use]
     pub fn anticipating(self, anticipation: Duration) -> Self {
         Self { anticipation, ..self }

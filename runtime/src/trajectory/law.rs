@@ -9,8 +9,11 @@
 //!   = 1 - 1/2 (T - t)^2 / (t_c (T - t_c))    T - t_c <= t < T           (the book, Sect. 4.2.1, eq. 4.8)
 //! ```
 //!
-//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6); given T and v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the
-//! shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it is a triangle, t_c = sqrt(L/a), T = 2 t_c.
+//! Given T and a, t_c = T/2 - sqrt(T^2/4 - L/a) (eq. 4.6), here (L/a) / (T/2 + sqrt(T^2/4 - L/a)), in which nothing cancels; given T and
+//! v, t_c = T - L/v (eq. 4.10). Given limits of v and a, the shortest trapezoid has t_c = v/a and T = L/v + t_c, and where L < v^2/a it
+//! is a triangle, t_c = sqrt(L/a), T = 2 t_c.
+//!
+//! Polynomials are taken from the nearer end, with y = 1 - x: s = 1 - y^2 (3 - 2 y) and 1 - y^3 (10 - 15 y + 6 y^2) beyond the middle.
 
 use super::{chain::span, PlanFault};
 use crate::linalg::lit;
@@ -96,25 +99,33 @@ pub struct Progress<T> {
 }
 
 impl<T: RealField + Copy> TimeLaw<T> {
-    /// The law for a path of this length, which may be zero.
+    /// The law for a path of this length, m, or a turn of this angle, rad; its sign does not count.
+    ///
+    /// Where the length is zero nothing moves for the duration asked for, whatever the law, and for no time where limits are given.
     ///
     /// # Errors
-    /// Where no such law exists; the fault says why.
+    /// Where a number is not finite (a limit of velocity may be infinite), or no such law exists; the fault says why.
     pub fn resolve(&self, length: T) -> Result<Profile<T>, PlanFault> {
         if !length.is_finite() {
             return Err(PlanFault::NotFinite);
         }
         let length = length.abs();
         let still = length == T::zero();
-        let positive = |x: T, fault| match x.is_finite() {
-            false => Err(PlanFault::NotFinite),
-            true if x > T::zero() => Ok(x),
-            true => Err(fault),
-        };
+        let finite = |x: T| if x.is_finite() { Ok(x) } else { Err(PlanFault::NotFinite) };
+        let positive = |x: T, fault| finite(x).and_then(|x| if x > T::zero() { Ok(x) } else { Err(fault) });
         match *self {
+            TimeLaw::Trapezoidal { duration, .. } | TimeLaw::Cubic { duration } | TimeLaw::Quintic { duration } if still => {
+                Ok(Profile::rest(duration))
+            }
             TimeLaw::Trapezoidal { duration, acceleration_time } => trapezoid(duration, acceleration_time),
             TimeLaw::TrapezoidalByAcceleration { duration: t, acceleration } => {
-                let a = positive(acceleration.abs(), PlanFault::AccelerationTooSmall)?;
+                let a = finite(acceleration.abs())?;
+                if still {
+                    return Ok(Profile::rest(t));
+                }
+                if a == T::zero() {
+                    return Err(PlanFault::AccelerationTooSmall);
+                }
                 let half = seconds::<T>(t) * lit(0.5);
                 // A margin of a few roundings: a = 4 L / T^2 itself, the triangle, is allowed.
                 let (square, rest) = (half * half, length / a);
@@ -122,17 +133,14 @@ impl<T: RealField + Copy> TimeLaw<T> {
                     return Err(PlanFault::AccelerationTooSmall);
                 }
                 let under_root = (square - rest).max(T::zero());
-                if still {
-                    return Ok(Profile { duration: t, shape: Shape::Rest });
-                }
-                let t_c = duration(half - under_root.sqrt()).ok_or(PlanFault::AccelerationTooSmall)?;
+                let t_c = duration(rest / (half + under_root.sqrt())).ok_or(PlanFault::AccelerationTooSmall)?;
                 trapezoid(t, t_c.min(t / 2))
             }
             TimeLaw::TrapezoidalByVelocity { duration: t, velocity } => {
+                let v = finite(velocity.abs())?;
                 if still {
-                    return Ok(Profile { duration: t, shape: Shape::Rest });
+                    return Ok(Profile::rest(t));
                 }
-                let v = positive(velocity.abs(), PlanFault::VelocityOutOfRange)?;
                 let whole = seconds::<T>(t);
                 // A margin of a few roundings: v = 2 L / T itself, the triangle, is allowed.
                 let margin = T::one() + T::default_epsilon() * lit(8.0);
@@ -147,16 +155,20 @@ impl<T: RealField + Copy> TimeLaw<T> {
                 let v = if velocity > T::one() { velocity } else { positive(velocity, PlanFault::LimitNotPositive)? };
                 let a = positive(acceleration, PlanFault::LimitNotPositive)?;
                 if still {
-                    return Ok(Profile { duration: Duration::ZERO, shape: Shape::Rest });
+                    return Ok(Profile::rest(Duration::ZERO));
                 }
                 let (t_c, cover) = if length * a < v * v {
                     let t_c = (length / a).sqrt();
                     (t_c, t_c)
                 } else {
-                    (v / a, length / v)
+                    // Where L = v^2/a they are equal, and rounding must not make the cruise time negative.
+                    let t_c = v / a;
+                    (t_c, (length / v).max(t_c))
                 };
-                // One nanosecond more than the nearest: the limits are kept after rounding, too.
-                let up = |x| duration(x).and_then(|d| d.checked_add(Duration::from_nanos(1))).ok_or(PlanFault::TooLong);
+                // A few roundings of the scalar and one nanosecond more than the nearest: the limits are kept after rounding, too.
+                let margin = T::one() + T::default_epsilon() * lit(4.0);
+                let up =
+                    |x: T| duration(x * margin).and_then(|d| d.checked_add(Duration::from_nanos(1))).ok_or(PlanFault::TooLong);
                 let (t_c, cover) = (up(t_c)?, up(cover)?);
                 trapezoid(t_c.checked_add(cover).ok_or(PlanFault::TooLong)?, t_c)
             }
@@ -226,20 +238,21 @@ impl<T: RealField + Copy> Profile<T> {
                 }
             }
             Shape::Cubic(whole) => {
-                let x = seconds::<T>(t) / whole;
+                let (x, y) = (seconds::<T>(t) / whole, seconds::<T>(rest) / whole);
+                let near = |x: T| x * x * (lit::<T>(3.0) - lit::<T>(2.0) * x);
                 Progress {
-                    s: x * x * (lit::<T>(3.0) - lit::<T>(2.0) * x),
-                    ds: lit::<T>(6.0) * x * (one - x) / whole,
-                    dds: (lit::<T>(6.0) - lit::<T>(12.0) * x) / (whole * whole),
+                    s: if x > half { one - near(y) } else { near(x) },
+                    ds: lit::<T>(6.0) * x * y / whole,
+                    dds: lit::<T>(6.0) * (y - x) / (whole * whole),
                 }
             }
             Shape::Quintic(whole) => {
-                let x = seconds::<T>(t) / whole;
-                let y = one - x;
+                let (x, y) = (seconds::<T>(t) / whole, seconds::<T>(rest) / whole);
+                let near = |x: T| x * x * x * (lit::<T>(10.0) + x * (lit::<T>(6.0) * x - lit(15.0)));
                 Progress {
-                    s: x * x * x * (lit::<T>(10.0) + x * (lit::<T>(6.0) * x - lit(15.0))),
+                    s: if x > half { one - near(y) } else { near(x) },
                     ds: lit::<T>(30.0) * x * x * y * y / whole,
-                    dds: lit::<T>(60.0) * x * y * (one - lit::<T>(2.0) * x) / (whole * whole),
+                    dds: lit::<T>(60.0) * x * y * (y - x) / (whole * whole),
                 }
             }
         }
@@ -333,6 +346,80 @@ mod tests {
             assert_eq!(law(least).map(|profile| profile.duration()), Ok(duration), "{length} m in {seconds} s");
             assert_eq!(law(least * 0.999), Err(PlanFault::AccelerationTooSmall));
         }
+    }
+
+    /// Velocities and accelerations of all sizes.
+    fn pairs() -> impl Iterator<Item = (f32, f32)> {
+        (1..300u32).flat_map(|i| (1..300u32).map(move |k| (0.01 * i as f32, 0.01 * k as f32)))
+    }
+
+    #[test]
+    fn limits_that_are_just_reached_are_kept() {
+        for (v, a) in pairs() {
+            let law = TimeLaw::TrapezoidalByLimits { velocity: v, acceleration: a };
+            for length in [v * v / a, 0.3 * v * v / a, 7.0 * v * v / a] {
+                let p = law.resolve(length).unwrap_or_else(|fault| panic!("{length} {v} {a}: {fault}"));
+                let Shape::Trapezoid { rise_time, slow, .. } = p.shape else { panic!() };
+                // The largest rates: at the end of the rise, in the cruise, at the start of the braking.
+                for t in [rise_time - Duration::from_nanos(1), rise_time, slow] {
+                    let (speed, rate) = (p.at(t).ds * length, p.at(Duration::ZERO).dds * length);
+                    assert!(speed <= v && rate <= a, "{length} {v} {a}: {speed} {rate}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_short_acceleration_time_has_all_its_digits() {
+        let law = TimeLaw::TrapezoidalByAcceleration { duration: Duration::from_secs(60), acceleration: 100.0 };
+        for (length, nanoseconds) in [(0.01f32, 1667), (0.001, 167)] {
+            // t_c = L / (a T) but for a part of t_c / T.
+            let Shape::Trapezoid { rise_time, .. } = law.resolve(length).unwrap().shape else { panic!() };
+            assert_eq!(rise_time, Duration::from_nanos(nanoseconds));
+        }
+    }
+
+    #[test]
+    fn polynomials_never_run_back_or_beyond_1() {
+        fn both<T: RealField + Copy>(duration: Duration) -> [Profile<T>; 2] {
+            [TimeLaw::Cubic { duration }, TimeLaw::Quintic { duration }].map(|law| law.resolve(T::one()).unwrap())
+        }
+        for duration in [300, 1000, 1500, 7000].map(Duration::from_millis) {
+            for (single, double) in both::<f32>(duration).iter().zip(both::<f64>(duration)) {
+                let mut before = 0.0;
+                for t in (0..=duration.as_millis() as u64).map(Duration::from_millis) {
+                    let (p, exact) = (single.at(t), double.at(t));
+                    assert!(p.s >= before && p.s <= 1.0, "{single:?} at {t:?}: {} after {before}", p.s);
+                    before = p.s;
+                    // A few roundings of each value, and not of 1.
+                    let close = |x: f32, exact: f64| (f64::from(x) - exact).abs() <= 1e-6 * exact.abs();
+                    assert!(close(p.ds, exact.ds) && close(p.s, exact.s), "{single:?} at {t:?}: {p:?} {exact:?}");
+                }
+                assert_eq!(before, 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn without_a_length_nothing_moves_under_any_law() {
+        let still = |law: TimeLaw<f64>| law.resolve(0.0);
+        for law in [
+            TimeLaw::Trapezoidal { duration: T, acceleration_time: T },
+            TimeLaw::TrapezoidalByAcceleration { duration: T, acceleration: 0.0 },
+            TimeLaw::TrapezoidalByVelocity { duration: T, velocity: 0.0 },
+            TimeLaw::Cubic { duration: T },
+            TimeLaw::Quintic { duration: T },
+        ] {
+            assert_eq!(still(law), Ok(Profile::rest(T)), "{law:?}");
+        }
+        for (velocity, acceleration) in [(f64::NAN, 1.0), (1.0, f64::NAN), (1.0, f64::INFINITY)] {
+            assert_eq!(still(TimeLaw::TrapezoidalByLimits { velocity, acceleration }), Err(PlanFault::NotFinite));
+        }
+        assert_eq!(still(TimeLaw::TrapezoidalByVelocity { duration: T, velocity: f64::NAN }), Err(PlanFault::NotFinite));
+        let by_acceleration = TimeLaw::TrapezoidalByAcceleration { duration: T, acceleration: f64::NAN };
+        assert_eq!(still(by_acceleration), Err(PlanFault::NotFinite));
+        assert_eq!(still(TimeLaw::TrapezoidalByLimits { velocity: 1.0, acceleration: 1.0 }), Ok(Profile::rest(Duration::ZERO)));
+        assert_eq!(still(TimeLaw::Cubic { duration: Duration::ZERO }), Ok(Profile::rest(Duration::ZERO)));
     }
 
     #[test]

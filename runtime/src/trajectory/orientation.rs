@@ -9,7 +9,7 @@ use super::{
     PlanError, PlanFault,
 };
 use crate::{
-    linalg::{is_finite, lit},
+    linalg::{direction, is_finite, lit},
     orientation::{rotation, rotation_vector},
 };
 use core::{marker::PhantomData, time::Duration};
@@ -59,7 +59,7 @@ impl<T: RealField + Copy> Turn<T> {
         }
     }
 
-    /// A turn by `angle`, rad, of any size, about `axis` of the base frame.
+    /// A turn by `angle`, rad, of any size, about `axis`, of any length, in the base frame.
     pub fn about(axis: [T; 3], angle: T, law: TimeLaw<T>) -> Self {
         Self::new(Goal::About { axis: axis.into(), angle }, law)
     }
@@ -87,7 +87,7 @@ impl<T: RealField + Copy> Turn<T> {
     fn plan(&mut self, from: Matrix3<T>, earlier: Option<Slot>) -> Result<Matrix3<T>, PlanFault> {
         let (axis, angle) = match self.goal {
             Goal::About { axis, angle } if is_finite(&axis) && angle.is_finite() => {
-                (Unit::try_new(axis, T::zero()).ok_or(PlanFault::AxisZero)?, angle)
+                (direction(&axis).ok_or(PlanFault::AxisZero)?, angle)
             }
             Goal::About { .. } => return Err(PlanFault::NotFinite),
             Goal::Toward(to) => {

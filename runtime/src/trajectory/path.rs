@@ -10,7 +10,7 @@ use super::{
     PlanError, PlanFault,
 };
 use crate::{
-    linalg::{is_finite, lit},
+    linalg::{direction, is_finite, lit},
     scalar::sin_cos,
 };
 use core::{marker::PhantomData, time::Duration};
@@ -96,7 +96,7 @@ impl<T: RealField + Copy> Segment<T> {
         Self::new(Shape::Arc { centre: centre.into(), axis: axis.into(), sweep, to: Some(to.into()) }, law)
     }
 
-    /// The arc through `via` to `to`, on the circle through the start and both.
+    /// The arc through `via` to `to`, m, on the circle through the start and both.
     pub fn arc_through(via: [T; 3], to: [T; 3], law: TimeLaw<T>) -> Self {
         Self::new(Shape::ArcThrough { via: via.into(), to: to.into() }, law)
     }
@@ -122,12 +122,12 @@ impl<T: RealField + Copy> Segment<T> {
         self.run.slot.end
     }
 
-    /// Where it starts, in a planned path.
+    /// Where it starts, m, base frame, in a planned path.
     pub fn from(&self) -> Vector3<T> {
         self.run.from
     }
 
-    /// Where it ends, in a planned path.
+    /// Where it ends, m, base frame, in a planned path.
     pub fn to(&self) -> Vector3<T> {
         self.run.to
     }
@@ -178,16 +178,14 @@ impl<T: RealField + Copy> Segment<T> {
                 let position = if p.s > lit(0.5) { self.run.to - d * (T::one() - p.s) } else { self.run.from + d * p.s };
                 PathSample { position, velocity: d * p.ds, acceleration: d * p.dds }
             }
-            Some(_) if p.s == T::one() => {
-                PathSample { position: self.run.to, velocity: Vector3::zeros(), acceleration: Vector3::zeros() }
-            }
             Some(arc) => {
                 let (sine, cosine) = sin_cos(arc.sweep * p.s);
                 let (rate, acceleration) = (arc.sweep * p.ds, arc.sweep * p.dds);
                 let radial = arc.u * cosine + arc.w * sine;
                 let tangential = arc.w * cosine - arc.u * sine;
                 PathSample {
-                    position: arc.centre + radial,
+                    // s may round to 1 before the end, where the arm still moves.
+                    position: if p.s == T::one() { self.run.to } else { arc.centre + radial },
                     velocity: tangential * rate,
                     acceleration: tangential * acceleration - radial * (rate * rate),
                 }
@@ -206,7 +204,7 @@ impl<T: RealField + Copy> Arc<T> {
         if !(is_finite(&centre) && is_finite(&axis) && sweep.is_finite()) {
             return Err(PlanFault::NotFinite);
         }
-        let axis = axis.try_normalize(T::zero()).ok_or(PlanFault::AxisZero)?;
+        let axis = direction(&axis).ok_or(PlanFault::AxisZero)?;
         let u = from - centre;
         let radius = u.norm();
         if !(radius > T::zero()) {

@@ -1,7 +1,7 @@
 //! The reach of an arm, as far as a plan can know it without solving for joints.
 
-use crate::linalg::is_finite;
-use nalgebra::{RealField, Unit, Vector3};
+use crate::linalg::direction;
+use nalgebra::{RealField, Vector3};
 
 /// A bound on positions: between two distances from a point (a spatial arm about its shoulder) or from an axis (a planar arm).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ impl<T: RealField + Copy> Reach<T> {
 
     /// All points between `inner` and `outer`, m, from the line through `origin` along `axis`; `None` if the axis has no direction.
     pub fn about_axis(origin: [T; 3], axis: [T; 3], inner: T, outer: T) -> Option<Self> {
-        let axis = Unit::try_new(Vector3::from(axis), T::zero()).filter(|axis| is_finite(&axis.into_inner()))?;
+        let axis = direction(&Vector3::from(axis))?;
         Some(Self { origin: origin.into(), axis: Some(axis.into_inner()), inner, outer })
     }
 

@@ -153,6 +153,7 @@ fn turns<T: RealField + Copy>() {
     keep((
         orientation::rotation_vector(&e),
         orientation::turn_about(&e, black_box(1)),
+        orientation::swing(&e, black_box(1)),
         orientation::sine_error(&e, &e.transpose()),
     ));
     let (a, b) = (orientation::quaternion(&e), orientation::quaternion(&e.transpose()));
