@@ -43,7 +43,12 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
     let ends = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream);
     let at = if ends { text.trim_end().char_indices().last().map_or(0, |(at, _)| at) } else { offset(source, error.pos()) };
     let span = Span::new(at, character_end(text, at));
-    if let Some(opened) = unclosed_quote(text, if ends { text.len() } else { at }) {
+    let opened = unclosed_quote(text, if ends { text.len() } else { at });
+    if let Some((character, entity)) = opened.and_then(|opened| unescaped(text, opened, at)) {
+        let message = format!("a value holds `{character}`, which XML takes for the beginning of something else");
+        return Diagnostic::new(Code::XmlSyntax, span, message, "here", format!("write `{entity}` for it"));
+    }
+    if let Some(opened) = opened {
         let help = "close the value with the quote that it begins with";
         let message = "an attribute's value is not closed";
         return Diagnostic::new(Code::XmlSyntax, Span::new(opened, opened + 1), message, "opened here", help)
@@ -60,6 +65,11 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
             Code::XmlSyntax,
             "a document type definition stands here".to_owned(),
             "write what its entities stand for out, and take the definition out".to_owned(),
+        ),
+        Error::NoRootNode => (
+            Code::XmlSyntax,
+            "the file holds no element".to_owned(),
+            "a URDF begins with `<robot name=\"...\">`, a MuJoCo model with `<mujoco>`".to_owned(),
         ),
         Error::UnclosedRootNode | Error::UnexpectedEndOfStream => (
             Code::XmlSyntax,
@@ -106,6 +116,16 @@ fn unclosed_quote(text: &str, at: usize) -> Option<usize> {
     }
     let holds_a_name = |&(from, to): &(usize, usize)| text[from + 1..to].trim_end().ends_with('=');
     open.map(|(from, _)| from).or_else(|| closed.filter(holds_a_name).map(|(from, _)| from))
+}
+
+/// The character at a place within an open value that must be written as an entity, and that. A `<` behind a `>` begins the next tag, of
+/// which the quote before it knows nothing.
+fn unescaped(text: &str, opened: usize, at: usize) -> Option<(char, &'static str)> {
+    match text[at..].chars().next()? {
+        '&' => Some(('&', "&amp;")),
+        '<' if !text[opened..at].contains('>') => Some(('<', "&lt;")),
+        _ => None,
+    }
 }
 
 /// A part of xacro at a place.
