@@ -8,6 +8,8 @@
 //! modified: Rx(alpha) Tx(a), Rz(theta) Tz(d) | motion | body
 //! ```
 //!
+//! `damping` is what the joint feels, ratio² · `viscous` of the motor included.
+//!
 //! Decimals are written digit by digit, multiples of pi/12 as the nearest float, which import takes for what it means, and everything else with
 //! 17 digits, which is said.
 
@@ -243,7 +245,11 @@ impl Writer<'_> {
         };
         let mut optional = |value: &Value| value.as_ref().map(|expression| self.decimal(expression));
         let (velocity, effort) = (optional(&joint.limits.velocity), optional(&joint.limits.effort));
-        let (viscous, coulomb) = (optional(&joint.friction.viscous), optional(&joint.friction.coulomb));
+        let coulomb = optional(&joint.friction.coulomb);
+        let viscous = match self.rotor_friction(joint) {
+            None => joint.friction.viscous.as_ref().map(|expression| self.decimal(expression)),
+            Some(rotor) => Some(self.written(&(&self.number(&joint.friction.viscous) + &rotor))),
+        };
         let position = joint.limits.position.as_ref().map(|limits| limits.value.each_ref().map(|x| self.value(x)));
         let kind = match (prismatic, &position) {
             (true, _) => "prismatic",
@@ -251,6 +257,14 @@ impl Writer<'_> {
             (false, None) => "continuous",
         };
         Motion { kind, axis, position, velocity, effort, viscous, coulomb }
+    }
+
+    /// Viscous friction of a joint's motor as the joint feels it: ratio² times that at the rotor.
+    fn rotor_friction(&self, joint: &JointDescription) -> Option<Number> {
+        let motor = joint.motor.as_ref()?;
+        let ratio = self.number(&motor.ratio);
+        let friction = &(&ratio * &ratio) * &self.number(&motor.viscous);
+        (!friction.is_zero()).then_some(friction)
     }
 
     fn body(&mut self, body: &BodyDescription) -> Body {
@@ -329,7 +343,16 @@ impl Writer<'_> {
         if let Some(digits) = digits.filter(|_| expression.is_decimal()) {
             return digits.text;
         }
-        let value = self.values.of(expression).unwrap_or_else(Number::zero);
+        self.written(&self.values.of(expression).unwrap_or_else(Number::zero))
+    }
+
+    /// The value of a number, 0 where none is given.
+    fn number(&self, value: &Value) -> Number {
+        value.as_ref().and_then(|expression| self.values.of(expression)).unwrap_or_else(Number::zero)
+    }
+
+    /// The digits of a value where they end, or those of the nearest float.
+    fn written(&mut self, value: &Number) -> String {
         if let Some(text) = value.as_rational().and_then(ending) {
             return text;
         }
@@ -349,6 +372,16 @@ impl Writer<'_> {
             }
         };
         joints_with("a URDF has no rotors; left out at", |joint| joint.motor.is_some());
+        joints_with("the viscous friction of rotors, times ratio², is part of `damping` at", |joint| {
+            joint.motor.as_ref().is_some_and(|motor| motor.viscous.is_some())
+        });
+        let masses = joints.iter().filter_map(|joint| Some(self.number(&joint.motor.as_ref()?.mass).to_f64()));
+        let mass: f64 = masses.sum();
+        if mass != 0.0 {
+            joints_with(&format!("the masses of rotors, {mass} kg in all, are not in the masses of the URDF"), |joint| {
+                joint.motor.as_ref().is_some_and(|motor| motor.mass.is_some())
+            });
+        }
         joints_with("a URDF has no armature; left out at", |joint| joint.armature.is_some());
         joints_with("a URDF has no springs; left out at", |joint| joint.spring.is_some());
         joints_with("a URDF's friction has no `offset`, `cubic`, `load` and `stribeck`; left out at", |joint| {

@@ -54,6 +54,25 @@ fn what_a_urdf_cannot_hold_is_named() {
     assert!(exported("name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {name: a, type: revolute, axis: [0, 0, 1], link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}}\n").lines.is_empty());
 }
 
+/// A joint feels what its motor's bearings take ratio² times: 0.5 + 121² · 1e-5, and 50² · 1/3 in floats.
+#[test]
+fn the_friction_of_rotors_is_part_of_damping_and_their_masses_are_named() {
+    let arm = |motor: &str, friction: &str| {
+        exported(&format!(
+            "name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {{name: a, type: revolute, axis: [0, 0, 1], \
+             link: {{mass: 1, inertia: {{xx: 1, yy: 1, zz: 1}}}}, motor: {{{motor}}}, friction: {{{friction}}}}}\n"
+        ))
+    };
+    let both = arm("ratio: 121, inertia: 2e-5, viscous: 1e-5, mass: 2.5", "viscous: 0.5, coulomb: 2.1");
+    assert!(both.urdf.contains("<dynamics damping=\"0.64641\" friction=\"2.1\"/>"), "{}", both.urdf);
+    let lines = both.lines.join("\n");
+    assert!(lines.contains("ratio², is part of `damping` at: `a`") && lines.contains("2.5 kg in all"), "{lines}");
+    let rotor = arm("ratio: -50, inertia: 2e-5, viscous: 1/3", "coulomb: 0");
+    assert!(rotor.urdf.contains("damping=\"833.3333333333334\""), "{}", rotor.urdf);
+    let none = arm("ratio: 50, inertia: 2e-5", "viscous: 0.50");
+    assert!(none.urdf.contains("damping=\"0.50\"") && !none.lines.join("\n").contains("damping"), "{}", none.urdf);
+}
+
 #[test]
 fn a_faulty_description_is_refused() {
     let (exported, diagnostics) = export(&Source::new("robot.yaml", "name: 3"));
