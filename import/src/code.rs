@@ -13,6 +13,10 @@ codes! {
         Xacro Error "xacro",
         /// A part of MJCF that a description of a serial arm does not hold.
         MjcfFeature Error "mjcf-feature",
+        /// A part of a URDF that is not read.
+        UrdfFeature Error "urdf-feature",
+        /// A class of defaults that does not exist.
+        UnknownClass Error "unknown-class",
         /// An attribute that must be there is not.
         MissingAttribute Error "missing-attribute",
         /// An element that must be there is not.
@@ -88,6 +92,10 @@ codes! {
         MisspeltElement Warning "misspelt-element",
         /// An attribute that is none of its element, and nearly one that is not there.
         MisspeltAttribute Warning "misspelt-attribute",
+        /// An attribute that nothing reads, of an element that says how the arm is made.
+        UnreadAttribute Warning "unread-attribute",
+        /// An element that stands a second time where the first one holds.
+        RepeatedElement Warning "repeated-element",
         /// What would change the motion, and is left out.
         ChangesMotion Warning "changes-motion",
     }

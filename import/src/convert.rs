@@ -159,6 +159,10 @@ impl<'d> Converter<'d> {
                 .push(format!("{} numbers are rounded to 17 digits: no short expression is equal to them", self.writer.rounded));
         }
         let head = self.lines.iter().map(|line| format!("# {line}\n")).collect::<String>();
+        // Of the way here, not of the description.
+        if self.source.text().lines().any(|line| line.trim_start().starts_with('#') || line.contains(" #")) {
+            self.lines.push("comments of the description are left out".into());
+        }
         Some(Converted { yaml: head + &text.join("\n") + "\n", lines: self.lines })
     }
 

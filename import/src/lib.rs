@@ -11,6 +11,7 @@
 //! format.rs  what the formats have in common
 //! urdf.rs    URDF
 //! mjcf.rs    MJCF
+//! unread.rs  what a file says and nothing reads
 //! chain.rs   from base to tip: rows, poses, bodies; locked branches lumped; every fault with its place
 //! bound.rs   how far snapping can move the flange and the torques
 //! yaml.rs    the text of robot.yaml
@@ -39,6 +40,7 @@ mod pose;
 mod report;
 mod snap;
 mod tree;
+mod unread;
 mod urdf;
 mod values;
 mod xml;
@@ -107,14 +109,17 @@ fn taken(
     let bound = bound::of(&arm);
     let report = report::of(source, format, &arm, bound);
     let yaml = yaml::text(source, &arm, &report);
-    let yaml = if options.convention == Convention::Urdf { yaml } else { in_rows(yaml, options.convention, diagnostics)? };
-    Some(Imported { yaml, report })
+    if options.convention == Convention::Urdf {
+        return Some(Imported { yaml, report });
+    }
+    let converted = in_rows(&yaml, options.convention, diagnostics)?;
+    Some(Imported { yaml: converted.yaml, report: report.and(converted.lines) })
 }
 
 /// A description in rows of Denavit and Hartenberg, under the same head; faults are reported.
-fn in_rows(yaml: String, to: Convention, diagnostics: &mut Diagnostics) -> Option<String> {
+fn in_rows(yaml: &str, to: Convention, diagnostics: &mut Diagnostics) -> Option<Converted> {
     let head: String = yaml.split_inclusive('\n').take_while(|line| line.starts_with('#')).collect();
-    let (converted, faults) = convert(&Source::new("robot.yaml", yaml), to);
+    let (converted, faults) = convert(&Source::new("robot.yaml", &yaml[head.len()..]), to);
     if converted.is_none() {
         let faults: Vec<&str> =
             faults.iter().filter(|fault| fault.code.severity() == Severity::Error).map(|fault| fault.message.as_str()).collect();
@@ -122,5 +127,5 @@ fn in_rows(yaml: String, to: Convention, diagnostics: &mut Diagnostics) -> Optio
         let help = "import it with `--convention urdf`, and see what `armgen check` says of that";
         diagnostics.push(Diagnostic::new(Code::NoRows, xml::beginning(), message, "", help));
     }
-    Some(head + &converted?.yaml)
+    converted.map(|converted| Converted { yaml: head + &converted.yaml, ..converted })
 }

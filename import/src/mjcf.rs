@@ -11,6 +11,7 @@
 
 mod classes;
 mod effects;
+mod names;
 mod turns;
 
 use std::cell::OnceCell;
@@ -99,10 +100,13 @@ pub(crate) fn read<'a, 'i>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) ->
     let before = diagnostics.errors();
     effects::refuse_macros(root, diagnostics);
     let compiler = compiler(root, diagnostics);
+    let classes = Classes::read(root);
+    classes.refuse_unknown(root, diagnostics);
+    names::warn_of_unread(root, diagnostics);
     let mjcf = Mjcf {
         root,
         compiler,
-        classes: Classes::read(root),
+        classes,
         frames: Vec::new(),
         links: vec![Held::World],
         joints: Vec::new(),

@@ -40,6 +40,13 @@ impl Report {
         &self.short
     }
 
+    /// The same report with more lines.
+    pub(crate) fn and(mut self, more: Vec<String>) -> Report {
+        self.lines.extend(more.iter().cloned());
+        self.short.extend(more);
+        self
+    }
+
     /// How many bodies are fixed to the links, which reading the description multiplies out.
     pub fn attached(&self) -> usize {
         self.attached
@@ -175,12 +182,21 @@ fn lumped(row: &Row) -> impl Iterator<Item = &Attached> {
 fn rounded_up(bound: f64) -> String {
     let nearest = format!("{bound:.1e}");
     if nearest.parse::<f64>().is_ok_and(|rounded| rounded >= bound) {
-        return nearest;
+        return plain(&nearest);
     }
     // Half a unit of the last digit more.
     let power = nearest.split_once('e').map_or("0", |(_, power)| power);
     let half: f64 = format!("0.05e{power}").parse().unwrap_or_default();
-    format!("{:.1e}", bound + half)
+    plain(&format!("{:.1e}", bound + half))
+}
+
+/// Two digits as people write them: with a power of ten only where that is shorter.
+fn plain(digits: &str) -> String {
+    let (_, power) = digits.split_once('e').unwrap_or_default();
+    match (digits.parse::<f64>(), power.parse()) {
+        (Ok(value), Ok(-2..=1)) => format!("{value}"),
+        _ => digits.to_owned(),
+    }
 }
 
 /// `1 number`, `2 numbers`.
@@ -198,9 +214,16 @@ mod tests {
 
     #[test]
     fn a_bound_is_never_rounded_below_itself() {
-        for (bound, text) in
-            [(0.0, "0.0e0"), (4.1e-6, "4.1e-6"), (4.1001e-6, "4.2e-6"), (9.96e-3, "1.0e-2"), (9.91e2, "1.0e3"), (1.04, "1.1e0")]
-        {
+        for (bound, text) in [
+            (0.0, "0"),
+            (4.1e-6, "4.1e-6"),
+            (4.1001e-6, "4.2e-6"),
+            (9.96e-3, "0.01"),
+            (9.91e2, "1.0e3"),
+            (1.04, "1.1"),
+            (52.0, "52"),
+            (52.1, "53"),
+        ] {
             assert_eq!(rounded_up(bound), text, "{bound}");
         }
     }

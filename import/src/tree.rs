@@ -75,7 +75,7 @@ pub(crate) struct Tree {
 }
 
 /// So many suggestions are made: each compares a name with all that there are.
-const GUESSES: usize = 8;
+pub(crate) const GUESSES: usize = 8;
 /// Names of so many bytes and more are not compared.
 const COMPARED: usize = 256;
 
@@ -240,7 +240,8 @@ impl Tree {
     }
 }
 
-fn meant(name: &str, known: &[&str]) -> String {
+/// What may have been meant by a name that is none of these.
+pub(crate) fn meant(name: &str, known: &[&str]) -> String {
     let short: Vec<&str> = known.iter().copied().filter(|name| name.len() < COMPARED).collect();
     match did_you_mean(name, &short) {
         Some(meant) => format!("did you mean `{}`?", shown(meant)),

@@ -1,10 +1,9 @@
 //! URDF, as in <https://wiki.ros.org/urdf/XML>.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::Span;
-use armgen_codegen::suggest::did_you_mean;
 use roxmltree::Node;
 
 use crate::body::Body;
@@ -13,12 +12,15 @@ use crate::number::Decimal;
 use crate::pose::{nothing, Pose, Turn};
 use crate::snap::Written;
 use crate::tree::{Joint, Kind, Role, Tree};
+use crate::unread;
 use crate::values::Values;
 use crate::xml::{attribute, child, place, shown};
 use crate::Code;
 
 /// Attributes of `inertia`, in the order of [`Body::inertia`].
 const ELEMENTS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+/// The rotation of an `origin` in URDF 1.2: x, y, z, w.
+const QUATERNION: &str = "quat_xyzw";
 
 /// A URDF.
 pub(crate) struct Urdf<'a, 'i> {
@@ -136,6 +138,10 @@ fn kind(node: Node<'_, '_>, diagnostics: &mut Diagnostics) -> Option<Kind> {
 /// `origin` in an element: translation, and angles about x, y, z.
 fn origin_of(node: Node<'_, '_>, what: &str, values: &mut Values<'_>) -> ([Written; 3], [Written; 3]) {
     let Some(origin) = child(node, "origin") else { return (nothing(), nothing()) };
+    if let Some((_, span)) = attribute(origin, QUATERNION) {
+        let help = "write the rotation as `rpy`, and take the quaternion out: URDF 1.0 does not read it";
+        values.report(Code::UrdfFeature, span, format!("{what} is turned by a quaternion"), "", help);
+    }
     let xyz = values.three(origin, "xyz", what);
     let rpy = values.three(origin, "rpy", what);
     (xyz.each_ref().map(|x| values.snap.length(x)), rpy.each_ref().map(|x| values.snap.angle(x)))
@@ -293,8 +299,7 @@ impl Format for Urdf<'_, '_> {
 
     /// Warns of what a simulator would take into account of joints and links that the arm has, and robot.yaml does not; once a kind.
     fn check(&self, extent: &Extent<'_>, diagnostics: &mut Diagnostics) {
-        warn_of_misspelt(self.root, diagnostics);
-        warn_of_misspelt_attributes(self.root, diagnostics);
+        warn_of_unread(self.root, diagnostics);
         const FELT: [&str; 6] = [
             "springStiffness",
             "springReference",
@@ -360,15 +365,20 @@ fn transmission(node: Node<'_, '_>) -> String {
 
 /// Elements of a joint that are read.
 const TAKEN: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
-/// What an element of each name may hold beside them.
+
+/// What may stand in an element of each name.
 const ELEMENTS_OF: [(&str, &[&str]); 4] = [
     ("robot", &["link", "joint", "material", "transmission", "gazebo"]),
     ("link", &["inertial", "visual", "collision"]),
-    ("joint", &["calibration", "safety_controller"]),
-    ("inertial", &["origin", "mass", "inertia"]),
+    ("joint", &["origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller"]),
+    ("inertial", INERTIAL),
 ];
+const INERTIAL: &[&str] = &["origin", "mass", "inertia"];
 
-/// Attributes of elements whose attributes have a value where they are left out.
+/// What is read once of an element of each name.
+const SINGLE: [(&str, &[&str]); 3] = [("link", &["inertial"]), ("joint", &TAKEN), ("inertial", INERTIAL)];
+
+/// Attributes of elements that say how the arm is made.
 const ATTRIBUTES_OF: [(&str, &[&str]); 7] = [
     ("origin", &["xyz", "rpy"]),
     ("axis", &["xyz"]),
@@ -379,49 +389,11 @@ const ATTRIBUTES_OF: [(&str, &[&str]); 7] = [
     ("mimic", &["joint", "multiplier", "offset"]),
 ];
 
-/// Warns of attributes that are nearly one of those that their element lacks: with `iz` it has no `izz`. Once for each spelling.
-fn warn_of_misspelt_attributes(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
+/// Warns of what is in the robot, its links and joints, and nothing reads.
+fn warn_of_unread(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
     let parts = root.children().filter(|part| ["link", "joint"].contains(&part.tag_name().name()));
     let inside = parts.clone().chain(parts.flat_map(|part| part.children()).filter(|n| n.tag_name().name() == "inertial"));
-    let mut seen = BTreeSet::new();
-    for node in inside.flat_map(|parent| parent.children()).filter(Node::is_element) {
-        let element = node.tag_name().name();
-        let Some((_, known)) = ATTRIBUTES_OF.iter().find(|(name, _)| *name == element) else { continue };
-        let lacking: Vec<&str> = known.iter().copied().filter(|name| attribute(node, name).is_none()).collect();
-        for found in node.attributes().filter(|found| !known.contains(&found.name())) {
-            let (name, place) = (found.name(), found.range_qname());
-            let Some(meant) = did_you_mean(name, &lacking).filter(|_| seen.insert((element, name))) else { continue };
-            let message =
-                format!("nothing reads `{}` in `{element}`; it is left out, and `{meant}` is taken as not given", shown(name));
-            let span = Span::new(place.start, place.end);
-            diagnostics.push(Diagnostic::new(
-                Code::MisspeltAttribute,
-                span,
-                message,
-                "left out",
-                format!("did you mean `{meant}`?"),
-            ));
-        }
-    }
-}
-
-/// Warns of elements that are nearly one that is read, and are not: with `orign` a joint stands where its parent does. Once for each spelling.
-fn warn_of_misspelt(root: Node<'_, '_>, diagnostics: &mut Diagnostics) {
-    let parts = root.children().filter(|part| ["link", "joint"].contains(&part.tag_name().name()));
-    let inside = parts.clone().chain(parts.flat_map(|part| part.children()).filter(|n| n.tag_name().name() == "inertial"));
-    let mut seen = BTreeSet::new();
-    for parent in std::iter::once(root).chain(inside) {
-        let parent_name = parent.tag_name().name();
-        let Some((_, known)) = ELEMENTS_OF.iter().find(|(name, _)| *name == parent_name) else { continue };
-        let known: Vec<&str> = if parent_name == "joint" { [known, &TAKEN[..]].concat() } else { known.to_vec() };
-        for node in parent.children().filter(Node::is_element) {
-            let name = node.tag_name().name();
-            let meant = if known.contains(&name) { None } else { did_you_mean(name, &known) };
-            if let Some(meant) = meant.filter(|_| seen.insert((parent_name, name))) {
-                let message = format!("nothing reads `{}` in a `{parent_name}`; it is left out", shown(name));
-                let help = format!("did you mean `{meant}`?");
-                diagnostics.push(Diagnostic::new(Code::MisspeltElement, place(node), message, "left out", help));
-            }
-        }
-    }
+    unread::warn_of_elements(std::iter::once(root).chain(inside.clone()), &ELEMENTS_OF, diagnostics);
+    unread::warn_of_repeated(inside.clone(), &SINGLE, diagnostics);
+    unread::warn_of_attributes(inside.flat_map(|part| part.children()), &ATTRIBUTES_OF, &[QUATERNION], diagnostics);
 }

@@ -73,3 +73,19 @@ fn every_code_has_a_bad_file() {
     let without: Vec<&Code> = Code::ALL.iter().filter(|code| !with_file.contains(code)).collect();
     assert!(without.is_empty(), "no bad file for {without:?}");
 }
+
+/// The first columns of the tables of docs/import.md are the codes, errors and warnings, and no others.
+#[test]
+fn the_page_names_every_code() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/import.md")).expect("the page");
+    let section = page.split("\n## ").find(|section| section.starts_with("What is refused\n")).expect("the section");
+    let (refused, warned) = section.split_once("Warnings leave the arm valid").expect("the warnings");
+    let named = |text: &str| -> BTreeSet<String> {
+        let rows = text.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+        rows.flat_map(|cell| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>()).collect()
+    };
+    for (text, severity) in [(refused, Severity::Error), (warned, Severity::Warning)] {
+        let codes = Code::ALL.iter().filter(|code| code.severity() == severity).map(|code| code.name().to_owned());
+        assert_eq!(named(text), codes.collect::<BTreeSet<String>>());
+    }
+}

@@ -182,3 +182,17 @@ fn parameters_whose_values_are_written_are_named() {
         assert_same_joints("named", &valid(yaml), &valid(&converted(yaml, to).yaml));
     }
 }
+
+/// Said beside the file, since the file has the others in its head.
+#[test]
+fn comments_that_are_left_out_are_named() {
+    let arm = "name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n  - {name: a, type: revolute, axis: [0, 0, 1], link: {mass: 1, inertia: {xx: 1, yy: 1, zz: 1}}}\n";
+    let said = |yaml: &str| {
+        let Converted { yaml, lines } = converted(yaml, Standard);
+        assert!(!yaml.contains("comments"), "{yaml}");
+        lines.iter().any(|line| line.contains("comments"))
+    };
+    assert!(!said(arm));
+    assert!(said(&format!("# of my hands\n{arm}")));
+    assert!(said(&arm.replace("name: a\n", "name: a # of my hands\n")));
+}

@@ -131,6 +131,22 @@ fn of_many_unknown_names_the_first_few_get_a_suggestion() {
     assert_eq!(joints(&|k| format!("<mimic joint='joinnt{k}'/>")), 8);
 }
 
+/// Of names that nothing reads so many are looked at, and so many classes are told what they may have been meant to be.
+#[test]
+fn many_names_of_attributes_and_classes_are_read_in_bounded_time() {
+    let joint = |attributes: String| format!("<joint name='j' type='continuous'><axis {attributes}/></joint>");
+    let spelt: String = (0..100).map(|k| joint((0..900).map(|i| format!("a{k}x{i}='1' ")).collect())).collect();
+    let source = Source::new("robot.urdf", arm(&spelt));
+    let (_, diagnostics) = import(&source, &Options::default());
+    assert!(diagnostics.warnings() <= 1001, "{}", diagnostics.warnings());
+    let classes: String = (0..20_000).map(|k| format!("<default class='class{k}'/>")).collect();
+    let bodies: String = (0..20_000).map(|k| format!("<geom class='clas{k}'/>")).collect();
+    let model = format!("<mujoco><default>{classes}</default><worldbody>{bodies}</worldbody></mujoco>");
+    let (imported, diagnostics) = import(&Source::new("m.xml", model), &Options::default());
+    assert!(imported.is_none() && diagnostics.errors() >= 20_000, "{}", diagnostics.errors());
+    assert_eq!(diagnostics.iter().filter(|diagnostic| diagnostic.help.contains("did you mean")).count(), 8);
+}
+
 /// Each joint follows the one before it, and stands where that one does, twice as far: within bounds of a description, and of time.
 #[test]
 fn a_long_line_of_followers_is_refused_in_bounded_time() {

@@ -1,5 +1,6 @@
 //! What is easily read wrongly, in one arm of our own making; and that the result is a valid description.
 
+use armgen_codegen::description::Convention;
 use armgen_codegen::diagnostic::Colour;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
@@ -279,4 +280,15 @@ fn an_arm_costs_the_same_whatever_frames_its_links_have() {
         })
     });
     assert_eq!(counts[0], counts[1]);
+}
+
+/// What `convert` says beside its file, import says too.
+#[test]
+fn rows_are_announced_on_the_way_as_well() {
+    let standard = imported(EVERYTHING, &Options { convention: Convention::Standard, ..options() });
+    for lines in [standard.report.lines(), standard.report.short_lines()] {
+        assert!(lines.iter().any(|line| line.starts_with("link frames are others")), "{lines:?}");
+    }
+    let urdf = imported(EVERYTHING, &options());
+    assert!(!urdf.report.lines().iter().any(|line| line.starts_with("link frames are others")), "{:?}", urdf.report.lines());
 }

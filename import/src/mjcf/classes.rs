@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use armgen_codegen::diagnostic::{Diagnostic, Diagnostics};
 use armgen_codegen::source::Span;
 use roxmltree::Node;
 
-use crate::xml::{attribute, MAX_DEPTH};
+use crate::tree::{meant, GUESSES};
+use crate::xml::{attribute, shown, MAX_DEPTH};
+use crate::Code;
 
 /// An element of a body, with the class that the bodies around it give it.
 #[derive(Clone, Copy)]
@@ -60,6 +63,28 @@ impl<'a> Classes<'a> {
         Classes { by_name }
     }
 
+    /// Reports elements that name a class that there is none of. The elements of `default` are what makes a class.
+    pub(super) fn refuse_unknown(&self, root: Node<'a, '_>, diagnostics: &mut Diagnostics) {
+        let mut guesses = GUESSES;
+        let sections = root.children().filter(|section| section.tag_name().name() != "default");
+        let named = sections.flat_map(|section| section.descendants()).filter(Node::is_element);
+        for (name, span) in named.flat_map(|node| ["class", "childclass"].into_iter().filter_map(move |key| attribute(node, key)))
+        {
+            if name == MAIN || self.by_name.contains_key(name) {
+                continue;
+            }
+            // Of the first few only: there may be as many classes as elements.
+            let help = match guesses {
+                0 => "name a class that a `default` has".to_owned(),
+                _ if self.by_name.is_empty() => "the file has no `default`: take the name out".to_owned(),
+                _ => meant(name, &self.by_name.keys().copied().collect::<Vec<_>>()),
+            };
+            guesses = guesses.saturating_sub(1);
+            let message = format!("there is no class `{}` of defaults", shown(name));
+            diagnostics.push(Diagnostic::new(Code::UnknownClass, span, message, "unknown class", help));
+        }
+    }
+
     /// Text and place of an attribute: the element's own, or that of its class, or of one around that.
     pub(super) fn attribute(&self, element: Element<'a, '_>, name: &str) -> Option<(&'a str, Span)> {
         if let Some(own) = attribute(element.node, name) {
@@ -69,7 +94,7 @@ impl<'a> Classes<'a> {
         let mut class = element.node.attribute("class").or(element.class).or(Some(MAIN));
         // Classes stand within each other, so there are no more of them than elements may.
         for _ in 0..=MAX_DEPTH {
-            let found = self.by_name.get(class?).or_else(|| self.by_name.get(MAIN))?;
+            let found = self.by_name.get(class?)?;
             if let Some(given) = found.given.get(&(tag, name)) {
                 return Some(*given);
             }
