@@ -7,7 +7,7 @@
 //! | [`PdGravity`] | u = g^(q) + K_P e + K_D de | Sect. 8.5.1 |
 //! | [`InverseDynamics`] | u = B^ y + n^, y = ddq_d + K_D de + K_P e | Sect. 8.5.2 |
 //! | [`Robust`] | the same with y + w, w bounded by the uncertainty | Sect. 8.5.3 |
-//! | [`Adaptive`] | u = Y(q, dq, dq_r, ddq_r) pi^ + K_D sigma, pi^ adapted | Sect. 8.5.4 |
+//! | [`Adaptive`] | u = Y(q, dq, dq_r, ddq_r) pi^ + tau_known + F_l^ + K_D sigma, pi^ adapted | Sect. 8.5.4 |
 //! | [`OperationalSpace`] | u = B^ y + n^, y = J^+ (a_d + K_D de + K_P e + K_I int e - dJ dq) | Sect. 8.6.2 |
 //!
 //! with e = q_d - q (or the pose error of the task), de its derivative. Gains are diagonal, hence positive definite where every

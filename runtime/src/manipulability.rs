@@ -13,7 +13,7 @@
 //! larger task: an arm that maximises the w of a relaxed task may well walk into a singularity of the full one.
 
 use crate::{
-    linalg::{left_singular, LeftSingular, RightInverse},
+    linalg::{left_singular, lit, LeftSingular, RightInverse},
     robot::Kinematics,
     task::Task,
 };
@@ -63,19 +63,27 @@ pub fn velocity_ellipsoid<T: RealField + Copy, const K: usize, const N: usize>(j
 
 /// Force ellipsoid gamma' (J J') gamma = 1: semi-axes 1 / sigma_i.
 ///
-/// `None` at a singular posture, where the structure bears any force along the lost direction.
+/// `None` at a singular posture, where the structure bears any force along the lost direction: where the smallest sigma is at most 64
+/// roundings of the largest.
 pub fn force_ellipsoid<T: RealField + Copy, const K: usize, const N: usize>(j: &SMatrix<T, K, N>) -> Option<Ellipsoid<T, K>> {
     let LeftSingular { sigma, u } = left_singular(j);
     let semi_axes = sigma.map(|s| T::one() / s);
-    semi_axes.iter().all(|x| x.is_finite()).then_some(Ellipsoid { semi_axes, directions: u })
+    let regular = keeps_rank(&sigma) && semi_axes.iter().all(|x| x.is_finite());
+    regular.then_some(Ellipsoid { semi_axes, directions: u })
 }
 
-/// Condition number sigma_1 / sigma_K, at least 1; `None` at a singular posture.
+/// Condition number sigma_1 / sigma_K, at least 1; `None` at a singular posture: where sigma_K is at most 64 roundings of sigma_1.
 pub fn condition_number<T: RealField + Copy, const K: usize, const N: usize>(j: &SMatrix<T, K, N>) -> Option<T> {
     const { assert!(K > 0, "a Jacobian has rows") };
     let sigma = left_singular(j).sigma;
     let condition = sigma[0] / sigma[K - 1];
-    condition.is_finite().then_some(condition)
+    (keeps_rank(&sigma) && condition.is_finite()).then_some(condition)
+}
+
+/// Whether the smallest singular value is more than rounding of the largest: below that it has no digit right.
+fn keeps_rank<T: RealField + Copy, const K: usize>(sigma: &SVector<T, K>) -> bool {
+    let (largest, smallest) = (sigma.iter().next(), sigma.iter().last());
+    largest.zip(smallest).is_some_and(|(largest, smallest)| *smallest > *largest * T::default_epsilon() * lit(64.0))
 }
 
 /// Distance to singularity: the smallest singular value, the norm of the smallest change of J that makes it lose a row.

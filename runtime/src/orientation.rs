@@ -121,7 +121,7 @@ pub fn quaternion<T: RealField + Copy>(r: &Matrix3<T>) -> UnitQuaternion<T> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(*r))
 }
 
-/// Rotation by `angle` about the unit vector `axis` (the book, eq. 2.25).
+/// Rotation by `angle`, rad, about the unit vector `axis` (the book, eq. 2.25).
 pub fn rotation<T: RealField + Copy>(axis: &Unit<Vector3<T>>, angle: T) -> Matrix3<T> {
     if angle == T::zero() {
         return Matrix3::identity();

@@ -62,9 +62,9 @@ impl<T: RealField + Copy> OperationalReference<T> {
 pub struct JointReference<T, const N: usize> {
     /// Desired joint variables q_d, rad or m.
     pub q: SVector<T, N>,
-    /// Desired joint rates.
+    /// Desired joint rates, rad/s or m/s.
     pub dq: SVector<T, N>,
-    /// Desired joint accelerations.
+    /// Desired joint accelerations, rad/s^2 or m/s^2.
     pub ddq: SVector<T, N>,
 }
 
@@ -91,7 +91,7 @@ impl<T: RealField + Copy, const N: usize> JointReference<T, N> {
 pub struct State<T, const N: usize> {
     /// Joint variables, rad or m.
     pub q: SVector<T, N>,
-    /// Joint rates.
+    /// Joint rates, rad/s or m/s.
     pub dq: SVector<T, N>,
 }
 

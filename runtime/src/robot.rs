@@ -5,8 +5,8 @@
 //! a unit struct for the nominal robot, and `WithParameters` for the same robot with parameters chosen at run time.
 //! The methods take `&self` so that a robot may carry data.
 //!
-//! Frames and signs, for all methods: the base frame is the frame of the description's first row, the end effector is the
-//! last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of motion is
+//! Frames and signs, for all methods: the base frame is the frame before the description's first row, or before `base` where there is
+//! one; the end effector is the last link's frame times `tool`. Vectors of Jacobians are expressed in the base frame. The equation of motion is
 //!
 //! ```text
 //! B(q) ddq + C(q, dq) dq + F(dq) + g(q) = tau                       (the book, Sect. 7.2, eq. 7.42 without contact)
@@ -27,11 +27,11 @@ use nalgebra::{Matrix4, RealField, SMatrix, SVector, Scalar};
 /// The matrices of the equation of motion at one state, computed together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquationsOfMotion<T, const N: usize> {
-    /// Inertia matrix B(q): symmetric, positive definite.
+    /// Inertia matrix B(q): symmetric, positive definite; kg m^2, kg m or kg.
     pub inertia: SMatrix<T, N, N>,
-    /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric.
+    /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols: dB/dt - 2C is skew-symmetric; units of B, per s.
     pub coriolis: SMatrix<T, N, N>,
-    /// Gravity term g(q), on the left of the equation of motion.
+    /// Gravity term g(q), on the left of the equation of motion; N m or N.
     pub gravity: SVector<T, N>,
 }
 
@@ -56,39 +56,41 @@ pub trait Kinematics<const N: usize> {
     /// Frame of each link in the base frame, T_i(q), as the description defines link frames; translations in m.
     fn link_frames(&self, q: &SVector<Self::Real, N>) -> [Matrix4<Self::Real>; N];
 
-    /// Geometric Jacobian J(q) of the end effector: (v_e, omega_e) = J dq, rows linear then angular, base frame.
+    /// Geometric Jacobian J(q) of the end effector: (v_e, omega_e) = J dq, rows linear then angular, base frame; m/s or rad/s per
+    /// rad/s or m/s of a joint.
     fn geometric_jacobian(&self, q: &SVector<Self::Real, N>) -> SMatrix<Self::Real, 6, N>;
 
-    /// Time derivative of the geometric Jacobian along `dq`.
+    /// Time derivative of the geometric Jacobian along `dq`, rad/s or m/s; units of J, per s.
     fn geometric_jacobian_dot(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SMatrix<Self::Real, 6, N>;
 }
 
 /// Dynamics of an arm with `N` joints.
 pub trait Dynamics<const N: usize>: Kinematics<N> {
-    /// Inertia matrix B(q), rotors included.
+    /// Inertia matrix B(q), rotors included; kg m^2, kg m or kg.
     fn inertia_matrix(&self, q: &SVector<Self::Real, N>) -> SMatrix<Self::Real, N, N>;
 
-    /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric.
+    /// Coriolis and centrifugal matrix C(q, dq) by Christoffel symbols of the first kind: dB/dt - 2C is skew-symmetric; units
+    /// of B, per s.
     fn coriolis_matrix(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SMatrix<Self::Real, N, N>;
 
-    /// Gravity term g(q) = dU/dq, on the left of the equation of motion.
+    /// Gravity term g(q) = dU/dq, springs included, on the left of the equation of motion; N m or N.
     fn gravity(&self, q: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
-    /// Friction torque at the joints on the left of the equation of motion: viscous and Coulomb friction, which have the sign of `dq`, and what
+    /// Friction torque, N m or N, at the joints on the left of the equation of motion: viscous and Coulomb friction, which have the sign of `dq`, and what
     /// the description has besides.
     fn friction(&self, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N>;
 
-    /// Friction torque that grows with the load of its joint, F_l |g_i(q)| sign(dq_i), beside [`friction`](Dynamics::friction) on the left of the
+    /// Friction torque, N m or N, that grows with the load of its joint, F_l |g_i(q)| sign(dq_i), beside [`friction`](Dynamics::friction) on the left of the
     /// equation of motion: part of `inverse_dynamics` and `forward_dynamics`, and of no regressor. 0 for robots that have none.
     fn load_friction(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> SVector<Self::Real, N> {
         let _ = (q, dq);
         SVector::zeros()
     }
 
-    /// B, C and g at one state, sharing their work.
+    /// B, C and g at one state, sharing their work; `q` in rad or m, `dq` in rad/s or m/s.
     fn equations_of_motion(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> EquationsOfMotion<Self::Real, N>;
 
-    /// tau = B ddq + C dq + F(dq) + g.
+    /// tau = B ddq + C dq + F(dq) + g, N m or N, with all friction in F.
     fn inverse_dynamics(
         &self,
         q: &SVector<Self::Real, N>,
@@ -96,7 +98,7 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
         ddq: &SVector<Self::Real, N>,
     ) -> SVector<Self::Real, N>;
 
-    /// ddq = B^-1 (tau - C dq - F(dq) - g).
+    /// ddq = B^-1 (tau - C dq - F(dq) - g), rad/s^2 or m/s^2, with all friction in F.
     fn forward_dynamics(
         &self,
         q: &SVector<Self::Real, N>,
@@ -107,7 +109,8 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     /// Kinetic energy of links and rotors, T = 1/2 dq' B dq, J.
     fn kinetic_energy(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> Self::Real;
 
-    /// Potential energy of gravity U(q), J; zero where all masses lie at the origin of the base frame.
+    /// Potential energy U(q), J: that of gravity, zero where all masses, rotors included, lie at the origin of the base frame, and
+    /// 1/2 k_s (q - rest)^2 of each spring.
     fn potential_energy(&self, q: &SVector<Self::Real, N>) -> Self::Real;
 }
 
@@ -124,7 +127,7 @@ pub trait Regressor<const N: usize, const P: usize>: Dynamics<N> {
         ddqr: &SVector<Self::Real, N>,
     ) -> SMatrix<Self::Real, N, P>;
 
-    /// The torque of what is not among the parameters: tau_known of the equation above.
+    /// The torque of what is not among the parameters, N m or N: tau_known of the equation above, without `load_friction`.
     fn known_torque(
         &self,
         q: &SVector<Self::Real, N>,
@@ -133,6 +136,6 @@ pub trait Regressor<const N: usize, const P: usize>: Dynamics<N> {
         ddqr: &SVector<Self::Real, N>,
     ) -> SVector<Self::Real, N>;
 
-    /// The parameters of this robot, in the order of the columns of Y.
+    /// The parameters of this robot, in the order of the columns of Y; SI units.
     fn parameters(&self) -> SVector<Self::Real, P>;
 }

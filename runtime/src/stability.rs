@@ -13,8 +13,8 @@
 //! With d samples of delay u_k acts d periods later, and the d torques on their way are a chain of further states. Of an estimate only
 //! those combinations are states that are excited at rest: the others are constants, and would add eigenvalues at 1.
 //!
-//! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model, and a law with neither
-//! rests off its reference, as far as its error makes up for the model ([`LineariseAtRest`], [`Rest`]). A start from another estimate is a
+//! The posture is one where the arm can rest: estimates are those of the plant, integrals make up for the model, and a law with neither, or
+//! a row of it, rests off its reference, as far as its error makes up for the model ([`LineariseAtRest`], [`Rest`]). A start from another estimate is a
 //! transient, not a verdict ([`analyse_start`]).
 //!
 //! What this proves: that small deviations from rest die away at these postures. It proves nothing of a motion, in which

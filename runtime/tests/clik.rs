@@ -1,11 +1,13 @@
 //! Closed-loop inverse kinematics along the ghost path, every algorithm with its gains.
+//!
+//! Largest errors with five digits are those of the technical project, docs/technical-project.md.
 
 mod common;
 
 use armgen_runtime::{
     clik::{
         Algorithm, Clik, ClikError, DampedLeastSquares, Integration, JacobianInverse, JacobianTranspose, JointLimits,
-        JointRangeDistance, Manipulability, NoObjective, Objective, Outcome, PseudoInverse,
+        JointRangeDistance, Manipulability, NoObjective, Objective, Outcome, PseudoInverse, SecondOrder,
     },
     linalg::{Damping, Limited},
     manipulability::manipulability,
@@ -196,10 +198,98 @@ fn errors() {
     assert_eq!(clik.step(&robot, &vector![0.1, 1.0, 0.1, 0.0], &lost).unwrap_err(), ClikError::ReferenceNotFinite);
     let second = ghost::second_order(Integration::HoldConsistent);
     assert_eq!(second.step(&robot, &State::at_rest(singular), &rest).unwrap_err(), ClikError::Singular);
-    assert!(second
-        .with_damping(Damping::below(0.03).at_most(0.1).unwrap())
-        .step(&robot, &State::at_rest(singular), &rest)
-        .is_ok());
+    let damping = Damping::below(0.03).at_most(0.1).unwrap();
+    let start = State::at_rest(singular);
+    let step = second.with_damping(damping).step(&robot, &start, &rest).unwrap();
+    // ddq = J* K_P e at rest, and the state is that acceleration held for a period.
+    let k_p = vector![1000.0, 1000.0, 2000.0, 1.0];
+    let j = ghost::task().jacobian(&robot.geometric_jacobian(&singular));
+    let ddq = damping.solve(&j, &k_p.component_mul(&step.error)).unwrap().x;
+    assert!((step.reference.ddq - ddq).norm() < 1e-12 * ddq.norm() && ddq.norm() > 1.0, "{step:?}");
+    assert!((step.next.dq - ddq * 1e-3).norm() < 1e-15 * ddq.norm());
+    assert_eq!(step.outcome, Outcome::Damped);
+}
+
+/// The exact limits of the sampled error of a linear row, e'' = -K_D e' - K_P e, on either side.
+#[test]
+fn second_order_is_stable_up_to_its_sampled_limits() {
+    let (robot, limits, h) = (ghost::nominal(), JointLimits::rates([1e9; 4]).unwrap(), 1e-2);
+    let task = Task::new([Row::Z]).unwrap();
+    let goal = OperationalReference::at_rest(goal([0.1, 1.0, 0.1, 0.0]));
+    let fades = |k_p: f64, k_d: f64, integration| {
+        let clik = SecondOrder::new(task, [k_p], [k_d], h, integration, limits, [1e-300]).unwrap();
+        let mut state = State::at_rest(vector![0.1, 1.0, 0.100001, 0.0]);
+        let size = |state: &State<f64, 4>| (state.q[2] - 0.1).abs() + state.dq[2].abs() * h;
+        let start = size(&state);
+        for _ in 0..3000 {
+            state = clik.step(&robot, &state, &goal).unwrap().next;
+        }
+        size(&state) < start
+    };
+    let (below, above) = (0.99, 1.01);
+    for (k_p, k_d, integration) in [
+        // k_D T = 2 and k_P T = 2 k_D.
+        (100.0, 2.0 / h, Integration::HoldConsistent),
+        (2.0 * 50.0 / h, 50.0, Integration::HoldConsistent),
+        // k_P T = k_D, and 4 - 2 k_D T + k_P T^2 = 0 at k_D T = 3, k_P T^2 = 2.
+        (50.0 / h, 50.0, Integration::ExplicitEuler),
+    ] {
+        let scale = |by: f64| if k_p < 200.0 { (k_p, k_d * by) } else { (k_p * by, k_d) };
+        assert!(fades(scale(below).0, scale(below).1, integration), "{k_p} {k_d} {integration:?}");
+        assert!(!fades(scale(above).0, scale(above).1, integration), "{k_p} {k_d} {integration:?}");
+    }
+    assert!(fades(2.0 / (h * h), below * 3.0 / h, Integration::ExplicitEuler));
+    assert!(!fades(2.0 / (h * h), above * 3.0 / h, Integration::ExplicitEuler));
+}
+
+/// Rest is judged by what a step changes, and not by the limits of the rates, however far these are from what is asked.
+#[test]
+fn an_approach_ends_at_a_goal_within_reach_whatever_its_gain() {
+    let robot = ghost::nominal();
+    for (k, period, rate, tolerance) in [
+        (1.0, 1e-2, 100.0, 1e-5),
+        (20.0, 1e-3, 10.0, 1e-7),
+        (5.0, 1e-3, 1e6, 1e-6),
+        (150.0, 1e-3, 1e4, 1e-5),
+        (150.0, 1e-3, 1e-2, 1e-5),
+    ] {
+        let damping = Damping::below(0.03).at_most(0.1).unwrap();
+        let law = DampedLeastSquares::new([k; 4], damping).unwrap();
+        let clik = Clik::new(ghost::task(), law, period, JointLimits::rates([rate; 4]).unwrap(), [tolerance; 4]).unwrap();
+        for near in [[-0.5, 1.4, 0.3, 0.8], [0.2, 0.9, 0.12, 0.1], [0.1, 1.0, 0.1001, 0.0]] {
+            let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &goal(near), 200_000).unwrap();
+            assert_eq!(reached.outcome, Outcome::Converged, "K {k}, T {period}, rates {rate}: {reached:?}");
+        }
+        let far = Pose { position: vector![0.0, 1.1, 0.4], ..goal([0.0, 1.0, 0.1, 0.0]) };
+        let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &far, 400_000).unwrap();
+        assert_eq!(reached.outcome, Outcome::OutOfReach, "K {k}, T {period}, rates {rate}: {reached:?}");
+        common::close("distance left", reached.error.norm(), 0.1, 2e-3);
+    }
+    // In single precision as well.
+    let robot = Scara::<f32>::nominal();
+    let law = DampedLeastSquares::new([150.0f32; 4], Damping::below(0.03).at_most(0.1).unwrap()).unwrap();
+    let clik = Clik::new(ghost::task(), law, 1e-3, JointLimits::rates([1e6f32; 4]).unwrap(), [1e-5; 4]).unwrap();
+    let goal = Pose::of(&robot, &vector![-0.5f32, 1.4, 0.3, 0.8]);
+    let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &goal, 20_000).unwrap();
+    assert_eq!(reached.outcome, Outcome::Converged, "{reached:?}");
+    let far = Pose { position: vector![0.0f32, 1.1, 0.4], ..goal };
+    let reached = clik.approach(&robot, &vector![0.1, 1.0, 0.1, 0.0], &far, 20_000).unwrap();
+    assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
+}
+
+/// Where one joint is stopped the rate of another one stays what was asked, within its limit.
+#[test]
+fn a_stopped_joint_leaves_the_rates_of_the_others() {
+    let robot = Scara::<f32>::nominal();
+    let limits = JointLimits::rates([0.75f32; 4]).unwrap().with_range([-9.0, -9.0, 0.0, -9.0], [9.0, 9.0, 0.1, 9.0]).unwrap();
+    let clik = Clik::new(ghost::task(), JacobianInverse::new([500.0f32; 4]).unwrap(), 1e-3, limits, [1e-6; 4]).unwrap();
+    for k in 0..100 {
+        let q = vector![3.0 + 0.01 * k as f32, 1.0, 0.1, 0.0];
+        let goal = Pose::of(&robot, &(q + vector![0.03, 0.01, 0.01, 0.01]));
+        let step = clik.step(&robot, &q, &OperationalReference::at_rest(goal)).unwrap();
+        assert_eq!((step.outcome, step.dq[2]), (Outcome::JointLimit { joint: 2 }, 0.0));
+        assert!((0..4).all(|i| step.dq[i].abs() <= limits.rate()[i]), "{step:?}");
+    }
 }
 
 #[test]
@@ -214,6 +304,10 @@ fn a_damped_step_tells_what_is_left_of_the_error() {
     };
     // The arm is stretched along x: it cannot move that way, and can move across.
     assert_eq!(outcome(0.1, 0.0), Outcome::OutOfReach);
+    // Nor can it move inwards now, although the goal is within reach: an approach, which moves it aside, comes there.
+    assert_eq!(outcome(-0.1, 0.0), Outcome::OutOfReach);
+    let inwards = Pose { position: at.position - vector![0.1, 0.0, 0.0], ..at };
+    assert_eq!(clik.approach(&robot, &q, &inwards, 20_000).unwrap().outcome, Outcome::Converged);
     assert_eq!(outcome(0.0, 0.1), Outcome::Damped);
     assert_eq!(outcome(0.0, 0.0), Outcome::Converged);
 }

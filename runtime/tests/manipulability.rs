@@ -129,7 +129,15 @@ fn at_a_singular_posture() {
     let q = vector![0.3, 0.0, 0.2, 0.4];
     let j = Task::new([Row::X, Row::Y]).unwrap().jacobian(&ghost::nominal().geometric_jacobian(&q));
     assert!(distance_to_singularity(&j) < 1e-16);
-    assert!(force_ellipsoid(&j).is_none_or(|f| f.semi_axes[1] > 1e15));
-    assert!(condition_number(&j).is_none_or(|c| c > 1e15));
+    assert!(force_ellipsoid(&j).is_none() && condition_number(&j).is_none());
     assert_eq!(manipulability(&j), 0.0);
+    // Rounding leaves a singular value of some 1e-17 at many of them.
+    for k in 0..1000 {
+        let q = vector![0.01 * f64::from(k), if k % 2 == 0 { 0.0 } else { PI }, 0.2, 0.4];
+        let j = Task::new([Row::X, Row::Y]).unwrap().jacobian(&ghost::nominal().geometric_jacobian(&q));
+        assert!(force_ellipsoid(&j).is_none() && condition_number(&j).is_none(), "{q} {:?}", condition_number(&j));
+    }
+    let near = Task::new([Row::X, Row::Y]).unwrap().jacobian(&ghost::nominal().geometric_jacobian(&vector![0.3, 1e-9, 0.2, 0.4]));
+    // sigma_1^2 + sigma_2^2 = |J|^2 = 5/4 and sigma_1 sigma_2 = sin(theta2)/4.
+    close("condition", condition_number(&near).unwrap(), 5e9, 1e4);
 }

@@ -15,7 +15,7 @@ use armgen_runtime::{
     task::{Row, Task, TaskError},
     trajectory::{PlanError, PlanFault},
 };
-use common::{below, ghost, scara::NOMINAL};
+use common::{below, close, ghost, scara::NOMINAL};
 use nalgebra::{vector, Vector4};
 use std::time::Duration;
 
@@ -39,6 +39,7 @@ fn gains_are_checked() {
     assert_eq!(Adaptive::new([2.0, 0.0], one, [1.0; 3], [0.0; 3], 1e-3).err(), positive(Setting::Filter, 1));
     assert_eq!(Adaptive::new(two, one, [1.0; 3], [0.0; 3], 0.0).err(), positive(Setting::Period, 0));
     assert_eq!(Interval::new([0.0, 2.0], [1.0, 1.0]).err(), positive(Setting::Interval, 1));
+    assert!(Interval::new([f64::MIN, 1.0], [f64::MAX, 1.0]).is_ok(), "their difference is beyond the range of the scalar");
     let operational = |k_i, h| OperationalSpace::<f64, 4, 4>::new(ghost::task(), [1.0; 4], [1.0; 4], k_i, h);
     assert_eq!(operational([0.0, 0.0, -1.0, 0.0], 1e-3).err(), positive(Setting::Integral, 2));
     assert_eq!(operational([0.0; 4], NAN).err(), finite(Setting::Period, 0));
@@ -203,6 +204,35 @@ fn the_integral_does_not_wind_up() {
     assert!(aware < 0.2 * blind && bounded < 0.2 * blind);
 }
 
+/// While a torque is cut an integral moves towards zero and not beyond.
+#[test]
+fn an_integral_stops_at_zero_while_a_torque_is_cut() {
+    let model = ghost::nominal();
+    let q = ghost::start();
+    let task = Task::new([Row::Z]).unwrap();
+    let law = OperationalSpace::<f64, 4, 1>::new(task, [1.0], [1.0], [1.0], 1.0).unwrap();
+    let at = |z: f64| {
+        let mut goal = Pose::of(&model, &q);
+        goal.position.z += z;
+        OperationalReference::at_rest(goal)
+    };
+    for sign in [1.0, -1.0] {
+        let mut law = law;
+        law.torque(&model, &at(sign * 0.01), &State::at_rest(q)).unwrap();
+        close("integral", law.integral()[0], sign * 0.01, 1e-15);
+        // Gravity asks for 98.1 N.
+        let mut cut = law.with_torque_limits(TorqueLimits::new([1.0; 4]).unwrap());
+        assert!(cut.torque(&model, &at(sign * 0.02), &State::at_rest(q)).unwrap().limited);
+        close("not further out", cut.integral()[0], sign * 0.01, 1e-15);
+        cut.torque(&model, &at(sign * -0.004), &State::at_rest(q)).unwrap();
+        close("towards zero", cut.integral()[0], sign * 0.006, 1e-15);
+        cut.torque(&model, &at(sign * -0.02), &State::at_rest(q)).unwrap();
+        assert_eq!(cut.integral()[0], 0.0);
+        cut.torque(&model, &at(sign * -0.02), &State::at_rest(q)).unwrap();
+        assert_eq!(cut.integral()[0], 0.0);
+    }
+}
+
 #[test]
 fn a_singular_start_is_an_error_without_damping_and_named_with_it() {
     let (model, arm) = (ghost::nominal(), ghost::nominal());
@@ -242,6 +272,13 @@ fn second_order_stays_within_limits() {
         let mut outcomes = Vec::new();
         for _ in 0..4000 {
             let step = clik.step(&robot, &state, &goal).unwrap();
+            if integration == Integration::HoldConsistent {
+                // The reference is that of its acceleration, but for a joint that meets its limit.
+                let off = (step.reference.held(1e-3).q - step.next.q).abs();
+                let stop = 0.5e-3 * limits.rate()[2];
+                let stopped = step.outcome == Outcome::JointLimit { joint: 2 };
+                assert!((0..4).all(|i| off[i] <= if stopped && i == 2 { stop } else { 1e-15 }), "{off} {step:?}");
+            }
             state = step.next;
             assert!(state.q[2] <= 0.3 && (0..4).all(|i| state.dq[i].abs() <= limits.rate()[i]), "{state:?}");
             if outcomes.last() != Some(&step.outcome) {
@@ -281,8 +318,10 @@ fn single_precision_controls_too() {
     )
     .unwrap();
     below("largest error after 2 s", f64::from(worst), 2e-4);
+    // At rest on the reference the torque is what gravity asks.
     let rest = JointReference::at_rest(start.q);
-    assert!(adaptive.torque(&model, &rest, &start).is_ok());
+    let tau = adaptive.torque(&model, &rest, &start).unwrap().tau;
+    assert!((tau - vector![0.0, 0.0, -98.1, 0.0]).amax() < 1e-5, "{tau}");
     let limits = JointLimits::rates([3.0f32; 4]).unwrap();
     let clik = Clik::new(ghost::task(), JacobianInverse::new([100.0f32; 4]).unwrap(), 1e-3, limits, [1e-4; 4]).unwrap();
     let (mut q, mut worst) = (start.q, 0.0f32);

@@ -1,22 +1,27 @@
 //! Spectral radii of the sampled loops at 81 postures along the ghost path, with the load in the plant and not in the model.
+//!
+//! Stored radii and periods are those of the technical project, docs/technical-project.md.
 
 mod common;
 
 use armgen_runtime::{
     control::{Adaptive, BoundaryLayer, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust},
+    linalg::{left_singular, Damping},
     reference::{JointReference, OperationalReference, Pose, State},
-    robot::Dynamics,
+    robot::Kinematics,
+    simulation::{Integrator, Plant},
     stability::{
-        analyse, analyse_start, Delay, Linearise, LineariseAtRest, MotionAnalysis, Report, SampledLoop, StabilityError,
-        StablePeriod,
+        analyse, analyse_start, Delay, Linearise, LineariseAtRest, LineariseInMotion, MotionAnalysis, Report, SampledLoop,
+        StabilityError, StablePeriod,
     },
     task::{Row, Task},
 };
 use common::{
     close, close_percent, ghost,
+    mass::{Mass, FREE},
     scara::{Scara, NOMINAL},
 };
-use nalgebra::{vector, SMatrix, SVector, Vector4};
+use nalgebra::{vector, Vector4};
 
 fn report<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, delay: Delay) -> Report<f64> {
     let report = analyse(&ghost::loaded(), &ghost::nominal(), controller, &ghost::postures(), 1e-3, delay).unwrap();
@@ -138,7 +143,11 @@ fn adaptive_as_reported_is_unstable() {
 /// Derivatives of the torque itself, by central differences, against the linearisation.
 #[track_caller]
 fn linearised<C: Linearise<Scara<f64>, 4>>(controller: &C, torque: impl Fn(&State<f64, 4>) -> Vector4<f64>) {
-    let q = ghost::start();
+    linearised_at(ghost::start(), controller, torque);
+}
+
+#[track_caller]
+fn linearised_at<C: Linearise<Scara<f64>, 4>>(q: Vector4<f64>, controller: &C, torque: impl Fn(&State<f64, 4>) -> Vector4<f64>) {
     let feedback = controller.linearise(&ghost::nominal(), &q).unwrap();
     let h = 1e-7;
     for i in 0..4 {
@@ -168,13 +177,94 @@ fn linearisations_are_derivatives_of_the_torque() {
     linearised(&operational, |x| operational.clone().torque(&model, &pose, x).unwrap().tau);
     let relaxed = relaxed([30.0; 4]);
     linearised(&relaxed, |x| relaxed.clone().torque(&model, &pose, x).unwrap().tau);
+    let (q, damped) = near_singular(2.0, 6000.0);
+    let pose = OperationalReference::at_rest(Pose::of(&model, &q));
+    linearised_at(q, &damped, |x| damped.clone().torque(&model, &pose, x).unwrap().tau);
+}
+
+/// A posture with the elbow nearly stretched, and a law that damps there: lambda is so many times the smallest singular value.
+fn near_singular(times: f64, k_i: f64) -> (Vector4<f64>, OperationalSpace<f64, 4, 4>) {
+    let q = vector![0.3, 0.1, 0.2, 0.4];
+    let j = ghost::task().jacobian(&ghost::nominal().geometric_jacobian(&q));
+    // w = sin(theta2) / 4, and lambda = lambda_0 (1 - w / w_0).
+    let (w, w_0) = (0.1f64.sin() / 4.0, 0.1);
+    let damping = Damping::below(w_0).at_most(times * left_singular(&j).sigma[3] / (1.0 - w / w_0)).unwrap();
+    (q, operational_space([400.0; 4], [k_i; 4], [40.0; 4]).with_damping(damping))
+}
+
+/// The error along u of the smallest sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0, g = sigma^2 / (sigma^2 + lambda^2): with
+/// lambda = 2 sigma a fifth of the gains is left, and K_I = 16000 / 5 the limit.
+#[test]
+fn damping_lowers_the_gain_of_the_integral() {
+    let model = ghost::nominal();
+    let at = |times: f64, k_i: f64| {
+        let (q, law) = near_singular(times, k_i);
+        analyse(&model, &model, &law, &[q], 1e-4, Delay::NONE).unwrap()
+    };
+    for (times, k_i, stable) in [(2.0, 3000.0, true), (2.0, 3400.0, false), (1e-6, 15_000.0, true), (1e-6, 17_000.0, false)] {
+        assert_eq!(at(times, k_i).is_stable(), stable, "lambda {times} sigma, K_I {k_i}: {:?}", at(times, k_i));
+    }
+    // The law that is damped runs at a singular posture, and so does its analysis; a load it cannot hold there.
+    let (_, law) = near_singular(2.0, 1000.0);
+    let stretched = [vector![0.3, 0.0, 0.2, 0.4]];
+    let report = analyse(&model, &model, &law, &stretched, 1e-3, Delay::NONE).unwrap();
+    assert_eq!(report.without_rest, None);
+    let loaded = analyse(&ghost::loaded(), &model, &law, &stretched, 1e-3, Delay::NONE).unwrap();
+    assert_eq!(loaded.without_rest, Some(0));
+}
+
+/// Where the simulated arm comes to rest, and how its error fades there, against what the analysis says.
+#[test]
+fn an_operational_law_rests_where_it_is_said_to() {
+    fn rest<const M: usize>(what: &str, reference: Vector4<f64>, mut law: OperationalSpace<f64, 4, M>) -> f64 {
+        let (plant, model) = (ghost::loaded(), ghost::nominal());
+        let said: armgen_runtime::stability::Rest<f64, 4> = LineariseAtRest::settle(&law, &plant, &model, &reference).unwrap();
+        assert!(said.is_held, "{what}");
+        let pose = OperationalReference::at_rest(Pose::of(&model, &reference));
+        let mut arm = Plant::new(&plant, State::at_rest(reference), Integrator::RungeKutta4 { substeps: 1 });
+        for _ in 0..20_000 {
+            arm.advance(&law.torque(&model, &pose, arm.state()).unwrap().tau, 1e-3).unwrap();
+        }
+        let off = (arm.state().q - said.q).amax();
+        let moved = (said.q - reference).amax();
+        println!("{what}: {} moved by {moved}, off by {off}", said.q);
+        assert!(off < 1e-9, "{what}: off by {off}");
+        let report = analyse(&plant, &model, &law, &[reference], 1e-3, Delay::NONE).unwrap();
+        close(what, report.offset, moved, 1e-15);
+        assert!(report.is_stable(), "{report:?}");
+        // About that posture the torque is what the feedback says.
+        let torque = |x: &State<f64, 4>| law.clone().torque(&model, &pose, x).unwrap().tau;
+        let h = 1e-6;
+        for i in 0..4 {
+            let mut d = Vector4::zeros();
+            d[i] = h;
+            let by_position = (torque(&State::at_rest(said.q + d)) - torque(&State::at_rest(said.q - d))) / (2.0 * h);
+            let scale = 1.0 + said.feedback.position.amax();
+            assert!((said.feedback.position.column(i) - by_position).amax() < 1e-4 * scale, "{what}, {i}");
+        }
+        moved
+    }
+    let (k_p, k_d, q) = ([400.0; 4], [40.0; 4], ghost::start());
+    let none = rest("no integral", q, operational_space(k_p, [0.0; 4], k_d));
+    assert!(none > 1e-3, "{none}");
+    let some = rest("z with an integral", q, operational_space(k_p, [0.0, 0.0, 2000.0, 0.0], k_d));
+    assert!(some > 1e-4 && some < none, "{some} {none}");
+    let all = rest("all with an integral", q, operational_space(k_p, [2000.0; 4], k_d));
+    assert!(all < 1e-12, "{all}");
+    // The null space gives way by its spring.
+    assert!(rest("null space", q, relaxed([30.0; 4])) > 1e-3);
+    let (near, damped) = near_singular(2.0, 0.0);
+    assert!(rest("damped", near, damped) > 1e-3);
+    // Without a spring nothing holds it.
+    let loose = LineariseAtRest::settle(&relaxed([0.0; 4]), &ghost::loaded(), &ghost::nominal(), &q);
+    assert!(loose.is_some_and(|rest: armgen_runtime::stability::Rest<f64, 4>| !rest.is_held));
 }
 
 /// x relaxed: one joint motion is free, under a spring of this stiffness and a damper.
 fn relaxed(stiffness: [f64; 4]) -> OperationalSpace<f64, 4, 3> {
     let task = Task::new([Row::Y, Row::Z, Row::Rz]).unwrap();
     let null_space = NullSpace::new(stiffness, [12.0; 4], ghost::start().into()).unwrap();
-    OperationalSpace::new(task, [400.0; 3], [40.0; 3], [100.0; 3], 1e-3).unwrap().with_null_space(null_space)
+    OperationalSpace::new(task, [400.0; 3], [40.0; 3], [2000.0; 3], 1e-3).unwrap().with_null_space(null_space)
 }
 
 #[test]
@@ -206,7 +296,6 @@ fn a_simulated_loop_decays_by_its_radius() {
     let reference = JointReference::at_rest(q);
     let mut state = State::at_rest(q + Vector4::repeat(1e-4));
     let mut sizes = Vec::new();
-    use armgen_runtime::simulation::{Integrator, Plant};
     let mut arm = Plant::new(&plant, state, Integrator::RungeKutta4 { substeps: 4 });
     for _ in 0..400 {
         arm.advance(&controller.torque(&model, &reference, &state).unwrap().tau, 20e-3).unwrap();
@@ -245,69 +334,21 @@ fn deviations_in_motion_grow_by_the_eigenvalues() {
     assert!(late.of(&FREE, &InverseDynamics::new([1e5], [400.0]).unwrap(), &joints).unwrap().diverges());
     let nothing = MotionAnalysis { joints: &[], ..analysis.clone() };
     assert_eq!(nothing.of(&FREE, &controller, &[]), Err(StabilityError::NoSample));
+    let few = analysis.of(&FREE, &controller, &joints[..3999]);
+    assert_eq!(few, Err(StabilityError::NoReference { sample: 3999 }));
     let never = MotionAnalysis { period: 0.0, ..analysis };
     assert_eq!(never.of(&FREE, &controller, &joints), Err(StabilityError::Period));
 }
 
-/// A point mass of 2 kg on a line, without friction, held back by a force and a spring.
-#[derive(Clone, Debug)]
-struct Mass {
-    force: f64,
-    stiffness: f64,
-}
-
-const FREE: Mass = Mass { force: 0.0, stiffness: 0.0 };
-
-impl armgen_runtime::robot::Kinematics<1> for Mass {
-    type Real = f64;
-    fn direct_kinematics(&self, q: &SVector<f64, 1>) -> nalgebra::Matrix4<f64> {
-        let mut t = nalgebra::Matrix4::identity();
-        t[(0, 3)] = q[0];
-        t
-    }
-    fn link_frames(&self, q: &SVector<f64, 1>) -> [nalgebra::Matrix4<f64>; 1] {
-        [self.direct_kinematics(q)]
-    }
-    fn geometric_jacobian(&self, _: &SVector<f64, 1>) -> SMatrix<f64, 6, 1> {
-        SVector::<f64, 6>::x()
-    }
-    fn geometric_jacobian_dot(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>) -> SMatrix<f64, 6, 1> {
-        SMatrix::zeros()
-    }
-}
-
-impl Dynamics<1> for Mass {
-    fn inertia_matrix(&self, _: &SVector<f64, 1>) -> SMatrix<f64, 1, 1> {
-        SMatrix::from_element(2.0)
-    }
-    fn coriolis_matrix(&self, _: &SVector<f64, 1>, _: &SVector<f64, 1>) -> SMatrix<f64, 1, 1> {
-        SMatrix::zeros()
-    }
-    fn gravity(&self, q: &SVector<f64, 1>) -> SVector<f64, 1> {
-        vector![self.force] + q * self.stiffness
-    }
-    fn friction(&self, _: &SVector<f64, 1>) -> SVector<f64, 1> {
-        SVector::zeros()
-    }
-    fn equations_of_motion(&self, q: &SVector<f64, 1>, dq: &SVector<f64, 1>) -> armgen_runtime::robot::EquationsOfMotion<f64, 1> {
-        armgen_runtime::robot::EquationsOfMotion {
-            inertia: self.inertia_matrix(q),
-            coriolis: self.coriolis_matrix(q, dq),
-            gravity: self.gravity(q),
-        }
-    }
-    fn inverse_dynamics(&self, q: &SVector<f64, 1>, _: &SVector<f64, 1>, ddq: &SVector<f64, 1>) -> SVector<f64, 1> {
-        ddq * 2.0 + self.gravity(q)
-    }
-    fn forward_dynamics(&self, q: &SVector<f64, 1>, _: &SVector<f64, 1>, tau: &SVector<f64, 1>) -> SVector<f64, 1> {
-        (tau - self.gravity(q)) / 2.0
-    }
-    fn kinetic_energy(&self, _: &SVector<f64, 1>, dq: &SVector<f64, 1>) -> f64 {
-        dq[0] * dq[0]
-    }
-    fn potential_energy(&self, q: &SVector<f64, 1>) -> f64 {
-        self.force * q[0] + 0.5 * self.stiffness * q[0] * q[0]
-    }
+#[test]
+fn a_controller_state_that_is_too_short_changes_what_it_has() {
+    let adaptive = adaptive_scaled(500.0, K_D);
+    let with = |state: &[f64]| LineariseInMotion::<Scara<f64>, Scara<f64>, 4>::with_controller_state(&adaptive, state);
+    assert_eq!(with(&[]).estimate(), adaptive.estimate());
+    assert_eq!((with(&[7.0]).estimate()[0], with(&[7.0]).estimate()[1]), (7.0, NOMINAL[1]));
+    let operational = operational_space_as_reported();
+    let with = |state: &[f64]| LineariseInMotion::<Scara<f64>, Scara<f64>, 4>::with_controller_state(&operational, state);
+    assert_eq!((with(&[]).integral()[3], with(&[1.0, 2.0, 3.0, 4.0, 5.0]).integral()[3]), (0.0, 4.0));
 }
 
 #[test]
@@ -335,15 +376,15 @@ fn a_law_without_an_integral_rests_off_its_reference() {
         analyse(plant, &FREE, &InverseDynamics::new(k_p, k_d).unwrap(), &[vector![0.3]], 1e-3, Delay::NONE).unwrap()
     };
     for (force, stiffness) in [(40.0, 6.0), (-400.0, 60.0), (10.0, -150.0)] {
-        let report = of(&Mass { force, stiffness });
+        let report = of(&Mass { force, stiffness, ..FREE });
         let q = (200.0 * 0.3 - force) / (200.0 + stiffness);
         close("offset", report.offset, f64::abs(0.3 - q), 1e-8);
         assert!(report.without_rest.is_none() && report.is_stable(), "{report:?}");
     }
-    let report = of(&Mass { force: 1.0, stiffness: -300.0 });
+    let report = of(&Mass { force: 1.0, stiffness: -300.0, ..FREE });
     assert_eq!((report.without_rest, report.is_stable()), (Some(0), false));
     // Of two postures it is the second that is not held: this force alone holds the mass at the first.
-    let pushed = Mass { force: 90.0, stiffness: -300.0 };
+    let pushed = Mass { force: 90.0, stiffness: -300.0, ..FREE };
     let law = PdGravity::new([250.0], k_d).unwrap();
     let report = analyse(&pushed, &FREE, &law, &[vector![0.3], vector![0.4]], 1e-3, Delay::NONE).unwrap();
     assert_eq!(report.without_rest, Some(1));
@@ -352,9 +393,39 @@ fn a_law_without_an_integral_rests_off_its_reference() {
     // Beyond its boundary layer the robust law adds rho, whatever the error: 2 (K_P e + rho) = f, and K_P alone is its stiffness.
     let (rho, force) = (5.0, 40.0);
     let robust = Robust::new(k_p, k_d, [1.0], [1.0], BoundaryLayer { rho, epsilon: 1e-6 }).unwrap();
-    let report = analyse(&Mass { force, stiffness: 0.0 }, &FREE, &robust, &[vector![0.3]], 1e-3, Delay::NONE).unwrap();
+    let loaded = Mass { force, ..FREE };
+    let report = analyse(&loaded, &FREE, &robust, &[vector![0.3]], 1e-3, Delay::NONE).unwrap();
     close("offset beyond the layer", report.offset, (force / 2.0 - rho) / k_p[0], 1e-8);
-    close("spectral radius beyond the layer", report.spectral_radius, of(&Mass { force, stiffness: 0.0 }).spectral_radius, 1e-7);
+    close("spectral radius beyond the layer", report.spectral_radius, of(&loaded).spectral_radius, 1e-7);
+}
+
+/// An offset F_0 of friction acts at rest: K_P e = F_0 of PD, whose law has no friction, 2 K_P e = F_0 less that of the model of the others.
+#[test]
+fn the_offset_of_friction_moves_the_rest() {
+    let plant = Mass { friction: 10.0, ..FREE };
+    let ([k_p, k_d], q) = ([[1000.0], [100.0]], [vector![0.3]]);
+    let pd = PdGravity::new(k_p, k_d).unwrap();
+    let inverse = InverseDynamics::new(k_p, k_d).unwrap();
+    let robust = Robust::new(k_p, k_d, [1.0], [1.0], BoundaryLayer { rho: 0.0, epsilon: 1.0 }).unwrap();
+    let task = Task::new([Row::X]).unwrap();
+    let operational = OperationalSpace::<f64, 1, 1>::new(task, k_p, k_d, [0.0], 1e-3).unwrap();
+    let integral = OperationalSpace::<f64, 1, 1>::new(task, k_p, k_d, [1000.0], 1e-3).unwrap();
+    let known = Mass { friction: 4.0, ..FREE };
+    let offset = |law: &dyn LineariseAtRest<Mass, Mass, 1>, model: &Mass| {
+        analyse(&plant, model, law, &q, 1e-3, Delay::NONE).unwrap().offset
+    };
+    close("PD", offset(&pd, &FREE), 10.0 / 1000.0, 1e-10);
+    close("PD, whatever the model's friction", offset(&pd, &known), 10.0 / 1000.0, 1e-10);
+    for (law, of) in [
+        (&inverse as &dyn LineariseAtRest<Mass, Mass, 1>, "inverse dynamics"),
+        (&robust, "robust"),
+        (&operational, "operational space"),
+    ] {
+        close(of, offset(law, &FREE), 10.0 / 2000.0, 1e-10);
+        close(of, offset(law, &known), 6.0 / 2000.0, 1e-10);
+        close(of, offset(law, &plant), 0.0, 1e-15);
+    }
+    close("with an integral", offset(&integral, &FREE), 0.0, 1e-12);
 }
 
 #[test]
@@ -372,7 +443,7 @@ fn every_sample_of_delay_counts() {
 /// A controller with an integral, measured late: the simulated error shrinks, or grows, by the radius.
 #[test]
 fn a_delayed_loop_moves_by_its_radius() {
-    use armgen_runtime::simulation::{run, Integrator, RunOptions, Sensor};
+    use armgen_runtime::simulation::{run, RunOptions, Sensor};
     use core::time::Duration;
     let (plant, model) = (ghost::loaded(), ghost::loaded());
     let q = ghost::start();

@@ -111,7 +111,7 @@ fn stops_and_via_points() {
     }
 }
 
-/// Numbers that were stated with the path, in the specification of the SCARA project, as the table was (data/README.md).
+/// Numbers of the technical project, as the table (data/README.md).
 #[test]
 fn spot_values() {
     let trajectory = ghost::ghost::<f64>();

@@ -2,7 +2,7 @@
 
 use super::{Algorithm, ClikError, JointLimits, Outcome, WithinRange};
 use crate::{
-    linalg::{is_finite, lit, Limited},
+    linalg::{is_finite, lit, saturate, Limited},
     reference::{OperationalReference, Pose},
     robot::Kinematics,
     settings::{self, Setting, SettingError},
@@ -25,7 +25,7 @@ pub struct Clik<A, T, const N: usize, const M: usize> {
 pub struct Step<T, const N: usize, const M: usize> {
     /// Joint variables after the step, rad or m.
     pub q: SVector<T, N>,
-    /// The rates that led there, bounded.
+    /// The rates that led there, rad/s or m/s, bounded.
     pub dq: SVector<T, N>,
     /// Error of the task rows before the step, desired minus actual; m or rad.
     pub error: SVector<T, M>,
@@ -74,11 +74,25 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         error.iter().zip(self.tolerance.iter()).all(|(e, tolerance)| e.abs() <= *tolerance)
     }
 
-    /// One step from `q` after the reference of this sample.
+    /// One step from `q`, rad or m, after the reference of this sample.
     ///
     /// # Errors
     /// Where `q` or the reference is not finite, or the algorithm meets a singular posture that it cannot handle.
     pub fn step<R>(&self, robot: &R, q: &SVector<T, N>, reference: &OperationalReference<T>) -> Result<Step<T, N, M>, ClikError>
+    where
+        R: Kinematics<N, Real = T>,
+        A: Algorithm<R, N, M>,
+    {
+        self.advance(robot, q, reference).map(|(step, _)| step)
+    }
+
+    /// One step, and whether a rate limit slowed it down.
+    fn advance<R>(
+        &self,
+        robot: &R,
+        q: &SVector<T, N>,
+        reference: &OperationalReference<T>,
+    ) -> Result<(Step<T, N, M>, bool), ClikError>
     where
         R: Kinematics<N, Real = T>,
         A: Algorithm<R, N, M>,
@@ -96,9 +110,15 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
             return Err(ClikError::RatesNotFinite);
         }
         let Limited { value: dq, is_limited: slowed } = self.limits.slow_down(&rates.dq);
-        let WithinRange { q: next, stopped } = self.limits.stop(q, &(q + dq * self.period));
-        // A joint that is stopped does not move: its rate is what it really did.
-        let dq = if stopped.is_some() { (next - q) / self.period } else { dq };
+        let asked = q + dq * self.period;
+        let WithinRange { q: next, stopped } = self.limits.stop(q, &asked);
+        // The rate of a joint that is stopped is what it really did; that of the others stays as it is, to the last bit.
+        let dq = if stopped.is_some() {
+            let done = SVector::from_fn(|i, _| if next[i] == asked[i] { dq[i] } else { (next[i] - q[i]) / self.period });
+            saturate(&done, self.limits.rate()).value
+        } else {
+            dq
+        };
         let outcome = if self.converged(&error) {
             Outcome::Converged
         } else if let Some(joint) = stopped {
@@ -112,14 +132,16 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         } else {
             Outcome::Tracking
         };
-        Ok(Step { q: next, dq, error, outcome })
+        Ok((Step { q: next, dq, error, outcome }, slowed))
     }
 
-    /// Steps towards a resting goal until it is reached, nothing moves any more, or `most_steps` are used up.
+    /// Steps from `start`, rad or m, towards a resting goal until it is reached, the error does not change any more, or `most_steps` are
+    /// used up.
     ///
-    /// An arm can rest in a singular posture with the goal in line with it, within reach, and see no way there. So where it comes to
-    /// rest without a joint limit in its way it is moved aside, each time, by 0.01 rad or m in each joint; if it then comes to rest
-    /// no nearer, the goal is out of reach.
+    /// The arm is at rest where a step that no rate limit slowed down changes the error by a millionth of it at most, or by no more than
+    /// rounding does: whatever the limits are, but T_s K has to be well above a millionth. An arm can rest in a singular posture with the
+    /// goal in line with it, within reach, and see no way there. So where it comes to rest without a joint limit in its way it is moved
+    /// aside, each time, by 0.01 rad or m in each joint; if it then comes to rest no nearer, the goal is out of reach.
     ///
     /// # Errors
     /// Those of [`Clik::step`].
@@ -135,33 +157,38 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         A: Algorithm<R, N, M>,
     {
         let reference = OperationalReference::at_rest(*goal);
-        let ended =
-            |q: SVector<T, N>, steps, outcome| Reached { q, error: self.task.error(goal, &Pose::of(robot, &q)), steps, outcome };
+        // How far rounding may move the error of a pose.
+        let rounding = T::default_epsilon() * (T::one() + goal.position.norm());
         let mut q = *start;
-        let mut rested_at: Option<T> = None;
+        // The step that led to `q`, unless it was slowed down (and not stopped besides), and how far from the goal the arm has come to rest before.
+        let (mut last, mut rested_at): (Option<Step<T, N, M>>, Option<T>) = (None, None);
         for steps in 0..most_steps {
-            let step = self.step(robot, &q, &reference)?;
+            let (step, slowed) = self.advance(robot, &q, &reference)?;
+            let reached = |outcome| Ok(Reached { q, error: step.error, steps, outcome });
             if step.outcome == Outcome::Converged {
-                return Ok(Reached { q, error: step.error, steps, outcome: Outcome::Converged });
-            }
-            let resting = step.dq.iter().zip(self.limits.rate().iter()).all(|(dq, rate)| dq.abs() <= *rate * lit(1e-6));
-            q = step.q;
-            if !resting {
-                continue;
-            }
-            if let Outcome::JointLimit { .. } = step.outcome {
-                return Ok(ended(q, steps + 1, step.outcome));
+                return reached(Outcome::Converged);
             }
             let distance = step.error.norm();
-            if rested_at.is_some_and(|before| distance > before * lit(0.999)) {
-                return Ok(ended(q, steps + 1, Outcome::OutOfReach));
+            let rests = |last: &Step<T, N, M>| (step.error - last.error).norm() <= rounding.max(last.error.norm() * lit(1e-6));
+            let Some(rested) = last.filter(rests) else {
+                q = step.q;
+                let stands = step.dq.iter().zip(self.limits.rate().iter()).all(|(dq, rate)| dq.abs() <= *rate * lit(1e-6));
+                last = (!slowed || stands).then_some(step);
+                continue;
+            };
+            if let Outcome::JointLimit { .. } = rested.outcome {
+                return reached(rested.outcome);
             }
-            rested_at = Some(distance);
+            if rested_at.is_some_and(|before| distance > before * lit(0.999)) {
+                return reached(Outcome::OutOfReach);
+            }
+            (last, rested_at) = (None, Some(distance));
             let aside = SVector::from_fn(|i, _| lit::<T>(if i % 2 == 0 { 0.01 } else { -0.01 }));
             q = self.limits.stop(&q, &(q + aside)).q;
         }
-        let last = ended(q, most_steps, Outcome::OutOfSteps);
-        Ok(Reached { outcome: if self.converged(&last.error) { Outcome::Converged } else { last.outcome }, ..last })
+        let error = self.task.error(goal, &Pose::of(robot, &q));
+        let outcome = if self.converged(&error) { Outcome::Converged } else { Outcome::OutOfSteps };
+        Ok(Reached { q, error, steps: most_steps, outcome })
     }
 }
 

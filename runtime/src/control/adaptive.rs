@@ -1,13 +1,13 @@
 //! Adaptive control (Slotine, Li, 1987; the book, Sect. 8.5.4, eqs. 8.88-8.97).
 //!
-//! The dynamics are linear in the parameters: B ddq_r + C dq_r + F dq_r + g = Y(q, dq, dq_r, ddq_r) pi. With the reference rates
+//! The dynamics are linear in the parameters: B ddq_r + C dq_r + F + g = Y(q, dq, dq_r, ddq_r) pi + tau_known. With the reference rates
 //! dq_r = dq_d + Lambda e, ddq_r = ddq_d + Lambda de and sigma = dq_r - dq,
 //!
 //! ```text
-//! u = Y pi^ + K_D sigma,        d pi^/dt = K_pi^-1 Y' sigma
+//! u = Y pi^ + tau_known + F_l^(q, dq) + K_D sigma,        d pi^/dt = K_pi^-1 Y' sigma
 //! ```
 //!
-//! make V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decrease: the errors vanish, the estimate need not
+//! with F_l^ the friction that grows with the load, which is not linear in the parameters and is taken from the model, make V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decrease: the errors vanish, the estimate need not
 //! be right. That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever
 //! V says: compute the spectral radius of the sampled loop first (module `stability`).
 
@@ -36,12 +36,15 @@ impl<T: RealField + Copy, const P: usize> Interval<T, P> {
         let (lower, upper) = (SVector::from(lower), SVector::from(upper));
         settings::finite(Setting::Interval, &lower)?;
         settings::finite(Setting::Interval, &upper)?;
-        settings::not_negative(Setting::Interval, &(upper - lower))?;
-        Ok(Self { lower, upper })
+        // Not by their difference, which may be beyond the range of the scalar.
+        match (0..P).find(|i| lower[*i] > upper[*i]) {
+            Some(index) => Err(SettingError::NotPositive { setting: Setting::Interval, index }),
+            None => Ok(Self { lower, upper }),
+        }
     }
 }
 
-/// u = Y(q, dq, dq_r, ddq_r) pi^ + K_D sigma, with pi^ adapted.
+/// u = Y(q, dq, dq_r, ddq_r) pi^ + tau_known + F_l^ + K_D sigma, with pi^ adapted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Adaptive<T, const N: usize, const P: usize> {
     pub(crate) lambda: SVector<T, N>,
@@ -141,6 +144,7 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         let sigma = dqr - measured.dq;
         let y = model.regressor(&measured.q, &measured.dq, &dqr, &ddqr);
         let known = model.known_torque(&measured.q, &measured.dq, &dqr, &ddqr);
+        let known = known + model.load_friction(&measured.q, &measured.dq);
         let torque = issue(y * estimate + known + self.k_d.component_mul(&sigma), &self.limits, false)?;
         Ok((torque, y.tr_mul(&sigma).component_mul(&self.adaptation_gain)))
     }

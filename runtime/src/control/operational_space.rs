@@ -11,7 +11,11 @@
 //! arm with more joints than task rows does meanwhile, and vanishes where M = N.
 //!
 //! The integral runs away while a torque limit keeps the error from closing. So, while a torque is cut, a row of the integral moves
-//! only towards zero, and it never leaves its own limit where one is given.
+//! only towards zero, and it never leaves its own limit where one is given. Damping keeps the error from closing as well, and the
+//! integral moves on: give it a limit ([`OperationalSpace::with_integral_limit`]) where the arm may stay near a singular posture.
+//!
+//! While damping is at work the direction of the singular value sigma obeys dde + g (K_D de + K_P e + K_I int e) = 0 with
+//! g = sigma^2 / (sigma^2 + lambda^2): with equal gains in all rows it is stable for K_I < g K_P K_D, where K_I < K_P K_D would do without.
 
 use super::{check, issue, ControlError, Torque, TorqueLimits};
 use crate::{
@@ -109,6 +113,9 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     }
 
     /// The same with a damped inverse near singularities, instead of [`ControlError::Singular`] at them.
+    ///
+    /// While damping is at work K_I has to be smaller (the text of this module says by what), and y_0 disturbs the task, by lambda/2 |y_0| at
+    /// most, since I - J* J is no projector then; lambda is that of [`Damping`].
     #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }
@@ -170,8 +177,13 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
     fn advance(&mut self, e: &SVector<T, M>, limited: bool) -> Result<(), ControlError> {
         let step = e * self.period;
         let next = SVector::from_fn(|i, _| {
-            let winds_up = limited && self.integral[i] * step[i] >= T::zero();
-            self.integral[i] + if winds_up { T::zero() } else { step[i] }
+            let (before, after) = (self.integral[i], self.integral[i] + step[i]);
+            match limited {
+                false => after,
+                // Towards zero and not beyond.
+                true if before > T::zero() => after.max(T::zero()).min(before),
+                true => after.min(T::zero()).max(before),
+            }
         });
         if !is_finite(&next) {
             return Err(ControlError::StateNotFinite);

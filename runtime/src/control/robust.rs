@@ -1,16 +1,17 @@
 //! Robust control (the book, Sect. 8.5.3, eqs. 8.70-8.86).
 //!
 //! The model is wrong: with u = B^ y + n^ the acceleration is y - eta, eta the uncertainty. The term w added to y shall beat it.
-//! With xi = (e, de), D = (0, I)' and Q from H' Q + Q H = -P, let z = D' Q xi = Q12' e + Q22 de. Then V = xi' Q xi decreases for
+//! With xi = (e, de), D = (0, I)' and Q from H' Q + Q H = -P, let z = D' Q xi = Q12' e + Q22 de. The added term is
 //!
 //! ```text
 //! w = rho z / |z|                outside the boundary layer, |z| >= epsilon
 //!   = rho z / epsilon            inside, where chattering would begin
 //! ```
 //!
-//! as long as rho exceeds |eta|. Since eta holds w, of norm up to rho, this needs |1 - B^-1 B^| < 1.
+//! Outside the layer V = xi' Q xi decreases as long as rho exceeds |eta|. Since eta holds w, of norm up to rho, this needs
+//! |1 - B^-1 B^| < 1. Inside, w is smaller than rho, and V need not decrease.
 //!
-//! Inside the layer the law is linear, with gains K_P + rho/epsilon Q12 and K_D + rho/epsilon Q22: the error does not vanish under a
+//! There the law is linear, with gains K_P + rho/epsilon Q12 and K_D + rho/epsilon Q22: the error does not vanish under a
 //! constant uncertainty, it is bounded.
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};

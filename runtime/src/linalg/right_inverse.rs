@@ -54,6 +54,29 @@ impl<T: RealField + Copy, const M: usize, const N: usize> RightInverse<T, M, N> 
         (Self { q, r }, full_rank)
     }
 
+    /// The factors of [J, lambda I], M x (N + M), of which q is kept but for its last rows: what `solve` gives then is the part in J of the
+    /// least (x, z) with J x + lambda z = v, which is x = J' (J J' + lambda^2 I)^-1 v, and no condition number is squared.
+    fn damped(j: &SMatrix<T, M, N>, lambda: T) -> Self {
+        let (mut q, mut tails) = (j.transpose(), SMatrix::<T, M, M>::from_diagonal_element(lambda));
+        let mut r = SMatrix::<T, M, M>::zeros();
+        for k in 0..M {
+            let (mut v, mut tail): (SVector<T, N>, SVector<T, M>) = (q.column(k).into_owned(), tails.column(k).into_owned());
+            for _ in 0..2 {
+                for i in 0..k {
+                    let along = q.column(i).dot(&v) + tails.column(i).dot(&tail);
+                    r[(i, k)] += along;
+                    v -= q.column(i) * along;
+                    tail -= tails.column(i) * along;
+                }
+            }
+            let rest = v.norm().hypot(tail.norm());
+            r[(k, k)] = rest;
+            q.set_column(k, &(v / rest));
+            tails.set_column(k, &(tail / rest));
+        }
+        Self { q, r }
+    }
+
     /// J+ v: the vector of least norm with J x = v.
     pub fn solve(&self, v: &SVector<T, M>) -> SVector<T, N> {
         // R' y = v, forward.
@@ -165,7 +188,7 @@ impl<T: RealField + Copy> Damping<T> {
         self.threshold
     }
 
-    /// J+ v, damped where w < w_0; `None` only where J or v is not finite.
+    /// J+ v, damped where w < w_0; `None` only where J, v or the result is not finite.
     pub fn solve<const M: usize, const N: usize>(&self, j: &SMatrix<T, M, N>, v: &SVector<T, M>) -> Option<Solution<T, N>> {
         let (factors, full_rank) = RightInverse::factor(j);
         let w = if full_rank { factors.volume() } else { T::zero() };
@@ -173,11 +196,7 @@ impl<T: RealField + Copy> Damping<T> {
             return Some(Solution { x: factors.solve(v), damped: false });
         }
         let lambda = self.factor * (T::one() - w / self.threshold);
-        let mut gram = j * j.transpose();
-        for i in 0..M {
-            gram[(i, i)] += lambda * lambda;
-        }
-        let x = j.tr_mul(&gram.cholesky()?.solve(v));
+        let x = RightInverse::damped(j, lambda).solve(v);
         super::is_finite(&x).then_some(Solution { x, damped: true })
     }
 }
@@ -185,7 +204,7 @@ impl<T: RealField + Copy> Damping<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Matrix2x3, Vector2};
+    use nalgebra::{Matrix2, Matrix2x3, Vector2};
 
     #[test]
     fn solves_with_least_norm_and_projects_on_the_null_space() {
@@ -219,6 +238,28 @@ mod tests {
             let lambda = 0.05 * (1.0 - f64::min(w, 0.1) / 0.1);
             assert!(!s.damped || s.x.norm() <= v.norm() / (2.0 * lambda));
         }
+        // By the normal equations, where these have digits to spare.
+        let j = Matrix2x3::new(1.0, 2.0, 3.0, 1.0, 2.0, 3.1);
+        let gram: Matrix2<f64> = j * j.transpose();
+        let (w, damping) = (gram.determinant().sqrt(), Damping::below(1.0).at_most(0.2).unwrap());
+        let lambda = 0.2 * (1.0 - w);
+        let expected = j.transpose() * (gram + Matrix2::from_diagonal_element(lambda * lambda)).try_inverse().unwrap() * v;
+        assert!((damping.solve(&j, &v).unwrap().x - expected).norm() < 1e-12 * expected.norm());
         assert!(damping.solve(&Matrix2x3::new(f64::NAN, 0.0, 0.0, 0.0, 1.0, 0.0), &v).is_none());
+    }
+
+    #[test]
+    fn the_weakest_damping_has_a_solution() {
+        // Dependent rows: J J' + lambda^2 I is singular to rounding. Here sigma_1^2 = 10, and along u_2 nothing is asked.
+        let j = Matrix2x3::new(1.0, 0.0, 0.0, 3.0, 0.0, 0.0);
+        for lambda in [1e-3, 1e-6, 1e-9, 1e-12, 1e-15f64] {
+            let damping = Damping::below(1e-3).at_most(lambda).unwrap();
+            let s = damping.solve(&j, &Vector2::new(1.0, 3.0)).unwrap();
+            assert!(
+                s.damped && (s.x - nalgebra::Vector3::x() * (10.0 / (10.0 + lambda * lambda))).norm() < 1e-14,
+                "{lambda}: {}",
+                s.x
+            );
+        }
     }
 }

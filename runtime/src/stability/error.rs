@@ -27,6 +27,11 @@ pub enum StabilityError {
     },
     /// The motion has no sample.
     NoSample,
+    /// The law has no reference for this sample of the motion (counted from 0).
+    NoReference {
+        /// Index of the sample.
+        sample: usize,
+    },
 }
 
 messages! { StabilityError,
@@ -37,4 +42,5 @@ messages! { StabilityError,
     StabilityError::NoPosture => "there is no posture";
     StabilityError::SingularAtSample { sample } => "the controller's law is singular at sample {} (from 0) of the motion", sample;
     StabilityError::NoSample => "the motion has no sample";
+    StabilityError::NoReference { sample } => "the law has no reference for sample {} (from 0) of the motion", sample;
 }

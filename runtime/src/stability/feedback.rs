@@ -8,6 +8,7 @@ use super::{difference::derivative, rest::rest};
 use crate::{
     control::{Adaptive, InverseDynamics, OperationalSpace, PdGravity, Robust},
     linalg::{lit, RightInverse},
+    reference::Pose,
     robot::{Dynamics, Regressor},
 };
 use nalgebra::{DMatrix, RealField, SMatrix, SVector};
@@ -15,15 +16,15 @@ use nalgebra::{DMatrix, RealField, SMatrix, SVector};
 /// A linear feedback with states m of the controller (estimate or integral).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback<T, const N: usize> {
-    /// K_q = du/dq.
+    /// K_q = du/dq, N m/rad or N/m.
     pub position: SMatrix<T, N, N>,
-    /// K_v = du/dv, v the rates.
+    /// K_v = du/dv, v the rates, N m s/rad or N s/m.
     pub velocity: SMatrix<T, N, N>,
-    /// L = du/dm, `N` rows, one column for each state of the controller.
+    /// L = du/dm, `N` rows, one column for each state of the controller; N m or N per unit of the state.
     pub torque_by_state: DMatrix<T>,
-    /// E_q, one row for each state of the controller.
+    /// E_q of dm/dt, one row for each state of the controller; its unit, per s and per rad or m.
     pub state_by_position: DMatrix<T>,
-    /// E_v, one row for each state of the controller.
+    /// E_v of dm/dt, one row for each state of the controller; its unit, per rad or m.
     pub state_by_velocity: DMatrix<T>,
 }
 
@@ -42,7 +43,7 @@ impl<T: RealField + Copy, const N: usize> Feedback<T, N> {
 /// A law where the arm rests under it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest<T, const N: usize> {
-    /// Where it rests; the reference itself where there is no such posture.
+    /// Where it rests, rad or m; the reference itself where there is no such posture.
     pub q: SVector<T, N>,
     /// Whether it can rest: the error that makes up for the model does not grow without bound on the way to the plant.
     pub is_held: bool,
@@ -58,20 +59,22 @@ pub trait Linearise<R: Dynamics<N>, const N: usize> {
 
 /// A controller that can be linearised where the arm can rest under it.
 ///
-/// Rest asks the torque of the plant's gravity: estimates are then the parameters of the plant (the bound of their projection where that
-/// excludes them; frozen ones stay), integrals are what makes up for the model, and a law with neither rests off its reference.
+/// Rest asks the torque of the plant's gravity and of what its friction is at rest, its offset: estimates are then the parameters of the
+/// plant (the bound of their projection where that excludes them; frozen ones stay), integrals are what makes up for the model, and a law
+/// with neither, or a row of it, rests off its reference. Coulomb friction, which holds an arm at any posture nearby, counts as none.
 pub trait LineariseAtRest<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>: Linearise<R, N> {
     /// Its feedback about rest under the reference `q`; `None` where the law is singular.
     fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>>;
 }
 
-/// y = B_m^-1 (g - g_m), `m` for the model: the acceleration that the law must add at rest for the plant's gravity g.
-fn offset<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
+/// g + F(0) - g_m - F_m(0), `m` for the model: the torque at rest that a law by inverse dynamics must add. F(0) is the offset of friction.
+fn lack<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
     plant: &P,
     model: &R,
     q: &SVector<R::Real, N>,
-) -> Option<SVector<R::Real, N>> {
-    Some(model.inertia_matrix(q).cholesky()?.solve(&(plant.gravity(q) - model.gravity(q))))
+) -> SVector<R::Real, N> {
+    let still = SVector::zeros();
+    plant.gravity(q) - model.gravity(q) + (plant.friction(&still) - model.friction(&still))
 }
 
 /// A rate, rad/s or m/s, beyond the Stribeck velocity of any joint: measured ones are below 1.
@@ -115,31 +118,38 @@ fn inverse_dynamics<R: Dynamics<N>, const N: usize>(
     Feedback::without_state(dg - b * k_p, viscous(model) - b * k_d)
 }
 
-/// Where a law rests whose torque at rest is g^ + `held`, and its feedback there.
-fn rest_off<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize>(
-    plant: &P,
-    model: &R,
-    reference: &SVector<R::Real, N>,
-    held: impl Fn(&SVector<R::Real, N>) -> SVector<R::Real, N>,
-    feedback: impl Fn(&SVector<R::Real, N>) -> Feedback<R::Real, N>,
-) -> Rest<R::Real, N> {
-    let found = rest(reference, held, |q| plant.gravity(q) - model.gravity(q));
+/// Where a law rests that adds the torque `held` to the model's, which lacks the torque `lack`, and its feedback there.
+fn rest_off<T: RealField + Copy, const N: usize>(
+    reference: &SVector<T, N>,
+    held: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+    lack: impl Fn(&SVector<T, N>) -> SVector<T, N>,
+    feedback: impl Fn(&SVector<T, N>) -> Feedback<T, N>,
+) -> Rest<T, N> {
+    let found = rest(reference, held, lack);
     let q = found.unwrap_or(*reference);
     Rest { q, is_held: found.is_some(), feedback: feedback(&q) }
 }
 
 impl<R: Dynamics<N>, const N: usize> Linearise<R, N> for PdGravity<R::Real, N> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        Some(self.about(model, q))
+    }
+}
+
+impl<T: RealField + Copy, const N: usize> PdGravity<T, N> {
+    /// The feedback at rest at `q`, whatever the reference.
+    fn about<R: Dynamics<N, Real = T>>(&self, model: &R, q: &SVector<T, N>) -> Feedback<T, N> {
         let dg = derivative(q, |q| model.gravity(q));
-        Some(Feedback::without_state(dg - SMatrix::from_diagonal(&self.k_p), -SMatrix::from_diagonal(&self.k_d)))
+        Feedback::without_state(dg - SMatrix::from_diagonal(&self.k_p), -SMatrix::from_diagonal(&self.k_d))
     }
 }
 
 impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAtRest<P, R, N> for PdGravity<R::Real, N> {
     fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
-        let feedback = self.linearise(model, reference)?;
         let held = |q: &SVector<R::Real, N>| self.k_p.component_mul(&(reference - q));
-        Some(rest_off(plant, model, reference, held, |q| self.linearise(model, q).unwrap_or_else(|| feedback.clone())))
+        // The law has gravity of its model, and no friction.
+        let lack = |q: &SVector<R::Real, N>| plant.gravity(q) + plant.friction(&SVector::zeros()) - model.gravity(q);
+        Some(rest_off(reference, held, lack, |q| self.about(model, q)))
     }
 }
 
@@ -160,7 +170,7 @@ impl<T: RealField + Copy, const N: usize> InverseDynamics<T, N> {
 impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAtRest<P, R, N> for InverseDynamics<R::Real, N> {
     fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
         let held = |q: &SVector<R::Real, N>| model.inertia_matrix(q) * self.k_p.component_mul(&(reference - q));
-        Some(rest_off(plant, model, reference, held, |q| self.about(model, q, &(reference - q))))
+        Some(rest_off(reference, held, |q| lack(plant, model, q), |q| self.about(model, q, &(reference - q))))
     }
 }
 
@@ -195,7 +205,7 @@ impl<T: RealField + Copy, const N: usize> Robust<T, N> {
 impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAtRest<P, R, N> for Robust<R::Real, N> {
     fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
         let held = |q: &SVector<R::Real, N>| model.inertia_matrix(q) * self.at_rest(&(reference - q)).0;
-        Some(rest_off(plant, model, reference, held, |q| self.about(model, q, &(reference - q))))
+        Some(rest_off(reference, held, |q| lack(plant, model, q), |q| self.about(model, q, &(reference - q))))
     }
 }
 
@@ -262,14 +272,14 @@ fn excited<T: RealField + Copy, const N: usize>(g: &SMatrix<T, N, N>) -> DMatrix
     DMatrix::from_fn(N, columns.len(), |i, j| columns[j][i])
 }
 
-/// y = J^+ (-K_P J δq - K_D J δv + K_I int) + (I - J^+ J)(-K_N δq - D_N δv), u = B y + F δv + dg/dq δq; the rows with an integral are
-/// states of the controller, dm/dt = -J δq. The posture of the null space counts as that of the linearisation.
+/// y = J* (-K_P J δq - K_D J δv + K_I int) + (I - J* J)(-K_N δq - D_N δv), u = B y + F δv + dg/dq δq, with J* the inverse that the law has
+/// there, damped or not; the rows with an integral are states of the controller, dm/dt = -J δq. The posture of the null space counts as
+/// that of the linearisation.
 impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for OperationalSpace<R::Real, N, M> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
         let j = self.task.jacobian(&model.geometric_jacobian(q));
-        let inverse = RightInverse::new(&j)?.matrix();
         let b = model.inertia_matrix(q);
-        let gain = b * inverse;
+        let gain = b * self.inverse(&j)?;
         let dg = derivative(q, |q| model.gravity(q));
         let mut position = dg - gain * rows_scaled(&self.k_p, &j);
         let mut velocity = viscous(model) - gain * rows_scaled(&self.k_d, &j);
@@ -289,20 +299,89 @@ impl<R: Dynamics<N>, const N: usize, const M: usize> Linearise<R, N> for Operati
     }
 }
 
-/// At rest B^ J^+ K_I int holds the arm, J^+ K_I int = y; it joins the derivative by q. Rows without an integral count as held, too.
+impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N, M> {
+    /// J*, the inverse of the law at the Jacobian `j` of its rows: J+, or the damped one where damping is at work.
+    fn inverse(&self, j: &SMatrix<T, M, N>) -> Option<SMatrix<T, N, M>> {
+        let Some(damping) = &self.damping else { return Some(RightInverse::new(j)?.matrix()) };
+        let mut inverse = SMatrix::<T, N, M>::zeros();
+        for i in 0..M {
+            let mut unit = SVector::<T, M>::zeros();
+            unit[i] = T::one();
+            inverse.set_column(i, &damping.solve(j, &unit)?.x);
+        }
+        Some(inverse)
+    }
+
+    /// At rest at `q` under `reference`: J+ and the errors e of the rows, y_0 of the null space, and the a with J* (a - J y_0) + y_0 = y, as
+    /// far as rows of J can give y: a = (J J*)^-1 J (y - y_0) + J y_0. `None` where the posture is singular.
+    fn at_rest<R: Dynamics<N, Real = T>>(
+        &self,
+        model: &R,
+        reference: &SVector<T, N>,
+        q: &SVector<T, N>,
+        y: &SVector<T, N>,
+    ) -> Option<AtRest<T, N, M>> {
+        let j = self.task.jacobian(&model.geometric_jacobian(q));
+        let inverse = RightInverse::new(&j)?;
+        let e = self.task.error(&Pose::of(model, reference), &Pose::of(model, q));
+        let y_0 = self.null_space.map_or_else(SVector::zeros, |n| n.gains().0.component_mul(&(reference - q)));
+        let through = j * self.inverse(&j)?;
+        let a = RightInverse::new(&through)?.solve(&(j * (y - y_0))) + j * y_0;
+        Some(AtRest { inverse, e, y_0, a })
+    }
+}
+
+struct AtRest<T, const N: usize, const M: usize> {
+    inverse: RightInverse<T, M, N>,
+    e: SVector<T, M>,
+    y_0: SVector<T, N>,
+    a: SVector<T, M>,
+}
+
+/// At rest a = K_P e + K_I int, with e = 0 in rows with an integral and int = 0 in the others, has to give the acceleration
+/// y = B^-1 lack together with y_0: in the rows K_P e = a but where there is an integral, beside them (I - J+ J)(y_0 - y) = 0. Both, joined by
+/// J+ and times B, are the torque held and lacking. At a singular posture the arm is held only where the model lacks nothing.
 impl<P, R, const N: usize, const M: usize> LineariseAtRest<P, R, N> for OperationalSpace<R::Real, N, M>
 where
     P: Dynamics<N>,
     R: Dynamics<N, Real = P::Real>,
 {
-    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
-        let mut feedback = self.linearise(model, q)?;
-        let a = self.task.jacobian(&model.geometric_jacobian(q)) * offset(plant, model, q)?;
-        let torque = |q: &SVector<R::Real, N>| {
-            let inverse = RightInverse::new(&self.task.jacobian(&model.geometric_jacobian(q)));
-            inverse.map_or_else(SVector::zeros, |inverse| model.inertia_matrix(q) * inverse.solve(&a))
+    fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        let mut feedback = self.linearise(model, reference)?;
+        let missing = |q: &SVector<R::Real, N>| Some(model.inertia_matrix(q).cholesky()?.solve(&lack(plant, model, q)));
+        if lack(plant, model, reference).amax() == nalgebra::zero() {
+            return Some(Rest { q: *reference, is_held: true, feedback });
+        }
+        // What is not a number is no posture.
+        let nowhere = SVector::repeat(nalgebra::zero::<R::Real>() / nalgebra::zero());
+        let torque = |q: &SVector<R::Real, N>, y: SVector<R::Real, N>, held: bool| {
+            let torque = self.at_rest(model, reference, q, &y).map(|rest| {
+                let without_integral = |i: usize| if self.k_i[i] > nalgebra::zero() { nalgebra::zero() } else { rest.a[i] };
+                let (rows, beside) = if held {
+                    (self.k_p.component_mul(&rest.e), rest.y_0)
+                } else {
+                    (SVector::from_fn(|i, _| without_integral(i)), y)
+                };
+                model.inertia_matrix(q) * (rest.inverse.solve(&rows) + rest.inverse.null_space(&beside))
+            });
+            torque.unwrap_or(nowhere)
         };
-        feedback.position += derivative(q, torque);
-        Some(Rest { q: *q, is_held: true, feedback })
+        let nothing = SVector::zeros();
+        let held = |q: &SVector<R::Real, N>| torque(q, nothing, true) - torque(q, nothing, false);
+        let lacking = |q: &SVector<R::Real, N>| missing(q).map_or(nowhere, |y| torque(q, y, false) - torque(q, nothing, false));
+        let found = rest(reference, held, lacking);
+        let q = found.unwrap_or(*reference);
+        if found.is_some() {
+            feedback = self.linearise(model, &q)?;
+        }
+        // What holds the arm joins the derivative by q.
+        if let Some(AtRest { a, y_0, .. }) = missing(&q).and_then(|y| self.at_rest(model, reference, &q, &y)) {
+            feedback.position += derivative(&q, |q| {
+                let j = self.task.jacobian(&model.geometric_jacobian(q));
+                let y = self.inverse(&j).map(|inverse| inverse * (a - j * y_0) + y_0);
+                y.map_or_else(SVector::zeros, |y| model.inertia_matrix(q) * y)
+            });
+        }
+        Some(Rest { q, is_held: found.is_some(), feedback })
     }
 }

@@ -52,7 +52,7 @@ pub trait LineariseInMotion<P, R: Dynamics<N>, const N: usize>: Controller<R, N>
         Vec::new()
     }
 
-    /// The same with this controller state.
+    /// The same with this controller state; what it has too few of stays as it is.
     #[must_use]
     fn with_controller_state(&self, _: &[R::Real]) -> Self {
         self.clone()
@@ -111,7 +111,7 @@ where
     }
 
     fn with_controller_state(&self, controller_state: &[R::Real]) -> Self {
-        Self { estimate: SVector::from_column_slice(controller_state), ..*self }
+        Self { estimate: state_or(&self.estimate, controller_state), ..*self }
     }
 }
 
@@ -135,8 +135,13 @@ impl<P, R: Dynamics<N>, const N: usize, const M: usize> LineariseInMotion<P, R, 
     }
 
     fn with_controller_state(&self, controller_state: &[R::Real]) -> Self {
-        Self { integral: SVector::from_column_slice(controller_state), ..*self }
+        Self { integral: state_or(&self.integral, controller_state), ..*self }
     }
+}
+
+/// The values of a controller state, and the present ones where there are too few.
+fn state_or<T: RealField + Copy, const K: usize>(present: &SVector<T, K>, state: &[T]) -> SVector<T, K> {
+    SVector::from_fn(|i, _| state.get(i).copied().unwrap_or(present[i]))
 }
 
 /// How much small deviations grow on a motion.
@@ -231,6 +236,7 @@ where
     ///
     /// # Errors
     /// [`StabilityError::NoSample`] without a sample, [`StabilityError::Period`] where the period is not positive and finite,
+    /// [`StabilityError::NoReference`] where there are fewer references than joints' samples,
     /// [`StabilityError::SingularAtSample`] with the number of the sample at which the law is singular on the reference.
     pub fn of<R, C>(&self, model: &R, controller: &C, references: &[C::Reference]) -> Result<MotionReport<T>, StabilityError>
     where
@@ -241,6 +247,9 @@ where
             return Err(StabilityError::Period);
         }
         let first = references.first().and(self.joints.first()).ok_or(StabilityError::NoSample)?;
+        if references.len() < self.joints.len() {
+            return Err(StabilityError::NoReference { sample: references.len() });
+        }
         let law = |controller: &C, k: usize, measured: &State<T, N>, controller_state: &[T]| {
             let mut controller = controller.with_controller_state(controller_state);
             let torque = controller.torque(model, references.get(k)?, measured).ok()?;

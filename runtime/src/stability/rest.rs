@@ -3,10 +3,10 @@
 //! Such a law holds a model that is wrong by its error alone: it rests at q with e = q_d - q where
 //!
 //! ```text
-//! u(q_d; q) - u(q; q) = λ (g(q) - u(q; q))    at λ = 1
+//! u(q_d; q) - u(q; q) = λ (g(q) + F(0) - u(q; q))    at λ = 1
 //! ```
 //!
-//! u(q_d; q) is the torque at rest at q under the reference q_d, so u(q; q) what the model takes for gravity. At λ = 0 the arm rests on its
+//! u(q_d; q) is the torque at rest at q under the reference q_d, so u(q; q) what the model takes for gravity and the offset F(0) of friction. At λ = 0 the arm rests on its
 //! reference; from there the posture is followed to λ = 1 by Newton's method, in steps as short as the way asks for. The loop is
 //! linearised where this ends: with small gains that may be far from the reference, and a load seen there is another one.
 
