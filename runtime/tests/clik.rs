@@ -277,6 +277,37 @@ fn an_approach_ends_at_a_goal_within_reach_whatever_its_gain() {
     assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
 }
 
+/// From postures to the poses of others: all are reached where the scalar has the digits, and none is called out of reach where rounding
+/// keeps a small gain from its tolerance.
+#[test]
+fn no_goal_within_reach_is_called_out_of_reach() {
+    fn outcomes<T: nalgebra::RealField + Copy>([k, period, rate, tolerance]: [f64; 4]) -> Vec<Outcome> {
+        let c = |x: f64| nalgebra::convert::<f64, T>(x);
+        let robot = Scara::<T>::nominal();
+        let law = DampedLeastSquares::new([c(k); 4], Damping::below(c(0.03)).at_most(c(0.1)).unwrap()).unwrap();
+        let limits = JointLimits::rates([c(rate); 4]).unwrap();
+        let clik = Clik::new(ghost::task(), law, c(period), limits, [c(tolerance); 4]).unwrap();
+        (1..=30)
+            .map(|n| {
+                // Spread evenly by multiples of irrational numbers.
+                let r = |square: f64, from: f64, to: f64| c(from + (to - from) * (f64::from(n) * square.sqrt()).fract());
+                let goal = vector![r(2.0, -3.0, 3.0), r(3.0, 0.3, 2.6), r(5.0, 0.0, 0.4), r(6.0, -3.0, 3.0)];
+                let start = vector![r(7.0, -3.0, 3.0), r(10.0, -2.5, 2.5), r(11.0, 0.0, 0.4), r(13.0, -3.0, 3.0)];
+                clik.approach(&robot, &start, &Pose::of(&robot, &goal), 50_000).unwrap().outcome
+            })
+            .collect()
+    }
+    for setting in [[150.0, 1e-3, 1e4, 1e-5], [20.0, 1e-3, 3.0, 1e-5], [5.0, 1e-3, 100.0, 1e-5], [1.0, 1e-3, 1e6, 1e-4]] {
+        assert!(outcomes::<f64>(setting).iter().all(|outcome| *outcome == Outcome::Converged), "{setting:?}");
+        let single = outcomes::<f32>(setting);
+        assert!(
+            single.iter().all(|outcome| matches!(outcome, Outcome::Converged | Outcome::OutOfSteps)),
+            "{setting:?} {single:?}"
+        );
+    }
+    assert!(outcomes::<f32>([150.0, 1e-3, 1e4, 1e-5]).iter().all(|outcome| *outcome == Outcome::Converged));
+}
+
 /// Where one joint is stopped the rate of another one stays what was asked, within its limit.
 #[test]
 fn a_stopped_joint_leaves_the_rates_of_the_others() {

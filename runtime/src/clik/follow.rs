@@ -139,9 +139,10 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
     /// used up.
     ///
     /// The arm is at rest where a step that no rate limit slowed down changes the error by a millionth of it at most, or by no more than
-    /// rounding does: whatever the limits are, but T_s K has to be well above a millionth. An arm can rest in a singular posture with the
-    /// goal in line with it, within reach, and see no way there. So where it comes to rest without a joint limit in its way it is moved
-    /// aside, each time, by 0.01 rad or m in each joint; if it then comes to rest no nearer, the goal is out of reach.
+    /// rounding does, and where a joint limit is in its way or the error points where it cannot move. It can rest in a singular posture with
+    /// the goal in line with it, within reach, and see no way there. So where it comes to rest without a joint limit in its way it is moved
+    /// aside, each time, by 0.01 rad or m in each joint; if it then comes to rest no nearer, the goal is out of reach. A tolerance that the
+    /// rounding of q += T_s dq does not let a small gain come to, in single precision above all, uses up the steps.
     ///
     /// # Errors
     /// Those of [`Clik::step`].
@@ -169,7 +170,11 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
                 return reached(Outcome::Converged);
             }
             let distance = step.error.norm();
-            let rests = |last: &Step<T, N, M>| (step.error - last.error).norm() <= rounding.max(last.error.norm() * lit(1e-6));
+            let rests = |last: &Step<T, N, M>| {
+                (step.error - last.error).norm() <= rounding.max(last.error.norm() * lit(1e-6))
+                    && (matches!(last.outcome, Outcome::JointLimit { .. })
+                        || points_out(&self.task.jacobian(&robot.geometric_jacobian(&q)), &step.error))
+            };
             let Some(rested) = last.filter(rests) else {
                 q = step.q;
                 let stands = step.dq.iter().zip(self.limits.rate().iter()).all(|(dq, rate)| dq.abs() <= *rate * lit(1e-6));

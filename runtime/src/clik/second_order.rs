@@ -90,6 +90,9 @@ impl<T: RealField + Copy, const N: usize, const M: usize> SecondOrder<T, N, M> {
     }
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
+    ///
+    /// While damping is at work I - J* J is no projector, and null-space damping disturbs the task, by lambda/2 times its size at most,
+    /// lambda that of [`Damping`].
     #[must_use]
     pub fn with_damping(self, damping: Damping<T>) -> Self {
         Self { damping: Some(damping), ..self }
