@@ -9,19 +9,36 @@ import { eigen } from "./linear.mjs";
 
 /** @typedef {{name: string, frame: number | "e", mass: number, com: number[], inertia: number[]}} Body */
 
+/** The orders of three things, those that turn them before those that exchange two. */
+const ORDERS = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [2, 1, 0], [0, 2, 1]];
+
 /**
- * The cuboid: the squares of its edges, its edges, and its frame in that of its carrier; none without mass.
+ * Which principal axis is at each axis of the frame: the order in which they are nearest to these altogether.
+ *
+ * @param {number[][]} vectors the principal axes, as columns
+ */
+function nearest(vectors) {
+    const fit = (order) => order.reduce((sum, k, axis) => sum + Math.abs(vectors[axis][k]), 0);
+    return ORDERS.reduce((best, order) => (fit(order) > fit(best) + 1e-9 ? order : best));
+}
+
+/**
+ * The cuboid: its edges, each at the axis of its carrier's frame that it is nearest to, and its frame in that of its carrier; none without
+ * mass.
  *
  * @param {Body} body
  */
 export function cuboid(body) {
     const [xx, xy, yy, xz, yz, zz] = body.inertia;
     if (!(body.mass > 0)) return null;
-    const { values, vectors } = eigen([
+    const principal = eigen([
         [xx, xy, xz],
         [xy, yy, yz],
         [xz, yz, zz],
     ]);
+    const order = nearest(principal.vectors);
+    const values = order.map((k) => principal.values[k]);
+    const vectors = principal.vectors.map((row) => order.map((k) => row[k]));
     const sum = values[0] + values[1] + values[2];
     const squares = values.map((value) => (6 * (sum - 2 * value)) / body.mass);
     // Rounding of a rod or a plate is no fault of the tensor.

@@ -134,7 +134,7 @@ function bodyTable(data) {
         const words = said.map((message) => html("p", { class: "warning" }, html("strong", {}, "Warning"), ": ", ...message.split("\u0060").map((part, k) => (k % 2 ? html("code", {}, part) : part))));
         return [row, html("tr", { class: "said" }, html("td", { colspan: columns.length }, ...words))];
     });
-    const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia", html("span", { class: "keys" }, "; tick “bodies” to see them on the arm"));
+    const caption = html("caption", {}, "Each body as the cuboid of even density that has its inertia; its edges are listed by the axis of the frame, x, y, z, that each is nearest to", html("span", { class: "keys" }, "; tick “bodies” to see them on the arm"));
     const table = html("table", { class: "bodies" }, caption, html("thead", {}, head), html("tbody", {}, ...rows));
     return html("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Bodies" }, table);
 }

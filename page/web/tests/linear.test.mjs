@@ -8,6 +8,26 @@ import { axesAtLine, dependentAxes } from "../dependent_axes.mjs";
 
 const near = (a, b) => assert.ok(Math.abs(a - b) < 1e-12 * Math.max(1, Math.abs(b)), `${a} is not ${b}`);
 
+/** Edges a, b, c and mass m have the moments m (b² + c²)/12 and so on, whatever axes they lie along. */
+test("the edges of a cuboid stand in the order of the axes of the frame", () => {
+    const [a, b, c] = [0.14, 0.19, 0.15];
+    const [x, y, z] = [b * b + c * c, c * c + a * a, a * a + b * b].map((sum) => sum / 4);
+    const body = (inertia) => ({ name: "body", frame: 1, mass: 3, com: [0, 0, 0], inertia });
+    const edges = (inertia) => cuboid(body(inertia)).edges.map((edge) => Number(edge.toFixed(9)));
+    assert.deepEqual(edges([x, 0, y, 0, 0, z]), [a, b, c]);
+    assert.deepEqual(edges([y, 0, z, 0, 0, x]), [b, c, a]);
+    // Turned by a small angle about z, and about x by nearly a right angle, which exchanges the two.
+    const turned = (i, j, angle) => [i * Math.cos(angle) ** 2 + j * Math.sin(angle) ** 2, (i - j) * Math.cos(angle) * Math.sin(angle), i * Math.sin(angle) ** 2 + j * Math.cos(angle) ** 2];
+    const [xx, xy, yy] = turned(x, y, 0.2);
+    assert.deepEqual(edges([xx, xy, yy, 0, 0, z]), [a, b, c]);
+    const [ss, st, tt] = turned(y, z, 1.4);
+    assert.deepEqual(edges([x, 0, ss, 0, st, tt]), [a, c, b]);
+    // The frame is right-handed, and takes the moments along the edges to the tensor.
+    const { frame } = cuboid(body([x, 0, ss, 0, st, tt]));
+    near(determinant(frame.map((row) => row.slice(0, 3))), 1);
+    [[x, 0, 0], [0, ss, st], [0, st, tt]].forEach((row, i) => row.forEach((value, j) => near([x, z, y].reduce((sum, moment, k) => sum + moment * frame[i][k] * frame[j][k], 0), value)));
+});
+
 test("a symmetric matrix is its eigenvalues and eigenvectors", () => {
     const a = [
         [4, 1, -2],
