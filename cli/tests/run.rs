@@ -120,6 +120,31 @@ fn an_experiment_for_another_robot_is_skipped_and_said_to_be() {
     assert!(out(&output).contains("demonstration.svg"), "{}", out(&output));
 }
 
+/// The help's example is all files of a folder; paths stand there as well.
+#[test]
+fn a_path_is_no_experiment_and_no_file_that_is_read_is_written_over() {
+    let folder = folder("run_with_path");
+    let own = for_the_built_robot(&folder, "own.yaml", 0.0);
+    let path = folder.join("path.yaml");
+    fs::write(&path, "start: [0, 0, 0]\nsegments:\n  - {line: [0.1, 0, 0], duration: 1}\n").expect("a file");
+    let output = run(&folder, &[&own, &path]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(err(&output).contains("path.yaml skipped: a path, which experiments name"), "{}", err(&output));
+    let output = run(&folder, &[&path]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(err(&output).contains("path.yaml is a path, not an experiment"), "{}", err(&output));
+    // A figure of `own` is called as the log of `own_postures`; as a file it may be read, too.
+    let out = folder.join("again");
+    fs::create_dir_all(&out).expect("a folder");
+    let input = for_the_built_robot(&out, "own_postures.svg", 0.0);
+    let before = fs::read(&input).expect("the file");
+    let mut program = Command::new(env!("CARGO_BIN_EXE_armgen"));
+    let output = program.arg("run").args([&own, &input]).arg("--out").arg(&out).output().expect("the program runs");
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(err(&output).contains("own_postures.svg is not written"), "{}", err(&output));
+    assert_eq!(fs::read(&input).expect("still there"), before);
+}
+
 #[test]
 fn no_experiment_writes_over_the_files_of_another() {
     let folder = folder("run_twins");

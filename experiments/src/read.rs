@@ -46,6 +46,8 @@ pub enum Parsed {
     Experiment(Box<Experiment>),
     /// It is for this robot, another one.
     OtherRobot(String),
+    /// It is a path, which experiments name.
+    Path,
     /// It is faulty: each text, its own or that of its path, with what is wrong in it.
     Faulty(Vec<(Source, Diagnostics)>),
 }
@@ -67,6 +69,8 @@ pub fn experiment(file: &Path, source: &Source, robot: &Robot, open: Open<'_>) -
                 "a key of robot descriptions",
                 "`armgen run` moves the robot that it was built with: put this text into robot.yaml, rebuild, and run it without a file",
             );
+        } else if is_path(root) {
+            return Parsed::Path;
         } else if let Some(other) = other_robot(root, robot) {
             return Parsed::OtherRobot(other);
         } else {
@@ -97,6 +101,13 @@ struct Paths<'p> {
 fn key_of_a_robot(root: &Node) -> Option<Span> {
     let Kind::Mapping(entries) = &root.kind else { return None };
     entries.iter().find(|(key, _)| ["joints", "convention"].contains(&key.value.as_str())).map(|(key, _)| key.span)
+}
+
+/// Whether it is the text of a path, which experiments name.
+fn is_path(root: &Node) -> bool {
+    let Kind::Mapping(entries) = &root.kind else { return false };
+    let has = |name: &str| entries.iter().any(|(key, _)| key.value == name);
+    has("segments") && !has("robot") && !has("expect")
 }
 
 fn other_robot(root: &Node, robot: &Robot) -> Option<String> {

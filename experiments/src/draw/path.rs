@@ -43,7 +43,7 @@ pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option
         stroke: WIDE,
     });
     let mut panels = 2;
-    let mut depth = Panel::over_time("error of the height", "z − z_d", "m");
+    let mut depth = Panel::over_time("error of the height", "z_d − z", "m");
     if let Some(traced) = traced {
         let [x, y, z] = [0, 1, 2].map(|axis| record.values(Quantity::Tip(axis)));
         let points: Vec<(f64, f64)> = x.into_iter().zip(y).collect();
@@ -59,7 +59,7 @@ pub(super) fn plan(title: &str, motion: &Motion, record: &Record, traced: Option
                 stroke: Stroke { width: 1.0, dash: "2 3", ..style(0) },
             });
         }
-        let missed = z.iter().zip(&along).map(|(z, z_d)| z - z_d);
+        let missed = z.iter().zip(&along).map(|(z, z_d)| z_d - z);
         depth.add("", time.iter().copied().zip(missed).collect());
         panels = 3;
         height.series.push(Series { name: traced.into(), points: time.iter().copied().zip(z).collect(), stroke: style(0) });

@@ -3,7 +3,7 @@
 armgen_codegen::codes! {
     /// Kinds of faults of experiments and paths.
     pub enum Code {
-        /// The file describes a robot.
+        /// The file describes a robot, or is an experiment where a path is asked for.
         WrongFile Error "wrong-file",
         /// The file with the path cannot be read.
         UnreadablePath Error "unreadable-path",

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use armgen_codegen::diagnostic::{Code as Shared, Diagnostics};
 use armgen_codegen::document::reader::{self, first_key, optional, required, Fields};
-use armgen_codegen::document::yaml::{self, Node};
+use armgen_codegen::document::yaml::{self, Kind, Node};
 use armgen_codegen::source::{Source, Span};
 use armgen_runtime::nalgebra::Matrix3;
 use armgen_runtime::trajectory::{OperationalTrajectory, OrientationProfile, Path, PlanError, PlanFault, Segment, TimeLaw, Turn};
@@ -27,9 +27,22 @@ pub fn motion(source: &Source) -> Result<Motion, Diagnostics> {
     let root = yaml::read(source, &mut diagnostics);
     let mut reader = Reader { document: reader::Reader::new(&mut diagnostics), robot: &robot };
     let root = reader.document.root(source, root.as_ref(), "a path", "begin with `start: [x, y, z]` and `segments:`");
-    let motion = root.and_then(|root| reader.motion(root));
+    let motion = match root.and_then(key_of_an_experiment) {
+        None => root.and_then(|root| reader.motion(root)),
+        Some(place) => {
+            let help = "name the file with its `start` and `segments`, which experiments have apart from theirs";
+            reader.report(Code::WrongFile, place, "this is an experiment, not a path", "a key of experiments", help);
+            None
+        }
+    };
     diagnostics.sort();
     motion.filter(|_| !diagnostics.has_errors()).ok_or(diagnostics)
+}
+
+/// The place of a key that only experiments have.
+fn key_of_an_experiment(root: &Node) -> Option<Span> {
+    let Kind::Mapping(entries) = &root.kind else { return None };
+    entries.iter().find(|(key, _)| ["robot", "expect", "path"].contains(&key.value.as_str())).map(|(key, _)| key.span)
 }
 
 /// Why a segment cannot be, in words, and what to do.

@@ -66,11 +66,13 @@ fn every_code_has_a_bad_file() {
 }
 
 #[test]
-fn an_experiment_for_another_robot_is_left_alone() {
+fn an_experiment_for_another_robot_and_a_path_are_left_alone() {
     let arm = armgen_experiment_tests::scara();
     let parse = |text: &str| parse(&folder(), "a.yaml", text, arm.robot());
     let other = parse("robot: someone_else\nanything: 1\n");
     assert!(matches!(&other, Parsed::OtherRobot(robot) if robot == "someone_else"), "{}", said(&other));
+    assert!(matches!(parse(&text_of(&folder(), "paths/line.yaml")), Parsed::Path));
+    assert!(said(&parse("robot: scara\nsegments: []\n")).contains("`segments`"));
     assert!(said(&parse("robot: [\n")).contains("error[yaml-syntax]"));
 }
 

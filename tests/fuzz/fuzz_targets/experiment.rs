@@ -48,7 +48,7 @@ fuzz_target!(|data: &[u8]| {
     let arm = armgen_instance::built();
     match read::experiment(Path::new("fuzzed.yaml"), &Source::new("fuzzed.yaml", text), arm.robot(), &|_| Ok(PATH.to_owned())) {
         Parsed::Experiment(experiment) => run(&experiment, &*arm),
-        Parsed::OtherRobot(_) => {}
+        Parsed::OtherRobot(_) | Parsed::Path => {}
         Parsed::Faulty(faulty) => {
             assert!(!faulty.is_empty());
             for (source, diagnostics) in &faulty {

@@ -4,6 +4,8 @@
 
 mod page;
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -16,22 +18,34 @@ use armgen_experiments::read::{self, Parsed};
 use armgen_experiments::run::Arm;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::output::place;
 use crate::table::{Align, Table};
 use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
 
 /// Runs the experiments for this robot; where there are none, moves it along a demonstration.
 pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
-    let Files { experiments, others, code } = read_all(&named(files), arm.robot());
+    let Files { experiments, others, paths, read, code } = read_all(&named(files), arm.robot());
     let built = &arm.robot().name;
     for (robot, count) in &others {
         let what = input::counted(*count, "experiment");
         terminal::note(&format!("{what} skipped: for the robot `{robot}`, and this program was built with `{built}`"));
     }
+    match paths.as_slice() {
+        [] => {}
+        [path] if experiments.is_empty() && others.is_empty() && code == DONE => {
+            terminal::error(&format!("{} is a path, not an experiment: name the experiment that follows it", path.display()));
+            return FAULTY;
+        }
+        [first, more @ ..] => {
+            let and = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+            terminal::note(&format!("{}{and} skipped: a path, which experiments name", first.display()));
+        }
+    }
     match (experiments.as_slice(), code) {
         // A file that is faulty or absent is the answer; without any there is nothing to run.
         ([], DONE) => demonstrate(arm, out, description),
         ([], code) => code,
-        (experiments, code) => code.max(run_all(experiments, arm, out, description)),
+        (experiments, code) => code.max(run_all(experiments, &read, arm, out, description)),
     }
 }
 
@@ -52,13 +66,22 @@ struct Files {
     experiments: Vec<Experiment>,
     /// Other robots that files are for, and how many.
     others: Vec<(String, usize)>,
+    /// Those that are paths.
+    paths: Vec<PathBuf>,
+    /// Where all that was read is, paths of experiments included.
+    read: BTreeSet<PathBuf>,
     code: u8,
 }
 
 /// Reads all files; what is wrong with one goes to standard error.
 fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
-    let mut all = Files { experiments: Vec::new(), others: Vec::new(), code: DONE };
+    let mut all = Files { experiments: Vec::new(), others: Vec::new(), paths: Vec::new(), read: BTreeSet::new(), code: DONE };
     let mut read: Vec<&PathBuf> = Vec::new();
+    let opened = RefCell::new(BTreeSet::new());
+    let open = |path: &Path| {
+        opened.borrow_mut().insert(place(path));
+        text_of(path)
+    };
     for file in files {
         let source = match input::source(file) {
             Ok(source) => source,
@@ -67,7 +90,7 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
                 continue;
             }
         };
-        match read::experiment(file, &source, robot, &text_of) {
+        match read::experiment(file, &source, robot, &open) {
             Parsed::Experiment(experiment) => match all.experiments.iter().position(|known| known.name == experiment.name) {
                 Some(first) => {
                     let (name, first, second) = (&experiment.name, read[first].display(), file.display());
@@ -85,6 +108,7 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
                 Some((_, count)) => *count += 1,
                 None => all.others.push((robot, 1)),
             },
+            Parsed::Path => all.paths.push(file.clone()),
             Parsed::Faulty(faulty) => {
                 let colour = terminal::colour(&std::io::stderr());
                 for (source, diagnostics) in &faulty {
@@ -96,6 +120,8 @@ fn read_all(files: &[PathBuf], robot: &Robot) -> Files {
             }
         }
     }
+    all.read = opened.into_inner();
+    all.read.extend(files.iter().map(|file| place(file)));
     all
 }
 
@@ -111,7 +137,7 @@ fn text_of(path: &Path) -> std::io::Result<String> {
     input::decoded(bytes).map_err(|fault| std::io::Error::new(std::io::ErrorKind::InvalidData, format!("it {fault}")))
 }
 
-fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
+fn run_all(experiments: &[Experiment], read: &BTreeSet<PathBuf>, arm: &dyn Arm, out: &Path, description: &Source) -> u8 {
     if let Err(error) = std::fs::create_dir_all(out) {
         terminal::error(&format!("cannot create {}: {error}", out.display()));
         return UNREADABLE;
@@ -136,7 +162,18 @@ fn run_all(experiments: &[Experiment], arm: &dyn Arm, out: &Path, description: &
     let groups = campaign::groups(&jobs);
     let drawn = groups.len() + jobs.iter().map(|job| job.figures().len()).sum::<usize>();
     let (mut code, mut written) = (DONE, 0);
+    let mut taken = BTreeSet::from(["index.html".to_owned()]);
     for OutputFile { name, text } in jobs.iter().map(Job::log).chain(jobs.iter().flat_map(Job::figures).cloned()).chain(groups) {
+        // A figure of one experiment may be called as one of another is, `a_trace` and the trace of `a`.
+        if !taken.insert(name.clone()) || read.contains(&place(&out.join(&name))) {
+            let path = out.join(name);
+            terminal::error(&format!(
+                "{} is not written: it would be written over another figure, or over a file that was read; rename the experiment, or run it by itself with another --out",
+                path.display()
+            ));
+            code = code.max(FAULTY);
+            continue;
+        }
         match std::fs::write(out.join(&name), text) {
             Ok(()) => written += 1,
             Err(error) => {

@@ -50,6 +50,7 @@ pub(crate) fn said(parsed: &Parsed) -> String {
     match parsed {
         Parsed::Experiment(_) => "taken".into(),
         Parsed::OtherRobot(robot) => format!("for the robot `{robot}`"),
+        Parsed::Path => "a path".into(),
         Parsed::Faulty(faulty) => faulty.iter().map(|(source, d)| d.render(source, Colour::Never)).collect(),
     }
 }
