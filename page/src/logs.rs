@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use armgen_codegen::document::excerpt;
 use serde_json::{json, Map, Value};
 
 use crate::html::{escape, pack};
@@ -90,8 +91,15 @@ impl Log {
         }
         let mut rows: Vec<Vec<f64>> = Vec::new();
         for (k, line) in lines {
-            let row: Result<Vec<f64>, _> = line.split(',').map(|word| word.trim().parse::<f64>()).collect();
-            let row = row.map_err(|_| format!("line {}: an entry is no number", k + 1))?;
+            let number = |(j, word): (usize, &str)| {
+                let column = names.get(j).map_or_else(|| format!("column {}", j + 1), |name| format!("column `{name}`"));
+                let fault = |_| match word.trim() {
+                    "" => format!("line {}: {column} is empty", k + 1),
+                    word => format!("line {}: `{}` in {column} is no number", k + 1, excerpt(word)),
+                };
+                word.trim().parse::<f64>().map_err(fault)
+            };
+            let row = line.split(',').enumerate().map(number).collect::<Result<Vec<f64>, String>>()?;
             if row.len() != names.len() {
                 return Err(format!("line {}: {} entries, and {} columns have names", k + 1, row.len(), names.len()));
             }
@@ -99,6 +107,9 @@ impl Log {
                 return Err(format!("line {}: the time does not grow", k + 1));
             }
             rows.push(row);
+        }
+        if rows.is_empty() {
+            return Err("the log has no samples, only the names of its columns".into());
         }
         let stride = rows.len().div_ceil(SAMPLES).max(1);
         let last = rows.len().saturating_sub(1);
@@ -255,11 +266,13 @@ mod tests {
         assert_eq!(fault("t,x,x\n"), "two columns are called `x`");
         assert_eq!(fault("t,x\n0,1\n1\n"), "line 3: 1 entries, and 2 columns have names");
         assert_eq!(fault("t,x\n0,1\n0,2\n"), "line 3: the time does not grow");
-        assert_eq!(fault("t,x\n0,one\n"), "line 2: an entry is no number");
+        assert_eq!(fault("t,x\n0,one\n"), "line 2: `one` in column `x` is no number");
+        assert_eq!(fault("t,x\n0,1,\n"), "line 2: column 3 is empty");
+        assert_eq!(fault("t,q_a\n\n"), "the log has no samples, only the names of its columns");
         assert!(fault("").contains("empty"));
         let columns = |count: usize| format!("t{}\n", (1..count).map(|k| format!(",x{k}")).collect::<String>());
         assert!(fault(&columns(4097)).starts_with("4097 columns are more than the 4096 of a page"));
-        assert!(read(&columns(4096)).is_ok());
+        assert!(read(&(columns(4096) + &"1,".repeat(4095) + "1\n")).is_ok());
     }
 
     /// Seconds since 1970, as robots' clocks write them.

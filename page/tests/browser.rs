@@ -73,9 +73,12 @@ fn shown_numbers_have_the_bits_of_rust() {
         shown.push(results);
     }
     let expected = rust::results(&driver::folder("bits"), &moved);
+    assert_eq!(expected.len(), moved.len(), "the program in Rust has results of all robots");
     let mut compared = 0;
     for (((source, _), shown), expected) in moved.iter().zip(&shown).zip(&expected) {
+        assert_eq!(expected.len(), shown.len(), "{}: as many states", source.name());
         for (shown, expected) in shown.iter().zip(expected) {
+            assert!(expected.len() >= 2, "{}: functions in Rust", source.name());
             for (name, values) in expected {
                 let place = format!("{}: {name}", source.name());
                 if name == "link_frames" {
@@ -84,7 +87,9 @@ fn shown_numbers_have_the_bits_of_rust() {
                 }
                 let texts = &shown["quantities"][name];
                 assert!(texts.is_array(), "{place} is not shown");
-                for (k, (ours, theirs)) in numbers(texts).iter().zip(values).enumerate() {
+                let numbers = numbers(texts);
+                assert_eq!(numbers.len(), values.len(), "{place}: as many entries");
+                for (k, (ours, theirs)) in numbers.iter().zip(values).enumerate() {
                     assert_eq!(ours.to_bits(), theirs.to_bits(), "{place}: entry {k} is {ours:e}, in Rust {theirs:e}");
                     compared += 1;
                 }

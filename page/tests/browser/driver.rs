@@ -6,7 +6,9 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::mpsc::{channel, Receiver};
 use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
 use serde_json::{json, Value};
 
@@ -28,11 +30,15 @@ pub(crate) fn program() -> Option<&'static str> {
 /// Browsers that no test uses at the moment: one starts only where all others have a page open. They end with the tests, when their pipes close.
 static IDLE: Mutex<Vec<Browser>> = Mutex::new(Vec::new());
 
+/// What a page is waited for: whatever it does takes a few seconds where the processor is shared, and a script may wait for what never comes.
+const LIMIT: Duration = Duration::from_secs(120);
+
 /// A running browser.
 struct Browser {
     child: Child,
     to: File,
-    from: BufReader<File>,
+    /// Its texts; they end when it does.
+    from: Receiver<Vec<u8>>,
     sent: u64,
     events: Vec<Value>,
 }
@@ -75,7 +81,15 @@ impl Browser {
             .spawn()
             .expect("the browser starts");
         let to = OpenOptions::new().write(true).open(to).expect("the pipe to the browser");
-        let from = BufReader::new(File::open(from).expect("the pipe from the browser"));
+        let mut pipe = BufReader::new(File::open(from).expect("the pipe from the browser"));
+        let (texts, from) = channel();
+        std::thread::spawn(move || loop {
+            let mut text = Vec::new();
+            let read = pipe.read_until(0, &mut text);
+            if read.is_err() || text.pop() != Some(0) || texts.send(text).is_err() {
+                return;
+            }
+        });
         Browser { child, to, from, sent: 0, events: Vec::new() }
     }
 
@@ -89,9 +103,8 @@ impl Browser {
         }
         self.to.write_all(format!("{message}\0").as_bytes()).expect("the browser listens");
         loop {
-            let mut text = Vec::new();
-            self.from.read_until(0, &mut text).expect("the browser answers");
-            assert_eq!(text.pop(), Some(0), "the browser ended");
+            let text = self.from.recv_timeout(LIMIT);
+            let text = text.unwrap_or_else(|fault| panic!("no answer of the browser, {fault}: {method} {}", message["params"]));
             let mut message: Value = serde_json::from_slice(&text).expect("JSON");
             if message["id"] == self.sent {
                 assert!(message["error"].is_null(), "{method}: {}", message["error"]);

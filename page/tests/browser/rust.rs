@@ -75,6 +75,7 @@ pub(crate) fn results(folder: &Path, robots: &[(Source, Vec<State>)]) -> Vec<Vec
     let compiled = compiled.expect("rustc runs");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let output = Command::new(program).output().expect("the program runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mut all: Vec<Vec<Results>> = robots.iter().map(|_| Vec::new()).collect();
     for line in String::from_utf8(output.stdout).expect("text").lines() {
         let mut words = line.split(' ');
