@@ -12,9 +12,10 @@ fn file(path: &str) -> String {
     root.join(path).to_str().expect("a UTF-8 path").to_string()
 }
 
-/// A folder for one test.
+/// An empty folder for one test.
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).expect("a folder for the test");
     folder
 }
@@ -222,7 +223,8 @@ fn count_as_json_keeps_its_schema() {
 #[test]
 fn generate_writes_the_same_bytes_everywhere() {
     let printed = check(&["generate", &file("robots/scara.yaml")], 0).stdout;
-    let path = folder("generate").join("robot.rs");
+    let folder = folder("generate");
+    let path = folder.join("robot.rs");
     let path = path.to_str().expect("UTF-8");
     let output = check(&["generate", &file("robots/scara.yaml"), "--out", path], 0);
     assert!(output.stdout.is_empty());
@@ -234,7 +236,7 @@ fn generate_writes_the_same_bytes_everywhere() {
     assert!(fast.contains("sin_cos_eight(") && fast.contains("fn sin_cos_beyond("), "{fast}");
     let standard = out(&check(&["generate", &file("robots/scara.yaml"), "--trig", "std"], 0));
     assert!(standard.contains("x.sin_cos()") && !standard.contains("libm::"), "{standard}");
-    check(&["generate", &file("robots/scara.yaml"), "--out", folder("generate").to_str().expect("UTF-8")], 2);
+    check(&["generate", &file("robots/scara.yaml"), "--out", folder.to_str().expect("UTF-8")], 2);
 }
 
 /// A description in a folder, under a name, and its text.
@@ -258,6 +260,34 @@ fn generate_does_not_overwrite_its_description() {
     }
     let names: Vec<_> = fs::read_dir(&folder).expect("a folder").map(|e| e.expect("an entry").file_name()).collect();
     assert_eq!(names, ["robot.yaml"], "nothing half written is left");
+}
+
+#[test]
+fn a_page_does_not_overwrite_its_logs() {
+    let folder = folder("page_logs");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    fs::create_dir_all(path("r1")).expect("a folder");
+    fs::create_dir_all(path("r2")).expect("a folder");
+    let text = "t,w\n0,1\n1,2\n";
+    for log in ["r1/a.csv", "r2/a.csv"] {
+        fs::write(path(log), text).expect("a file");
+    }
+    let robot = file("tests/robots/single_joint.yaml");
+    let page = |out: &str, logs: [&str; 2], code| {
+        check(&["page", &robot, "--out", &path(out), "--log", &path(logs[0]), "--log", &path(logs[1])], code)
+    };
+    let output = page("r2/../r1/a.csv", ["r1/a.csv", "r2/a.csv"], 2);
+    assert!(err(&output).contains("is a log of the page: it would be overwritten"), "{}", err(&output));
+    assert_eq!(fs::read_to_string(path("r1/a.csv")).expect("still there"), text);
+    // Logs of one name are called by their folders as well.
+    page("page.html", ["r1/a.csv", "r2/a.csv"], 0);
+    let html = fs::read_to_string(path("page.html")).expect("the page");
+    assert!(html.contains("data-log=\"r1/a\"") && html.contains("data-log=\"r2/a\""));
+    let output = page("page.html", ["r1/a.csv", "r1/../r1/a.csv"], 1);
+    assert!(err(&output).contains("the log is named twice"), "{}", err(&output));
+    fs::write(path("r1/a.csv"), "t,w\n").expect("a file");
+    let output = page("page.html", ["r1/a.csv", "r2/a.csv"], 1);
+    assert!(err(&output).contains("a.csv: the log has no samples"), "{}", err(&output));
 }
 
 #[test]
@@ -311,7 +341,6 @@ fn a_file_with_the_name_of_one_that_is_written_stays() {
 #[test]
 fn one_file_is_not_written_twice_whatever_it_is_called() {
     let folder = folder("twice");
-    let _ = fs::remove_dir_all(folder.join("made"));
     let urdf = file("import/tests/urdf/everything.urdf");
     let paths = ["a.yaml", "./a.yaml", "../twice/a.yaml", "made/a.yaml", "made/./a.yaml"].map(|path| folder.join(path));
     let paths = paths.each_ref().map(|path| path.to_str().expect("UTF-8"));
@@ -330,7 +359,6 @@ fn a_companion_is_not_written_through_a_link_to_its_module() {
     let folder = folder("linked");
     let (module, companion) = (folder.join("arm.rs"), folder.join("arm_bounds.rs"));
     fs::write(&module, "").expect("a file");
-    let _ = fs::remove_file(&companion);
     std::os::unix::fs::symlink(&module, &companion).expect("a link");
     let description = file("tests/robots/single_joint.yaml");
     let output = check(&["generate", &description, "--out", module.to_str().expect("UTF-8"), "--bounds"], 2);
@@ -342,8 +370,9 @@ fn a_companion_is_not_written_through_a_link_to_its_module() {
 #[test]
 fn products_out_of_range_are_told_before_anything_is_printed() {
     let text = fs::read_to_string(file("tests/robots/single_joint.yaml")).expect("a description");
+    let folder = folder("out_of_range");
     for (size, scalar) in [("1e200", "f64"), ("1e30", "f32")] {
-        let path = folder("out_of_range").join(format!("{scalar}.yaml"));
+        let path = folder.join(format!("{scalar}.yaml"));
         let changed = text.replace("a: 0.6", &format!("a: {size}")).replace("mass: 1.2", &format!("mass: {size}"));
         assert!(changed.contains(&format!("mass: {size}")) && changed.contains(&format!("a: {size}")), "{changed}");
         fs::write(&path, changed).expect("a file");
@@ -488,6 +517,62 @@ fn inverse_kinematics_is_named_shown_and_written() {
     check(&["generate", &scara, "--out", module.to_str().expect("UTF-8"), "--ik"], 0);
     let text = fs::read_to_string(module.with_file_name("robot_ik.rs")).expect("inverse kinematics");
     assert!(text.contains("pub fn inverse_kinematics(t: &[[Real; 4]; 4]) -> Solutions {"), "{text}");
+}
+
+/// The files that `generate` writes beside a module, of one robot, and then the module of another.
+#[test]
+fn companions_of_another_description_are_told() {
+    let folder = folder("stale");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let (first, second, module) = (file("robots/scara4.yaml"), file("tests/robots/single_joint.yaml"), path("robot.rs"));
+    let beside = ["--ik", "--bounds", "--runtime", "--tests", "--c-abi"];
+    let output = check(&[&["generate", &first, "--out", &module][..], &beside].concat(), 0);
+    assert!(!err(&output).contains("another description"), "{}", err(&output));
+    fs::write(path("robot_ik_c.rs"), "my own").expect("a file");
+    let companions =
+        ["robot_ik.h", "robot_ik.rs", "robot_bounds.rs", "robot_runtime.rs", "robot_test.rs", "robot_c.rs", "robot.h"];
+    let output = check(&["generate", &first, "--out", &module], 0);
+    assert!(!err(&output).contains("another description"), "{}", err(&output));
+    let output = check(&["generate", &second, "--out", &module, "--bounds"], 0);
+    for companion in companions {
+        let told = err(&output).contains(&format!("{} was not written again and is of another description", path(companion)));
+        assert_eq!(told, companion != "robot_bounds.rs", "{companion}: {}", err(&output));
+    }
+    assert!(!err(&output).contains("robot_ik_c.rs"), "a file of somebody else: {}", err(&output));
+    // None of them is a module to verify, or to be written over by one.
+    for companion in companions.into_iter().filter(|name| *name != "robot_ik.rs") {
+        let output = check(&["verify", &first, &path(companion)], 1);
+        let with = if companion == "robot_ik.h" { path("robot_ik.rs") } else { module.clone() };
+        let said = err(&output);
+        assert!(said.contains(&format!("goes with {with}: verify that one")) && !said.contains("writes module"), "{said}");
+    }
+    let output = check(&["verify", &second, &path("robot_ik.rs")], 1);
+    assert!(err(&output).contains("is of another description: it was made from scara4.yaml (input "), "{}", err(&output));
+}
+
+/// An arm whose last joint turns about the axis that `pointing` leaves open, and one whose task is no target.
+#[test]
+fn an_arm_without_inverse_kinematics_is_told() {
+    let folder = folder("without_ik");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let text = fs::read_to_string(file("robots/puma560.yaml")).expect("a description");
+    for (asked, language, name, code) in [
+        (Some("inverse_kinematics: {target: pointing}\n"), "rust", "arm.rs", 1),
+        (Some("inverse_kinematics: {target: pointing}\n"), "c", "arm.h", 1),
+        (None, "rust", "arm.rs", 0),
+        (None, "c", "arm.h", 0),
+    ] {
+        let (yaml, module) = (path("arm.yaml"), path(name));
+        let text = asked.map_or_else(
+            || fs::read_to_string(file("tests/robots/counterbalance.yaml")).expect("a description"),
+            |asked| format!("{text}\n{asked}"),
+        );
+        fs::write(&yaml, text).expect("a file");
+        let output = check(&["generate", &yaml, "--language", language, "--out", &module, "--ik"], code);
+        assert!(err(&output).contains("there is no") && err(&output).contains(": "), "{}", err(&output));
+        assert_eq!(err(&output).contains("nothing is written"), code == 1, "{}", err(&output));
+        assert_eq!(Path::new(&module).exists(), code == 0);
+    }
 }
 
 #[test]

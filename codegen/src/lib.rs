@@ -137,6 +137,16 @@ impl Generated {
         emit::rust::print_inverse_kinematics(&self.manipulator, self.program.scalar, self.construction(), &self.origin)
     }
 
+    /// Why the arm has no inverse kinematics; none where it has.
+    pub fn no_inverse_kinematics(&self) -> Option<&str> {
+        self.construction().as_ref().err().map(String::as_str)
+    }
+
+    /// Whether the description asks for inverse kinematics.
+    pub fn asks_for_inverse_kinematics(&self) -> bool {
+        self.manipulator.inverse_kinematics.target.is_some() || self.manipulator.inverse_kinematics.given.is_some()
+    }
+
     /// Whether the arm has a construction, and one that asks for a pose alone.
     pub fn has_inverse_kinematics_of_pose_alone(&self) -> bool {
         self.construction().as_ref().is_ok_and(|found| found.redundancy.is_none())
@@ -168,7 +178,7 @@ impl Generated {
     /// The program that tests inverse kinematics in C, `robot_ik_test.c`, with the names of both headers; none where the arm has no construction.
     pub fn inverse_kinematics_test_in_c(&self, module: &str, solver: &str) -> Option<String> {
         let found = self.construction().as_ref().ok()?;
-        Some(emit::c::print_solver_test(&self.program, found, [module, solver]))
+        Some(emit::c::print_solver_test(&self.program, found, [module, solver], &self.origin))
     }
 
     fn construction(&self) -> &Result<InverseKinematics, String> {

@@ -96,7 +96,8 @@ const COMMANDS: Layers = &[
     ("terminal", &[]),
     ("input", &["terminal"]),
     ("output", &["terminal"]),
-    ("commands", &["input", "output", "table", "terminal"]),
+    ("companions", &[]),
+    ("commands", &["companions", "input", "output", "table", "terminal"]),
 ];
 
 /// From a text and a description to a verdict; `docs/certificate.md` says what each step is for.

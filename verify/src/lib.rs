@@ -89,7 +89,7 @@ pub mod test_kit;
 pub mod yardstick;
 
 use armgen_codegen::diagnostic::Diagnostics;
-use armgen_codegen::emit::Language;
+use armgen_codegen::emit::{Language, Origin};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
 use armgen_codegen::source::Source;
@@ -228,7 +228,7 @@ pub fn verify_with<'a>(source: &Source, text: impl Into<ModuleText<'a>>, claims:
 pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, String> {
     let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
-    test_kit::test_kit(&manipulator, &Module::read(text)?, import)
+    test_kit::test_kit(&manipulator, &Module::read(text)?, import, &Origin::of(source))
 }
 
 /// The same for a module in another language than Rust; `name` is what the module is called where it is taken in: a file of C or JavaScript, a
@@ -236,7 +236,7 @@ pub fn test_kit(source: &Source, text: &str, import: &str) -> Result<String, Str
 pub fn test_kit_in(source: &Source, text: ModuleText<'_>, name: &str) -> Result<String, String> {
     let (read, diagnostics) = validate::read_for(source, Scalar::F64);
     let (manipulator, _) = read.ok_or_else(|| diagnostics.render(source, armgen_codegen::diagnostic::Colour::Never))?;
-    test_kit::in_language(&manipulator, &Module::read(text)?, text.language, name)
+    test_kit::in_language(&manipulator, &Module::read(text)?, text.language, name, &Origin::of(source))
 }
 
 /// Puts the error bounds of all functions into the documentation of what was generated: see [`bounds`](mod@bounds).

@@ -8,7 +8,7 @@ mod languages;
 
 use std::fmt::Write;
 
-use armgen_codegen::emit::Language;
+use armgen_codegen::emit::{Language, Origin};
 use armgen_codegen::manipulator::{Joint, Manipulator};
 
 use crate::arithmetic::wide::{Wide, WideArguments};
@@ -144,13 +144,13 @@ impl Kit {
 
 /// The text of the test file. `import` brings the module in as `robot`: `use my_crate::robot;`, or
 /// `#[path = "../src/robot.rs"] mod robot;`.
-pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Result<String, String> {
+pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str, origin: &Origin) -> Result<String, String> {
     let kit = Kit::of(manipulator, module)?;
     let mut text = format!(
         "// Tests of the robot `{}` on your machine: reference values, computed from its equations in 256 bits, and the identities of its\n\
-         // dynamics. Written by armgen {}.\n\n{import}\n\nuse robot::*;\n\n",
+         // dynamics. Written by {}.\n\n{import}\n\nuse robot::*;\n\n",
         kit.robot,
-        env!("CARGO_PKG_VERSION")
+        origin.made_by()
     );
     let write = |v: &[f64]| list(v, kit.real);
     let _ = writeln!(
@@ -196,8 +196,14 @@ pub fn test_kit(manipulator: &Manipulator, module: &Module, import: &str) -> Res
 
 /// The text of the test file in another language than Rust; `name` is what the module is called where it is taken in: a file of C or
 /// JavaScript, a module of Python, a package of MATLAB.
-pub fn in_language(manipulator: &Manipulator, module: &Module, language: Language, name: &str) -> Result<String, String> {
-    Ok(languages::print(&Kit::of(manipulator, module)?, language, name))
+pub fn in_language(
+    manipulator: &Manipulator,
+    module: &Module,
+    language: Language,
+    name: &str,
+    origin: &Origin,
+) -> Result<String, String> {
+    Ok(languages::print(&Kit::of(manipulator, module)?, language, name, origin))
 }
 
 /// The nearest floats but for the last bit, and 0 without a sign.

@@ -12,6 +12,7 @@
 //! ```
 
 mod commands;
+mod companions;
 mod input;
 mod output;
 mod table;

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use crate::{terminal, DONE, UNREADABLE};
 
-/// Writes what was made from a description into another file; the exit code.
-pub(crate) fn write_other(description: &Path, out: &Path, text: &str) -> u8 {
-    if same_file(description, out) {
-        terminal::error(&format!("{} is the description: it would be overwritten; name another file", out.display()));
+/// Writes what was made from files, each with what it is, into another one; the exit code.
+pub(crate) fn write_other<'f>(read: impl IntoIterator<Item = (&'f Path, &'f str)>, out: &Path, text: &str) -> u8 {
+    if let Some((_, what)) = read.into_iter().find(|(file, _)| same_file(file, out)) {
+        terminal::error(&format!("{} is {what}: it would be overwritten; name another file", out.display()));
         return UNREADABLE;
     }
     if let Err(error) = write(out, text) {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use armgen_codegen::emit::Language;
+use armgen_codegen::emit::{Language, Origin};
 
 use super::{list, Kit, Value};
 use crate::contract::Length;
@@ -24,7 +24,7 @@ fn named(state: &Arguments<f64>) -> [(&'static str, &[f64]); 7] {
 }
 
 /// The test file: `module` is what the module is called where it is taken in, a file, a module or a package.
-pub(super) fn print(kit: &Kit, language: Language, module: &str) -> String {
+pub(super) fn print(kit: &Kit, language: Language, module: &str, origin: &Origin) -> String {
     let mark = match language {
         Language::C | Language::JavaScript | Language::Rust => "//",
         Language::Python => "#",
@@ -35,7 +35,7 @@ pub(super) fn print(kit: &Kit, language: Language, module: &str) -> String {
             "Tests of the robot `{}` on your machine: reference values, computed from its equations in 256 bits, and the",
             kit.robot
         ),
-        format!("identities of its dynamics. Written by armgen {}.", env!("CARGO_PKG_VERSION")),
+        format!("identities of its dynamics. Written by {}.", origin.made_by()),
     ];
     let commented: String = said.iter().map(|line| format!("{mark} {line}\n")).collect();
     match language {

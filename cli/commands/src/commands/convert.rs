@@ -42,7 +42,7 @@ pub(crate) fn run(file: &Path, to: To, out: Option<&PathBuf>) -> u8 {
         terminal::note(line);
     }
     match out {
-        Some(out) => write_other(file, out, &converted.yaml),
+        Some(out) => write_other([(file, "the description")], out, &converted.yaml),
         None => terminal::print(&converted.yaml),
     }
 }

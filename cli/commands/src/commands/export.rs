@@ -28,7 +28,7 @@ pub(crate) fn run(file: &Path, format: Format, out: Option<&PathBuf>) -> u8 {
         terminal::note(line);
     }
     match out {
-        Some(out) => write_other(file, out, &exported.urdf),
+        Some(out) => write_other([(file, "the description")], out, &exported.urdf),
         None => terminal::print(&exported.urdf),
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use armgen_codegen::diagnostic::Colour;
-use armgen_codegen::emit::Language;
+use armgen_codegen::emit::{Language, Origin};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::pass::Pass;
 use armgen_codegen::program::Trig;
@@ -17,7 +17,7 @@ use armgen_verify::reader::ModuleText;
 
 use super::verify::{certificate_beside, with_spinner};
 use crate::output::{place, same_file, write};
-use crate::{input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
+use crate::{companions, input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
 /// What the module is to be.
 #[derive(Debug, clap::Args)]
@@ -138,6 +138,15 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     if !input::all_there(source.name(), &generated.absent, &functions) {
         return FAULTY;
     }
+    if let Some(reason) = generated.no_inverse_kinematics().filter(|_| beside.ik) {
+        if generated.asks_for_inverse_kinematics() {
+            terminal::error(&format!(
+                "nothing is written: the description asks for `inverse_kinematics`, and there is none: {reason}"
+            ));
+            return FAULTY;
+        }
+        terminal::warning(&format!("there is no inverse kinematics: {reason}"));
+    }
     // The bounds are those of one state at a time.
     if choices.batch.is_none() {
         if let Err(reason) = armgen_verify::document_bounds(&source, &mut generated) {
@@ -163,6 +172,12 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     if language == Language::Matlab {
         warn_of_others(out, &files);
     }
+    warn_of_stale(&source, language, out, beside, &files);
+    DONE
+}
+
+/// What is left beside a new module of one that was there before.
+fn warn_of_stale(source: &Source, language: Language, out: &Path, beside: &Beside, files: &[Output]) {
     let certificate = certificate_beside(out);
     if !beside.verify && certificate.exists() {
         terminal::warning(&format!(
@@ -170,7 +185,14 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
             certificate.display()
         ));
     }
-    DONE
+    let hash = Origin::of(source).hash;
+    let others = companions::beside(out, language).into_iter().filter(|(path, _)| files.iter().all(|(own, _)| own != path));
+    for (path, flag) in others.filter(|(path, _)| companions::is_of_another(path, &hash)) {
+        terminal::warning(&format!(
+            "{} was not written again and is of another description: {flag} renews it, or remove it",
+            path.display()
+        ));
+    }
 }
 
 /// Writes files to different places, none of them the description's; into a `folder` that is made where there is none.

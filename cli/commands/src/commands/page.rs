@@ -5,13 +5,20 @@ use std::path::{Path, PathBuf};
 use armgen_page::{Log, Misfit, Run};
 
 use super::verify::with_spinner;
-use crate::output::write_other;
+use crate::output::{place, write_other};
 use crate::{input, terminal, FAULTY};
 
 pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
+    let names = match names(logs) {
+        Ok(names) => names,
+        Err(twice) => {
+            terminal::error(&format!("{}: the log is named twice, or differs by its extension alone", twice.display()));
+            return FAULTY;
+        }
+    };
     let mut runs: Vec<Run> = Vec::new();
-    for path in logs {
-        match read(path, &runs) {
+    for (path, name) in logs.iter().zip(names) {
+        match read(path, name) {
             Ok(run) => runs.push(run),
             Err(code) => return code,
         }
@@ -31,22 +38,34 @@ pub(crate) fn run(file: &Path, out: &Path, logs: &[PathBuf]) -> u8 {
         Ok(page) => page,
         Err(code) => return code,
     };
-    write_other(file, out, &page)
+    let read = logs.iter().map(|log| (log.as_path(), "a log of the page"));
+    write_other(read.chain([(file, "the description")]), out, &page)
 }
 
-/// A log by the name of its file.
-fn read(path: &Path, others: &[Run]) -> Result<Run, u8> {
+/// A log under a name.
+fn read(path: &Path, name: String) -> Result<Run, u8> {
     let source = input::log(path)?;
-    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let refuse = |reason: &str| {
+    let log = Log::read(source.text(), unit).map_err(|reason| {
         terminal::error(&format!("{}: {reason}", path.display()));
         FAULTY
-    };
-    if others.iter().any(|other| other.name == name) {
-        return Err(refuse("another log has the same name"));
-    }
-    let log = Log::read(source.text(), unit).map_err(|reason| refuse(&reason))?;
+    })?;
     Ok(Run { name, log: Some(log), ..Run::default() })
+}
+
+/// The names of logs: those of their files, with as many of their folders in front as tell them apart; an error with one that is named twice.
+fn names(logs: &[PathBuf]) -> Result<Vec<String>, &Path> {
+    let places: Vec<PathBuf> = logs.iter().map(|log| place(log).with_extension("")).collect();
+    let name = |k: usize, folders: usize| {
+        let parts: Vec<_> = places[k].components().map(|part| part.as_os_str().to_string_lossy()).collect();
+        parts[parts.len().saturating_sub(folders + 1)..].join("/")
+    };
+    let most = places.iter().map(|place| place.components().count()).max().unwrap_or_default();
+    (0..logs.len())
+        .map(|k| {
+            let alone = |folders: &usize| (0..logs.len()).all(|other| other == k || name(other, *folders) != name(k, *folders));
+            (0..most).find(alone).map(|folders| name(k, folders)).ok_or(logs[k].as_path())
+        })
+        .collect()
 }
 
 /// The unit of a column of `armgen run`, as far as its name tells it (docs/experiments.md).

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{channel, RecvTimeoutError};
 use std::time::Duration;
 
-use armgen_codegen::emit::{camel, Language};
+use armgen_codegen::emit::{camel, Language, Origin};
 use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::inverse_kinematics;
@@ -13,7 +13,7 @@ use armgen_verify::reader::{matlab, ModuleText};
 use armgen_verify::report::Report;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::{input, terminal, FAULTY};
+use crate::{companions, input, terminal, FAULTY};
 
 /// Where the certificate of a module stands: `robot.cert.json` for `robot.rs`; `robot.h.cert.json` for `robot.h`, since both may be beside each
 /// other, and so on.
@@ -33,6 +33,10 @@ pub(crate) fn run(description: &Path, module: &Path, language: Option<Language>)
 fn verified(description: &Path, module: &Path, language: Option<Language>) -> Result<u8, u8> {
     let source = input::source(description)?;
     let text = if module.is_dir() { input::package(module) } else { input::written(module) }?;
+    if let Some(with) = companions::goes_with(module, text.text()) {
+        terminal::error(&format!("{} goes with {with}: verify that one", module.display()));
+        return Err(FAULTY);
+    }
     let language = language_of(module, language).map_err(|fault| {
         terminal::error(&fault);
         FAULTY
@@ -87,17 +91,6 @@ fn language_of(module: &Path, asked: Option<Language>) -> Result<Language, Strin
     if module.is_dir() {
         return Ok(Language::Matlab);
     }
-    let name = module.file_name().and_then(OsStr::to_str).unwrap_or_default();
-    for (ending, of) in COMPANIONS {
-        if let Some(stem) = name.strip_suffix(ending) {
-            let of = module.with_file_name(format!("{stem}{of}"));
-            return Err(format!(
-                "{} goes with {}, and is made of the same steps: verify that file",
-                module.display(),
-                of.display()
-            ));
-        }
-    }
     let by_extension = module.extension().and_then(OsStr::to_str).and_then(Language::of_extension);
     asked.or(by_extension).ok_or_else(|| {
         let languages: Vec<&str> = Language::ALL.into_iter().map(Language::name).collect();
@@ -109,12 +102,19 @@ fn language_of(module: &Path, asked: Option<Language>) -> Result<Language, Strin
     })
 }
 
-/// How the names of files end that are written beside a module, and how the name of the module ends then.
-const COMPANIONS: [(&str, &str); 4] = [("_native.py", ".py"), ("_native.c", ".py"), (".d.mts", ".mjs"), (".d.ts", ".js")];
-
 /// A module of inverse kinematics.
 fn postures(source: &Source, module: &Path, text: &str) -> Result<u8, u8> {
     input::manipulator(source, armgen_codegen::kinds::Scalar::F64, input::Warnings::Counted)?;
+    let own = Origin::of(source);
+    if let Some((file, input)) = companions::made_from(text).filter(|(_, input)| *input != own.hash) {
+        let (module, description) = (module.display(), source.name());
+        terminal::error(&format!(
+            "{module} is of another description: it was made from {file} (input {input}), and {description} is (input {})",
+            own.hash
+        ));
+        terminal::note("`armgen generate` with --ik writes it again, beside its module");
+        return Err(FAULTY);
+    }
     let mut report = with_spinner("verifying", || inverse_kinematics::verify(source, text, inverse_kinematics::POSES));
     let beside = certificate_beside(module);
     let mut certificate = String::new();

@@ -177,7 +177,7 @@ fn faces(names: &Names, found: &InverseKinematics, inner: &str) -> String {
 }
 
 /// The program that tests the header, for its user: postures found again at the poses of random ones.
-pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&str; 2]) -> String {
+pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&str; 2], origin: &Origin) -> String {
     let names = Names::of(&module.name, module.scalar, module.joints.len());
     // Units of rounding times a condition that most random postures have.
     let (near, far, lost) = match module.scalar {
@@ -189,7 +189,10 @@ pub fn print_test(module: &Module, found: &InverseKinematics, [file, solver]: [&
         Some(_) => format!("{}_inverse_kinematics_redundancy(q), ", names.robot),
     };
     let column = found.target.first_column().to_string();
-    let text = include_str!("solver/test.c.txt").replace("@module", file).replace("@solver", solver);
+    let text = include_str!("solver/test.c.txt")
+        .replace("@origin", &origin.made_by())
+        .replace("@module", file)
+        .replace("@solver", solver);
     let text = text.replace("@redundancy", &redundancy).replace("@column", &column).replace("@near", near).replace("@far", far);
     text.replace("@lost", lost).replace("@robot", &names.robot).replace("@ROBOT", &names.upper)
 }

@@ -1,0 +1,164 @@
+//! Files that `armgen generate` writes beside a module: what they are called, what they are made from, and how one is told from a module.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use armgen_codegen::emit::Language;
+
+/// A file beside a module: what stands before and behind a name in its own, and in that of what it goes with.
+struct Companion {
+    language: Language,
+    file: [&'static str; 2],
+    with: [&'static str; 2],
+    /// What asks for it; nothing where it is always written.
+    flag: &'static str,
+}
+
+const fn of(language: Language, file: [&'static str; 2], with: [&'static str; 2], flag: &'static str) -> Companion {
+    Companion { language, file, with, flag }
+}
+
+/// The longest names first, where one ends like another.
+const COMPANIONS: [Companion; 19] = [
+    of(Language::Rust, ["", "_ik_c.rs"], ["", "_ik.rs"], "--c-abi --ik"),
+    of(Language::Rust, ["", "_ik.h"], ["", "_ik.rs"], "--c-abi --ik"),
+    of(Language::Rust, ["", "_ik.rs"], ["", ".rs"], "--ik"),
+    of(Language::Rust, ["", "_bounds.rs"], ["", ".rs"], "--bounds"),
+    of(Language::Rust, ["", "_runtime.rs"], ["", ".rs"], "--runtime"),
+    of(Language::Rust, ["", "_test.rs"], ["", ".rs"], "--tests"),
+    of(Language::Rust, ["", "_c.rs"], ["", ".rs"], "--c-abi"),
+    of(Language::Rust, ["", ".h"], ["", ".rs"], "--c-abi"),
+    of(Language::C, ["", "_ik_test.c"], ["", "_ik.h"], "--tests --ik"),
+    of(Language::C, ["", "_test.c"], ["", ".h"], "--tests"),
+    of(Language::C, ["", "_ik.h"], ["", ".h"], "--ik"),
+    of(Language::JavaScript, ["", ".test.mjs"], ["", ".mjs"], "--tests"),
+    of(Language::JavaScript, ["", ".test.js"], ["", ".js"], "--tests"),
+    of(Language::JavaScript, ["", ".d.mts"], ["", ".mjs"], ""),
+    of(Language::JavaScript, ["", ".d.ts"], ["", ".js"], ""),
+    of(Language::Python, ["", "_native.py"], ["", ".py"], "--native"),
+    of(Language::Python, ["", "_native.c"], ["", ".py"], "--native"),
+    of(Language::Python, ["test_", ".py"], ["", ".py"], "--tests"),
+    of(Language::Matlab, ["", "Test.m"], ["+", ""], "--tests"),
+];
+
+/// What a text holds that is no module: bounds, traits, calls from C, tests.
+const NO_MODULE: [&str; 5] = [
+    "\n// Running error bounds of the functions of a robot: ",
+    "impl armgen_runtime::",
+    "extern \"C\" ",
+    " Tests of the robot `",
+    "at the poses of random postures the posture itself is found",
+];
+
+/// The name within a file's between what stands before and behind it.
+fn between<'n>(name: &'n str, [before, behind]: [&str; 2]) -> Option<&'n str> {
+    name.strip_prefix(before)?.strip_suffix(behind).filter(|name| !name.is_empty())
+}
+
+fn name_of(path: &Path) -> &str {
+    path.file_name().and_then(|name| name.to_str()).unwrap_or_default()
+}
+
+/// What a companion goes with, by the names of both; a text that is a module, or one of inverse kinematics, is none.
+pub(crate) fn goes_with(file: &Path, text: &str) -> Option<String> {
+    let name = name_of(file);
+    // Declarations, and what calls the functions of a library, have no other mark than their names.
+    let by_name = |companion: &&Companion| companion.flag.is_empty() || companion.flag == "--native";
+    let is_none = NO_MODULE.iter().any(|mark| text.contains(mark));
+    let mut named = COMPANIONS.iter().filter(|companion| is_none || by_name(companion));
+    let with = named.find_map(|Companion { file: own, with: [before, behind], .. }| {
+        Some(file.with_file_name(format!("{before}{}{behind}", between(name, *own)?)).display().to_string())
+    });
+    with.or_else(|| is_none.then(|| "a module".to_owned()))
+}
+
+/// The files that may stand beside a module, each with what asks for it.
+pub(crate) fn beside(module: &Path, language: Language) -> Vec<(PathBuf, &'static str)> {
+    let name = name_of(module);
+    // What goes with inverse kinematics stands beside the module as well.
+    let stem_of = |companion: &Companion| {
+        let [before, behind] = companion.with;
+        between(name, [before, behind.trim_start_matches("_ik")])
+    };
+    let all = COMPANIONS.iter().filter(|companion| companion.language == language);
+    all.filter_map(|companion| {
+        let [before, behind] = companion.file;
+        Some((module.with_file_name(format!("{before}{}{behind}", stem_of(companion)?)), companion.flag))
+    })
+    .collect()
+}
+
+/// The file and the hash that a text says it was made from.
+pub(crate) fn made_from(text: &str) -> Option<(&str, &str)> {
+    let line = text.lines().take(4).find(|line| line.contains("armgen ") && line.contains(" (input "))?;
+    let (before, behind) = line.rsplit_once(" (input ")?;
+    Some((before.rsplit_once(" from ")?.1, behind.split(')').next()?))
+}
+
+/// Whether a file is there that armgen has made from another description than that of a hash, or does not say which.
+pub(crate) fn is_of_another(file: &Path, hash: &str) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(2048).read_to_end(&mut head));
+    let head = String::from_utf8_lossy(&head);
+    read.is_ok()
+        && match made_from(&head) {
+            Some((_, input)) => input != hash,
+            None => head.contains("generated by armgen ") || head.contains("Written by armgen "),
+        }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use armgen_codegen::emit::Language;
+
+    use super::{beside, goes_with, made_from};
+
+    #[test]
+    fn names_beside_a_module_and_back() {
+        let names = |module: &str, language| -> Vec<String> {
+            beside(Path::new(module), language).into_iter().map(|(path, _)| path.display().to_string()).collect()
+        };
+        assert_eq!(
+            names("a/arm.rs", Language::Rust),
+            [
+                "a/arm_ik_c.rs",
+                "a/arm_ik.h",
+                "a/arm_ik.rs",
+                "a/arm_bounds.rs",
+                "a/arm_runtime.rs",
+                "a/arm_test.rs",
+                "a/arm_c.rs",
+                "a/arm.h"
+            ]
+        );
+        assert_eq!(names("arm.h", Language::C), ["arm_ik_test.c", "arm_test.c", "arm_ik.h"]);
+        assert_eq!(names("arm.mjs", Language::JavaScript), ["arm.test.mjs", "arm.d.mts"]);
+        assert_eq!(names("arm.py", Language::Python), ["arm_native.py", "arm_native.c", "test_arm.py"]);
+        assert_eq!(names("a/+arm", Language::Matlab), ["a/armTest.m"]);
+        let with = |file: &str, text: &str| goes_with(Path::new(file), text);
+        assert_eq!(
+            with("a/arm_bounds.rs", "//\n// Running error bounds of the functions of a robot: how").as_deref(),
+            Some("a/arm.rs")
+        );
+        assert_eq!(with("test_arm.py", "# Tests of the robot `scara`").as_deref(), Some("arm.py"));
+        assert_eq!(with("arm_ik.h", "extern \"C\" {").as_deref(), Some("arm_ik.rs"));
+        assert_eq!(with("arm_native.py", "").as_deref(), Some("arm.py"));
+        assert_eq!(with("other.rs", "impl armgen_runtime::robot::Kinematics").as_deref(), Some("a module"));
+        // A module may be called as a companion is.
+        assert_eq!(with("arm_c.rs", "pub fn gravity("), None);
+    }
+
+    #[test]
+    fn a_head_says_what_a_file_was_made_from() {
+        let from = |text| made_from(text);
+        assert_eq!(
+            from("/* @generated by armgen 0.1.0 from my arm.yaml (input 12ab). Do not edit.\n"),
+            Some(("my arm.yaml", "12ab"))
+        );
+        assert_eq!(from("// Tests\n// dynamics. Written by armgen 0.1.0 from a.yaml (input 3c).\n"), Some(("a.yaml", "3c")));
+        assert_eq!(from("// @generated by armgen 0.1.0. Do not edit.\n"), None);
+    }
+}
