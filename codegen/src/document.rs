@@ -14,6 +14,21 @@ pub mod yaml;
 pub(crate) use expression::out_of_range;
 pub use expression::{multiple_of_pi, parse as parse_expression, Expression, ExpressionKind, Operator};
 
+/// What a character is called that looks like a blank, or like nothing, and is no space of YAML.
+fn invisible(c: char) -> Option<String> {
+    let name = match c {
+        '\u{a0}' | '\u{202f}' => "a no-break space",
+        '\u{200b}' => "a space without width",
+        '\u{200c}' | '\u{200d}' | '\u{2060}' => "a joiner without width",
+        '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' => "a mark of the direction of writing",
+        '\u{ad}' => "a soft hyphen",
+        '\u{feff}' => "a byte order mark",
+        '\u{2000}'..='\u{200a}' | '\u{1680}' | '\u{205f}' | '\u{3000}' => "a space of another width",
+        _ => return None,
+    };
+    Some(format!("{name}, U+{:04X}", u32::from(c)))
+}
+
 /// `text` shortened for a message, control characters replaced by blanks.
 pub fn excerpt(text: &str) -> String {
     const LONGEST: usize = 40;

@@ -1,8 +1,10 @@
 //! Words and shapes that other formats have for what is written otherwise here: URDF, SDF, the Robotics Toolbox (RTB), MuJoCo.
 
+use super::Convention;
 use crate::diagnostic::Code;
-use crate::document::reader::Reader;
+use crate::document::reader::{Fields, Reader};
 use crate::document::yaml::{Kind, Node};
+use crate::source::Spanned;
 
 /// Keys of other formats, and what they are called here in the same place.
 pub(super) const OTHER_NAMES: &[(&str, &str)] = &[
@@ -46,6 +48,10 @@ const LINK: &str =
 const LIMITS: &str =
     "limits stand in a mapping of their own: `limits: {position: [lowest, highest], velocity: ..., effort: ...}`";
 const POSITION: &str = "write both limits in one list: `position: [lowest, highest]`";
+const FRAMES: &str =
+    "the convention `urdf` has `origin` and `axis`; `a`, `alpha`, `d`, `theta` belong to `standard` and `modified`";
+const POSE: &str =
+    "a pose has no mass: what is fixed to a link is one of the bodies below its `attached`, what the end effector carries is `payload`";
 const ROW: &str = "rows of Denavit and Hartenberg have `a`, `alpha`, `d`, `theta`; frames of a URDF, `origin` and `axis`, belong to `convention: urdf`";
 
 /// Keys of other formats, a key that is known where they are out of place, and what to write instead.
@@ -83,16 +89,13 @@ pub(super) const OTHER_PLACES: &[(&str, &str, &str)] = &[
     ("sigma", "type", "RTB's `sigma` is `type: revolute` (0) or `type: prismatic` (1)"),
     ("parent", "type", "joints stand in the order from base to tip; each hangs on the one before it"),
     ("child", "type", "joints stand in the order from base to tip; each hangs on the one before it"),
-    (
-        "a",
-        "origin",
-        "the convention `urdf` has `origin` and `axis`; `a`, `alpha`, `d`, `theta` belong to `standard` and `modified`",
-    ),
-    (
-        "alpha",
-        "origin",
-        "the convention `urdf` has `origin` and `axis`; `a`, `alpha`, `d`, `theta` belong to `standard` and `modified`",
-    ),
+    ("a", "origin", FRAMES),
+    ("alpha", "origin", FRAMES),
+    ("d", "origin", FRAMES),
+    ("theta", "origin", FRAMES),
+    ("mass", "xyz", POSE),
+    ("com", "xyz", POSE),
+    ("inertia", "xyz", POSE),
     (
         "origin",
         "com",
@@ -104,7 +107,49 @@ pub(super) const OTHER_PLACES: &[(&str, &str, &str)] = &[
 /// Where an element of a tensor stands in a list of nine.
 const ELEMENTS: [(&str, usize, usize); 6] = [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
 
+/// The keys of a row of Denavit and Hartenberg.
+const OF_ROWS: [&str; 4] = ["a", "alpha", "d", "theta"];
+
 impl Reader<'_> {
+    /// Whether the convention is `urdf` and the joints have rows of Denavit and Hartenberg alone, which is reported once.
+    pub(super) fn rows_of_another_convention(&mut self, convention: &Spanned<Convention>, fields: &Fields<'_>) -> bool {
+        let Some((_, Node { kind: Kind::List(joints), .. })) = fields.get("joints") else { return false };
+        let has = |joint: &Node, names: &[&str]| match &joint.kind {
+            Kind::Mapping(entries) => entries.iter().any(|(key, _)| names.contains(&key.value.as_str())),
+            _ => false,
+        };
+        let rows = joints.iter().filter(|joint| has(joint, &OF_ROWS)).count();
+        if convention.value != Convention::Urdf || rows == 0 || joints.iter().any(|joint| has(joint, &["origin", "axis"])) {
+            return false;
+        }
+        let message = "`convention` is `urdf`, and the joints have rows of Denavit and Hartenberg";
+        let help = "write `convention: standard` or `convention: modified`, as the table says; with `urdf` each joint has `origin` and `axis` instead of `a`, `alpha`, `d`, `theta`";
+        self.report(Code::UnknownConvention, convention.span, message, "its joints have other keys", help);
+        true
+    }
+
+    /// Whether a pose is written as numbers without names, which is reported.
+    pub(super) fn pose_as_numbers(&mut self, node: &Node, items: &[Node], name: &str) -> bool {
+        let text =
+            |item: &Node| if let Kind::Scalar(scalar) = &item.kind { Some(crate::document::excerpt(&scalar.text)) } else { None };
+        let Some(numbers) = items.iter().map(text).collect::<Option<Vec<_>>>().filter(|numbers| !numbers.is_empty()) else {
+            return false;
+        };
+        let (xyz, rest) = numbers.split_at(numbers.len().min(3));
+        let xyz = format!("xyz: [{}]", xyz.join(", "));
+        let help = match (numbers.len(), rest) {
+            (3, _) => format!("write `{name}: {{{xyz}}}`"),
+            (6, rpy) => format!(
+                "write `{name}: {{{xyz}, rpy: [{}]}}`, if the last three are angles about fixed x, y and z",
+                rpy.join(", ")
+            ),
+            _ => format!("write `{name}: {{xyz: [0, 0, 0.1], rpy: [0, pi/2, 0]}}`"),
+        };
+        let message = format!("`{name}` is a list of numbers; those of a pose have names");
+        self.report(Code::WrongKind, node.span, message, "not `key: value`", help);
+        true
+    }
+
     /// Whether a tensor is written as a list, which is reported with the mapping that it would be.
     pub(super) fn tensor_as_list(&mut self, node: &Node) -> bool {
         let Kind::List(items) = &node.kind else { return false };

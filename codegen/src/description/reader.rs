@@ -7,7 +7,7 @@ use super::{
     RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use crate::diagnostic::{Code, Diagnostics};
-use crate::document::reader::{first_key, optional, required, Fields, Key, Reader};
+use crate::document::reader::{first_key, optional, required, usual, Fields, Key, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::document::Expression;
 use crate::kinds::{JointKind, Target, TaskRow};
@@ -55,15 +55,15 @@ const URDF_JOINT: &[Key] = &[
     optional("armature"),
 ];
 const INVERSE_KINEMATICS: &[Key] = &[optional("target"), optional("given")];
-const LIMITS: &[Key] = &[optional("position"), optional("velocity"), optional("effort")];
+const LIMITS: &[Key] = &[usual("position", "position: [-pi/2, pi/2]"), optional("velocity"), optional("effort")];
 const LINK: &[Key] = &[required("mass", "mass: 5"), optional("com"), optional("inertia"), optional("attached")];
 const ATTACHED: &[Key] =
     &[optional("name"), optional("origin"), required("mass", "mass: 0.5"), optional("com"), optional("inertia")];
-const PAYLOAD: &[Key] = &[optional("mass"), optional("com"), optional("inertia")];
+const PAYLOAD: &[Key] = &[usual("mass", "mass: 1.5"), optional("com"), optional("inertia")];
 const INERTIA: &[Key] = &[
-    optional("xx"),
-    optional("yy"),
-    optional("zz"),
+    usual("xx", "xx: 0.01"),
+    usual("yy", "yy: 0.02"),
+    usual("zz", "zz: 0.015"),
     optional("xy"),
     optional("xz"),
     optional("yz"),
@@ -73,14 +73,32 @@ const INERTIA: &[Key] = &[
     optional("angle"),
     optional("xyaxes"),
 ];
-const MOTOR: &[Key] =
-    &[optional("ratio"), optional("inertia"), optional("mass"), optional("position"), optional("axis"), optional("viscous")];
-const FRICTION: &[Key] =
-    &[optional("viscous"), optional("coulomb"), optional("offset"), optional("cubic"), optional("load"), optional("stribeck")];
+const MOTOR: &[Key] = &[
+    usual("ratio", "ratio: 100"),
+    optional("inertia"),
+    optional("mass"),
+    optional("position"),
+    optional("axis"),
+    optional("viscous"),
+];
+const FRICTION: &[Key] = &[
+    usual("viscous", "viscous: 0.2"),
+    optional("coulomb"),
+    optional("offset"),
+    optional("cubic"),
+    optional("load"),
+    optional("stribeck"),
+];
 const STRIBECK: &[Key] = &[required("torque", "torque: 2.5"), required("velocity", "velocity: 0.05")];
 const SPRING: &[Key] = &[required("stiffness", "stiffness: 200"), optional("rest")];
-const POSE: &[Key] =
-    &[optional("xyz"), optional("rpy"), optional("quat"), optional("axis"), optional("angle"), optional("xyaxes")];
+const POSE: &[Key] = &[
+    usual("xyz", "xyz: [0, 0, 0.1]"),
+    optional("rpy"),
+    optional("quat"),
+    optional("axis"),
+    optional("angle"),
+    optional("xyaxes"),
+];
 
 /// Poses in one list.
 const MOST_POSES: usize = 64;
@@ -102,6 +120,7 @@ impl Reader<'_> {
             let help = "`standard`: Rz(theta) Tz(d) Tx(a) Rx(alpha) (Siciliano); `modified`: Rx(alpha) Tx(a) Rz(theta) Tz(d) (Craig, Khalil); `urdf`: `origin` and `axis`";
             self.choice(node, key, "convention", &words, Code::UnknownConvention, help)
         });
+        let convention = convention.filter(|convention| !self.rows_of_another_convention(convention, &fields));
         let rows = match convention.as_ref().map(|c| c.value) {
             Some(Convention::Urdf) => URDF_JOINT,
             _ => JOINT,
@@ -147,7 +166,7 @@ impl Reader<'_> {
         let items = self.list(node, key, "joints", "a list", "write one `- name: ...` per joint, from base to tip")?;
         let joints = items.iter().filter_map(|item| self.joint(item, rows)).collect::<Vec<_>>();
         // A joint that is no mapping is reported; the others keep their numbers only in messages.
-        Some(Spanned::new(joints, key))
+        (!joints.is_empty() || items.is_empty()).then(|| Spanned::new(joints, key))
     }
 
     fn joint(&mut self, node: &Node, keys: &'static [Key]) -> Option<JointDescription> {
@@ -245,6 +264,7 @@ impl Reader<'_> {
     fn pose(&mut self, node: &Node, key: Span, name: &str) -> Option<PoseDescription> {
         let mut pose = PoseDescription { key, elements: Vec::new(), complete: true };
         let items = match &node.kind {
+            Kind::List(items) if self.pose_as_numbers(node, items, name) => return None,
             Kind::List(items) => items.as_slice(),
             _ => std::slice::from_ref(node),
         };

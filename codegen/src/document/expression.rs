@@ -30,6 +30,9 @@ const MAX_DIGITS: usize = 200;
 /// Powers of ten of a decimal, either way.
 const MAX_POWER: i64 = 1000;
 
+/// How comments are written.
+const COMMENT: &str = "a comment begins with a blank and `#`";
+
 /// The expression of n pi/12, in lowest terms: `-5*pi/6`.
 pub fn multiple_of_pi(n: i64) -> String {
     let fraction = Rational::from(n) / Rational::from(12);
@@ -140,6 +143,16 @@ impl Expression {
             ExpressionKind::Decimal(_) => true,
             ExpressionKind::Negate(a) => a.is_decimal(),
             _ => false,
+        }
+    }
+
+    /// Whether `deg` stands in it.
+    pub fn has_degrees(&self) -> bool {
+        match &self.kind {
+            ExpressionKind::Decimal(_) | ExpressionKind::Pi | ExpressionKind::Name(_) => false,
+            ExpressionKind::Degrees(_) => true,
+            ExpressionKind::Negate(a) | ExpressionKind::Root(a) => a.has_degrees(),
+            ExpressionKind::Binary(_, a, b) => a.has_degrees() || b.has_degrees(),
         }
     }
 
@@ -265,7 +278,15 @@ impl<'a> Parser<'a> {
                 return Err(Box::new(Diagnostic::new(Code::TooComplex, span, message, "one too many", help)));
             }
             if self.rest().starts_with('*') {
-                return Err(self.error(self.at - 1, self.at + 1, "powers are not supported", "write the product out: `a*a`"));
+                let (label, help) = match operator {
+                    Operator::Divide if self.rest().contains("*/") => ("a comment?", COMMENT),
+                    Operator::Divide => ("two operators", "write one operator between two values"),
+                    _ => ("powers are not supported", "write the product out: `a*a`"),
+                };
+                return Err(self.error(self.at - 1, self.at + 1, label, help));
+            }
+            if operator == Operator::Divide && self.rest().starts_with('/') {
+                return Err(self.error(self.at - 1, self.at + 1, "a comment?", COMMENT));
             }
             self.skip_blanks();
             let right = operand(self)?;
@@ -450,7 +471,13 @@ impl<'a> Parser<'a> {
         if let Some(help) = units::without(&self.text[..self.at], self.rest()) {
             return self.error(self.at, self.text.trim_end().len(), "a unit", help);
         }
+        if let Some(name) = super::invisible(c) {
+            let help = "remove it, or type a space: it came with a text that was pasted";
+            return self.error(self.at, self.at + c.len_utf8(), name, help);
+        }
         let help = match c {
+            '#' => "write a blank before `#`, with which a comment begins",
+            ';' => "remove it: a value ends with its line, or with a comma between braces",
             ',' => "write a decimal point (`0.5`); a list of values stands in [ ]",
             '^' => "powers are not supported: write the product out: `a*a`",
             '\u{b0}' => units::DEGREES,

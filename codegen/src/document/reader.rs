@@ -13,13 +13,18 @@ use crate::suggest::did_you_mean;
 pub struct Key {
     name: &'static str,
     required: bool,
-    /// How it is written, for the help where it is missing.
+    /// How it is written, for the help where it is missing, or where something else stands than the mapping that holds it.
     example: &'static str,
 }
 
 /// A key that must stand in its mapping, and how it is written.
 pub const fn required(name: &'static str, example: &'static str) -> Key {
     Key { name, required: true, example }
+}
+
+/// A key that may be left out, but usually stands in its mapping, and how it is written.
+pub const fn usual(name: &'static str, example: &'static str) -> Key {
+    Key { name, required: false, example }
 }
 
 /// A key that may be left out.
@@ -128,7 +133,7 @@ impl<'d> Reader<'d> {
         let names: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
         let Kind::Mapping(entries) = &node.kind else {
             let expected = format!("{what} is a mapping of keys to values, found {}", node.describe());
-            let help = format!("keys here: {}", names.join(", "));
+            let help = format!("{}keys here: {}", written_out(node, what, keys), names.join(", "));
             self.report(Code::WrongKind, visible(node, at), expected, "not `key: value`", help);
             return None;
         };
@@ -151,9 +156,14 @@ impl<'d> Reader<'d> {
             let near = || did_you_mean(word, &absent).or_else(|| did_you_mean(word, &names));
             let meant = other.or_else(|| near().filter(|_| place.is_none()));
             let found = excerpt(&key.value);
+            // A character that nobody sees may be all that is wrong with it.
+            let hidden = key.value.chars().find_map(super::invisible);
+            let seen: String = key.value.chars().filter(|c| super::invisible(*c).is_none()).collect();
+            let meant = names.iter().copied().find(|name| *name == seen).or(meant);
             let allowed = format!("keys here: {}", names.join(", "));
             let help = match meant {
                 _ if key.value == "<<" => "merge keys are not supported: write the values out".to_owned(),
+                _ if hidden.is_some() => format!("{}, stands in it: type the key anew", hidden.unwrap_or_default()),
                 Some(meant) => match assigned {
                     Some((_, behind)) => format!("write `{meant}: {}`, with a colon and a space", excerpt(behind)),
                     None => format!("did you mean `{meant}`? {allowed}"),
@@ -247,6 +257,24 @@ impl<'d> Reader<'d> {
         };
         let message = format!("{} must be {expected}, found {found}", quoted(name));
         self.report(Code::WrongKind, visible(node, key), message, "wrong kind of value", help);
+    }
+}
+
+/// How a mapping is written where `node` stands instead, if its keys have examples: a lone number goes under the key that is a number alone.
+fn written_out(node: &Node, what: &str, keys: &[Key]) -> String {
+    let examples: Vec<&str> = keys.iter().map(|key| key.example).filter(|example| !example.is_empty()).collect();
+    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    let entries = match (&node.kind, &examples[..]) {
+        (_, []) => return String::new(),
+        (Kind::Scalar(scalar), [only]) if is_number(&scalar.text) => match only.split_once(": ") {
+            Some((key, value)) if is_number(value) => format!("{key}: {}", excerpt(&scalar.text)),
+            _ => (*only).to_owned(),
+        },
+        (_, all) => all.join(", "),
+    };
+    match what.strip_prefix('`').and_then(|rest| rest.strip_suffix('`')) {
+        Some(key) => format!("write for instance `{key}: {{{entries}}}`; "),
+        None => format!("write for instance `{{{entries}}}`; "),
     }
 }
 

@@ -258,13 +258,17 @@ impl Builder<'_> {
         }
         self.nodes += 1;
         let waits_for_dash = self.lacks_dash(&node);
+        let flow = self.open.last().is_some_and(|open| open.flow);
         match self.open.last_mut().map(|open| &mut open.content) {
             None => self.root = Some(node),
             Some(Content::List(items)) => items.push(node),
             Some(Content::Mapping(entries, seen, waiting)) => match waiting.take() {
                 None if waits_for_dash => self.begin_entry(node),
                 None => *waiting = Some(key(node, seen, self.diagnostics)),
-                Some(Some(key)) => entries.push((key, node)),
+                Some(Some(key)) => {
+                    let entry = if flow { parted(self.source, &key, &node, seen, self.diagnostics) } else { None };
+                    entries.push(entry.unwrap_or((key, node)));
+                }
                 Some(None) => {}
             },
         }
@@ -384,6 +388,32 @@ fn key(node: Node, seen: &mut BTreeMap<String, Span>, diagnostics: &mut Diagnost
     }
     seen.insert(scalar.text.clone(), node.span);
     Some(Spanned::new(scalar.text, node.span))
+}
+
+/// Key and value of `yy:0.01` between braces, where YAML takes it for a key without a value; the missing blank is reported.
+fn parted(
+    source: &Source,
+    key: &Spanned<String>,
+    nothing: &Node,
+    seen: &mut BTreeMap<String, Span>,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Spanned<String>, Node)> {
+    let is_nothing = matches!(&nothing.kind, Kind::Scalar(scalar) if scalar.is_nothing());
+    if !is_nothing || source.slice(key.span) != key.value {
+        return None;
+    }
+    let (word, rest) = key.value.split_once(':')?;
+    if !cause::is_word(word) || rest.is_empty() || seen.contains_key(word) {
+        return None;
+    }
+    let colon = key.span.start + word.len();
+    let (message, _) = explain(&ErrorKind::InvalidMappingValueWhitespace);
+    let help = format!("write `{word}: {}`", super::excerpt(rest));
+    diagnostics.push(Diagnostic::new(Code::YamlSyntax, Span::new(colon, colon + 1), message, "here", help));
+    let word = Spanned::new(word.to_owned(), Span::new(key.span.start, colon));
+    seen.insert(word.value.clone(), word.span);
+    let scalar = Scalar { text: rest.to_owned(), plain: true, verbatim: Some(colon + 1) };
+    Some((word, Node { span: Span::new(colon + 1, key.span.end), kind: Kind::Scalar(scalar) }))
 }
 
 /// What the reader's complaint means, and what to do about it.

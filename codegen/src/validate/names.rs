@@ -50,6 +50,9 @@ fn check_name(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics)
         let message = format!("`{shown}` cannot be the name of {what}: it is {meaning}");
         let help = match name.value.trim_matches('_').to_lowercase() {
             word if word.is_empty() => "choose a name that begins with a letter".to_owned(),
+            word if what == "a parameter" && word.starts_with('q') => {
+                format!("leave it out: joint variables are added to `theta` and `d` by themselves; of something else the name could be `{word}_`")
+            }
             word => format!("choose another name, such as `{word}_`"),
         };
         diagnostics.push(Diagnostic::new(Code::ReservedName, name.span, message, "reserved", help));

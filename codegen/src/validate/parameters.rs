@@ -9,12 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::number::{self, Nominals};
 use super::places::{self, Occurrence, Role};
-use crate::description::{RegressorDescription, RobotDescription};
+use crate::description::{JointDescription, RegressorDescription, RobotDescription};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::{excerpt, Expression, ExpressionKind, Operator};
 use crate::exact::Number;
-use crate::kinds::ParameterId;
-use crate::kinds::Scalar;
+use crate::kinds::{JointKind, ParameterId, Scalar};
 use crate::manipulator::Parameter;
 use crate::source::Span;
 use crate::suggest::did_you_mean;
@@ -27,6 +26,8 @@ pub(super) struct Parameters<'d> {
     forward: BTreeSet<&'d str>,
     /// How many unknown names were reported.
     unknown: usize,
+    /// Every name of the description, wherever it is defined.
+    later: BTreeSet<&'d str>,
 }
 
 /// After so many unknown names no more is guessed about what was meant: each guess compares the name with all that are defined.
@@ -47,6 +48,41 @@ pub(super) struct Entry<'d> {
     pub(super) abbreviation: bool,
     /// Where it stands in expressions.
     pub(super) uses: Vec<Occurrence>,
+}
+
+/// What a name stands in, as far as it says what was meant by one that is not defined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Within<'d> {
+    /// The value of the parameter of this name.
+    Parameter(&'d str),
+    /// The offset of a joint variable: `theta` of a revolute joint, `d` of a prismatic one.
+    Offset(JointKind),
+    Other,
+}
+
+impl Within<'_> {
+    /// The key to whose value a joint variable is added, if `name` is what tables of Denavit and Hartenberg call it.
+    fn adds_variable(self, name: &str) -> Option<&'static str> {
+        let Within::Offset(kind) = self else { return None };
+        let letters = name.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_');
+        let (key, own): (_, &[&str]) = match kind {
+            JointKind::Revolute => ("theta", &["theta", "th", "\u{3b8}", "\u{3d1}"]),
+            JointKind::Prismatic => ("d", &["d"]),
+        };
+        let is_one = letters == "q" || own.contains(&letters.to_lowercase().as_str());
+        is_one.then_some(key)
+    }
+}
+
+/// The offsets of joint variables, by their places.
+fn offsets(description: &RobotDescription) -> BTreeMap<Span, Within<'static>> {
+    let joints = description.joints.iter().flat_map(|joints| &joints.value);
+    let offset = |joint: &JointDescription| {
+        let kind = joint.kind.as_ref()?.value;
+        let value = if kind == JointKind::Revolute { &joint.theta } else { &joint.d };
+        Some((value.as_ref()?.span, Within::Offset(kind)))
+    };
+    joints.filter_map(offset).collect()
 }
 
 /// Why a name cannot be a symbol.
@@ -86,12 +122,17 @@ impl<'d> Parameters<'d> {
             },
             None => BTreeSet::new(),
         };
-        let mut parameters = Parameters { entries: Vec::new(), by_name: BTreeMap::new(), forward: BTreeSet::new(), unknown: 0 };
-        let later: BTreeSet<&str> = description.parameters.iter().map(|p| p.name.value.as_str()).collect();
+        let mut parameters = Parameters {
+            entries: Vec::new(),
+            by_name: BTreeMap::new(),
+            forward: BTreeSet::new(),
+            unknown: 0,
+            later: description.parameters.iter().map(|p| p.name.value.as_str()).collect(),
+        };
         for parameter in &description.parameters {
             let name = parameter.name.value.as_str();
             if let Some(value) = &parameter.value {
-                parameters.note_uses(value, Role::Parameter, &later, diagnostics);
+                parameters.note_uses(value, Role::Parameter, Within::Parameter(name), diagnostics);
             }
             let abbreviation = parameter.value.as_ref().is_some_and(|v| !v.named().is_empty()) && !listed.contains(name);
             let nominal = parameter.value.as_ref().and_then(|v| number::number(v, &parameters, scalar, diagnostics));
@@ -108,8 +149,10 @@ impl<'d> Parameters<'d> {
             parameters.by_name.insert(name, parameters.entries.len());
             parameters.entries.push(entry);
         }
+        let offsets = offsets(description);
         for (role, expression) in places::expressions(description) {
-            parameters.note_uses(expression, role, &later, diagnostics);
+            let within = offsets.get(&expression.span).copied().unwrap_or(Within::Other);
+            parameters.note_uses(expression, role, within, diagnostics);
             match role {
                 Role::Angle => parameters.force(expression, expression.span, Reason::Angle),
                 Role::Axis => parameters.force(expression, expression.span, Reason::Axis),
@@ -168,20 +211,20 @@ impl<'d> Parameters<'d> {
     }
 
     /// Notes where names stand; reports those that nothing above defines.
-    fn note_uses(&mut self, expression: &Expression, role: Role, later: &BTreeSet<&'d str>, diagnostics: &mut Diagnostics) {
+    fn note_uses(&mut self, expression: &Expression, role: Role, within: Within<'_>, diagnostics: &mut Diagnostics) {
         for (name, span) in expression.named() {
             match self.by_name.get(name) {
                 Some(&i) => self.entries[i].uses.push(Occurrence { span, role }),
                 None => {
-                    self.forward.extend(later.get(name));
+                    self.forward.extend(self.later.get(name));
                     self.unknown += 1;
-                    diagnostics.push(self.unknown(name, span, later));
+                    diagnostics.push(self.unknown(name, span, within));
                 }
             }
         }
     }
 
-    fn unknown(&self, name: &str, span: Span, later: &BTreeSet<&'d str>) -> Diagnostic {
+    fn unknown(&self, name: &str, span: Span, within: Within<'_>) -> Diagnostic {
         let shown = excerpt(name);
         if matches!(name.to_ascii_lowercase().as_str(), "inf" | "infinity" | "nan") {
             let help = "every quantity of an arm is finite; leave the key out where it is optional and unknown";
@@ -192,7 +235,11 @@ impl<'d> Parameters<'d> {
             words.push("pi");
             did_you_mean(name, &words)
         };
-        let help = if later.contains(name) {
+        let help = if within == Within::Parameter(name) {
+            "a value may use the names above it, and not its own: write a number".to_owned()
+        } else if let Some(key) = within.adds_variable(name) {
+            format!("the joint variable is added to `{key}` by itself: write what else stands there, its offset, or 0")
+        } else if self.later.contains(name) {
             format!("`{shown}` is defined further down: a value may use the names above it; move it up")
         } else if self.unknown > GUESSES {
             format!("define `{shown}` under `parameters`, or correct it")

@@ -14,7 +14,7 @@ enum To {
     Times(&'static str),
 }
 
-/// Units without blanks, `*`, `·` and `^`, squares as 2, and the SI units that they become.
+/// Units as [`squeezed`] has them, and the SI units that they become.
 const UNITS: &[(&str, To, &str)] = &[
     ("m", To::Power(0), "m"),
     ("mm", To::Power(-3), "m"),
@@ -41,10 +41,29 @@ const UNITS: &[(&str, To, &str)] = &[
     ("°", To::Degrees, "rad"),
     ("N", To::Power(0), "N"),
     ("kN", To::Power(3), "N"),
+    ("kgf", To::Times("9.80665"), "N"),
+    ("lbf", To::Times("4.4482216"), "N"),
     ("Nm", To::Power(0), "N m"),
     ("kNm", To::Power(3), "N m"),
     ("Ncm", To::Power(-2), "N m"),
     ("mNm", To::Power(-3), "N m"),
+    ("kgm", To::Times("9.80665"), "N m"),
+    ("kgfm", To::Times("9.80665"), "N m"),
+    ("kgcm", To::Times("0.0980665"), "N m"),
+    ("kgfcm", To::Times("0.0980665"), "N m"),
+    ("gcm", To::Times("9.80665e-5"), "N m"),
+    ("gfcm", To::Times("9.80665e-5"), "N m"),
+    ("ozin", To::Times("0.007061552"), "N m"),
+    ("ozfin", To::Times("0.007061552"), "N m"),
+    ("lbin", To::Times("0.1129848"), "N m"),
+    ("lbfin", To::Times("0.1129848"), "N m"),
+    ("inlb", To::Times("0.1129848"), "N m"),
+    ("lbft", To::Times("1.355818"), "N m"),
+    ("lbfft", To::Times("1.355818"), "N m"),
+    ("ftlb", To::Times("1.355818"), "N m"),
+    ("N/m", To::Power(0), "N/m"),
+    ("N/mm", To::Power(3), "N/m"),
+    ("Nm/rad", To::Power(0), "N m/rad"),
     ("Nms", To::Power(0), "N m s"),
     ("Nms/rad", To::Power(0), "N m s"),
     ("Ns/m", To::Power(0), "N s/m"),
@@ -64,18 +83,18 @@ const UNITS: &[(&str, To, &str)] = &[
     ("kHz", To::Power(3), "1/s"),
 ];
 
-/// What to write instead of `before` and a unit, if `rest` is one.
+/// What to write instead of `before` and a unit, if `rest` is one. Where more than a number stands before it, what the unit belongs to is not
+/// guessed.
 pub(super) fn without(before: &str, rest: &str) -> Option<String> {
-    let unit: String = rest.chars().filter(|c| !c.is_whitespace() && !"*·^".contains(*c)).take(16).collect();
-    let unit = unit.replace('²', "2").replace('º', "°");
+    let unit = squeezed(rest);
     let (_, to, si) = UNITS.iter().find(|(name, ..)| *name == unit)?;
-    let before = before.trim_end();
-    let number = &before[before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len()..];
-    // Of a number with a power of ten, and of none at all, only the unit is named.
-    let left = &before[..before.len() - number.len()];
-    let power = left.ends_with(char::is_alphanumeric) || left.ends_with(['+', '-']) && left.contains(['e', 'E']);
-    let plain = !number.is_empty() && number.matches('.').count() <= 1 && !power;
-    let sign = if before.trim_start() == format!("-{number}") { "-" } else { "" };
+    let before = before.trim();
+    let (sign, number) = match before.strip_prefix('-') {
+        Some(rest) => ("-", rest.trim_start()),
+        None => ("", before.strip_prefix('+').unwrap_or(before).trim_start()),
+    };
+    let is_decimal = number.chars().all(|c| c.is_ascii_digit() || c == '.') && number.matches('.').count() <= 1;
+    let plain = is_decimal && number.contains(|c: char| c.is_ascii_digit());
     Some(match (to, plain) {
         (To::Power(0), true) => format!("remove the unit: write `{sign}{number}`; all values are in SI units, here in {si}"),
         (To::Power(0), false) => format!("remove the unit: all values are in SI units, here in {si}"),
@@ -83,13 +102,38 @@ pub(super) fn without(before: &str, rest: &str) -> Option<String> {
             format!("write `{sign}{}`: all values are in SI units, here in {si}", shifted(number, *power))
         }
         (To::Power(power), false) => {
-            format!("write the number times 1e{power}, without the unit: all values are in SI units, here in {si}")
+            format!("multiply what has this unit by 1e{power} and leave the unit out: all values are in SI units, here in {si}")
         }
         (To::Degrees, true) => format!("write `{sign}deg({number})`: angles are in rad, and `deg` turns degrees into them"),
-        (To::Degrees, false) => DEGREES.to_owned(),
+        (To::Degrees, false) if number.is_empty() => DEGREES.to_owned(),
+        (To::Degrees, false) => {
+            "write `deg(...)` around what is in degrees, and leave the unit out: angles are in rad, and `deg` turns degrees into them"
+                .to_owned()
+        }
         (To::Times(factor), true) => format!("write `{sign}{number}*{factor}`: all values are in SI units, here in {si}"),
-        (To::Times(factor), false) => format!("multiply by `{factor}` instead: all values are in SI units, here in {si}"),
+        (To::Times(factor), false) => {
+            format!("multiply what has this unit by {factor} and leave the unit out: all values are in SI units, here in {si}")
+        }
     })
+}
+
+/// A unit without blanks, `*`, `·`, `^`, and without `-` and `.` between letters; squares as 2.
+fn squeezed(unit: &str) -> String {
+    let mut squeezed = String::new();
+    let mut characters = unit.trim().chars().take(24).peekable();
+    while let Some(c) = characters.next() {
+        let joins = matches!(c, '-' | '.')
+            && squeezed.ends_with(char::is_alphabetic)
+            && characters.peek().is_some_and(|next| next.is_alphabetic());
+        match c {
+            '²' => squeezed.push('2'),
+            'º' => squeezed.push('°'),
+            '*' | '·' | '^' => {}
+            c if joins || c.is_whitespace() => {}
+            c => squeezed.push(c),
+        }
+    }
+    squeezed
 }
 
 /// A decimal times a power of ten, its point moved.
@@ -127,9 +171,47 @@ mod tests {
     fn units_are_known_with_blanks_and_signs() {
         let said = |before: &str, rest: &str| without(before, rest).unwrap_or_default();
         assert!(said("-170", "°").contains("`-deg(170)`"));
-        assert!(said("1 + 2 ", "kg cm²").contains("`0.0002`"));
-        assert!(said("1e-3 ", "mm").contains("times 1e-3"));
+        assert!(said("2 ", "kg cm²").contains("`0.0002`"));
+        assert!(said("1e-3 ", "mm").contains("by 1e-3 "));
         assert!(said("3", "rpm").contains("`3*2*pi/60`"));
+        assert!(said("", "°").contains("`deg(90)`"));
         assert_eq!(without("3 ", "l1"), None);
+        assert_eq!(without("2 ", "m - s"), None);
+    }
+
+    #[test]
+    fn torques_of_servos_are_newton_metres() {
+        // Standard gravity, and the pound and the inch by definition: 0.45359237 kg, 0.0254 m.
+        let gravity = 9.80665;
+        let pound = 0.45359237 * gravity;
+        let check = |units: &[&str], factor: f64| {
+            for unit in units {
+                let said = without("15 ", unit).unwrap_or_else(|| panic!("{unit} is not known"));
+                let number = said.split('`').nth(1).and_then(|text| text.strip_prefix("15*")).map(str::parse::<f64>);
+                let given = number.and_then(Result::ok).unwrap_or_else(|| panic!("{said}"));
+                assert!((given / factor - 1.0).abs() < 5e-7, "{unit}: {given} instead of {factor}");
+            }
+        };
+        check(&["kg-cm", "kgcm", "kgf cm", "kgf.cm", "kg*cm", "kg cm"], gravity / 100.0);
+        check(&["kgf m", "kg-m"], gravity);
+        check(&["g-cm", "gf cm"], gravity / 1e5);
+        check(&["oz-in", "ozf in"], pound / 16.0 * 0.0254);
+        check(&["lb-in", "in-lb", "lbf in"], pound * 0.0254);
+        check(&["ft-lb", "lbf ft"], pound * 0.3048);
+        check(&["lbf"], pound);
+        check(&["kgf"], gravity);
+        assert!(without("3e-5 ", "kg.m2").is_some_and(|said| said.contains("kg m²")));
+    }
+
+    #[test]
+    fn of_an_expression_no_part_is_taken_for_the_whole() {
+        for before in ["pi/2 ", "1/2 ", "2*45 ", "-90/2 ", "m1/2 ", "1 + 2 ", "(1 + 2) ", "1e-3 ", "--3 ", "l2 ", "1.2.3 "] {
+            for unit in ["m", "mm", "deg", "in"] {
+                let said = without(before, unit).unwrap_or_default();
+                let mut to_copy = said.split('`').skip(1).step_by(2);
+                let none = to_copy.all(|text| !text.contains(|c: char| c.is_ascii_digit()));
+                assert!(!said.is_empty() && none, "{before}{unit}: {said}");
+            }
+        }
     }
 }

@@ -51,6 +51,7 @@ pub(super) fn find(text: &str, at: usize, kind: &ErrorKind) -> Option<Cause> {
             let here = lines.partition_point(|(start, _)| *start <= at).checked_sub(1)?;
             let without_colon = || matches!(kind, E::MappingValueNotAllowed).then(|| key_without_colon(text, at)).flatten();
             tab_beside(text, at)
+                .or_else(|| invisible_beside(&lines, here))
                 .or_else(|| without_space(&lines, here))
                 .or_else(|| missing_dash(&lines, here))
                 .or_else(|| own_column(&lines, here))
@@ -91,9 +92,13 @@ fn key_column(line: &str) -> usize {
     line.len() - after.len()
 }
 
+/// Whether a text is like a key.
+pub(super) fn is_word(word: &str) -> bool {
+    word.starts_with(char::is_alphabetic) && word.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
 /// `-name: x` or `name:x` in the line or above it.
 fn without_space(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
-    let is_word = |word: &str| word.starts_with(char::is_alphabetic) && word.chars().all(|c| c.is_alphanumeric() || c == '_');
     [Some(here), above(lines, here)].into_iter().flatten().find_map(|i| {
         let (start, line) = lines[i];
         let dash = start + indentation(line);
@@ -218,6 +223,26 @@ fn tab_beside(text: &str, at: usize) -> Option<Cause> {
         let visible = line.trim_start();
         let tab = line[..line.len() - visible.len()].find('\t').filter(|_| !visible.starts_with('#'))?;
         Some(Cause::of(Span::new(start + tab, start + tab + 1), &ErrorKind::TabInIndentation))
+    })
+}
+
+/// A character that looks like a blank and is none, in the line or in the one above: a key or an indentation that was pasted with it.
+fn invisible_beside(lines: &[(usize, &str)], here: usize) -> Option<Cause> {
+    [Some(here), above(lines, here)].into_iter().flatten().find_map(|i| {
+        let (start, line) = lines[i];
+        let content = line.split(" #").next().unwrap_or_default();
+        let blank = |c: char| c.is_whitespace() || super::super::invisible(c).is_some();
+        // Elsewhere than before a key or a value it is a part of a text, and no fault.
+        let stands_before =
+            |at: usize| matches!(content[..at].trim_end_matches(blank).chars().next_back(), None | Some(':' | '-'));
+        let (at, c, name) = content
+            .char_indices()
+            .find_map(|(at, c)| Some((at, c, super::super::invisible(c).filter(|_| stands_before(at))?)))?;
+        Some(Cause {
+            span: Span::new(start + at, start + at + c.len_utf8()),
+            message: format!("{name}, stands where YAML needs a space"),
+            help: "type a space instead".to_owned(),
+        })
     })
 }
 
