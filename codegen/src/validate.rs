@@ -50,6 +50,7 @@ pub use names::{is_free_name, is_rust_name, module_name};
 pub use nominal::NominalValues;
 use parameters::Parameters;
 pub use places::{JointPlaces, Occurrence, Places, Role};
+pub use plausible::{density_of_cuboid, doubt_of_density};
 
 /// Most named quantities: more than all numbers of an arm with `MAX_JOINTS` joints.
 pub const MAX_PARAMETERS: usize = 1024;

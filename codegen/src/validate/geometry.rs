@@ -23,7 +23,7 @@ const LARGEST_ANGLE: i64 = 1_000_000;
 const NEAR: f64 = 2e-3;
 /// Terms of the squared length of an axis.
 const MAX_SQUARE: usize = 32;
-/// A limit beyond this many radians is probably one in degrees: nearly five turns.
+/// A limit, or the rest of a spring, beyond this many radians is probably one in degrees: nearly five turns.
 const SUSPECT_LIMIT: f64 = 30.0;
 
 /// Sine and cosine of an angle of the file.
@@ -41,7 +41,7 @@ pub(super) fn sine_cosine(value: &Value, what: &str, context: &mut Context<'_>) 
     Some((angle.sin(), angle.cos()))
 }
 
-/// Warns of a limit in degrees. A rounded one limits as well as another.
+/// Warns of a limit, or of the rest of a spring, in degrees. A rounded one is as good as another.
 pub(super) fn doubt_limit(expression: &Expression, radians: &Number, what: &str, context: &mut Context<'_>) {
     let _ = doubt_degrees(expression, radians, what, SUSPECT_LIMIT, context);
 }

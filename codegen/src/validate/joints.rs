@@ -53,7 +53,7 @@ pub(super) fn joint(
         None => Some(None),
     };
     let spring = match &description.spring {
-        Some(spring) => self::spring(spring, &called, context).map(Some),
+        Some(spring) => self::spring(spring, kind, &called, context).map(Some),
         None => Some(None),
     };
     let armature =
@@ -108,11 +108,17 @@ fn stribeck(description: &StribeckDescription, called: &str, context: &mut Conte
     Some(Stribeck { torque: torque?, velocity })
 }
 
-fn spring(description: &SpringDescription, called: &str, context: &mut Context<'_>) -> Option<Spring> {
+fn spring(description: &SpringDescription, kind: Option<JointKind>, called: &str, context: &mut Context<'_>) -> Option<Spring> {
     let what = format!("the stiffness of the spring of joint {called}");
     let stiffness = bodies::not_negative(description.stiffness.as_ref()?, &what, Code::NegativeStiffness, context);
     let rest = match &description.rest {
-        Some(rest) => context.polynomial(rest),
+        Some(rest) => {
+            let value = context.number(rest).filter(|_| kind == Some(JointKind::Revolute));
+            if let Some(value) = value {
+                geometry::doubt_limit(rest, &value, &format!("the rest of the spring of joint {called}"), context);
+            }
+            context.polynomial(rest)
+        }
         None => Some(Polynomial::zero()),
     };
     Some(Spring { stiffness: stiffness?, rest: rest? })

@@ -4,11 +4,12 @@
 //!
 //! | kind | warns of | since |
 //! |---|---|---|
-//! | `implausible-reach` | a length beyond 30 m | the longest arms, of space stations and concrete pumps, have links of some 10 m; 0.05 m written in mm is 50 |
+//! | `implausible-reach` | a length, all lengths together, or a limit of a slide beyond 30 m | the longest arms, of space stations and concrete pumps, have links of some 10 m; 0.05 m written in mm is 50 |
 //! | `implausible-mass` | masses of more than 2000 kg per cube of what the arm spans | industrial arms have 3 to 80; a solid cube of that side made of light alloy has 2700 |
+//! | the same | a payload of five times the mass of all links | hydraulic arms lift some four times their own |
 //! | `outlying-mass` | a link of five times the mass of all others together, unless its inertia is that of a body of such a mass: that of a ball less dense than light alloy | the heaviest links of arms have about half of the whole; a torso below a head has more, but its inertia says so, too, and a slip of ten in a mass makes the ball 316 times as dense |
-//! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link |
-//! | `implausible-inertia` | a radius of gyration above what the link spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
+//! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link; a payload is no longer than the arm |
+//! | `implausible-inertia` | a radius of gyration above what the link, or for a payload the arm, spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
 //! | `placeholder-inertia` | the same: a tensor of which xx, yy and zz are one number that is a power of ten or that another link has, too | no two links of an arm are balls of one inertia; templates say 1 1 1 or 0.001 three times |
 //! | `implausible-density` | an inertia below half of that of a lead ball of the link's mass | of all bodies of one mass and density a ball has the least |
 //! | both, of all links together | a median density of their boxes below that of rigid foam, or above that of lead: all tensors ten times too large or too small, which each of them alone may be | of 46 files that are much in use 42 have 320 to 5600 kg/m³, and the others values that nobody measured |
@@ -30,6 +31,8 @@ use crate::diagnostic::Code;
 use crate::document::Expression;
 use crate::kinds::JointKind;
 use crate::source::Span;
+pub use densities::{density_of_cuboid, doubt_of_density};
+use frames::check_reference;
 
 const LONGEST: f64 = 30.0;
 const MASS_PER_CUBE: f64 = 2000.0;
@@ -64,6 +67,19 @@ struct Arm<'d> {
     masses: Vec<f64>,
 }
 
+/// A body with mass whose numbers are looked at.
+struct Body<'b> {
+    description: &'b BodyDescription,
+    /// kg.
+    mass: f64,
+    /// How messages call it.
+    whose: String,
+    /// Whose frame its numbers are in.
+    frame: &'static str,
+    /// How far its centre of mass can be from there, m: the arm is as long.
+    farthest: f64,
+}
+
 /// Warns of what is implausible in a description without errors.
 pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     let Some(joints) = description.joints.as_ref().map(|list| list.value.as_slice()) else { return };
@@ -85,6 +101,7 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     if let Some(tool) = &description.tool {
         reach += translation(tool, "the tool", context);
     }
+    check_reach(joints, &lengths, reach, context);
     let strokes: Vec<f64> = joints.iter().map(|joint| stroke(joint, context)).collect();
     if reach < 2.0 * SMALL_REACH {
         reach += strokes.iter().filter(|stroke| stroke.is_finite()).sum::<f64>();
@@ -99,12 +116,16 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
     for (i, joint) in joints.iter().enumerate() {
         let called = call(i, joint);
         if let Some(link) = &joint.link {
-            doubtful |= arm.check_body(i, link, &called, doubted, context);
+            doubtful |= arm.check_link(i, link, &called, doubted, context);
         }
         arm.check_motor(joint, &called, context);
+        check_stroke(joint, &called, context);
         check_velocity(joint, &called, context);
         check_effort(joint, &called, context);
         check_friction(joint, &called, context);
+    }
+    if let Some(payload) = &description.payload {
+        arm.check_payload(payload, doubted, context);
     }
     if !doubtful {
         arm.check_densities(context);
@@ -155,6 +176,50 @@ fn length(value: &Value, what: &str, context: &mut Context<'_>) -> f64 {
         context.report(Code::ImplausibleReach, span, message, "in mm?", help);
     }
     size.abs()
+}
+
+/// All lengths together, where none of them is too long by itself.
+fn check_reach(joints: &[JointDescription], lengths: &[f64], reach: f64, context: &mut Context<'_>) {
+    let Some(longest) = (0..lengths.len()).reduce(|a, b| if lengths[b] > lengths[a] { b } else { a }) else { return };
+    let is_told = context.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::ImplausibleReach);
+    if reach <= LONGEST || is_told {
+        return;
+    }
+    let joint = &joints[longest];
+    let rows = [&joint.a, &joint.d].map(|value| (number(value, context).abs(), value.as_ref()));
+    let value = rows.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).and_then(|(_, value)| value);
+    let span = value.map(|value| written(value, context)).or(joint.origin.as_ref().map(|origin| origin.key));
+    let message = format!("the lengths of the arm add up to {} m: no arm is as long", short(reach));
+    let help = format!("lengths are in m; if these are in cm, the arm is {} m long", short(reach / 1e2));
+    context.report(Code::ImplausibleReach, span.unwrap_or(joint.span), message, "the longest; all in cm?", help);
+}
+
+/// How far a joint slides: neither a length that no arm has nor an angle.
+fn check_stroke(joint: &JointDescription, called: &str, context: &mut Context<'_>) {
+    if joint.kind.as_ref().is_none_or(|kind| kind.value == JointKind::Revolute) {
+        return;
+    }
+    for value in joint.limits.position.iter().flat_map(|limits| &limits.value) {
+        let Some(expression) = value else { continue };
+        let size = number(value, context);
+        let span = written(expression, context);
+        if is_in_degrees(expression, context) {
+            let message = format!("a limit of joint {called} is an angle in degrees, and the joint slides");
+            let help = "limits of a prismatic joint are in m; see whether the joint is `revolute`";
+            context.report(Code::DegreesSuspected, span, message, "an angle?", help);
+        } else if size.abs() > LONGEST {
+            let message =
+                format!("a limit of joint {called} is {} m from 0: no joint of an arm slides as far", short(size.abs()));
+            let help = format!("lengths are in m; if this is in mm, write {}", short(size / 1e3));
+            context.report(Code::ImplausibleReach, span, message, "in mm?", help);
+        }
+    }
+}
+
+/// Whether a value is written with `deg`, by itself or by the name that it is.
+fn is_in_degrees(value: &Expression, context: &Context<'_>) -> bool {
+    let definition = value.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value);
+    definition.unwrap_or(value).has_degrees()
 }
 
 fn dust(value: &Value, what: &str, unit: &str, context: &mut Context<'_>) {
@@ -272,34 +337,16 @@ impl Arm<'_> {
     }
 
     /// Centre of mass and inertia of a link; whether it warns of a size of the inertia.
-    fn check_body(&self, i: usize, link: &BodyDescription, called: &str, doubted: bool, context: &mut Context<'_>) -> bool {
+    fn check_link(&self, i: usize, link: &BodyDescription, called: &str, doubted: bool, context: &mut Context<'_>) -> bool {
         let mass = self.masses[i];
         // With bodies fixed to it the link is another than its own numbers say.
         if self.reach < SMALL_REACH || mass <= 0.0 || !link.attached.is_empty() {
             return false;
         }
-        let mut com = 0.0;
-        if let Some(given) = &link.com {
-            for value in &given.value {
-                dust(value, &format!("the centre of mass of the link of joint {called}"), "m", context);
-                com += number(value, context).powi(2);
-            }
-            com = com.sqrt();
-            if com > self.reach {
-                let message = format!(
-                    "the centre of mass of the link of joint {called} is {} m from its frame, and the arm is {} m long",
-                    short(com),
-                    short(self.reach)
-                );
-                let slips = [(1e3, "in mm"), (1e2, "in cm"), (10.0, "a decimal place off")];
-                let (factor, slip) = likeliest(&slips, |factor| com / factor, 0.2 * self.reach);
-                let help =
-                    format!("if this is {slip}, {} m would be meant; it counts from the link's frame", short(com / factor));
-                context.report(Code::ImplausibleCom, given.span, message, format!("{slip}?"), help);
-                return false;
-            }
-        }
-        let Some(inertia) = &link.inertia else {
+        let body =
+            Body { description: link, mass, whose: format!("the link of joint {called}"), frame: "link", farthest: self.reach };
+        let Some(com) = check_com(&body, context) else { return false };
+        if link.inertia.is_none() {
             let total: f64 = self.masses.iter().sum();
             // An arm without any inertia is one of point masses, and meant.
             let others = self.joints.iter().any(|joint| joint.link.as_ref().is_some_and(|link| link.inertia.is_some()));
@@ -309,21 +356,55 @@ impl Arm<'_> {
                 context.report(Code::MissingInertia, link.key, message, "no `inertia` below", help);
             }
             return false;
-        };
-        let largest = largest_moment(link, context);
-        if largest <= 0.0 {
-            return false;
         }
-        self.check_reference(i, link, called, context);
+        self.check_inertia(&body, self.span(i, com), doubted, context)
+    }
+
+    /// Mass, centre of mass and inertia of the payload. It may be longer than a link, and is not longer than the arm.
+    fn check_payload(&self, payload: &BodyDescription, doubted: bool, context: &mut Context<'_>) {
+        let mass = number(&payload.mass, context);
+        let bodies = self
+            .joints
+            .iter()
+            .filter_map(|joint| joint.link.as_ref())
+            .flat_map(|link| std::iter::once(&link.mass).chain(link.attached.iter().map(|other| &other.body.mass)));
+        let total: f64 = bodies.map(|mass| number(mass, context)).sum();
+        if self.reach < SMALL_REACH || mass <= 0.0 {
+            return;
+        }
+        let is_heavy = !doubted && total > 0.0 && mass > OUTLYING * total;
+        if let (true, Some(expression)) = (is_heavy, &payload.mass) {
+            let span = written(expression, context);
+            let message = format!(
+                "the payload weighs {} kg, {} times as much as the links of the arm together",
+                short(mass),
+                short((mass / total).round())
+            );
+            let help = format!("masses are in kg; if this is in g, write {}", short(mass / 1e3));
+            context.report(Code::ImplausibleMass, span, message, "in g?", help);
+        }
+        let farthest = self.reach + self.strokes.iter().sum::<f64>();
+        let body = Body { description: payload, mass, whose: "the payload".to_owned(), frame: "end effector", farthest };
+        if let Some(com) = check_com(&body, context) {
+            self.check_inertia(&body, farthest + 2.0 * com + HOUSING, doubted || is_heavy, context);
+        }
+    }
+
+    /// The inertia of a body that can span so much; whether it warns of its size.
+    fn check_inertia(&self, body: &Body<'_>, span: f64, doubted: bool, context: &mut Context<'_>) -> bool {
+        let Body { description, mass, ref whose, .. } = *body;
+        let largest = largest_moment(description, context);
+        let Some(inertia) = description.inertia.as_ref().filter(|_| largest > 0.0) else { return false };
+        check_reference(body, context);
         let gyration = (largest / mass).sqrt();
-        let span = self.span(i, com);
         if gyration > span {
             let message = format!(
-                "the inertia of the link of joint {called} has a radius of gyration of {} m, more than the {} m that the link can span",
+                "the inertia of {whose} has a radius of gyration of {} m, more than the {} m that {} can span",
                 short(gyration),
-                short(span)
+                short(span),
+                if whose == "the payload" { "it" } else { "the link" }
             );
-            let (code, label, help) = if self.has_placeholder(link, context) {
+            let (code, label, help) = if self.has_placeholder(description, context) {
                 let most = short(mass * span * span / 4.0);
                 let help =
                     format!("write what the data sheet says: no body of {} kg in that span has more than {most}", short(mass));
@@ -345,7 +426,7 @@ impl Arm<'_> {
         let too_small = largest < OF_LEAD_BALL * ball;
         if !doubted && too_small {
             let message = format!(
-                "no solid of {} kg is as small as the inertia of the link of joint {called} says: a ball of lead has {} kg m²",
+                "no solid of {} kg is as small as the inertia of {whose} says: a ball of lead has {} kg m²",
                 short(mass),
                 short(ball)
             );
@@ -397,14 +478,42 @@ impl Arm<'_> {
                 short(reflected),
                 short(whole)
             );
+            // Of the units that data sheets of motors have, those with which it is a rotor of an arm.
+            let units = UNITS_OF_INERTIA.iter().filter(|(_, unit)| ["in kg cm²", "in g cm²"].contains(unit));
+            let fit = |factor: f64| reflected / factor <= REFLECTED * whole;
+            let meant: String = units
+                .filter(|(factor, unit)| fit(*factor) || *unit == "in g cm²")
+                .map(|(factor, unit)| format!("; if it is {unit}, write {}", short(inertia / factor)))
+                .collect();
             let help = format!(
-                "give the inertia before the gear in kg m²; if this is the one at the joint, write {}; if it is in kg cm², write {}",
-                short(inertia / (ratio * ratio)),
-                short(inertia / 1e4)
+                "give the inertia before the gear in kg m²; if this is the one at the joint, write {}{meant}",
+                short(inertia / (ratio * ratio))
             );
             context.report(Code::ReflectedRotor, span, message, "reflected already?", help);
         }
     }
+}
+
+/// How far the centre of mass of a body is from its frame; `None` where it is farther than the arm is long, which is told.
+fn check_com(body: &Body<'_>, context: &mut Context<'_>) -> Option<f64> {
+    let Some(given) = &body.description.com else { return Some(0.0) };
+    let Body { whose, frame, farthest, .. } = body;
+    let mut com = 0.0;
+    for value in &given.value {
+        dust(value, &format!("the centre of mass of {whose}"), "m", context);
+        com += number(value, context).powi(2);
+    }
+    com = com.sqrt();
+    if com <= *farthest {
+        return Some(com);
+    }
+    let message =
+        format!("the centre of mass of {whose} is {} m from its frame, and the arm is {} m long", short(com), short(*farthest));
+    let slips = [(1e3, "in mm"), (1e2, "in cm"), (10.0, "a decimal place off")];
+    let (factor, slip) = likeliest(&slips, |factor| com / factor, 0.2 * farthest);
+    let help = format!("if this is {slip}, {} m would be meant; it counts from the {frame}'s frame", short(com / factor));
+    context.report(Code::ImplausibleCom, given.span, message, format!("{slip}?"), help);
+    None
 }
 
 /// The slip with which a value comes nearest to what would be usual.
@@ -467,6 +576,10 @@ fn check_velocity(joint: &JointDescription, called: &str, context: &mut Context<
             short(velocity.to_radians())
         );
         context.report(Code::ImplausibleVelocity, span, message, "in degrees per second?", help);
+    } else if !turns && is_in_degrees(expression, context) {
+        let message = format!("the velocity limit of joint {called} is an angle in degrees per second, and the joint slides");
+        let help = "rates of a prismatic joint are in m/s; see whether the joint is `revolute`";
+        context.report(Code::DegreesSuspected, span, message, "an angle?", help);
     } else if !turns && velocity > FASTEST_SLIDE {
         let message =
             format!("the velocity limit of joint {called} is {} m/s: no joint of an arm slides as fast", short(velocity));

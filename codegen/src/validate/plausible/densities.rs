@@ -13,6 +13,9 @@ use crate::validate::Context;
 /// kg/m³: rigid foam. Links are hollow, and their boxes as light as water at the median.
 const FOAM: f64 = 100.0;
 const WATER: f64 = 1000.0;
+/// kg/m³: the lightest foam of packaging, and the densest metal.
+const LIGHTEST_FOAM: f64 = 20.0;
+const OSMIUM: f64 = 22_600.0;
 /// So many bodies have a median that says something.
 const FEWEST: usize = 3;
 /// Beside the cube of the sum of the squared sides their product is 0: a plate, a rod.
@@ -64,13 +67,30 @@ impl Arm<'_> {
 
 /// The density, kg/m³, of the cuboid with the inertia of a link, if that has a volume, and the place of the inertia.
 fn density(link: &BodyDescription, mass: f64, context: &mut Context<'_>) -> Option<(f64, Span)> {
-    let inertia = link.inertia.as_ref().filter(|_| mass > 0.0 && link.attached.is_empty())?;
-    let [xx, xy, yy, xz, yz, zz] = inertia.elements.each_ref().map(|value| number(value, context));
+    let inertia = link.inertia.as_ref().filter(|_| link.attached.is_empty())?;
+    let tensor = inertia.elements.each_ref().map(|value| number(value, context));
+    Some((density_of_cuboid(mass, tensor)?, inertia.key))
+}
+
+/// The density, kg/m³, of the cuboid with a mass, kg, and a tensor xx xy yy xz yz zz about its centre, kg m²; `None` where it has no volume, or where
+/// no body has that tensor.
+pub fn density_of_cuboid(mass: f64, tensor: [f64; 6]) -> Option<f64> {
+    let [xx, xy, yy, xz, yz, zz] = tensor;
     let trace = xx + yy + zz;
     let [a, b, c] = [xx, yy, zz].map(|moment| 6.0 * (trace - 2.0 * moment) / mass);
     let [d, e, f] = [xy, xz, yz].map(|product| -12.0 * product / mass);
     let minor = a * b - d * d;
     let volume = c * minor - a * f * f - b * e * e + 2.0 * d * e * f;
-    let is_a_solid = a > 0.0 && minor > 0.0 && volume > FLAT * (a + b + c).powi(3);
-    is_a_solid.then(|| (mass / volume.sqrt(), inertia.key))
+    let is_a_solid = mass > 0.0 && a > 0.0 && minor > 0.0 && volume > FLAT * (a + b + c).powi(3);
+    is_a_solid.then(|| mass / volume.sqrt())
+}
+
+/// What is doubtful about the density of the cuboid of one body, kg/m³: nothing is as light or as dense. It is said beside the body, and no warning:
+/// files that are much in use have such a link or two, and work.
+pub fn doubt_of_density(density: f64) -> Option<&'static str> {
+    match density {
+        _ if density < LIGHTEST_FOAM => Some("lighter than foam"),
+        _ if density > OSMIUM => Some("denser than osmium"),
+        _ => None,
+    }
 }

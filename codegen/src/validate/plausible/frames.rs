@@ -5,8 +5,8 @@
 //! | `coincident-axes` | two revolute joints, one after the other, that turn about one line | no arm spends two motors on one motion; angles of the standard convention in rows of the modified one, or the other way round, leave such a pair |
 //! | `inertia-about-frame` | a tensor with the products of inertia -m c_i c_j of its own centre of mass c, and moments to match | that is the tensor about the frame's origin of a body whose own axes are those of the frame (Steiner; Siciliano et al., Eq. B.67); armgen adds Steiner's terms itself |
 
-use super::{number, short, Arm};
-use crate::description::{BodyDescription, Convention, JointDescription};
+use super::{number, short, Arm, Body};
+use crate::description::{Convention, JointDescription};
 use crate::diagnostic::Code;
 use crate::kinds::JointKind;
 use crate::validate::{call, Context};
@@ -46,39 +46,39 @@ impl Arm<'_> {
             context.report(Code::CoincidentAxes, alpha.span, message, "parallel to the axis before it, and a is 0", help);
         }
     }
+}
 
-    /// A tensor about the origin of the frame where one about the centre of mass is asked for.
-    pub(super) fn check_reference(&self, i: usize, link: &BodyDescription, called: &str, context: &mut Context<'_>) {
-        let (Some(com), Some(inertia)) = (&link.com, &link.inertia) else { return };
-        if inertia.rotation.is_some() {
-            return;
-        }
-        let mass = self.masses[i];
-        let c = com.value.each_ref().map(|value| number(value, context));
-        let given = inertia.elements.each_ref().map(|value| number(value, context));
-        let size = c.iter().map(|x| x * x).sum::<f64>();
-        let steiner = [
-            mass * (size - c[0] * c[0]),
-            -mass * c[0] * c[1],
-            mass * (size - c[1] * c[1]),
-            -mass * c[0] * c[2],
-            -mass * c[1] * c[2],
-            mass * (size - c[2] * c[2]),
-        ];
-        let (moments, products) = ([0, 2, 5], [1, 3, 4]);
-        let largest_product = products.map(|k| steiner[k].abs()).into_iter().fold(0.0, f64::max);
-        let largest_moment = moments.map(|k| given[k]).into_iter().fold(0.0, f64::max);
-        let alone = products.iter().filter(|&&k| steiner[k].abs() > NEARLY * largest_product).count() == 1;
-        let nearly = if alone { NEARLY_ALONE } else { NEARLY };
-        let matches = products.iter().all(|&k| (given[k] - steiner[k]).abs() <= nearly * largest_product);
-        let own = moments.map(|k| given[k] - steiner[k]);
-        let is_a_body = own.iter().all(|moment| *moment >= 0.0) && own.iter().all(|m| 2.0 * m <= own.iter().sum::<f64>());
-        if largest_product < TELLING * largest_moment || !matches || !is_a_body {
-            return;
-        }
-        let message = format!("the inertia of the link of joint {called} has the products -m c_i c_j of its own centre of mass: it seems to be about the origin of the frame");
-        let [xx, yy, zz] = own.map(short);
-        let help = format!("give it about the centre of mass: about {{xx: {xx}, yy: {yy}, zz: {zz}}}, its products nearly 0");
-        context.report(Code::InertiaAboutFrame, inertia.key, message, "about the frame's origin?", help);
+/// A tensor about the origin of the frame where one about the centre of mass is asked for.
+pub(super) fn check_reference(body: &Body<'_>, context: &mut Context<'_>) {
+    let (Some(com), Some(inertia)) = (&body.description.com, &body.description.inertia) else { return };
+    if inertia.rotation.is_some() {
+        return;
     }
+    let Body { mass, whose, .. } = body;
+    let c = com.value.each_ref().map(|value| number(value, context));
+    let given = inertia.elements.each_ref().map(|value| number(value, context));
+    let size = c.iter().map(|x| x * x).sum::<f64>();
+    let steiner = [
+        mass * (size - c[0] * c[0]),
+        -mass * c[0] * c[1],
+        mass * (size - c[1] * c[1]),
+        -mass * c[0] * c[2],
+        -mass * c[1] * c[2],
+        mass * (size - c[2] * c[2]),
+    ];
+    let (moments, products) = ([0, 2, 5], [1, 3, 4]);
+    let largest_product = products.map(|k| steiner[k].abs()).into_iter().fold(0.0, f64::max);
+    let largest_moment = moments.map(|k| given[k]).into_iter().fold(0.0, f64::max);
+    let alone = products.iter().filter(|&&k| steiner[k].abs() > NEARLY * largest_product).count() == 1;
+    let nearly = if alone { NEARLY_ALONE } else { NEARLY };
+    let matches = products.iter().all(|&k| (given[k] - steiner[k]).abs() <= nearly * largest_product);
+    let own = moments.map(|k| given[k] - steiner[k]);
+    let is_a_body = own.iter().all(|moment| *moment >= 0.0) && own.iter().all(|m| 2.0 * m <= own.iter().sum::<f64>());
+    if largest_product < TELLING * largest_moment || !matches || !is_a_body {
+        return;
+    }
+    let message = format!("the inertia of {whose} has the products -m c_i c_j of its own centre of mass: it seems to be about the origin of the frame");
+    let [xx, yy, zz] = own.map(short);
+    let help = format!("give it about the centre of mass: about {{xx: {xx}, yy: {yy}, zz: {zz}}}, its products nearly 0");
+    context.report(Code::InertiaAboutFrame, inertia.key, message, "about the frame's origin?", help);
 }
