@@ -238,7 +238,11 @@ fn target(manipulator: &Manipulator, chain: &Chain) -> Result<(Target, usize), S
     match joints.checked_sub(wanted) {
         Some(0 | 1) => Ok((target, wanted)),
         Some(more) => {
-            Err(format!("{joints} joints are {more} more than the {wanted} rows of the task, and one more can be given"))
+            let less = if more == 2 { "a joint".to_owned() } else { format!("{} joints", more - 1) };
+            Err(format!(
+                "{joints} joints are {more} more than the {wanted} rows of the task, and one more can be given; leave {less} out of \
+                 the description that is used for this, first those that only turn the end effector"
+            ))
         }
         None => {
             Err(format!("{joints} joints are fewer than the {wanted} rows of the task; leave rows out that they cannot meet"))

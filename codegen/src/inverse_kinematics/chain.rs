@@ -179,9 +179,12 @@ impl Chain {
             return Err("the last axis and the z axis of the end effector have no common normal in numbers".into());
         };
         if !last.prismatic && is_parallel(&self.tool) && is_zero(&between.normal.0) {
-            return Err(
-                "the last joint turns about the z axis of the end effector, which position and direction leave open".into()
-            );
+            return Err(format!(
+                "the last joint turns about the z axis of the end effector, which position and direction leave open; \
+                 `target: pose` gives the postures at which all six rows are met, and in a description without that joint \
+                 the other {} reach a position, one of them given",
+                self.joints.len() - 1
+            ));
         }
         let (turn, d) = between.before;
         (last.theta, last.d) = (sum_of_angles(&last.theta, &turn), &last.d + &d);
