@@ -150,6 +150,60 @@ fn show_as_json_keeps_its_schema() {
     assert!(of("forward_dynamics")["steps"].as_array().is_some_and(|steps| steps.len() > 5));
 }
 
+/// Two slides: without a turned tensor, a density, an axis beside the centres of mass.
+const CART: &str = "name: cart
+convention: standard
+gravity: [0, 0, -9.81]
+joints:
+  - {name: x, type: prismatic, a: 0, alpha: pi/2, d: 0.5, theta: 0, link: {mass: 10}}
+  - {name: y, type: prismatic, a: 0, alpha: 0, d: 0, theta: 0, link: {mass: 2}}
+regressor: base
+";
+
+#[test]
+fn the_summary_explains_the_columns_that_it_has() {
+    let robot = folder("columns").join("robot.yaml");
+    let path = robot.to_str().expect("UTF-8");
+    fs::write(&robot, CART).expect("a file");
+    let text = out(&check(&["check", path], 0));
+    assert!(text.contains("com: in the link's own frame\n") && text.contains("radius of gyration: sqrt(I/m)"), "{text}");
+    for absent in ["payload", "its axis:", "next axis", "turned", "8000 kg/m³", "take `regressor: base`"] {
+        assert!(!text.contains(absent), "{absent} in {text}");
+    }
+    let text = out(&check(&["check", &file("robots/panda7.yaml")], 0));
+    for present in ["its axis:", "next axis:", "turned:", "8000 kg/m³", "take `regressor: base`"] {
+        assert!(text.contains(present), "{present} in {text}");
+    }
+    assert!(!text.contains("lighter than foam"), "{text}");
+    // A value in lines of its own stands in one line of its table.
+    let row = "  - {name: x, type: prismatic, a: 0, alpha: pi/2, d: 0.5, theta: 0, link: {mass: 10}}\n";
+    let block = "  - name: x\n    type: prismatic\n    a: 0\n    alpha: pi/2\n    d: >\n      0.5\n      + 0.25\n    theta: 0\n    link: {mass: 10}\n";
+    assert!(CART.contains(row));
+    let block = CART.replace(row, block);
+    fs::write(&robot, block).expect("a file");
+    let text = out(&check(&["check", path], 0));
+    assert!(text.contains("1 x    prismatic      0         pi/2  q1 + 0.5 + 0.25            0\n"), "{text}");
+}
+
+/// The page calls the same three links of the UR5 doubtful.
+#[test]
+fn links_lighter_than_foam_are_named() {
+    let output = check(&["check", "--strict", &file("robots/ur5.yaml")], 0);
+    assert!(out(&output).contains("\n  lighter than foam: 4 joint4, 5 joint5, 6 joint6\n"), "{}", out(&output));
+}
+
+#[test]
+fn a_warning_beside_an_error_of_the_equations_is_said_once() {
+    let robot = folder("once").join("robot.yaml");
+    let text = fs::read_to_string(file("robots/panda7.yaml")).expect("a description");
+    assert!(text.contains("d: 0.333"), "{text}");
+    fs::write(&robot, text.replacen("d: 0.333", "d: 1e308", 1)).expect("a file");
+    let said = err(&check(&["check", robot.to_str().expect("UTF-8")], 1));
+    assert_eq!(said.matches("warning[implausible-reach]").count(), 1, "{said}");
+    assert_eq!(said.matches("error[out-of-range]").count(), 1, "{said}");
+    assert!(said.contains(": 1 error and 1 warning"), "{said}");
+}
+
 #[test]
 fn show_takes_names_of_quantities() {
     let scara = file("robots/scara.yaml");
@@ -513,6 +567,11 @@ fn inverse_kinematics_is_named_shown_and_written() {
     let text = out(&check(&["show", &file("robots/panda7.yaml"), "inverse_kinematics"], 0));
     assert!(text.contains("; q7 is given, at most 8 solutions\n  given T = (R p; 0 1) and q7\n"), "{text}");
     check(&["show", &scara, "inverse_kinematics", "--format", "json"], 2);
+    // Among everything, and among what is known.
+    let all = out(&check(&["show", &scara], 0));
+    assert!(all.contains("\ninverse_kinematics: all revolute axes parallel (joints 1 2 4), at most 2 solutions\n"), "{all}");
+    let unknown = err(&check(&["show", &scara, "inverse_kinematic"], 2));
+    assert!(unknown.contains("did you mean `inverse_kinematics`?"), "{unknown}");
     let module = folder("inverse_kinematics").join("robot.rs");
     check(&["generate", &scara, "--out", module.to_str().expect("UTF-8"), "--ik"], 0);
     let text = fs::read_to_string(module.with_file_name("robot_ik.rs")).expect("inverse kinematics");

@@ -13,21 +13,24 @@ use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::description::{BodyDescription, RobotDescription};
 use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::manipulator::{Manipulator, PlacedBody};
+use armgen_codegen::validate::{density_of_cuboid, doubt_of_density};
 use serde_json::{json, Value};
 
 use crate::rows::frame;
 
 /// The bodies of all links, those of the payload in the end effector's frame: name, frame that carries them (from 1, or `e`), mass, centre
-/// of mass, tensor xx xy yy xz yz zz, and what is said of the tensor.
+/// of mass, tensor xx xy yy xz yz zz, what is doubtful about the density of its cuboid, and what is said of the tensor.
 pub(crate) fn bodies(manipulator: &Manipulator, description: &RobotDescription, diagnostics: &Diagnostics) -> Value {
     let of = |name: String, carrier: Value, part: &PlacedBody, written: Option<&BodyDescription>| {
         let number = |p: &_| nominal(manipulator, p).to_f64();
+        let (mass, inertia) = (number(&part.body.mass), part.body.inertia.each_ref().map(number));
         json!({
             "name": name,
             "frame": carrier,
-            "mass": number(&part.body.mass),
+            "mass": mass,
             "com": part.body.com.each_ref().map(number),
-            "inertia": part.body.inertia.each_ref().map(number),
+            "inertia": inertia,
+            "doubt": density_of_cuboid(mass, inertia).and_then(doubt_of_density),
             "said": said(written, diagnostics),
         })
     };

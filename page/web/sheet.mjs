@@ -89,15 +89,11 @@ function brief(x) {
     return short(tidy(Number(x.toPrecision(5))));
 }
 
-/** Densities below that of foam and above that of osmium, kg/m³, are doubtful. */
-const [FOAM, OSMIUM] = [20, 22600];
-
 /** Whether there is such a body, in words. @param {any} body @param {any} shape its cuboid */
 function verdict(body, shape) {
     const alone = body.inertia.filter((element) => element !== 0).length === 1;
     if (!shape.possible) return alone ? "planar: one moment alone" : "impossible";
-    if (shape.density < FOAM) return "doubtful: lighter than foam";
-    if (!shape.empty && shape.density > OSMIUM && shape.density < Infinity) return "doubtful: denser than osmium";
+    if (body.doubt) return `doubtful: ${body.doubt}`;
     return body.said.length > 0 ? "doubtful" : "possible";
 }
 

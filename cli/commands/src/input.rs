@@ -142,11 +142,16 @@ pub(crate) fn report_or_exit_code<T>(
         ));
     }
     given.ok_or_else(|| {
-        let (errors, warnings) = (diagnostics.errors(), diagnostics.warnings());
-        let also = if warnings == 0 { String::new() } else { format!(" and {}", counted(warnings, "warning")) };
-        terminal::error(&format!("{}: {}{also}", source.name(), counted(errors, "error")));
+        terminal::error(&verdict(source, diagnostics));
         FAULTY
     })
+}
+
+/// How many faults a file has.
+pub(crate) fn verdict(source: &Source, diagnostics: &Diagnostics) -> String {
+    let (errors, warnings) = (diagnostics.errors(), diagnostics.warnings());
+    let also = if warnings == 0 { String::new() } else { format!(" and {}", counted(warnings, "warning")) };
+    format!("{}: {}{also}", source.name(), counted(errors, "error"))
 }
 
 /// The model of a file's arm.

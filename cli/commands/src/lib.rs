@@ -80,8 +80,10 @@ enum Command {
   armgen check robot.yaml --strict --allow triangle-inequality
 
 A file may allow kinds of warnings itself: `allow: [missing-inertia]`.
-The summary goes to standard output; errors and warnings go to standard error, each with FILE:LINE:COLUMN.
-Exit codes: 0 valid (perhaps with warnings), 1 faulty (with --strict also: warnings), 2 a file cannot be opened or is not UTF-8.")]
+The summary goes to standard output; errors and warnings go to standard error, each with
+FILE:LINE:COLUMN.
+Exit codes: 0 valid (perhaps with warnings), 1 faulty (with --strict also: warnings),
+2 a file cannot be opened or is not UTF-8.")]
     Check {
         /// Descriptions of robot arms
         #[arg(required = true, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -102,7 +104,8 @@ Exit codes: 0 valid (perhaps with warnings), 1 faulty (with --strict also: warni
   armgen show robot.yaml gravity --form steps --digits 4  numbered steps, constants as decimals
   armgen show robot.yaml --format latex > equations.tex   for a document with amsmath
 
-A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), one frame as `link_frame_2`, or `determinant`.")]
+A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), one frame as
+`link_frame_2`, one Jacobian as `link_jacobian_2`, `determinant`, or `inverse_kinematics`.")]
     Show {
         /// Description of the robot arm
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -129,14 +132,15 @@ A QUANTITY is the name of an emitted function (`armgen count FILE` lists them), 
   armgen generate robot.yaml --scalar f32 > robot_f32.rs
   armgen generate robot.yaml --trig fast > robot.rs       for machines with wide vectors
   armgen generate robot.yaml --out robot.rs --verify      with a certificate, robot.cert.json
-  armgen generate robot.yaml --out robot.rs --bounds      with robot_bounds.rs, running error bounds
+  armgen generate robot.yaml --out robot.rs --bounds      with robot_bounds.rs, error bounds
   armgen generate robot.yaml --out robot.rs --c-abi       with robot.h, for C
-  armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for the controllers
+  armgen generate robot.yaml --out robot.rs --runtime     with robot_runtime.rs, for controllers
   armgen generate robot.yaml --language c --out robot.h   the same functions in C, without Rust
   armgen generate robot.yaml --language matlab --out +robot
   armgen generate robot.yaml --functions gravity,inertia_matrix_with > robot.rs
 
-The module is one file of free functions over arrays, in MATLAB a folder: in Rust no allocation, no std, no dependency but libm.
+The module is one file of free functions over arrays, in MATLAB a folder: in Rust no allocation,
+no std, no dependency but libm.
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Generate {
         /// Description of the robot arm
@@ -156,10 +160,12 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
   armgen import robot.urdf --tip tool0 --lock finger_joint=0.04 --out robot.yaml
   armgen import robot.urdf --snap 0 --report report.json > robot.yaml
 
-The chain goes from the root, or --base, to the only tip that there is, or --tip. Fixed joints become poses, and
-what hangs on a link beside the chain becomes part of it, exactly. 1.5708 is taken for pi/2; how far that can
-move the end effector and the torques stands in the head of the description. The format: docs/import.md.
-Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a file cannot be read or written.")]
+The chain goes from the root, or --base, to the only tip that there is, or --tip. Fixed joints
+become poses, and what hangs on a link beside the chain becomes part of it, exactly. 1.5708 is
+taken for pi/2; how far that can move the end effector and the torques stands in the head of the
+description. The format: docs/import.md.
+Exit codes: 0 done, 1 the file, or the file with these options, is refused,
+2 a file cannot be read or written.")]
     Import {
         /// URDF or MuJoCo model of the robot
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -173,11 +179,12 @@ Exit codes: 0 done, 1 the file, or the file with these options, is refused, 2 a 
     #[command(after_help = "Examples:
   armgen convert robot.yaml --convention urdf --out frames.yaml
   armgen convert robot.yaml --convention standard --out rows.yaml
-  armgen import robot.urdf | tee robot.yaml && armgen convert robot.yaml --convention modified > rows.yaml
+  armgen import robot.urdf --out robot.yaml
+  armgen convert robot.yaml --convention modified > rows.yaml
 
-Joint axes are lines, exactly; rows of Denavit and Hartenberg are what their common normals say, and bodies are
-attached where their frames were. What does not end as a decimal, a fraction or a root is rounded to 17 digits,
-which is said. To urdf nothing is rounded.
+Joint axes are lines, exactly; rows of Denavit and Hartenberg are what their common normals say,
+and bodies are attached where their frames were. What does not end as a decimal, a fraction or a
+root is rounded to 17 digits, which is said. To urdf nothing is rounded.
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Convert {
         /// Description of the robot arm
@@ -195,9 +202,9 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
   armgen export robot.yaml --format urdf --out robot.urdf
   armgen export robot.yaml --format urdf > robot.urdf
 
-Decimals are written digit by digit, multiples of pi/12 as the nearest float, which armgen import takes for what
-it means. What a URDF cannot hold is named, one line each: rotors, armatures, payload, gravity, ... `armgen import
-robot.urdf --tip tool` gives the arm back.
+Decimals are written digit by digit, multiples of pi/12 as the nearest float, which armgen import
+takes for what it means. What a URDF cannot hold is named, one line each: rotors, armatures,
+payload, gravity, ... `armgen import robot.urdf --tip tool` gives the arm back.
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Export {
         /// Description of the robot arm
@@ -241,7 +248,8 @@ Exit codes: 0 equal, 1 not equal or faulty (the first entry that differs is name
   armgen count robot.yaml --functions inverse_dynamics,gravity
   armgen count robot.yaml --without grouping,origin-along-axis       what these passes are worth
 
-mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of results, sincos: pairs of sine and cosine, exp: exponentials of Stribeck friction.")]
+mul: multiplications, add: additions and subtractions, div: divisions, neg: sign changes of
+results, sincos: pairs of sine and cosine, exp: exponentials of Stribeck friction.")]
     Count {
         /// Description of the robot arm
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -264,9 +272,9 @@ mul: multiplications, add: additions and subtractions, div: divisions, neg: sign
   armgen page robot.yaml --out robot.html                then open robot.html in a browser
   armgen page robot.yaml --out robot.html --log out/adaptive_a.csv
 
-The page shows the arm with its frames, the rows of the description as a draughtsman would draw them,
-the bodies as cuboids of their inertia, and the numbers of the emitted functions at the posture of
-its sliders (docs/page.md).
+The page shows the arm with its frames, the rows of the description as a draughtsman would draw
+them, the bodies as cuboids of their inertia, and the numbers of the emitted functions at the
+posture of its sliders (docs/page.md).
 Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or written.")]
     Page {
         /// Description of the robot arm
@@ -287,9 +295,11 @@ Exit codes: 0 done, 1 the description is faulty, 2 a file cannot be read or writ
 
 The table goes to standard output; DIR receives figures (SVG), logs (CSV) and a page with
 them all, index.html. The format: docs/experiments.md.
-The robot is the one of robot.yaml at the time of building: edit it, and `cargo run --release -- run` builds and moves yours.
-An experiment for another robot is skipped; if none is left, the arm is moved along a demonstration.
-Exit codes: 0 all as expected, 1 a result is outside its expectation or a file is faulty, 2 a file cannot be opened.")]
+The robot is the one of robot.yaml at the time of building: edit it, and
+`cargo run --release -- run` builds and moves yours.
+An experiment for another robot is skipped; if none is left, the arm moves along a demonstration.
+Exit codes: 0 all as expected, 1 a result is outside its expectation or a file is faulty,
+2 a file cannot be opened.")]
     Run {
         /// Experiments; all of `experiments/` if none is named
         #[arg(value_name = "FILE", value_hint = ValueHint::FilePath)]

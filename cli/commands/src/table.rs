@@ -35,6 +35,12 @@ impl Table {
         self.rows.iter().flat_map(|row| &row[1..]).any(|cell| !cell.is_empty())
     }
 
+    /// Whether a column has something in it, so that it is shown.
+    pub(crate) fn shows(&self, column: &str) -> bool {
+        let place = self.columns.iter().position(|(name, _)| name == column);
+        place.is_some_and(|j| self.rows.iter().any(|row| !row[j].is_empty()))
+    }
+
     /// The table, each line indented by two and ended by a line break; no header if no column has a name, no column that is empty.
     pub(crate) fn text(&self) -> String {
         let header: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();

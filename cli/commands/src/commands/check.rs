@@ -61,8 +61,12 @@ fn checked(file: &Path, doubts: &Doubts) -> Result<(String, u8), u8> {
         )
     });
     if let Some(fault) = too_large {
-        diagnostics.push(*fault);
-        terminal::diagnose(&diagnostics.render(&source, terminal::colour(&std::io::stderr())));
+        // What else there is to say has been said.
+        let mut faults = Diagnostics::new();
+        faults.push(*fault);
+        terminal::diagnose(&faults.render(&source, terminal::colour(&std::io::stderr())));
+        diagnostics.extend(faults);
+        terminal::error(&input::verdict(&source, &diagnostics));
         return Err(FAULTY);
     }
     let code = if doubts.strict && diagnostics.warnings() > 0 {
@@ -151,6 +155,23 @@ fn arm(description: &RobotDescription, manipulator: &Manipulator) -> String {
     table.text()
 }
 
+/// A line of a legend has so many characters at most.
+const WIDTH: usize = 100;
+
+/// What columns are, each with its name before a colon, in lines below their table; empty parts are left out.
+fn legend(parts: &[&str]) -> String {
+    let text = parts.iter().copied().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ");
+    let mut lines = vec![String::from(" ")];
+    for word in text.split(' ') {
+        let last = lines.last_mut().expect("there is one");
+        match last.chars().count() + 1 + word.chars().count() > WIDTH {
+            true => lines.push(format!("  {word}")),
+            false => *last += &format!(" {word}"),
+        }
+    }
+    lines.join("\n") + "\n"
+}
+
 /// A number for people: six digits at most.
 fn decimal(number: &Number) -> String {
     digits(number.to_f64())
@@ -185,6 +206,14 @@ fn digits(value: f64) -> String {
 mod tests {
     use super::*;
     use armgen_codegen::exact::Rational;
+
+    #[test]
+    fn legends_have_lines_of_a_hundred_characters() {
+        assert_eq!(legend(&["a: b", "", "c: d e"]), "  a: b; c: d e\n");
+        let long = legend(&["word"; 40]);
+        assert!(long.lines().all(|line| line.starts_with("  ") && line.chars().count() <= WIDTH), "{long}");
+        assert_eq!(long.matches("word").count(), 40);
+    }
 
     #[test]
     fn numbers_that_no_float_holds_have_a_text() {

@@ -33,7 +33,10 @@ pub(crate) fn run(file: &Path, quantities: &[String], symbolic: bool, style: Sty
             terminal::note(&format!("{name}: {reason}"));
         }
     }
+    // Steps with numbers have one form.
+    let with_steps = quantities.is_empty() && !symbolic && style == Style::default();
     terminal::print(&match format {
+        ShowFormat::Text if with_steps => format!("{}\n{}", sheet.text(), steps_of_inverse_kinematics(&model)),
         ShowFormat::Text => sheet.text(),
         ShowFormat::Latex => sheet.latex(),
         ShowFormat::Json => sheet.json(),
@@ -48,9 +51,13 @@ fn inverse_kinematics(model: &Model, otherwise: bool) -> u8 {
         terminal::error(&format!("`{INVERSE_KINEMATICS}` is shown alone, as text with numbers: leave the rest out"));
         return UNREADABLE;
     }
+    terminal::print(&steps_of_inverse_kinematics(model))
+}
+
+fn steps_of_inverse_kinematics(model: &Model) -> String {
     match armgen_codegen::inverse_kinematics::of(&model.manipulator) {
-        Ok(found) => terminal::print(&found.text()),
-        Err(reason) => terminal::print(&format!("{INVERSE_KINEMATICS}: none, {reason}\n")),
+        Ok(found) => found.text(),
+        Err(reason) => format!("{INVERSE_KINEMATICS}: none, {reason}\n"),
     }
 }
 
@@ -63,7 +70,7 @@ fn items(model: &Model, quantities: &[String]) -> Result<Vec<Item>, String> {
     for name in quantities {
         let named = Item::named(name, dof);
         if named.is_empty() {
-            let names = Item::names();
+            let names: Vec<String> = Item::names().into_iter().chain([INVERSE_KINEMATICS.to_owned()]).collect();
             let meant = did_you_mean(&name.replace('-', "_"), &names.iter().map(String::as_str).collect::<Vec<_>>())
                 .map_or_else(String::new, |meant| format!("did you mean `{meant}`? "));
             let known: Vec<String> = names.chunks(4).map(|names| names.join(", ")).collect();

@@ -1,12 +1,15 @@
 //! What the bodies of an arm look like as solids: where their mass is, and along which of their axes and how far it spreads, in sizes of which a reader
 //! can judge.
 
+use std::collections::BTreeMap;
+
 use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::exact::Polynomial;
 use armgen_codegen::manipulator::{Manipulator, PlacedBody};
+use armgen_codegen::validate::{density_of_cuboid, doubt_of_density};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
-use super::digits;
+use super::{digits, legend};
 use crate::table::{Align, Table};
 
 /// A body with mass, in the frame of what carries it.
@@ -99,25 +102,26 @@ pub(super) fn tables(manipulator: &Manipulator, distances: Vec<[Option<f64>; 2]>
         ("com x (m)", Point),
         ("y", Point),
         ("z", Point),
-        ("com to its axis (m)", Point),
-        ("next axis to it (m)", Point),
+        (TO_ITS_AXIS, Point),
+        (NEXT_AXIS, Point),
     ]);
     let mut inertias = Table::new([
         ("link", Left),
         ("moment about x (kg m²)", Point),
         ("y", Point),
         ("z", Point),
-        ("turned", Left),
+        (TURNED, Left),
         ("radius of gyration (m)", Point),
         ("box along x (m)", Point),
         ("y", Point),
         ("z", Point),
-        ("density (kg/m³)", Point),
+        (DENSITY, Point),
     ]);
     let links =
         manipulator.joints.iter().enumerate().map(|(i, joint)| (format!("{} {}", i + 1, joint.name), joint.link.as_slice()));
     let load = manipulator.payload.iter().map(|load| ("payload".into(), std::slice::from_ref(load)));
     let distances = distances.into_iter().chain([[None; 2]]);
+    let mut doubts: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for ((name, parts), distances) in links.chain(load).zip(distances) {
         let solid = Solid::of(manipulator, parts);
         let [to_axis, next] = distances.map(|distance| distance.map_or(String::new(), |x| small(x, 1.0)));
@@ -133,26 +137,50 @@ pub(super) fn tables(manipulator: &Manipulator, distances: Vec<[Option<f64>; 2]>
         let largest = moments.iter().copied().fold(0.0, f64::max);
         let turned = if turned.norm() < LEAST_TURN { none() } else { turn(&turned) };
         let [a, b, c] = sides(solid.mass, &moments);
-        let density = density(solid.mass, &moments).map_or_else(none, |density| rounded(density).to_string());
+        let density = density_of_cuboid(solid.mass, [moments[0], 0.0, moments[1], 0.0, 0.0, moments[2]]);
+        if let Some(words) = density.and_then(doubt_of_density) {
+            doubts.entry(words).or_default().push(name.clone());
+        }
+        let density = density.map_or_else(none, |density| rounded(density).to_string());
         inertias.row([name, xx, yy, zz, turned, short((largest / solid.mass).sqrt()), a, b, c, density]);
     }
     if manipulator.is_massless() {
         return masses.text();
     }
-    format!("{}{OF_MASSES}\n{}{OF_INERTIAS}", masses.text(), inertias.text())
+    let doubts: String = doubts.into_iter().map(|(words, links)| format!("  {words}: {}\n", links.join(", "))).collect();
+    format!("{}{}\n{}{}{doubts}", masses.text(), of_masses(&masses, manipulator), inertias.text(), of_inertias(&inertias))
 }
 
+const TO_ITS_AXIS: &str = "com to its axis (m)";
+const NEXT_AXIS: &str = "next axis to it (m)";
+const TURNED: &str = "turned";
+const DENSITY: &str = "density (kg/m³)";
+
 /// What the columns of the masses are.
-const OF_MASSES: &str = "  com: in the link's own frame, that of the payload in the end effector's; its axis: that of the joint
-  which moves the link; next axis: the next joint's, after the last link the end effector
-";
+fn of_masses(masses: &Table, manipulator: &Manipulator) -> String {
+    let if_shown = |column: &str, words| if masses.shows(column) { words } else { "" };
+    legend(&[
+        if manipulator.payload.is_some() {
+            "com: in the link's own frame, that of the payload in the end effector's"
+        } else {
+            "com: in the link's own frame"
+        },
+        if_shown(TO_ITS_AXIS, "its axis: that of the joint which moves the link"),
+        if_shown(NEXT_AXIS, "next axis: the next joint's, after the last link the end effector"),
+    ])
+}
 
 /// What the columns of the inertias are.
-const OF_INERTIAS: &str =
-    "  principal moments about the centre of mass, each at the axis of the link's frame that it is nearest to;
-  turned: from an axis of the frame to that of the moment next to it, at most; radius of gyration: sqrt(I/m) of the largest moment
-  box: the cuboid of even density that has these moments; metal has up to 8000 kg/m³
-";
+fn of_inertias(inertias: &Table) -> String {
+    let if_shown = |column: &str, words| if inertias.shows(column) { words } else { "" };
+    legend(&[
+        "principal moments about the centre of mass, each at the axis of the link's frame that it is nearest to",
+        if_shown(TURNED, "turned: from an axis of the frame to that of the moment next to it, at most"),
+        "radius of gyration: sqrt(I/m) of the largest moment",
+        "box: the cuboid of even density that has these moments",
+        if_shown(DENSITY, "density: metal has up to 8000 kg/m³"),
+    ])
+}
 
 /// The sides of the homogeneous cuboid with these moments about its centre: I_x = m (y² + z²) / 12. None has those of a body that breaks the triangle
 /// inequality.
@@ -173,14 +201,6 @@ fn sides(mass: f64, moments: &[f64; 3]) -> [String; 3] {
 fn squared_sides(mass: f64, moments: &[f64; 3]) -> [f64; 3] {
     let sum: f64 = moments.iter().sum();
     moments.map(|moment| 6.0 * (sum - 2.0 * moment) / mass)
-}
-
-/// The density of that box, if it has a volume.
-fn density(mass: f64, moments: &[f64; 3]) -> Option<f64> {
-    let squares = squared_sides(mass, moments);
-    let largest = squares.iter().copied().fold(0.0, f64::max);
-    let is_thick = squares.iter().all(|square| *square > largest * 1e-9);
-    is_thick.then(|| mass / squares.iter().product::<f64>().sqrt())
 }
 
 /// Two digits.
@@ -251,9 +271,6 @@ mod tests {
         assert_eq!(sides(12.0, &[4.0, 0.0, 4.0]), ["0", "2", "0"]);
         assert_eq!(sides(1.0, &[0.1, 0.1, 0.5])[0], "no box");
         assert_eq!(sides(3.0, &[0.0; 3])[0], "a point");
-        assert!((density(6.0, &[0.3 / 12.0, 0.6 / 12.0, 0.78 / 12.0]).expect("a volume") - 1000.0).abs() < 1e-9);
-        assert_eq!(density(12.0, &[0.0, 4.0, 4.0]), None);
-        assert_eq!(density(3.0, &[0.0; 3]), None);
     }
 
     /// A box along x that is turned by 20 degrees about z; then exchanged moments; then a disc, whose axes in its plane may be any.

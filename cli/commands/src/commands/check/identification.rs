@@ -26,21 +26,25 @@ pub(super) fn report(model: &Model) -> String {
     let base = base_parameters(&model.manipulator, &model.field);
     let (pool, y) = regressor_of(&model.manipulator, &model.field, &base);
     let rank = rank(&pool, &y);
-    of_regressor(model, rank) + &of_base_regressor(model, base.len(), rank)
+    let has_all = matches!(model.parameters.kind, ParameterKind::Base(_));
+    of_regressor(model, rank) + &of_base_regressor(model, base.len(), rank, has_all)
 }
 
 /// How many columns of `all` base parameters `base_regressor` has, where it has fewer than the `rank` that a motion can identify. (Of all there are
-/// more where they keep friction apart.)
-fn of_base_regressor(model: &Model, all: usize, rank: usize) -> String {
+/// more where they keep friction apart.) `has_all`: whether the description chose the regressor that has them.
+fn of_base_regressor(model: &Model, all: usize, rank: usize, has_all: bool) -> String {
     let own = model.base_parameters().len();
     if own >= rank {
         return String::new();
     }
     let (are, they) = if all - own == 1 { ("is", "it") } else { ("are", "them") };
+    let where_all = match has_all {
+        true => format!("`regressor` has all {all}."),
+        false => format!("To identify an arm take `regressor: base`, whose `regressor` has all {all}."),
+    };
     format!(
         "\n  The module's `base_regressor` has {} of these {all}:\n  \
-         the other {} {are} 0 at the values of this file, and it leaves {they} out.\n  \
-         To identify an arm take `regressor: base`, whose `regressor` has all {all}.\n",
+         the other {} {are} 0 at the values of this file, and it leaves {they} out.\n  {where_all}\n",
         counted(own, "column"),
         all - own
     )

@@ -5,7 +5,7 @@ use armgen_codegen::description::{Convention, JointDescription, PoseDescription,
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::kinds::JointKind;
 use armgen_codegen::manipulator::{Joint, Manipulator};
-use armgen_codegen::source::Source;
+use armgen_codegen::source::{Source, Span};
 
 use super::{decimal, digits};
 use crate::table::Align::{Left, Right};
@@ -52,7 +52,7 @@ pub(super) fn rows(source: &Source, description: &RobotDescription, manipulator:
 fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manipulator, modified: bool) -> [String; 4] {
     let joint = &manipulator.joints[i];
     let written = [&row.a, &row.alpha, &row.d, &row.theta];
-    let mut texts = written.map(|value| value.as_ref().map_or(String::new(), |v| source.slice(v.span).to_string()));
+    let mut texts = written.map(|value| value.as_ref().map_or(String::new(), |v| in_one_line(source, v.span)));
     let moved = &mut texts[if joint.kind == JointKind::Revolute { 3 } else { 2 }];
     *moved = match moved.strip_prefix('-') {
         _ if moved == "0" => format!("q{}", i + 1),
@@ -70,15 +70,20 @@ fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manip
     texts
 }
 
+/// What stands in the file, in one line.
+fn in_one_line(source: &Source, span: Span) -> String {
+    source.slice(span).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// The origin and the axis, as written.
 fn urdf_row(source: &Source, row: &JointDescription) -> [String; 2] {
-    let axis = row.axis.as_ref().map_or(String::new(), |axis| source.slice(axis.span).to_string());
+    let axis = row.axis.as_ref().map_or(String::new(), |axis| in_one_line(source, axis.span));
     [row.origin.as_ref().map_or(String::new(), |origin| pose(source, origin)), axis]
 }
 
 /// A pose as written: translations by their numbers alone, rotations after their key.
 fn pose(source: &Source, pose: &PoseDescription) -> String {
-    let slice = |span| source.slice(span);
+    let slice = |span| in_one_line(source, span);
     let elements = pose.elements.iter().map(|element| {
         let rotation = element.rotation.as_ref().map(|rotation| match rotation {
             RotationDescription::Rpy(angles) => format!("rpy {}", slice(angles.span)),
@@ -86,7 +91,7 @@ fn pose(source: &Source, pose: &PoseDescription) -> String {
             RotationDescription::AxisAngle(axis, angle) => format!("axis {} angle {}", slice(axis.span), slice(angle.span)),
             RotationDescription::XyAxes(axes) => format!("xyaxes {}", slice(axes.span)),
         });
-        let translation = element.xyz.as_ref().map(|xyz| slice(xyz.span).to_owned());
+        let translation = element.xyz.as_ref().map(|xyz| slice(xyz.span));
         translation.into_iter().chain(rotation).collect::<Vec<_>>().join(" ")
     });
     elements.filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ")
