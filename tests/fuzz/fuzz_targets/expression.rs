@@ -3,8 +3,8 @@
 
 use armgen_codegen::{
     document::{parse_expression, yaml},
-    validate,
     source::{Source, Span},
+    validate,
 };
 use libfuzzer_sys::fuzz_target;
 

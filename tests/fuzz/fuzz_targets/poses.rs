@@ -50,8 +50,20 @@ mod solver {
             1 => conclude(&three_parallel(&first.links_at(&t)), false),
             2 => conclude(&three_prismatic(&first.links_at(&t), [0, 2, 4]), false),
             // Arms of three and five joints, completed to the one or the other.
-            6 => conclude(&padded(&without_virtual_joints::<6, 3, 8>(&second, &three_prismatic(&first.links_at(&t), [0, 2, 4]), &t, length, ROUNDING)), false),
-            7 => conclude(&padded(&without_virtual_joints::<6, 5, 8>(&second, &three_parallel(&first.links_at(&t)), &t, length, ROUNDING)), false),
+            6 => conclude(
+                &padded(&without_virtual_joints::<6, 3, 8>(
+                    &second,
+                    &three_prismatic(&first.links_at(&t), [0, 2, 4]),
+                    &t,
+                    length,
+                    ROUNDING,
+                )),
+                false,
+            ),
+            7 => conclude(
+                &padded(&without_virtual_joints::<6, 5, 8>(&second, &three_parallel(&first.links_at(&t)), &t, length, ROUNDING)),
+                false,
+            ),
             n => {
                 let links = first.links_at(&t);
                 let mut found = spherical_triple(&links, [false; 3], regional[usize::from(n) - 3]);

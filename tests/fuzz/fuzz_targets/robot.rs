@@ -1,13 +1,7 @@
 //! Any text as `robot.yaml`: check it, and generate from what is valid.
 #![no_main]
 
-use armgen_codegen::{
-    kinds::Scalar,
-    program::Trig,
-    schedule::Options,
-    validate,
-    source::Source,
-};
+use armgen_codegen::{kinds::Scalar, program::Trig, schedule::Options, source::Source, validate};
 use libfuzzer_sys::fuzz_target;
 
 /// Arms of more joints are checked but not generated from, for the sake of speed: what is emitted differs in length alone.

@@ -2,7 +2,7 @@
 
 use armgen_runtime::{
     nalgebra::Matrix3,
-    trajectory::{TimeLaw, OperationalTrajectory, OrientationProfile, Path, PlanError, Segment, Turn},
+    trajectory::{OperationalTrajectory, OrientationProfile, Path, PlanError, Segment, TimeLaw, Turn},
 };
 use core::{f32::consts::PI, time::Duration};
 

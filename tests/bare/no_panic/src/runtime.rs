@@ -23,7 +23,7 @@ use armgen_runtime::{
     },
     task::{Row, Task},
     trajectory::{
-        JointSegment, JointTrajectory, TimeLaw, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, Turn,
+        JointSegment, JointTrajectory, OperationalTrajectory, OrientationProfile, Path, Profile, Reach, Segment, TimeLaw, Turn,
     },
 };
 use core::{hint::black_box, time::Duration};
