@@ -91,6 +91,10 @@ pub(crate) enum Check {
     Identities,
     /// Floats: divisors are those that the equations ask for.
     Divisors,
+    /// Floats: signs are of gravity torques that friction grows with.
+    LoadSigns,
+    /// Floats: the sign of each torque is that of one step.
+    SignsOnce,
     /// Floats: the number 0 is an entry alone.
     Zeros,
     /// Floats: functions grow with their arguments as the equations do.
@@ -129,6 +133,8 @@ pub(crate) enum Check {
     Head,
     /// Comments: documentation of functions, but for bounds.
     Prose,
+    /// Constants: base parameters are the combinations that are stated of them, and all of them.
+    Combinations,
     /// Comments: documentation of names of parameters.
     Meanings,
     /// Functions: their errors as they occur.

@@ -24,11 +24,12 @@ use crate::equations::state::State;
 use crate::formula::{Atoms, Dependent, Formula};
 use crate::number::{Erased, Member, Number, Numbers};
 use crate::powers::{joints_asked, Powers};
-use crate::program::{Program, Step, MOST_BITS};
+use crate::program::{Limits, Program, Step};
 use crate::reader::{Function, Module};
 use crate::reference::{BaseParameters, Reference, Values, Wanted, BASE_REGRESSOR};
 use crate::report::{Exact, FunctionReport, Verdict, MOST_LOG2_ODDS};
 use crate::seed;
+use crate::signs;
 use crate::stream::Stream;
 
 /// The function that has a meaning up to a constant where parameters are base parameters.
@@ -99,9 +100,8 @@ impl<K: Arithmetic> Point<K> {
     fn difference(&self, program: &Program, literals: &[Formula], base: bool) -> Option<(usize, &'static str)> {
         let expected = self.reference.values.get(&program.name)?;
         let Some(literals) = self.literals_of(program, literals) else { return Some((0, "has a constant that divides by 0")) };
-        // Values on the way to an entry are some times as long as it: an acceleration under five roots can have a million bits itself.
         let longest: usize = expected.iter().map(Element::bits).max().unwrap_or(0);
-        let values = program.run_within(MOST_BITS.max(4 * longest), &self.reference.state, &literals);
+        let values = program.run_within(Limits::beside(longest), &self.reference.state, &literals);
         if let Some(entry) = values.iter().position(Option::is_none) {
             let before = values[..entry].iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected));
             if before.is_none() || base && program.name == ENERGY_WITH {
@@ -138,6 +138,20 @@ impl<K: Arithmetic> Point<K> {
         let values = by.run(&self.reference.state, &literals).into_iter().zip(by.run(there, &literals));
         let mut divisors = values.map(|(a, b)| Some([a?, b?]));
         divisors.all(|values| values.is_some_and(|[a, b]| is_needed(function, [&a, &b], [here, pivots_there])))
+    }
+
+    /// The values that a function takes the signs of, results of a program, and the gravity torques that they may be; `None` where a value is none.
+    fn signed(
+        &self,
+        function: &str,
+        by: &Program,
+        literals: &[Formula],
+        loaded: &[usize],
+    ) -> Option<(Vec<K::Element>, Vec<&K::Element>)> {
+        let torques = signs::of_torques(function).and_then(|name| self.reference.values.get(name));
+        let torques = loaded.iter().filter_map(|&joint| torques?.get(joint)).collect();
+        let values = by.run(&self.reference.state, &self.literals_of(by, literals)?).into_iter().collect::<Option<_>>()?;
+        Some((values, torques))
     }
 
     /// With base parameters the potential energy is defined up to a constant: its change between two configurations is compared.
@@ -426,6 +440,7 @@ impl Checker {
         let (chosen, difference) = self.first_choice_that_holds(program, &resolved);
         let verdict = match difference {
             None => (self.foreign_divisor(program, &chosen))
+                .or_else(|| self.foreign_sign(program, &chosen))
                 .or_else(|| zero_operand(program))
                 .or_else(|| self.powers.fault(program, &chosen).map(Verdict::Refused))
                 .unwrap_or(Verdict::Equal),
@@ -498,6 +513,28 @@ impl Checker {
         let exact = || exact().filter(|_| Check::Rational.is_made());
         let dependent = || dependent().filter(|_| Check::Columns.is_made());
         modular.or_else(exact).or_else(dependent)
+    }
+
+    /// The sign of something that the equations do not take the sign of, or of one torque in two forms.
+    fn foreign_sign(&self, program: &Program, chosen: &[Formula]) -> Option<Verdict> {
+        let operands = signs::operands(program);
+        if operands.is_empty() {
+            return None;
+        }
+        let by = program.part(&operands);
+        let loaded: Vec<usize> = (0..self.sizes.n).filter(|&i| self.manipulator.joints[i].load.is_some()).collect();
+        let points = self.points.iter().map(|point| point.signed(&program.name, &by, chosen, &loaded));
+        let Some(points) = points.collect::<Option<Vec<_>>>() else {
+            return Some(Verdict::Refused("it takes the sign of what has no value".into()));
+        };
+        let refused = |why: &str| Some(Verdict::Refused(why.into()));
+        if Check::LoadSigns.is_made() && !points.iter().all(|(values, torques)| signs::are_torques(values, torques)) {
+            return refused("it takes the sign of what is no gravity torque that friction of a joint grows with");
+        }
+        if Check::SignsOnce.is_made() && points.iter().all(|(values, _)| signs::are_equal(values)) && !points.is_empty() {
+            return refused("it takes the sign of one torque in two forms, which differ where it is small");
+        }
+        None
     }
 
     /// A divisor that the equations do not ask for.

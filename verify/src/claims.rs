@@ -145,6 +145,15 @@ impl Claims {
         Resolved { values, others }
     }
 
+    /// Whether some literal of a module is none of the constants claimed for its function.
+    pub fn lack(&self, module: &Module) -> bool {
+        module.programs().any(|(name, program)| {
+            let known: BTreeSet<u64> =
+                self.of(name).iter().filter_map(|claim| Some(module.real.nearest(claim)?.abs().to_bits())).collect();
+            program.literals.iter().any(|literal| !known.contains(&literal.value.to_bits()))
+        })
+    }
+
     /// A literal of an entry that is none of the constants claimed for the function, in words: what makes it differ, perhaps.
     pub fn suspect(&self, program: &Program, entry: &str, real: Float) -> Option<String> {
         let claims: Vec<(f64, &Formula)> =
@@ -162,7 +171,10 @@ impl Claims {
         Some(if distance(value) < 1e-6 * value {
             format!("its literal {} is not the float nearest to {claim}", literal.text)
         } else {
-            format!("its literal {} is no constant of the equations", literal.text)
+            format!(
+                "its literal {} is no constant of the equations as armgen writes them, and what else it stands for only a certificate can say",
+                literal.text
+            )
         })
     }
 }

@@ -81,6 +81,8 @@ pub mod rounding;
 #[doc(hidden)]
 pub mod seed;
 #[doc(hidden)]
+pub mod signs;
+#[doc(hidden)]
 pub mod stated;
 #[doc(hidden)]
 pub mod stream;
@@ -92,6 +94,7 @@ use armgen_codegen::diagnostic::Diagnostics;
 use armgen_codegen::emit::{Language, Origin};
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::Manipulator;
+use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Generated;
@@ -152,7 +155,7 @@ pub fn verify<'a>(source: &Source, text: impl Into<ModuleText<'a>>, certificate:
         Ok(module) => module,
         Err(fault) => return Report { faults: vec![fault.into()], ..report },
     };
-    let by_generator = || verify_with(source, text, generated_claims(source, module.real), Effort::default());
+    let by_generator = || verify_by_generator(source, text, &module);
     let Some(certificate) = certificate else { return by_generator() };
     match certificate.claims_for(&module, &report.input, &report.output) {
         Ok(claims) => {
@@ -193,15 +196,35 @@ pub fn beyond_the_scalar(source: &Source, function: &str, scalar: Scalar) -> Dia
     diagnostics
 }
 
-/// The constants of the generator for a scalar.
-fn generated_claims(source: &Source, real: Float) -> Claims {
+/// Verifies with the constants of the generator. One that was left a pass has others: where some literal of the module is none, they are asked for
+/// pass by pass.
+fn verify_by_generator(source: &Source, text: ModuleText<'_>, module: &Module) -> Report {
+    let verify_without = |without: Passes| {
+        let claims = generated_claims(source, module.real, without);
+        let lacks = claims.lack(module);
+        (verify_with(source, text, claims, Effort::default()), lacks)
+    };
+    let (report, lacks) = verify_without(Passes::default());
+    if report.passed() || !lacks {
+        return report;
+    }
+    let of_pass = |pass: Pass| {
+        let mut without = Passes::default();
+        without.insert(pass);
+        without
+    };
+    let others = Pass::ALL.into_iter().map(of_pass).chain([Passes::all()]).map(verify_without);
+    others.map(|(report, _)| report).find(Report::passed).unwrap_or(report)
+}
+
+/// The constants of the generator for a scalar, without some passes.
+fn generated_claims(source: &Source, real: Float, without: Passes) -> Claims {
     let scalar = match real {
         Float::F32 => Scalar::F32,
         Float::F64 => Scalar::F64,
     };
-    // Whatever else the text was generated with, a constant has its exact value all the same.
     #[allow(clippy::needless_update)]
-    let options = armgen_codegen::schedule::Options { scalar, ..Default::default() };
+    let options = armgen_codegen::schedule::Options { scalar, without, ..Default::default() };
     let (generated, _) = armgen_codegen::generate(source, &options);
     generated.map_or(Claims::none(), |generated| Claims::from_numbers(&generated.constants))
 }
@@ -289,6 +312,6 @@ fn fill(report: &mut Report, prepared: &Prepared) {
         }
     }
     report.identities = identities::check(checker, module, &report.functions, &nominal);
-    report.faults.extend(stated::faults(checker.manipulator(), module, report));
+    report.faults.extend(stated::faults(checker, module, report));
     debug_assert!(report.functions.iter().all(|f| f.verdict != Verdict::Equal || f.points > 0));
 }

@@ -189,28 +189,61 @@ pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E
 }
 
 /// Bits of one exact value at most.
-pub const MOST_BITS: usize = 1 << 20;
-/// And of all together.
-const ALL_BITS: u64 = 1 << 32;
+const MOST_BITS: usize = 1 << 20;
+/// What the exact values of a function may cost, in products of words: the squares of their lengths, as common divisors of fractions do.
+const MOST_WORK: u64 = 1 << 32;
+/// The same beside entries of a known length, and as many steps with values of four times that may be added.
+const MOST_WORK_BESIDE: u64 = 1 << 28;
+const LONG_STEPS: u64 = 1 << 12;
+
+/// How long exact values may be.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Bits of one.
+    bits: usize,
+    /// Products of words for all.
+    work: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits { bits: MOST_BITS, work: MOST_WORK }
+    }
+}
+
+impl Limits {
+    /// Where the entries are known to have so many bits: values on the way to them are some times as long, an acceleration under five roots
+    /// can have a million bits itself.
+    pub fn beside(longest: usize) -> Limits {
+        let long = 4 * longest;
+        Limits { bits: MOST_BITS.max(long), work: MOST_WORK_BESIDE + LONG_STEPS * squared_words(long as u64) }
+    }
+}
+
+/// The square of the words that so many bits take.
+fn squared_words(bits: u64) -> u64 {
+    (bits / 64 + 1).saturating_pow(2)
+}
 
 impl Program {
     /// The entries of the result; `None` for those that divide by 0.
     pub fn run<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
-        self.run_within(MOST_BITS, inputs, literals)
+        self.run_within(Limits::default(), inputs, literals)
     }
 
-    /// The same where one value may have more bits, since the entries themselves are known to have many.
-    pub fn run_within<E: Element>(&self, most_bits: usize, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
+    /// The same within other limits.
+    pub fn run_within<E: Element>(&self, limits: Limits, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
         // What owns memory is given back as soon as nothing needs it any more.
         let last = std::mem::needs_drop::<E>().then(|| self.last_uses());
-        let values = self.execute(inputs, literals, last.as_deref(), most_bits);
+        let values = self.execute(inputs, literals, last.as_deref(), limits);
         self.outputs.iter().map(|output| values[output.step].clone()).collect()
     }
 
-    /// For each step the last one that takes it as an operand; none is behind an entry.
+    /// For each step the last one that takes it as an operand, on the way to an entry; none is behind an entry, and one that no entry needs is its own.
     fn last_uses(&self) -> Vec<usize> {
         let mut last: Vec<usize> = (0..self.steps.len()).collect();
-        for (i, step) in self.steps.iter().enumerate() {
+        let needed = self.needed(&self.outputs.iter().map(|output| output.step).collect::<Vec<usize>>());
+        for (i, step) in self.steps.iter().enumerate().filter(|(i, _)| needed[*i]) {
             step.operands().into_iter().flatten().for_each(|operand| last[operand] = i);
         }
         self.outputs.iter().for_each(|output| last[output.step] = usize::MAX);
@@ -269,9 +302,9 @@ impl Program {
     }
 
     /// The value of every step; `None` of what divides by zero, and of all from where numbers have grown out of bounds: 2^20 bits for one,
-    /// 2^32 for all.
+    /// 2^32 products of words for all.
     pub fn values<E: Element>(&self, inputs: &impl Inputs<E>, literals: &[E]) -> Vec<Option<E>> {
-        self.execute(inputs, literals, None, MOST_BITS)
+        self.execute(inputs, literals, None, Limits::default())
     }
 
     /// The same, without the values of steps behind their last uses.
@@ -280,11 +313,15 @@ impl Program {
         inputs: &impl Inputs<E>,
         literals: &[E],
         last: Option<&[usize]>,
-        most_bits: usize,
+        limits: Limits,
     ) -> Vec<Option<E>> {
         let mut values: Vec<Option<E>> = Vec::with_capacity(self.steps.len());
-        let mut bits = 0;
+        let mut work = 0;
         for (i, step) in self.steps.iter().enumerate() {
+            if last.is_some_and(|last| last[i] == i) {
+                values.push(None);
+                continue;
+            }
             let of = |i: &usize| values[*i].as_ref();
             let both = |a: &usize, b: &usize| Some((values[*a].as_ref()?, values[*b].as_ref()?));
             let wave = |angle: &Angle| match angle.turn {
@@ -314,8 +351,9 @@ impl Program {
                 Step::Divide(a, b) => both(a, b).and_then(|(a, b)| a.over(b)),
             };
             let own = value.as_ref().map_or(0, Element::bits);
-            bits += own as u64;
-            if own > most_bits || bits > ALL_BITS {
+            let operands = step.operands().into_iter().flatten().filter_map(|k| values[k].as_ref().map(Element::bits));
+            work += squared_words((operands.sum::<usize>() + own) as u64);
+            if own > limits.bits || work > limits.work {
                 values.resize(self.steps.len(), None);
                 break;
             }
@@ -333,7 +371,7 @@ impl Program {
         if self.steps.iter().any(|step| matches!(step, Step::Divide(_, divisor) if zero(divisor))) {
             "divides by 0"
         } else {
-            "has exact values of more than 2^20 bits, or 2^32 together, which no robot's has,"
+            "has exact values of more than 2^20 bits, or too many long ones, which no robot's has,"
         }
     }
 

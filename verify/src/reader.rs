@@ -104,7 +104,7 @@ impl Module {
             Language::Python => python::read(text),
             Language::Matlab => matlab::read(text),
         }?;
-        Ok(Module { comments: comments::of_module(language, text), ..module })
+        Ok(Module { comments: comments::of_module(language, text)?, ..module })
     }
 
     /// Nothing, with floats of 64 bits.

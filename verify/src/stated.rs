@@ -13,13 +13,18 @@ use armgen_codegen::derive::parameters::nominal;
 use armgen_codegen::derive::Model;
 use armgen_codegen::emit::{rust, Described, DescribedParameters, Language};
 use armgen_codegen::exact::Number;
+use armgen_codegen::kinds::Scalar;
 use armgen_codegen::manipulator::{Manipulator, RegressorChoice};
+use armgen_codegen::program::listing::decimal;
 
 use crate::bounds::{self, Bound};
 use crate::check::Check;
+use crate::checker::Checker;
+use crate::claims::Claims;
 use crate::constants;
+use crate::enclosure::Float;
 use crate::program::{Program, Step};
-use crate::reader::{Function, Module};
+use crate::reader::{is_hidden, Function, Module};
 use crate::report::Report;
 
 /// The head behind its first line.
@@ -33,7 +38,8 @@ const CONVENTIONS: [&str; 3] = [
 const DIGITS: usize = 16;
 
 /// All that is said and is not so. Bounds are judged where the checker has them.
-pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Vec<String> {
+pub fn faults(checker: &Checker, module: &Module, report: &Report) -> Vec<String> {
+    let manipulator = checker.manipulator();
     let known: BTreeMap<String, Bound> =
         report.functions.iter().filter_map(|f| Some((f.name.clone(), f.bound.clone()?))).collect();
     let notes = bounds::notes(&known);
@@ -69,6 +75,9 @@ pub fn faults(manipulator: &Manipulator, module: &Module, report: &Report) -> Ve
     }
     if Check::Meanings.is_made() {
         faults.extend(meanings(&model, module));
+    }
+    if Check::Combinations.is_made() {
+        faults.extend(combinations(&model, module, checker));
     }
     if module.language != Language::Rust && faults.is_empty() && Check::Comments.is_made() {
         let mut functions = Vec::new();
@@ -151,7 +160,7 @@ fn meanings(model: &Model, module: &Module) -> Vec<String> {
         let found: Vec<&str> = found.iter().map(String::as_str).collect();
         let parameters = named(model, module, constant);
         let base_parameters = Some(parameters.clone());
-        let described = DescribedParameters { grouped, parameters, base_parameters, turn: turn(&found).map(String::from) };
+        let described = DescribedParameters { grouped, parameters, base_parameters, turn: turn(model, module) };
         let expected = rust::constants_documentation(&described).into_iter().find(|(name, _)| name == constant);
         let expected = expected.map_or(Vec::new(), |(_, lines)| lines);
         faults.extend(different(&found, &expected).map(|fault| format!("{constant}: {fault}")));
@@ -159,16 +168,39 @@ fn meanings(model: &Model, module: &Module) -> Vec<String> {
     faults
 }
 
+/// The base parameters of `base_regressor` that are not those of the description, all of them and each with the value of the combination that is
+/// stated beside it.
+fn combinations(model: &Model, module: &Module, checker: &Checker) -> Option<String> {
+    let own = checker.base()?;
+    let names = constants::names(module, "BASE_PARAMETER_NAMES")?;
+    let stated = &model.base_parameters().entries;
+    if let Some(lost) = stated.iter().find(|parameter| !names.contains(&parameter.name)) {
+        return Some(format!("BASE_PARAMETER_NAMES: the base parameter `{}` is not there", lost.name));
+    }
+    let of_name = |name: &String| Some(stated.iter().find(|parameter| parameter.name == *name)?.nominal.clone());
+    let Some(numbers) = names.iter().map(of_name).collect::<Option<Vec<Number>>>() else {
+        return Some("BASE_PARAMETER_NAMES: not all of them are base parameters of the arm".into());
+    };
+    let right = Claims::from_numbers(&BTreeMap::from([(String::new(), numbers)]));
+    checker.points().iter().find_map(|point| {
+        let (claimed, right) = (point.literals(&own.nominal)?, point.literals(right.of(""))?);
+        let k = claimed.iter().zip(&right).position(|(claimed, right)| claimed != right)?;
+        Some(format!(
+            "NOMINAL_BASE_PARAMETERS: [{k}] is not the combination that is stated of `{}`: {}",
+            names[k], own.nominal[k]
+        ))
+    })
+}
+
 /// What the comments of constants say.
 fn described_parameters(model: &Model, module: &Module) -> DescribedParameters {
-    let found: Vec<&str> = module.comments.iter().flat_map(|comment| comment.text.lines()).collect();
     let of = |constant: &str| named(model, module, constant);
     let has_base = module.constants.contains_key("BASE_PARAMETERS");
     DescribedParameters {
         grouped: model.manipulator.regressor == RegressorChoice::Base,
         parameters: of("PARAMETER_NAMES"),
         base_parameters: has_base.then(|| of("BASE_PARAMETER_NAMES")),
-        turn: turn(&found).map(String::from),
+        turn: turn(model, module),
     }
 }
 
@@ -193,11 +225,19 @@ fn absent(model: &Model, module: &Module) -> Vec<String> {
     catalogue::functions().filter_map(of).collect()
 }
 
-/// The angle, a decimal, by which the frame of the last link is said to be turned.
-fn turn<'a>(lines: &[&'a str]) -> Option<&'a str> {
-    let (_, behind) = lines.iter().find_map(|line| line.split_once("The x axis of the last link stands "))?;
-    let (angle, _) = behind.split_once(" rad ")?;
-    Some(angle).filter(|angle| angle.parse::<f64>().is_ok_and(f64::is_finite))
+/// The angle by which the frame of the last link is turned, as documentation has it.
+fn turn(model: &Model, module: &Module) -> Option<String> {
+    let scalar = match module.real {
+        Float::F64 => Scalar::F64,
+        Float::F32 => Scalar::F32,
+    };
+    model.field.turn().map(|turn| decimal(&turn.angle, scalar))
+}
+
+/// Whether the name of a file can have a character in the head: what ends or disguises a comment, or means something in one, in any language, is
+/// written otherwise there.
+fn is_of_a_file(c: char) -> bool {
+    !is_hidden(c) && (c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && !"*\\?:=".contains(c)))
 }
 
 /// The first line of a file: armgen made it from this description. The name of the file and the number of the version are not judged.
@@ -207,7 +247,7 @@ pub(crate) fn origin(first: &str, input: &str) -> Result<(), String> {
         first.strip_prefix("@generated by armgen ").and_then(|rest| rest.strip_suffix(&format!(" (input {hash}). Do not edit.")));
     let is_number = |version: &str| version.chars().all(|c| c.is_ascii_digit() || c == '.');
     let named = named.and_then(|named| named.split_once(" from ")).filter(|(version, _)| is_number(version));
-    if named.is_none_or(|(_, file)| file.contains("(input ")) {
+    if named.is_none_or(|(_, file)| file.contains("(input ") || !file.chars().all(is_of_a_file)) {
         return Err(format!("`{first}` does not say that armgen made it from this description, `(input {hash})`"));
     }
     Ok(())

@@ -95,7 +95,7 @@ fn text_that_nothing_needs_is_refused() {
     appended("#[allow(dead_code)]\npub const DOF: usize = 4;", "constant `DOF` stands twice");
     appended("pub fn other(q: &[Real; DOF]) -> Real { q[0] }", "`other` is not a function that an emitted module has");
     appended(
-        "#[allow(dead_code, clippy::all)]\n#[inline(never)]\nfn gravity_part_1(values: [Real; 0]) -> [Real; 0] { let [] = values; [] }",
+        "/// Part 1 of `gravity`.\n#[allow(dead_code, clippy::all)]\n#[inline(never)]\nfn gravity_part_1(values: [Real; 0]) -> [Real; 0] { let [] = values; [] }",
         "`gravity_part_1` is needed by no function",
     );
     let gravity = &module[module.find("#[allow(dead_code, clippy::all)]\npub fn gravity(").expect("it is there")..];
@@ -600,4 +600,47 @@ fn what_has_no_value_is_not_said_to_differ() {
     scara.refused_text(&text, "inertia_matrix[0][0]: has exact values of more than 2^20 bits");
     let none = "[10.0 * c2 + 21.526 + (c2 - c2) / (c2 - c2),";
     scara.refused("[10.0 * c2 + 21.526,", none, "inertia_matrix[0][0]: divides by 0 at point 1");
+}
+
+/// Over the reals the two are one sign; in floats one of the products is 0 where the angle is small, and the other is not.
+#[test]
+fn signs_are_those_of_loads() {
+    let underflow = "sign(t900 * t900 * 1e24) - sign(t900 * 1e24 * t900)";
+    for (name, joint) in [("load_friction", 3), ("dry_friction", 1)] {
+        let angles = format!("    let t900 = 1e-170 * s{joint};\n");
+        let given = Given::new(name, Trig::Libm);
+        let waves = format!("    let (s{joint}, c{joint}) = sin_cos(");
+        for function in ["pub fn gravity(", "pub fn load_friction("] {
+            let Some(at) = given.module.find(function) else { continue };
+            let (before, function) = given.module.split_at(at);
+            let line = function.find(&waves).expect("a sine");
+            let line = line + function[line..].find('\n').expect("its end") + 1;
+            let mut changed = format!("{}{angles}{}", &function[..line], &function[line..]);
+            let entries = changed.find("    [\n").expect("the result") + 6;
+            let entry = entries + changed[entries..].find(",\n").expect("an entry");
+            changed.insert_str(entry, &format!(" + 12.0 * ({underflow})"));
+            given.refused_text(&format!("{before}{changed}"), "it takes the sign of what is no gravity torque");
+        }
+    }
+}
+
+/// The torque itself, once more and otherwise: what is beside it has a sign where it is 0.
+#[test]
+fn a_load_has_one_sign() {
+    let given = Given::new("load_friction", Trig::Libm);
+    let (before, function) = given.module.split_at(given.module.find("pub fn load_friction(").expect("the function"));
+    let torque = "(sign(t3) * t3)";
+    assert!(function.contains(torque));
+    for (other, why) in [
+        ("(44.145 * c3 + s3 - s3 - 25.48712763337603 * s3)", "it takes the sign of one torque in two forms"),
+        ("(25.48712763337603 * s3 - 44.145 * c3)", "it takes the sign of one torque in two forms"),
+        ("(s3 + c3)", "it takes the sign of what is no gravity torque"),
+    ] {
+        let changed = function.replacen(torque, &format!("(sign(t3) * t3 + sign({other}) - sign({other}))"), 1);
+        given.refused_text(&format!("{before}{changed}"), why);
+    }
+    // The same step, and its negative, are one.
+    let changed = function.replacen(torque, "(-sign(-t3) * t3)", 1);
+    let report = verify_with(&given.source, format!("{before}{changed}").as_str(), given.claims.clone(), Effort::default());
+    assert_eq!(report.first_fault(), None);
 }

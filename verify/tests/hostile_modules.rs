@@ -1,8 +1,10 @@
 //! Whatever text is given for a module, the checker ends, on a small stack too, and says what is wrong and where.
 
+use armgen_codegen::emit::Language;
+use armgen_codegen::pass::{Pass, Passes};
 use armgen_codegen::schedule::Options;
 use armgen_codegen::source::Source;
-use armgen_verify::reader::{Module, LONGEST};
+use armgen_verify::reader::{matlab, Module, ModuleText, LONGEST};
 
 const ROBOT: &str = include_str!("../../tests/robots/single_joint.yaml");
 
@@ -46,6 +48,7 @@ fn deep_expressions_are_refused_and_long_ones_read() {
         with_steps(&format!("let t1 = {}q[0]{};", open.repeat(count), close.repeat(count)))
     };
     check(around("(", ")", 100_000), "brackets in more than 16 others");
+    check(around("sign(", ")", 100_000), "brackets in more than 16 others");
     check(around("[", "]", 100_000), "`[` where a number, a name or a bracket can stand");
     check(around("{", "}", 100_000), "`{` where a number, a name or a bracket can stand");
     check(around("-", "", 8000), "`-` where a number, a name or a bracket can stand");
@@ -64,12 +67,9 @@ fn deep_expressions_are_refused_and_long_ones_read() {
 
 #[test]
 fn steps_that_grow_without_end_are_refused() {
-    // Right, but of numbers that no machine holds.
+    // Right, but of numbers that no machine holds: exact values are those that entries need.
     let squares = chain(60, |i| format!("let t{} = t{i} * t{i};", i + 1));
-    check(
-        with_steps(&squares),
-        "has exact values of more than 2^20 bits, or 2^32 together, which no robot's has, at rational point 1",
-    );
+    check(with_steps(&squares), "gravity: values of up to inf on the way to entries of up to 0 can leave the scalar");
     // The degree doubles where no number grows.
     let powers = chain(70, |i| format!("let t{} = t{i} * t{i};", i + 1));
     let fault = fault(
@@ -109,4 +109,175 @@ fn what_is_no_module_is_told_apart() {
     assert!(of(&batch).contains("begins no item of an emitted module for one state"), "{}", of(&batch));
     check(fault("pub const NOMINAL_PARAMETERS:", "pub const OTHER_PARAMETERS:"), "OTHER_PARAMETERS");
     check(fault("NAME: &str = \"", "NAME: &str = \"another_"), "NAME: the module is of the robot `another_");
+}
+
+const LOADED: &str = include_str!("../../tests/robots/load_friction.yaml");
+
+/// In other languages, too: where each begins the sign of a rate.
+#[test]
+fn deep_signs_are_refused_in_every_language() {
+    let generated = armgen_codegen::generate(&Source::new("robot.yaml", LOADED), &Options::default()).0.expect("a module");
+    for (language, sign) in [
+        (Language::C, "load_friction_sign("),
+        (Language::JavaScript, "sign("),
+        (Language::Python, "_sign(xp, "),
+        (Language::Matlab, "signOf("),
+    ] {
+        let rate = format!("{sign}dq{}", if language == Language::Matlab { '(' } else { '[' });
+        let text = generated.in_language(language);
+        assert!(text.contains(&rate), "{language:?}");
+        let deep = text.replacen(&rate, &format!("{}{rate}", sign.repeat(100_000)), 1);
+        let fault = Module::read(ModuleText { language, text: &deep }).expect_err("too deep").to_string();
+        check(Some(fault), "brackets are in more than 16 others");
+    }
+}
+
+/// What a statement goes on over is no place for an empty line, or for a comment.
+#[test]
+fn statements_that_go_on_are_not_cut() {
+    let generated = armgen_codegen::generate(&Source::new("robot.yaml", LOADED), &Options::default()).0.expect("a module");
+    let mut cut = 0;
+    for (language, end, comment) in [(Language::Matlab, "...\n", "% a\n"), (Language::C, "\\\n", "/* a */\n")] {
+        let text = generated.in_language(language);
+        for between in ["\n", comment] {
+            for (at, _) in text.match_indices(end) {
+                let mut text = text.clone();
+                text.insert_str(at + end.len(), between);
+                let fault = Module::read(ModuleText { language, text: &text }).expect_err("a cut").to_string();
+                check(Some(fault), "which ends a statement");
+                cut += 1;
+            }
+        }
+    }
+    assert!(cut > 2);
+}
+
+/// Files of a package that are another number of files in a folder.
+#[test]
+fn files_of_a_package_stay_files() {
+    let file = |name: &str, text: &str| (name.to_string(), text.to_string());
+    let joined = |files: Vec<(String, String)>| matlab::joined(files).map_err(|(name, reason)| format!("{name} {reason}"));
+    assert_eq!(joined(vec![file("b.m", "x\n"), file("a.m", "y\n")]), Ok("%%% a.m\ny\n%%% b.m\nx\n".into()));
+    for (name, text, why) in [
+        ("a.m", "y\n%%% b.m\nx\n", "a.m has a line that begins with `%%%`"),
+        ("a.m", "%%% b.m\nx\n", "a.m has a line that begins with `%%%`"),
+        ("a.m", "y", "a.m does not end with a line break"),
+        ("a.m\n%%% b.m", "y\n", "has a line break in its name"),
+    ] {
+        let fault = joined(vec![file(name, text)]).expect_err(why);
+        assert!(fault.contains(why), "{fault}");
+    }
+}
+
+/// The name of the description in the first line cannot end the comment that it stands in.
+#[test]
+fn the_first_line_is_a_comment() {
+    let generated = armgen_codegen::generate(&source(), &Options::default()).0.expect("a module");
+    for language in Language::ALL {
+        let text = generated.in_language(language);
+        assert!(text.contains("from robot.yaml (input "), "{language:?}");
+        for name in ["a */ #define else /*", "a /* b", "a\\", "a??/", "coding: latin-1", "a.yaml (input 0) b", "a\u{115f}"] {
+            let text = text.replacen("from robot.yaml (input ", &format!("from {name} (input "), 1);
+            let fault = armgen_verify::verify(&source(), ModuleText { language, text: &text }, None).first_fault();
+            assert!(fault.is_some(), "{language:?}: {name}");
+        }
+    }
+    // Of such a file the name is written otherwise.
+    for name in ["a */ #define else /*.yaml", "a (input b.yaml", "r\u{e4}der (2).yaml", "a\u{115f}.yaml", "coding: x.yaml"] {
+        let source = Source::new(name, ROBOT);
+        let generated = armgen_codegen::generate(&source, &Options::default()).0.expect("a module");
+        for language in Language::ALL {
+            let text = generated.in_language(language);
+            assert_eq!(armgen_verify::verify(&source, ModuleText { language, text: &text }, None).first_fault(), None, "{name}");
+        }
+    }
+}
+
+/// By how much the axes of the last link are turned follows from the description.
+#[test]
+fn what_is_said_of_the_last_link_is_so() {
+    let said = "/// The x axis of the last link stands ";
+    let behind = "/// of mass of the link, payload included, lies on it: its mcy is 0.\n";
+    let verdict = |source: &Source, text: &str| armgen_verify::verify(source, text, None).first_fault();
+    let turned = Source::new("robot.yaml", include_str!("../../tests/robots/dry_friction.yaml"));
+    let module = armgen_codegen::generate(&turned, &Options::default()).0.expect("a module").module;
+    let at = module.find(said).expect("the last link is turned");
+    let end = at + module[at..].find(behind).expect("two lines") + behind.len();
+    let sentence = &module[at..end];
+    let angle = sentence[said.len()..].split(' ').next().expect("an angle");
+    assert_eq!(verdict(&turned, &module), None);
+    let other = sentence.replacen(angle, "1e300", 1);
+    check(verdict(&turned, &module.replacen(sentence, &other, 1)), "the documentation says");
+    check(verdict(&turned, &module.replacen(sentence, "", 1)), "the documentation says");
+    let straight = Source::new("robot.yaml", include_str!("../../robots/puma560.yaml"));
+    let module = armgen_codegen::generate(&straight, &Options::default()).0.expect("a module").module;
+    assert!(!module.contains(said));
+    let note = "take `regressor: base`, which has all.\n";
+    assert!(module.contains(note));
+    check(verdict(&straight, &module.replacen(note, &format!("{note}{other}"), 1)), "the documentation says");
+}
+
+/// A module that was made without a pass is right without its certificate, too: its constants are those of the generator without that pass.
+#[test]
+fn modules_made_without_a_pass_are_right() {
+    let source = Source::new("robot.yaml", include_str!("../../tests/robots/dry_friction.yaml"));
+    let mut others = 0;
+    for pass in Pass::ALL {
+        let mut without = Passes::default();
+        without.insert(pass);
+        let module = armgen_codegen::generate(&source, &Options { without, ..Options::default() }).0.expect("a module").module;
+        others += usize::from(module != armgen_codegen::generate(&source, &Options::default()).0.expect("a module").module);
+        assert_eq!(armgen_verify::verify(&source, &module, None).first_fault(), None, "without {pass:?}");
+    }
+    assert!(others > 5);
+}
+
+/// Lengths of a centimetre, and of what calibration leaves of parallel axes: operands of quotients are larger than torques there.
+#[test]
+fn short_links_are_no_loss() {
+    for (length, twist) in [("0.01", "0"), ("0.5", "0.001"), ("1e-5", "0.3")] {
+        let joint = |name: &str| {
+            format!(
+                "  - {{name: {name}, type: revolute, a: {length}, alpha: {twist}, d: 0.1, theta: 0, link: {{mass: 3, com: [-0.2, 0.01, 0.02], \
+                 inertia: {{xx: 0.1, yy: 0.2, zz: 0.2, xy: 0.01}}}}}}\n"
+            )
+        };
+        let text = format!(
+            "name: two\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n{}{}regressor: standard\n",
+            joint("a"),
+            joint("b")
+        );
+        let source = Source::new("two.yaml", text);
+        let module = armgen_codegen::generate(&source, &Options::default()).0.expect("a module").module;
+        assert_eq!(armgen_verify::verify(&source, &module, None).first_fault(), None, "{length} {twist}");
+    }
+}
+
+/// What no entry needs is not run exactly, and what is needed and long costs no more than it may.
+#[test]
+fn long_exact_values_are_bounded() {
+    let squares = chain(14, |i| format!("let t{} = t{i} * t{i};", i + 1));
+    let sums =
+        |count: usize| (500..500 + count).map(|i| format!("let t{i} = t{} + t{};", i - 1, 110 + i % 4)).collect::<String>();
+    let begin = "let t100 = q[0] * 0.1; ";
+    let start = std::time::Instant::now();
+    let unneeded = format!("{begin}{squares} let t499 = t114; {}", sums(20_000));
+    check(fault(GRAVITY, &format!("{GRAVITY} {unneeded}")), "gravity: the documentation says `Cost: none");
+    println!("{:?}", start.elapsed());
+}
+
+/// Comments cost as much as they are long.
+#[test]
+fn comments_are_counted() {
+    let generated = armgen_codegen::generate(&source(), &Options::default()).0.expect("a module");
+    for (language, comment) in [
+        (Language::C, "/* a */\n"),
+        (Language::JavaScript, "/** a */\n"),
+        (Language::Python, "# a\n\n"),
+        (Language::Matlab, "% a\n\n"),
+    ] {
+        let text = generated.in_language(language) + &comment.repeat(1_000_000);
+        let fault = Module::read(ModuleText { language, text: &text }).expect_err("too many").to_string();
+        check(Some(fault), "more than 65536 comments");
+    }
 }

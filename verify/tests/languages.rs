@@ -123,6 +123,17 @@ fn some(functions: &[&str]) -> Options {
 fn parts_of_long_functions_are_put_together() {
     let generated = common::generate_with(&chain(24), &some(&["inverse_dynamics_derivatives"]));
     check_same("chain", &generated, Scalar::F64);
+    // What is said of a part is that it is one.
+    for language in Language::ALL.into_iter().filter(|language| *language != Language::Python) {
+        let text = generated.in_language(language);
+        let at = text.find("Part 2 of `").expect("parts");
+        let line = text[..at].rfind('\n').expect("a line") + 1;
+        let end = at + text[at..].find('\n').expect("its end") + 1;
+        for other in [String::new(), text[line..end].replacen("Part 2", "Part 3", 1)] {
+            let changed = format!("{}{other}{}", &text[..line], &text[end..]);
+            assert!(Module::read(ModuleText { language, text: &changed }).is_err(), "{language:?}: {other}");
+        }
+    }
 }
 
 #[test]
@@ -157,6 +168,13 @@ fn every_comment_is_that_of_armgen() {
         let comments = Module::read(ModuleText { language, text: &text }).expect("a module").comments;
         assert!(comments.len() > 40, "{language:?}");
         let lines: Vec<&str> = text.lines().collect();
+        // None of them can be left out; the reader knows most of them.
+        for comment in &comments {
+            let (from, count) = (comment.line - 1, comment.text.lines().count());
+            let without = [&lines[..from], &lines[from + count..]].concat().join("\n") + "\n";
+            let read = Module::read(ModuleText { language, text: &without });
+            assert!(read.is_err() || verdict(&without).is_some(), "{language:?}: without the comment in line {}", comment.line);
+        }
         for (k, comment) in comments.iter().enumerate().step_by(5) {
             let (from, count) = (comment.line - 1, comment.text.lines().count());
             let at = from + k % count;

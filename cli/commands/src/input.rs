@@ -104,7 +104,11 @@ pub(crate) fn package(folder: &Path) -> Result<Source, u8> {
         }
         files.push((file, text));
     }
-    Ok(Source::new(name, armgen_verify::reader::matlab::joined(files)))
+    let joined = armgen_verify::reader::matlab::joined(files);
+    joined.map(|text| Source::new(name, text)).map_err(|(file, reason)| {
+        terminal::error(&format!("{}: this file {reason}", folder.join(file).display()));
+        FAULTY
+    })
 }
 
 /// How much of a valid file's warnings goes to standard error.

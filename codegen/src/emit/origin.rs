@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use sha2::{Digest, Sha256};
 
-use crate::source::Source;
+use crate::source::{is_hidden, Source};
 
 /// The header that says where a file came from.
 #[derive(Clone, Debug)]
@@ -20,9 +20,11 @@ impl Origin {
     pub fn of(source: &Source) -> Origin {
         let name = source.name().rsplit(['/', '\\']).next().unwrap_or_default();
         // In a comment, which a line break or a mark of writing direction would end or disguise, `*/` in C, a backslash or `coding=` in Python.
-        let plain = |c: char| c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && !"*\\?:=".contains(c));
+        let plain =
+            |c: char| !is_hidden(c) && (c.is_alphanumeric() || c == ' ' || (c.is_ascii_graphic() && !"*\\?:=".contains(c)));
         let escaped = |c: char| if plain(c) { c.to_string() } else { format!("U+{:04X}", u32::from(c)) };
-        let file = name.chars().map(escaped).collect();
+        // What stands behind the name in the head is read from the end of the line.
+        let file = name.chars().map(escaped).collect::<String>().replace("(input ", "U+0028input ");
         let digest = Sha256::digest(source.text().as_bytes());
         Origin { file, hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect() }
     }
@@ -68,5 +70,7 @@ mod tests {
         assert_eq!(file("robots/my arm_2.yaml"), "my arm_2.yaml");
         assert_eq!(file("r\u{e4}der.yaml"), "r\u{e4}der.yaml");
         assert_eq!(file("a\nb\r*\u{202e}.yaml"), "aU+000AbU+000DU+002AU+202E.yaml");
+        assert_eq!(file("a */ #define b /* (input c).yaml"), "a U+002A/ #define b /U+002A U+0028input c).yaml");
+        assert_eq!(file("a (2)\u{115f}.yaml"), "a (2)U+115F.yaml");
     }
 }

@@ -4,7 +4,7 @@ use super::FirstSeen;
 use crate::description::RobotDescription;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::document::excerpt;
-use crate::source::Spanned;
+use crate::source::{is_hidden, Spanned};
 
 /// Words of Rust, editions 2015 to 2024, that cannot be the name of anything there.
 const KEYWORDS: [&str; 53] = [
@@ -64,7 +64,11 @@ fn check_name(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics)
 fn check_identifier(name: &Spanned<String>, what: &str, diagnostics: &mut Diagnostics) {
     let shown = excerpt(&name.value);
     if !is_rust_name(&name.value) {
-        let message = format!("`{shown}` cannot be the name of {what}: it is not an identifier");
+        let reason = match name.value.chars().find(|c| is_hidden(*c)) {
+            Some(hidden) => format!("it has the character U+{:04X}, which cannot be seen", u32::from(hidden)),
+            None => "it is not an identifier".to_owned(),
+        };
+        let message = format!("`{shown}` cannot be the name of {what}: {reason}");
         let help = match suggestion(&name.value) {
             Some(better) => format!("use letters, digits and `_`, a letter first: `{better}`"),
             None => "use letters, digits and `_`, a letter first".into(),
@@ -94,7 +98,9 @@ fn reserved(name: &str) -> Option<&'static str> {
 /// Whether a text can be the name of an item of Rust as it stands.
 pub fn is_rust_name(name: &str) -> bool {
     // The raw `r#fn` is an identifier too, but no word of an expression.
-    !name.contains('#') && !KEYWORDS.contains(&name) && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
+    !name.contains(|c| c == '#' || is_hidden(c))
+        && !KEYWORDS.contains(&name)
+        && syn::parse_str::<syn::Ident>(name).is_ok_and(|ident| ident == name)
 }
 
 /// The name of the module of Rust for a file with this stem.
@@ -149,7 +155,7 @@ mod tests {
         for name in ["q", "q0", "dq", "q1a", "m1", "qr1", "Pi", "tau", "sine", "_x", "union", "raw", "r\u{e4}der", "I1", "mcx1"] {
             check(name, true);
         }
-        for name in ["", "1a", "a b", "a-b", "a.b", "r#fn", "a\u{2019}"] {
+        for name in ["", "1a", "a b", "a-b", "a.b", "r#fn", "a\u{2019}", "j\u{115f}", "j\u{34f}", "a\u{fe0f}"] {
             check(name, false);
         }
     }

@@ -172,6 +172,7 @@ fn no_check_can_be_left_out() {
     bodies_in_c(&mut tally, &scara);
     functions(&mut tally, &scara);
     floats(&mut tally, &scara);
+    signs(&mut tally);
     constants(&mut tally, &scara);
     comments(&mut tally, &scara);
     certificates(&mut tally, &scara);
@@ -216,7 +217,7 @@ fn texts_and_items(tally: &mut Tally, scara: &Given) {
     appended(tally, &format!("fn table() -> Real {{ {STATIC} 0.0 }}"), &names);
     appended(tally, "fn unused() -> Real { mod a { #[path = \"b.rs\"] mod b; } 0.0 }", &names);
     tally.text(scara, "no sines", &without("fn sin_cos("), &[(PrivateThere, "is called, and the module does not have it")]);
-    let part = "#[allow(dead_code, clippy::all)]\n#[inline(never)]\n\
+    let part = "/// Part 1 of `gravity`.\n#[allow(dead_code, clippy::all)]\n#[inline(never)]\n\
                 fn gravity_part_1(values: [Real; 0]) -> [Real; 0] { let [] = values; [] }";
     appended(tally, part, &[(PartsNeeded, "`gravity_part_1` is needed by no function")]);
 }
@@ -400,8 +401,22 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
     reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    let of_quotients = [the_box, intervals, states, (DividedLeaves, "forward_dynamics: a value leaves f32")];
+    let of_quotients = [(DividedLeaves, "forward_dynamics: a value leaves f32")];
     forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &of_quotients);
+}
+
+/// Signs of what is 0 over the reals, and of a torque in two forms.
+fn signs(tally: &mut Tally) {
+    let load = given("load_friction", &Options::default());
+    let said = "the documentation says `Cost: ";
+    let comments = [(Cost, said), (Rounding, "the documentation says `Rounding error: "), (Prose, said)];
+    let twice = (SignsOnce, "it takes the sign of one torque in two forms");
+    let entry = "44.145 * c3 - 25.48712763337603 * s3,";
+    let other = [(LoadSigns, "gravity: it takes the sign of what is no gravity torque"), twice];
+    let difference = "44.145 * c3 - 25.48712763337603 * s3 + 12.0 * (sign(c3 + c3) - sign(2.0 * c3)),";
+    tally.module(&load, "pub fn gravity(", entry, difference, &[&other[..], &[(Cost, said), (Prose, said)]].concat());
+    let (torque, again) = ("(sign(t3) * t3)", "(sign(t3) * t3) + sign(t3) - sign(44.145 * c3 - 25.48712763337603 * s3)");
+    tally.module(&load, "pub fn load_friction(", torque, again, &[&[twice][..], &comments].concat());
 }
 
 fn constants(tally: &mut Tally, scara: &Given) {
@@ -419,6 +434,7 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
         (Modular, "column `Fm1` is no combination of the torques of"),
         (BaseNames, "`Fm1` stands there twice"),
         (Meanings, "BASE_PARAMETER_NAMES: the documentation says"),
+        (Combinations, "BASE_PARAMETER_NAMES: the base parameter `Fm2` is not there"),
     ];
     tally.module(scara, "const BASE_PARAMETER_NAMES", "\"Fm2\"", "\"Fm1\"", &twice);
     // Nearer to the literal than any float, and not the value.
@@ -433,10 +449,24 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
         (Modular, "with NOMINAL_BASE_PARAMETERS it does not give the torque, at point 1"),
         (Rational, "with NOMINAL_BASE_PARAMETERS it does not give the torque, at rational point 1"),
         (BaseValues, "is not the standard parameter `Fm2`"),
+        (Combinations, "is not the combination that is stated of `Fm2`"),
         (Identities, "Y_b pi_b = tau does not hold"),
     ];
     let fault = || verify_with(&scara.source, &scara.module, claims.clone(), Effort::default()).first_fault();
     tally.peel("a base parameter that is none", &layers, Last::Accepted, fault);
+    // A column twice as large, of half of its combination.
+    let mut text = edited(&scara.module, "const NOMINAL_BASE_PARAMETERS", "5.0,", "2.5,");
+    for (old, new) in [("y[0][1] = t2 + 0.5 * t5;", "y[0][1] = t1 + t5;"), ("y[1][1] = t2;", "y[1][1] = t1;")] {
+        text = edited(&text, "pub fn base_regressor_into(", old, new);
+    }
+    let mut certificate = scara.certificate.clone();
+    let values = certificate.constants.iter_mut().find(|c| c.name == "NOMINAL_BASE_PARAMETERS").expect("values");
+    values.literals[1].1 = "5/2".into();
+    let claims = certificate.claims().expect("formulas");
+    let said = "the documentation says `Cost: ";
+    let layers = [(Cost, said), (Prose, said), (Combinations, "[1] is not the combination that is stated of `mcx2R`: 5/2")];
+    let fault = || verify_with(&scara.source, &text, claims.clone(), Effort::default()).first_fault();
+    tally.peel("a column in another unit", &layers, Last::Accepted, fault);
     let base_set = given("base_set", &Options::default());
     let claims = off(&base_set, "NOMINAL_PARAMETERS", 0);
     let layers = [
@@ -482,6 +512,7 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
         (Cost, "base_regressor: the documentation says `Cost: "),
         (Prose, "base_regressor: the documentation says `Cost: "),
         (Meanings, "BASE_PARAMETER_NAMES: the documentation says"),
+        (Combinations, "[1] is not the combination that is stated of `mcx2R`"),
     ];
     tally.text(scara, "a column twice", &text, &layers);
 }

@@ -363,12 +363,18 @@ impl<'a> Compiler<'a, '_, '_> {
         }
     }
 
+    /// What stands here opens a bracket in so many others.
+    fn not_too_deep(&self, brackets: usize) -> Result<(), Fault> {
+        match brackets == MOST_BRACKETS && Check::Brackets.is_made() {
+            true => Err(self.parser.peek().fault(format!("brackets in more than {MOST_BRACKETS} others"))),
+            false => Ok(()),
+        }
+    }
+
     /// `Real::mul_add(a, b, c)`: a product that is not rounded, and its sum with a third.
     fn fused(&mut self, brackets: usize) -> Result<usize, Fault> {
         let place = self.parser.peek();
-        if brackets == MOST_BRACKETS && Check::Brackets.is_made() {
-            return Err(place.fault(format!("brackets in more than {MOST_BRACKETS} others")));
-        }
+        self.not_too_deep(brackets)?;
         self.parser.expect("Real::mul_add(")?;
         let mut operands = Vec::new();
         self.list(")", |own| {
@@ -388,8 +394,9 @@ impl<'a> Compiler<'a, '_, '_> {
         let value = match token.kind {
             Kind::Number => self.literal()?,
             Kind::Word if token.is("sign") => {
+                self.not_too_deep(brackets)?;
                 self.parser.expect("sign(")?;
-                let of = self.sum(brackets)?;
+                let of = self.sum(brackets + 1)?;
                 self.parser.expect(")")?;
                 self.calls.insert("sign");
                 self.push(match self.program.steps[of] {
@@ -418,9 +425,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 self.value_of(&token)?
             }
             _ if token.is("(") => {
-                if brackets == MOST_BRACKETS && Check::Brackets.is_made() {
-                    return Err(token.fault(format!("brackets in more than {MOST_BRACKETS} others")));
-                }
+                self.not_too_deep(brackets)?;
                 self.parser.take()?;
                 let inner = self.sum(brackets + 1)?;
                 self.parser.expect(")")?;

@@ -171,6 +171,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let mut reader = Reader { robot: &robot, syntax: &syntax, real, sizes, parts: BTreeMap::new(), steps: 0, asks: [false; 3] };
     let functions = reader.all(&mut lines, end.peek(), [trig.is_some(), sign, stribeck])?;
     fixed(&mut lines, EPILOGUE)?;
+    lines.commented_as(&robot.own(BETWEEN), COMMENTS)?;
     if !lines.ended() {
         return Err(lines.fault(format!("{} behind the end of the module", lines.shown())));
     }
@@ -350,6 +351,8 @@ impl<'a> Reader<'a, '_> {
     /// The head of a part; its lines are read where it is called.
     fn part(&mut self, lines: &mut Lines<'a>, name: &'a str) -> Result<(), Fault> {
         let robot = &self.robot.name;
+        let (function, number) = name.rsplit_once("_part_").unwrap_or_default();
+        lines.commented(lines.at - 1, &[&format!(" Part {number} of `{robot}_{function}`. ")])?;
         let mut part = Part { arguments: Vec::new(), taken: 0, given: 0, body: 0, used: false };
         let count = |lines: &Lines<'a>, text: &str| {
             let count = text.parse::<usize>().ok().filter(|count| count.to_string() == text && (1..1 << 20).contains(count));

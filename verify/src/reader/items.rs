@@ -244,6 +244,8 @@ impl<'a> Items<'a> {
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
                 let part = part(parser, named)?;
+                let (function, number) = name.text.rsplit_once("_part_").unwrap_or_default();
+                self.documented(&head.documentation, &format!("Part {number} of `{function}`."), &head.first);
                 if self.parts.insert(name.text, part).is_some() && Check::Once.is_made() {
                     return Err(name.fault(format!("function `{}` stands twice", name.text)));
                 }

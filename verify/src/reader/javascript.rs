@@ -211,12 +211,15 @@ impl<'a> Reader<'a, '_> {
 
     /// The head of a part; its lines are read where it is called.
     fn part(&mut self, lines: &mut Lines<'a>) -> Result<(), Fault> {
+        let head = lines.at;
         let line = lines.number();
         let (name, arguments) = lines.between("function ", ") {")?.split_once('(').unwrap_or_default();
         let mut arguments: Vec<&str> = arguments.split(", ").collect();
         if arguments.pop() != Some("taken") {
             return Err(Fault { line, reason: "a part takes values, as its last argument".into() });
         }
+        let (function, number) = name.rsplit_once("Part").unwrap_or_default();
+        lines.commented(head, &[&format!(" Part {number} of `{function}`. ")])?;
         let body = lines.at;
         while !lines.is("}") {
             if lines.ended() {

@@ -6,6 +6,8 @@
 
 use std::fmt;
 
+pub(crate) use armgen_codegen::source::is_hidden;
+
 use crate::check::Check;
 
 /// What is wrong with a text, and where.
@@ -97,16 +99,6 @@ const SINGLE: &str = "#[](){}<>,;:=+-*/&|!.^%";
 pub(super) struct Lexer<'a> {
     rest: &'a str,
     line: usize,
-}
-
-/// Whether a character of a comment or a text cannot be seen, or changes how others are seen.
-pub(crate) fn is_hidden(c: char) -> bool {
-    c.is_control()
-        || matches!(c,
-            '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
-            | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{3164}' | '\u{fe00}'..='\u{fe0f}'
-            | '\u{feff}' | '\u{ffa0}' | '\u{fff0}'..='\u{fffb}' | '\u{1bca0}'..='\u{1bca3}' | '\u{1d173}'..='\u{1d17a}'
-            | '\u{e0000}'..='\u{e0fff}')
 }
 
 pub(crate) fn name_of(c: char) -> String {

@@ -37,10 +37,24 @@ const MODEL: &str = "function m = model()\n%MODEL  Names, limits and parameters,
 /// What the line in front of a file begins with, behind which its name stands.
 pub(super) const FILE: &str = "%%% ";
 
-/// The files of a package, names and texts, as the one text that is read.
-pub fn joined(mut files: Vec<(String, String)>) -> String {
+/// The files of a package, names and texts, as the one text that is read; the name of one that would not be one file there, with the reason.
+pub fn joined(mut files: Vec<(String, String)>) -> Result<String, (String, &'static str)> {
     files.sort();
-    files.iter().map(|(name, text)| format!("{FILE}{name}\n{text}")).collect()
+    let mut all = String::new();
+    for (name, text) in files {
+        let is_head = |line: &str| line.starts_with(FILE);
+        if name.contains('\n') {
+            return Err((name, "has a line break in its name"));
+        }
+        if text.split('\n').any(is_head) {
+            return Err((name, "has a line that begins with `%%%`, as no file of a package does"));
+        }
+        if !text.ends_with('\n') {
+            return Err((name, "does not end with a line break"));
+        }
+        all += &format!("{FILE}{name}\n{text}");
+    }
+    Ok(all)
 }
 
 /// The file that a line of the one text is of, and the line there.
@@ -144,6 +158,7 @@ fn constants(lines: &mut Lines<'_>) -> Result<BTreeMap<String, Constant>, Fault>
         truth: ["false", "true"],
         infinity: "Inf",
     };
+    lines.commented_as(MODEL, COMMENTS)?;
     lines.expect("function m = model()")?;
     lines.expect("    m = struct();")?;
     let mut constants = BTreeMap::new();
@@ -376,6 +391,8 @@ fn part<'a>(parts: &mut Parts<'a>, lines: &mut Lines<'a>) -> Result<(), Fault> {
     if arguments.pop() != Some("taken") {
         return Err(Fault { line, reason: "a part takes values, as its last argument".into() });
     }
+    let (function, part) = name.rsplit_once("Part").unwrap_or_default();
+    lines.commented(lines.at, &[&format!(" Part {part} of `{function}`.")])?;
     let body = lines.at;
     while !lines.is("end") {
         if lines.ended() {

@@ -62,6 +62,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     let head = text.split('\n').map_while(|line| line.strip_prefix('#')).map(String::from).collect();
     lines.expect("from __future__ import annotations")?;
     lines.expect("from typing import Any, Callable, Final, NamedTuple, TypeVar")?;
+    let list = lines.number();
     lines.expect("__all__ = [")?;
     let mut public = Vec::new();
     while !lines.is("]") {
@@ -93,6 +94,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     }
     let sizes = sizes(&constants)?;
     lines.at += 1;
+    lines.commented_as(DTYPE, COMMENTS)?;
     lines.expect_all(ARRAYS, COMMENTS)?;
     let mut trig = None;
     for (block, name) in [(if real == Float::F64 { FAST_F64 } else { FAST_F32 }, "fast"), (STD, "std")] {
@@ -135,7 +137,7 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
     if public != wanted {
         let reason =
             format!("`__all__` does not list the {named} constants, the types of results and the functions of the module");
-        return Err(Fault { line: 1, reason });
+        return Err(Fault { line: list, reason });
     }
     Ok(Module { real, trig, head, constants, functions, ..Module::empty(Language::Python) })
 }
@@ -257,6 +259,7 @@ impl<'a> Reader<'a, '_> {
         let promise =
             names_of().filter_map(|own| promised(&own)).find(|(promise, _)| structure(promise).as_deref() == Some(name));
         let (promise, _) = promise.ok_or_else(|| lines.fault(format!("`{name}` is no type of results")))?;
+        lines.commented(lines.at, &[&format!("Results of `{}`.", promise.name)])?;
         for (field, _) in promise.returned.named() {
             lines.expect(&format!("    {field}: Any"))?;
         }

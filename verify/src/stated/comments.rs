@@ -47,7 +47,7 @@ pub(super) fn fault(module: &Module, words: &Words<'_>) -> Option<String> {
         if k > 0 && is_again(&module.comments[k - 1]) {
             return Some(format!("line {}: the comment `{shown}` stands twice", comment.line));
         }
-        let is_same = |other: &Comment| other.text == comment.text && comment.before.starts_with(&other.before);
+        let is_same = |other: &Comment| other.text == comment.text && comment.before.starts_with(&*other.before);
         if fixed.iter().any(is_same) || is_of_part(module.language, words.robot, comment) || is_of_results(comment) {
             continue;
         }
@@ -159,7 +159,7 @@ fn is_of_part(language: Language, robot: &str, comment: &Comment) -> bool {
 /// Whether a comment says in Python what holds the results of a function that has several.
 fn is_of_results(comment: &Comment) -> bool {
     let of = |promise: &Promise| {
-        structure(promise).is_some_and(|name| comment.behind == format!("class {name}(NamedTuple):"))
+        structure(promise).is_some_and(|name| *comment.behind == *format!("class {name}(NamedTuple):"))
             && comment.text == format!("    \"\"\"Results of `{}`.\"\"\"\n", promise.name)
     };
     PROMISES.iter().any(of)

@@ -24,6 +24,14 @@ fn is_value(word: &str) -> bool {
         && rest.bytes().all(|b| b.is_ascii_digit() || b.is_ascii_lowercase() || b == b'_')
 }
 
+/// Whether a bracket may be opened in so many others.
+fn not_too_deep(place: &Place<'_>, brackets: usize) -> Result<(), Fault> {
+    match brackets == MOST_BRACKETS {
+        true => Err(place.fault(&format!("brackets are in more than {MOST_BRACKETS} others"))),
+        false => Ok(()),
+    }
+}
+
 /// How a language writes what stands in a line.
 #[derive(Clone, Debug)]
 pub(in crate::reader) struct Syntax {
@@ -278,14 +286,13 @@ impl<'a, 's> Body<'a, 's> {
         let value = if place.rest.starts_with(|c: char| c.is_ascii_digit()) {
             self.literal(place)?
         } else if place.eat("(") {
-            if brackets == MOST_BRACKETS {
-                return Err(place.fault(&format!("brackets are in more than {MOST_BRACKETS} others")));
-            }
+            not_too_deep(place, brackets)?;
             let inner = self.sum(place, brackets + 1)?;
             place.expect(")")?;
             inner
         } else if place.eat(&self.syntax.sign) {
-            let of = self.sum(place, brackets)?;
+            not_too_deep(place, brackets)?;
+            let of = self.sum(place, brackets + 1)?;
             place.expect(")")?;
             self.asks[1] = true;
             let sign = match self.program.steps[of] {
@@ -305,9 +312,7 @@ impl<'a, 's> Body<'a, 's> {
             self.asks[2] = true;
             self.push(Step::Stribeck(joint, velocity), place)?
         } else if self.syntax.fused.as_ref().is_some_and(|fused| place.eat(fused)) {
-            if brackets == MOST_BRACKETS {
-                return Err(place.fault(&format!("brackets are in more than {MOST_BRACKETS} others")));
-            }
+            not_too_deep(place, brackets)?;
             let a = self.sum(place, brackets + 1)?;
             place.expect(", ")?;
             let b = self.sum(place, brackets + 1)?;

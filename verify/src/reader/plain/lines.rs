@@ -1,10 +1,16 @@
 //! A text as lines of code, each with the comment in front of it.
 
+use crate::check::Check;
 use crate::reader::lexer::{is_hidden, name_of, Fault};
 use crate::reader::LONGEST;
 
 /// What a language reads in comments: escapes in Python's, splices and trigraphs that end those of C, the encoding of a Python file.
 const ESCAPES: [&str; 4] = ["\\", "??/", "coding:", "coding="];
+
+/// Whether a line of code says at its end that the next one goes on with it: in MATLAB, and in a macro of C.
+fn goes_on(line: &str) -> bool {
+    line.ends_with("...") || line.ends_with('\\')
+}
 
 /// A line of code.
 #[derive(Clone, Debug)]
@@ -52,6 +58,10 @@ impl<'a> Lines<'a> {
                 || comments.block.is_some_and(|(begin, _)| line.starts_with(begin));
             if let Some(escape) = ESCAPES.into_iter().find(|escape| commented && line.contains(escape)) {
                 let reason = format!("`{escape}` in a comment, which a compiler can read as something else");
+                return Err(Fault { line: number, reason });
+            }
+            if (commented || line.is_empty()) && all.last().is_some_and(|line: &Line<'_>| goes_on(line.text)) {
+                let reason = "nothing of code in a line that the one before goes on in, which ends a statement".into();
                 return Err(Fault { line: number, reason });
             }
             let begins = comments.block.filter(|(begin, _)| open.is_none() && line.starts_with(begin));
@@ -130,7 +140,34 @@ impl<'a> Lines<'a> {
     /// Takes all lines of a text.
     pub(in crate::reader) fn expect_all(&mut self, text: &str, comments: Comments) -> Result<(), Fault> {
         let lines = Lines::new(text, comments)?;
-        lines.all.iter().try_for_each(|line| self.expect(line.text))
+        lines.all.iter().try_for_each(|line| {
+            self.commented(self.at, &line.comment)?;
+            self.expect(line.text)
+        })
+    }
+
+    /// That each comment of a text stands in front of a line that begins as the text goes on, where there is such a line.
+    pub(in crate::reader) fn commented_as(&self, text: &str, comments: Comments) -> Result<(), Fault> {
+        let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        for wanted in Lines::new(text, comments)?.all {
+            let begins = |line: &Line<'_>| line.text.strip_prefix(wanted.text).is_some_and(|rest| !rest.starts_with(is_word));
+            let mut places = (0..self.all.len()).filter(|&at| begins(&self.all[at])).peekable();
+            let Some(&first) = places.peek() else { continue };
+            if places.all(|at| self.commented(at, &wanted.comment).is_err()) {
+                self.commented(first, &wanted.comment)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// That a comment stands in front of a line of code; what else stands there is judged where all comments are.
+    pub(in crate::reader) fn commented(&self, at: usize, comment: &[&str]) -> Result<(), Fault> {
+        let Some(line) = self.all.get(at).filter(|_| Check::Comments.is_made()) else { return Ok(()) };
+        if comment.is_empty() || line.comment.windows(comment.len()).any(|found| found == comment) {
+            return Ok(());
+        }
+        let lost = comment.iter().find(|text| !line.comment.contains(text)).unwrap_or(&comment[0]).trim();
+        Err(Fault { line: line.number, reason: format!("the comment `{lost}` is not there, in front of `{}`", line.text.trim()) })
     }
 
     /// Takes a line that begins and ends so; what stands between.
