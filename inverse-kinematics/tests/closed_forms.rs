@@ -233,6 +233,29 @@ in_both_scalars! {
         }
     }
 
+    /// A point that may be off by more than rounding says that two solutions may have met; both are given, and each meets what was asked.
+    #[test]
+    fn doubt_joins_no_solutions() {
+        let doubt: Real = 0.01;
+        for inside in [0.75 - 0.5 * doubt, 0.25 + 0.5 * doubt] {
+            let found = two_links(0.5, 0.25, [0.0, inside], FEW, doubt);
+            assert_eq!((found.count, found.double), (2, true), "{found:?}");
+            for ([c, s], [ce, se]) in found.shoulder.iter().zip(&found.elbow) {
+                let (u, v) = (0.5 + 0.25 * ce, 0.25 * se);
+                assert!((c * u - s * v).abs() + (s * u + c * v - inside).abs() <= 32.0 * FEW, "{found:?}");
+            }
+            // Where doubt has taken the point out of reach, the posture nearest to it.
+            let beyond = if inside > 0.5 { inside + doubt } else { inside - doubt };
+            let found = two_links(0.5, 0.25, [0.0, beyond], FEW, doubt);
+            assert_eq!((found.count, found.double, found.elbow[0][1]), (1, true, 0.0), "{found:?}");
+        }
+        let found = line_and_circle(1.0, 0.0, 1.0 - 0.5 * doubt, FEW, doubt);
+        assert_eq!((found.count, found.double), (2, true), "{found:?}");
+        assert!(found.points.iter().all(|[c, _]| (c - (1.0 - 0.5 * doubt)).abs() <= FEW), "{found:?}");
+        let beyond = line_and_circle(1.0, 0.0, 1.0 + 0.5 * doubt, FEW, doubt);
+        assert_eq!((beyond.count, beyond.double, beyond.points[0]), (1, true, [1.0, 0.0]), "{beyond:?}");
+    }
+
     /// Near p = 0 what is computed of (x, y) has few digits of its own; its direction has length 1 all the same.
     #[test]
     fn two_links_nearly_folded_onto_the_shoulder() {

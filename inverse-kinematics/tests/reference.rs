@@ -314,6 +314,34 @@ mod double {
         }
     }
 
+    /// Wrist, elbow and shoulder singular together, and beside that: what is listed reaches the pose.
+    #[test]
+    fn no_posture_misses_its_pose_where_singularities_meet() {
+        for name in ["ur5", "puma560"] {
+            let arm = read(name).arm;
+            let (plan, random) = (plan(&arm), &mut Random(22));
+            let (mut postures, mut worst) = (0, 0.0f64);
+            for _ in 0..4000 {
+                let mut q = arm.posture(random);
+                for q in &mut q {
+                    let quarters = (random.between(-2.0, 2.5)).floor() * std::f64::consts::FRAC_PI_2;
+                    if random.between(0.0, 1.0) < 0.8 {
+                        *q =
+                            quarters + [0.0, 10f64.powf(random.between(-9.0, -3.0))][usize::from(random.between(0.0, 1.0) < 0.3)];
+                    }
+                }
+                let t = arm.at(&q);
+                let found = solve(&plan, &arm, &t);
+                postures += found.count;
+                for branch in found.found() {
+                    worst = worst.max(defect(&arm.forward(&branch.joints), &t));
+                }
+            }
+            println!("{name}: {postures} postures, worst {worst:e}");
+            assert!(postures > 4000 && worst < 4e-13, "{name}: {postures} {worst:e}");
+        }
+    }
+
     /// An arm with three parallel axes by block 8 all the same.
     #[test]
     fn ur5_as_a_general_arm() {

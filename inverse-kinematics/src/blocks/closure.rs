@@ -111,6 +111,33 @@ impl<const N: usize> Loop<'_, N> {
         best
     }
 
+    /// [`Loop::close`] from `joints`, which leave `residual`, or from beside them by the angle whose square that is; after it steps that need no
+    /// regular Jacobian, and once more.
+    fn close_beside(&self, joints: &[[Real; 2]; N], residual: Real) -> Closed<N> {
+        let by = sqrt(residual / self.length).min(0.25);
+        let mut best = Closed { joints: *joints, residual: Real::INFINITY, double: false };
+        for side in [0.0, by, -by] {
+            let mut step = [side; N];
+            for (step, prismatic) in step.iter_mut().zip(self.prismatic) {
+                *step = if prismatic { side * self.length } else { side };
+            }
+            let mut start = self.moved(joints, &step);
+            for again in [true, false] {
+                let closed = self.close(&start, true);
+                if closed.residual < best.residual {
+                    best = closed;
+                }
+                if best.residual <= 0.125 * CLOSED * self.length {
+                    return best;
+                }
+                if again {
+                    start = self.nearest(&start, 1e-6).joints;
+                }
+            }
+        }
+        best
+    }
+
     /// Whether |J⁻¹|² K `units` u >= 1/2 with lengths in units of the arm's length: what Newton and Kantorovich's theorem asks for to hold one
     /// solution apart from another after a change of the pose by its rounding. K, the bound of second derivatives, is taken as 4:
     /// lever arms of two lengths of the arm.
@@ -190,6 +217,46 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
             kept.near |= nearest.residual <= CLOSED * closing.length;
             kept.missed(nearest.residual);
         }
+    }
+    *found = kept;
+}
+
+/// Brings solutions of closed forms to the pose where several meet. There a block may know its angle to the root of rounding only, and what is
+/// computed from that angle misses the pose by as much. Only solutions that are `double` or have a joint that is free are looked at, and those that
+/// close the loop stay as they are. The others are closed by [`Loop::close_beside`]; one that cannot be is none, and says `near`.
+pub fn close_where_solutions_meet<const J: usize, const N: usize>(found: &mut Branches<J, N>, closing: &Loop<J>) {
+    let mut meet = false;
+    for branch in found.found() {
+        meet |= branch.double || branch.free != 0;
+    }
+    if meet {
+        close_those_that_meet(found, closing);
+    }
+}
+
+/// The same where there are such solutions.
+#[cold]
+#[inline(never)]
+fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J, N>, closing: &Loop<J>) {
+    let mut kept = Branches { all: found.all, ..Branches::new() };
+    (kept.miss, kept.near, kept.continuum) = (found.miss, found.near, found.continuum);
+    for branch in found.found() {
+        let mut branch = *branch;
+        if branch.double || branch.free != 0 {
+            let (_, residual) = closing.equations(&branch.joints);
+            if !(residual <= 0.125 * CLOSED * closing.length) {
+                let best = closing.close_beside(&branch.joints, residual);
+                if !(best.residual <= CLOSED * closing.length) {
+                    kept.near = true;
+                    continue;
+                }
+                branch.joints = best.joints;
+                if branch.free == 0 && is_among(kept.found(), &branch, closing) {
+                    continue;
+                }
+            }
+        }
+        kept.add(branch);
     }
     *found = kept;
 }

@@ -7,7 +7,7 @@ pub struct LineAndCircle {
     pub count: usize,
     /// The points (c, s): first the one with the positive root, anticlockwise from (a, b) d/r.
     pub points: [[Real; 2]; 2],
-    /// The line touches the circle as far as rounding lets one tell: the two points are given as one.
+    /// The line touches the circle as far as rounding and doubt let one tell. By rounding alone the two points are given as one.
     pub double: bool,
     /// The equation is empty: every point of the circle is on it; (1, 0) is given.
     pub free: bool,
@@ -26,7 +26,8 @@ pub struct LineAndCircle {
 /// - `noise`: how far rounding may have moved d, a and b, >= 0, in the unit of d. `doubt`: how far d may be off besides, by errors of the angles
 ///   that it was computed from.
 /// - r <= noise: with |d| <= noise every angle is a solution (`free`), else none, and the line misses by |d|.
-/// - |r - |d|| <= noise + doubt: `double`, the point of contact; the root w, which is below sqrt(2 (noise + doubt)/r), is dropped.
+/// - |r - |d|| <= noise + doubt: `double`. Two points where r - |d| is more than noise: they meet the equation, as the angles that d was
+///   computed from stand, and what lies between them does not. Else the point of contact; the root w, which is below sqrt(2 noise/r), is dropped.
 /// - r < |d|: none; `miss` is |d| - r. NaN in any argument: none.
 #[inline]
 pub fn line_and_circle(a: Real, b: Real, d: Real, noise: Real, doubt: Real) -> LineAndCircle {
@@ -34,12 +35,13 @@ pub fn line_and_circle(a: Real, b: Real, d: Real, noise: Real, doubt: Real) -> L
     let r = length(a, b);
     let gap = r - d.abs();
     let slack = noise + doubt;
-    if gap > slack && r > noise {
+    if gap > noise && r > noise {
         let over = 1.0 / r;
         let (x, y) = (a * over, b * over);
         let along = d * over;
         let w = sqrt(gap * (r + d.abs()));
-        found.error = slack / w;
+        found.double = gap <= slack;
+        found.error = if found.double { sqrt(2.0 * slack * over) } else { slack / w };
         let w = w * over;
         found.count = 2;
         found.points = [[x * along - y * w, y * along + x * w], [x * along + y * w, y * along - x * w]];

@@ -99,22 +99,33 @@ fn square_of_third(b: &Frame, w: Vector) -> Affine {
     }
 }
 
-/// Axes 2 and 3 parallel, B = Tz(d) Tx(a) Rx(0 or pi): q2 and q3 from the components X, Y across axis 2. For each posture of block 4: q2, q3,
-/// its sign, `double` and what is free (bits 1 and 2).
+/// How far rounding may have moved the angle between two links, rad; of two postures that meet `double` says enough.
 #[inline]
-fn elbow(b: &Frame, w: Vector, [x, y]: [Real; 2], noise: Real, doubt: Real, mut found: impl FnMut([Real; 2], [Real; 2], u16, bool, u32)) -> Real {
+fn error_apart(links: &TwoLinks) -> Real {
+    if links.double {
+        0.0
+    } else {
+        links.error
+    }
+}
+
+/// Axes 2 and 3 parallel, B = Tz(d) Tx(a) Rx(0 or pi): q2 and q3 from the components X, Y across axis 2. For each posture of block 4: q2, q3,
+/// its sign, (`double`, `error`) and what is free (bits 1 and 2).
+#[inline]
+fn elbow(b: &Frame, w: Vector, [x, y]: [Real; 2], noise: Real, doubt: Real, mut found: impl FnMut([Real; 2], [Real; 2], u16, (bool, Real), u32)) -> Real {
     let (l1, l2) = (b[0][3].abs(), length_on_axis(w[0], w[1]));
     // A negative length is a positive one turned by pi.
     let sign = if b[0][3] < 0.0 { -1.0 } else { 1.0 };
     let links = two_links(l1, l2, [x, y], noise, doubt);
     let free = if links.shoulder_free { 2 } else { 0 } | if links.elbow_free { 4 } else { 0 };
+    let error = error_apart(&links);
     // Rz(q3) w stands at the elbow's angle, seen through Rx(0 or pi).
     let [wx, wy] = direction([w[0], w[1]], l2);
     for (i, ([c, s], [ce, se])) in links.shoulder.iter().zip(&links.elbow).enumerate().take(links.count) {
         let (x, y) = (sign * ce, sign * b[1][1] * se);
         let along = |x: Real, y: Real| plus_product(plus_product(-0.0, wx, x), wy, y);
         let q3 = [along(x, y), along(y, -x)];
-        found([sign * c, sign * s], q3, i as u16, links.double, free);
+        found([sign * c, sign * s], q3, i as u16, (links.double, error), free);
     }
     links.miss
 }
@@ -136,9 +147,9 @@ pub fn regional_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branches<3,
     for (sign, q1) in points(&line) {
         let v = minus(turn_vector(q1[0], -q1[1], p), column(a, 3));
         let (x, y) = (dot_constant(column(a, 0), v), dot_constant(column(a, 1), v));
-        let mut add = |q2, q3, elbow: u16, double, free| {
+        let mut add = |q2, q3, elbow: u16, (double, error), free| {
             let free = free | u32::from(line.free);
-            let (double, error) = (line.double || double, line.error);
+            let (double, error) = (line.double || double, line.error + error);
             found.add(Branch { joints: [q1, q2, q3], signs: sign | elbow << 1, double, error, free });
         };
         let miss = elbow(b, w, [x, y], noise, doubt, &mut add);

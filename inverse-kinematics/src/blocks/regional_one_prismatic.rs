@@ -13,8 +13,8 @@ pub fn regional_slide_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> Branc
     let over = 1.0 / (a[0][0] * a[1][1] - a[0][1] * a[1][0]);
     let (x, y) = ((a[1][1] * n1 - a[0][1] * n2) * over, (a[0][0] * n2 - a[1][0] * n1) * over);
     let q1 = p[2] - a[2][3] - (a[2][0] * x + a[2][1] * y + a[2][2] * z);
-    let miss = elbow(b, w, [x, y], noise, 0.0, |q2, q3, signs, double, free| {
-        found.add(Branch { joints: [[q1, 0.0], q2, q3], signs, double, error: 0.0, free });
+    let miss = elbow(b, w, [x, y], noise, 0.0, |q2, q3, signs, (double, error), free| {
+        found.add(Branch { joints: [[q1, 0.0], q2, q3], signs, double, error, free });
     });
     found.missed(miss);
     found
@@ -98,7 +98,7 @@ pub fn regional_mid_slide_elbow(a: &Frame, b: &Frame, w: Vector, p: Vector) -> B
         let (x, y) = (sum(lx, *ce, -ly, *se), sum(lx, *se, ly, *ce));
         let (x, y) = (sum(chain[0][0], x, chain[1][0], y), sum(chain[0][1], x, chain[1][1], y));
         let q3 = [sum(wx, x, wy, y), sum(wx, y, -wy, x)];
-        found.add(Branch { joints: [q1, [q2, 0.0], q3], signs: i as u16, double: links.double, error: 0.0, free });
+        found.add(Branch { joints: [q1, [q2, 0.0], q3], signs: i as u16, double: links.double, error: error_apart(&links), free });
     }
     found
 }

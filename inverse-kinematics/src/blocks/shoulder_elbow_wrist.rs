@@ -92,9 +92,7 @@ pub fn shoulder_elbow_wrist(way: &Arrangement<7>, t: &Frame, swivel: Real) -> Br
     for (first, elbow_turn) in links.elbow.iter().enumerate().take(links.count) {
         let [x, y, _] = turn_vector(elbow_turn[0], elbow_turn[1], upper);
         let q4 = turn([behind_elbow[0], behind_elbow[1]], [x, y], 0.0).value;
-        // How far rounding may have moved q4.
-        let moment = l1_across * l2_across;
-        let error = if links.double { sqrt(2.0 * noise_across * reach / (moment + noise)) } else { noise_across * distance / (moment * elbow_turn[1].abs() + noise) };
+        let error = links.error;
         let wrist = transform(&l3, turn_vector(q4[0], q4[1], behind_elbow));
         // The same triangle as it is seen from behind joint 3.
         let f = scaled(wrist, 1.0 / sqrt(dot(wrist, wrist)));

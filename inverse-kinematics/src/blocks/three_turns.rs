@@ -64,7 +64,7 @@ pub fn three_turns(r: &Frame, alpha: [Real; 2], beta: [Real; 2], noise: Real, do
     let nearly = h <= noise + doubt && (can_be(ca * cb + sa * sb, sa * cb - ca * sb) || can_be(ca * cb - sa * sb, sa * cb + ca * sb));
     found.free = parallel || nearly;
     found.double = double && !found.free;
-    found.count = if double || found.free { 1 } else { 2 };
+    found.count = if double { 1 } else { 2 };
     let (side, along) = (plus_product(sa * cb, ca * sb, c2), s2 * sb);
     // Block 2 of the third columns, of the same lengths for both signs of s2.
     let lengths = length(along, side) * h;

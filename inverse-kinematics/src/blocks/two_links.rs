@@ -9,7 +9,7 @@ pub struct TwoLinks {
     pub shoulder: [[Real; 2]; 2],
     /// (cos q2, sin q2) of the second joint; first the one with sin q2 >= 0.
     pub elbow: [[Real; 2]; 2],
-    /// Stretched or folded as far as rounding lets one tell: the two postures are given as one.
+    /// Stretched or folded as far as rounding and doubt let one tell. By rounding alone the two postures are given as one.
     pub double: bool,
     /// The first joint can take any angle: p = 0 and both links are equally long. (1, 0) is given.
     pub shoulder_free: bool,
@@ -17,6 +17,8 @@ pub struct TwoLinks {
     pub elbow_free: bool,
     /// The distance of |p| from [|l1 - l2|, l1 + l2], 0 where there is a posture.
     pub miss: Real,
+    /// How far rounding and doubt may have moved q2, rad.
+    pub error: Real,
 }
 
 /// Block 4, two links in a plane: p = Rz(q1) (l1 + l2 cos q2, l2 sin q2) for lengths l1, l2 >= 0.
@@ -26,7 +28,7 @@ pub struct TwoLinks {
 ///
 /// - `noise`: how far rounding may have moved |p|, l1 and l2, >= 0. `doubt`: how far p may be off besides, by errors of the angles that it was
 ///   computed from.
-/// - |p| within noise + doubt of l1 + l2 or of |l1 - l2|: `double`.
+/// - |p| within noise + doubt of l1 + l2 or of |l1 - l2|: `double`. Two postures where |p| is within the bounds by more than noise: they reach p.
 /// - p = 0 and l1 = l2: `shoulder_free`. l1 or l2 within noise of 0 and |p| right: `elbow_free`.
 #[inline]
 pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real, doubt: Real) -> TwoLinks {
@@ -38,6 +40,7 @@ pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real, doubt: Real) -> 
         shoulder_free: false,
         elbow_free: false,
         miss: 0.0,
+        error: 0.0,
     };
     let square = p[0] * p[0] + p[1] * p[1];
     let distance = sqrt(square);
@@ -50,19 +53,22 @@ pub fn two_links(l1: Real, l2: Real, p: [Real; 2], noise: Real, doubt: Real) -> 
     if !(l1 > noise && l2 > noise) {
         found.count = 1;
         found.elbow_free = true;
-    } else if outer <= slack {
-        found.count = 1;
-        found.double = true;
-    } else if inner <= slack {
-        found.count = 1;
-        found.double = true;
-        found.elbow = [[-1.0, 0.0]; 2];
     } else {
-        found.count = 2;
         let over = 0.5 / (l1 * l2);
-        let c = (square - l1 * l1 - l2 * l2) * over;
-        let s = sqrt((outer * (l1 + l2 + distance)) * (inner * (distance + (l1 - l2).abs()))) * over;
-        found.elbow = [[c, s], [c, -s]];
+        found.double = outer <= slack || inner <= slack;
+        found.count = 1;
+        let mut s = 0.0;
+        if outer > noise && inner > noise {
+            found.count = 2;
+            let c = (square - l1 * l1 - l2 * l2) * over;
+            s = sqrt((outer * (l1 + l2 + distance)) * (inner * (distance + (l1 - l2).abs()))) * over;
+            found.elbow = [[c, s], [c, -s]];
+        } else if outer > noise {
+            found.elbow = [[-1.0, 0.0]; 2];
+        }
+        // cos q2 moves by |p|/(l1 l2) times what |p| does.
+        let moved = 2.0 * over * slack;
+        found.error = if found.double { sqrt(2.0 * moved * (l1 + l2)) } else { moved * distance / s };
     }
     // Both postures lead to points (x, ±y): block 2 of the first, and of the other with the same lengths.
     let [first, _] = found.elbow;

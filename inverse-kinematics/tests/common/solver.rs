@@ -229,16 +229,22 @@ pub fn solve(plan: &Plan, arm: &Arm, t: &Frame) -> Branches<6, 16> {
             let links = way.links_at(t);
             let [p1, p2, p3, ..] = way.prismatic;
             let mut found = spherical_triple(&links, [p1, p2, p3], regional.block);
-            if !regional.exact {
-                polish(&mut found, &Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length: arm.length() });
+            let closing = Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length: arm.length() };
+            if regional.exact {
+                close_where_solutions_meet(&mut found, &closing);
+            } else {
+                polish(&mut found, &closing);
             }
             take(&|i| found.found().get(i).map(|b| way.of_arm(b)), found.miss, found.near, found.continuum);
         }
         Plan::ThreeParallel { way, related } => {
             let links = way.links_at(t);
             let mut found = three_parallel(&links);
-            if !related {
-                polish(&mut found, &Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length: arm.length() });
+            let closing = Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length: arm.length() };
+            if *related {
+                close_where_solutions_meet(&mut found, &closing);
+            } else {
+                polish(&mut found, &closing);
             }
             take(&|i| found.found().get(i).map(|b| way.of_arm(b)), found.miss, found.near, found.continuum);
         }

@@ -147,6 +147,11 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
         }
         links
     }
+    let finish = |found: &mut block::Branches<6, 8>, closing: &block::Loop<6>, polished: bool| match (polished, &text.own) {
+        (true, _) => block::polish(found, closing),
+        (false, None) => block::close_where_solutions_meet(found, closing),
+        (false, Some(_)) => {}
+    };
     let links_at = |way: &block::Arrangement<6>| with_moved(way.links_at(t), moved);
     let length: f64 = text.length.parse().ok()?;
     let first = &text.loops[0];
@@ -160,18 +165,14 @@ fn of_rest(text: &Text, t: &block::Frame, moved: Option<(usize, block::Frame)>, 
             let (way, kinds) = (arrangement::<6>(first)?, [kinds[0], kinds[1], kinds[2]]);
             let links = links_at(&way);
             let mut found = block::spherical_triple(&links, kinds, case(name)?);
-            if *polished {
-                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length });
-            }
+            finish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length }, *polished);
             in_order(text, t, &way, found)
         }
         Construction::ThreeParallel { polished } => {
             let way = arrangement::<6>(first)?;
             let links = links_at(&way);
             let mut found = block::three_parallel(&links);
-            if *polished {
-                block::polish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length });
-            }
+            finish(&mut found, &block::Loop { links: &links, prismatic: way.prismatic, target: [0.0; 3], length }, *polished);
             in_order(text, t, &way, found)
         }
         Construction::ParallelTurns { kinds, case: name } => {

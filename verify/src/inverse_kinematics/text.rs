@@ -279,6 +279,9 @@ const ROTATION: &str = "if!is_pose(t){returnSolutions::none(Verdict::Invalid);}l
 const POSITION: &str =
     "letposition=[x[3],y[3],z[3]];if!position.iter().all(|p|p.is_finite()){returnSolutions::none(Verdict::Invalid);}";
 const POLISH: &str = "polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:[0.0;3],length:LENGTH});";
+/// Of closed forms.
+const CLOSE: &str =
+    "close_where_solutions_meet(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:[0.0;3],length:LENGTH});";
 const POLISH_POSITION: &str =
     "letlinks=[a,b,displaced(from)];polish(&mutfound,&Loop{links:&links,prismatic:LOOP.prismatic,target:to,length:LENGTH});";
 const IN_ORDER: &str = "letcount=found.count;forbranchinfound.all.iter_mut().take(count){*branch=LOOP.of_arm(branch);}";
@@ -318,7 +321,7 @@ fn body(
         reader.expect(",")?;
         let case = name(reader, ')')?;
         reader.expect(";")?;
-        Construction::SphericalTriple { kinds, case, polished: reader.take(POLISH) }
+        Construction::SphericalTriple { kinds, case, polished: polished(reader, own)? }
     } else if links && reader.take("letmutfound=parallel_turns(&links,") {
         let kinds = bools(&reader.value()?)?;
         reader.expect(",")?;
@@ -327,7 +330,7 @@ fn body(
         Construction::ParallelTurns { kinds, case }
     } else if links {
         reader.expect("letmutfound=three_parallel(&links);")?;
-        Construction::ThreeParallel { polished: reader.take(POLISH) }
+        Construction::ThreeParallel { polished: polished(reader, own)? }
     } else if reader.take("letmutfound=shoulder_elbow_wrist(&LOOP,&t,redundancy);") {
         Construction::ShoulderElbowWrist
     } else if reader.take("letmutfound=parallel_turns(&LOOP.links_at(&t),") {
@@ -348,6 +351,15 @@ fn body(
         position(reader, loops, (tip, false))?
     };
     conclusion(reader, loops, (dof, given, own), construction).map(|construction| (construction, moved))
+}
+
+/// Whether Newton's method is called for all solutions. Else it is for those that meet, but for an arm's `own` joints, which are refined later.
+fn polished(reader: &mut Reader<'_>, own: bool) -> Result<bool, String> {
+    let polished = reader.take(POLISH);
+    if !polished && !own {
+        reader.expect(CLOSE)?;
+    }
+    Ok(polished)
 }
 
 /// A position, from where its links are known, or already `moved` by a joint that is given.

@@ -172,11 +172,11 @@ fn needed(scalar: Scalar, found: &InverseKinematics) -> Vec<&'static Text> {
     match &found.construction {
         Construction::SphericalTriple(_, case) => {
             names.extend(["spherical_triple", case.text]);
-            names.extend((!case.closed).then_some("closure"));
+            names.extend(found.own.is_none().then_some("closure"));
         }
-        Construction::ThreeParallel(_, polished) => {
+        Construction::ThreeParallel(..) => {
             names.push("parallel_axes");
-            names.extend(polished.then_some("closure"));
+            names.extend(found.own.is_none().then_some("closure"));
         }
         Construction::ParallelTurns(_, case) => names.extend(["parallel_turns", case.text]),
         Construction::Position(_, case) => {
@@ -414,12 +414,14 @@ fn solutions(found: &InverseKinematics, dof: usize) -> TokenStream {
         let kinds = way.prismatic.iter().take(count);
         quote!([#(#kinds),*])
     };
-    // Solutions of the arm's own joints are refined on their own.
+    // Solutions of the arm's own joints are refined on their own. Of six joints those of closed forms are looked at where some meet.
     let polish = |polished: bool| {
-        let call = quote! {
-            polish(&mut found, &Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
+        let closing = quote!(&Loop { links: &links, prismatic: LOOP.prismatic, target: [0.0; 3], length: LENGTH });
+        let call = match polished {
+            true => quote!(polish(&mut found, #closing);),
+            false => quote!(close_where_solutions_meet(&mut found, #closing);),
         };
-        (polished && found.own.is_none()).then_some(call)
+        found.own.is_none().then_some(call)
     };
     let links = match found.given().and_then(|given| given.place) {
         None => quote!(let links = LOOP.links_at(&t);),
