@@ -37,7 +37,7 @@
 //! three each, and none is a loss that a user would notice beside the equations themselves.
 //!
 //! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside twice the largest of
-//! the torques, the Jacobian and the inertia matrix, of which it is a part, and a rounding of its own value at a state, the whole to (e); an entry in which no quotient takes part, to
+//! the torques, the Jacobian and the inertia matrix, of which it is a part, the whole to (e); an entry in which no quotient takes part, to
 //! as many times the same as it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has 2^(12
 //! + 5n/2) u S instead of it, with S the largest entry of the function. Intervals say nothing behind a quotient in general; of
 //! `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
@@ -299,10 +299,7 @@ impl<'a> Trial<'a> {
         }
         let part = program.part(&operands);
         let mut errors = self.errors(&part, values);
-        let mut yardsticks = self.of_operands(program, &operands);
-        if let Some(runs) = &errors.runs {
-            yardsticks.iter_mut().enumerate().for_each(|(k, plain)| plain.hold_value(runs.states.iter().map(|state| state[k].0)));
-        }
+        let yardsticks = self.of_operands(program, &operands);
         let mut compared = self.undivided(&part, &mut errors, &yardsticks, sensitivities);
         compared.extend(self.divided(program, values, sensitivities));
         compared.extend(self.measured(program, values, self.plain.get(&program.name).map_or(&[][..], Vec::as_slice)));
