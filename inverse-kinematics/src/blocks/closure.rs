@@ -223,7 +223,7 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
 
 /// Brings solutions of closed forms to the pose where several meet. There a block may know its angle to the root of rounding only, and what is
 /// computed from that angle misses the pose by as much. Only solutions that are `double` or have a joint that is free are looked at, and those that
-/// close the loop stay as they are. The others are closed by [`Loop::close_beside`]; one that cannot be is none, and says `near`.
+/// close the loop stay as they are. The others are brought there by `close_beside`; one that cannot be is none, and says `near`.
 pub fn close_where_solutions_meet<const J: usize, const N: usize>(found: &mut Branches<J, N>, closing: &Loop<J>) {
     let mut meet = false;
     for branch in found.found() {
