@@ -402,7 +402,7 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
     reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    let of_quotients = [(DividedLeaves, "forward_dynamics: a value leaves f32")];
+    let of_quotients = [the_box, intervals, states, (DividedLeaves, "forward_dynamics: a value leaves f32")];
     forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &of_quotients);
 }
 
