@@ -26,12 +26,17 @@ fn for_each_index(count: usize, of: &(dyn Fn(usize) + Sync)) {
     };
     std::thread::scope(|scope| {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        for _ in 1..threads.min(count) {
-            // Where there are no more threads, those that there are do the work.
-            let _ = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
-        }
+        // Where there are no more threads, those that there are do the work.
+        let spawned = |_| std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).ok();
+        let beside: Vec<_> = (1..threads.min(count)).filter_map(spawned).collect();
         work();
+        beside.into_iter().for_each(joined);
     });
+}
+
+/// What a thread gives; its panic goes on here, with what it says.
+fn joined<R>(thread: std::thread::ScopedJoinHandle<'_, R>) -> R {
+    thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
 /// The results of both, found at the same time where there is a second thread.
@@ -39,7 +44,7 @@ pub fn both<A: Send, B>(first: impl Fn() -> A + Sync, second: impl FnOnce() -> B
     std::thread::scope(|scope| {
         let beside = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, &first).ok();
         let second = second();
-        let first = beside.map_or_else(&first, |thread| thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        let first = beside.map_or_else(&first, joined);
         (first, second)
     })
 }

@@ -329,8 +329,7 @@ fn functions(tally: &mut Tally, scara: &Given) {
     tally.module(scara, g, "-98.1, 0.0]", "-98.1]", &short);
     let beyond = module.replacen(T1, &format!("{T1}    let t9 = q[4];\n"), 1);
     let fault = || verify_with(&scara.source, &beyond, scara.claims.clone(), Effort::default()).first_fault();
-    // It cannot be run: which thread comes to it decides what the panic says.
-    tally.peel("q[4]", &[(Indices, "index 4 is beyond the end of its argument")], Last::Refused(""), fault);
+    tally.peel("q[4]", &[(Indices, "index 4 is beyond the end of its argument")], Last::Refused("index out of bounds"), fault);
     let different = [
         (Modular, "inertia_matrix[0][1]: differs from the equations at point 1 modulo"),
         (Rational, "inertia_matrix[0][1]: differs from the equations at rational point 1"),
