@@ -70,7 +70,8 @@ mod tests {
         assert_eq!(file("robots/my arm_2.yaml"), "my arm_2.yaml");
         assert_eq!(file("r\u{e4}der.yaml"), "r\u{e4}der.yaml");
         assert_eq!(file("a\nb\r*\u{202e}.yaml"), "aU+000AbU+000DU+002AU+202E.yaml");
-        assert_eq!(file("a */ #define b /* (input c).yaml"), "a U+002A/ #define b /U+002A U+0028input c).yaml");
+        // What stands before a slash is a folder.
+        assert_eq!(file("a */ #define b /* (input c).yaml"), "U+002A U+0028input c).yaml");
         assert_eq!(file("a (2)\u{115f}.yaml"), "a (2)U+115F.yaml");
     }
 }
