@@ -79,8 +79,9 @@ pub fn swing<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> Vector3<T> {
     let (sine, cosine) = (e[(i, j)].hypot(e[(i, k)]), e[(i, i)]);
     let mut swing = Vector3::zeros();
     if sine > T::zero() {
-        let factor = sine.atan2(cosine) / sine;
-        (swing[j], swing[k]) = (factor * e[(i, k)], -factor * e[(i, j)]);
+        // The direction first: an angle over a subnormal sine is beyond the scalar.
+        let angle = sine.atan2(cosine);
+        (swing[j], swing[k]) = (angle * (e[(i, k)] / sine), -angle * (e[(i, j)] / sine));
     } else if cosine < T::zero() {
         swing[j] = T::pi();
     }
@@ -176,6 +177,11 @@ mod tests {
         }
         let over = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
         assert_eq!((swing(&over, 0), swing(&over, 2)), (Vector3::zeros(), Vector3::x() * PI));
+        // A sine below the smallest normal number.
+        let mut barely = Matrix3::new(-1.0f32, 0.0, 1e-39, 0.0, 1.0, 0.0, 1e-39, 0.0, -1.0);
+        assert_eq!(swing(&barely, 0), Vector3::y() * std::f32::consts::PI);
+        barely.swap((0, 1), (0, 2));
+        assert_eq!(swing(&barely, 0), -Vector3::z() * std::f32::consts::PI);
     }
 
     #[test]

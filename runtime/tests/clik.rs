@@ -277,6 +277,37 @@ fn an_approach_ends_at_a_goal_within_reach_whatever_its_gain() {
     assert_eq!(reached.outcome, Outcome::OutOfReach, "{reached:?}");
 }
 
+/// A goal 0.1 m beyond the stretched arm, under laws that weigh the rows differently: they stand where J' K e = 0, not where J' e is.
+#[test]
+fn unequal_gains_end_out_of_reach_as_well() {
+    fn outcome<A: Algorithm<Scara<f64>, 4, 4>>(law: A) -> Outcome {
+        let limits = JointLimits::rates([3.0; 4]).unwrap();
+        let clik = Clik::new(ghost::task(), law, 1e-3, limits, [1e-5; 4]).unwrap();
+        let far = Pose { position: vector![0.7, 0.9, 0.4], ..goal([0.0, 1.0, 0.1, 0.0]) };
+        clik.approach(&ghost::nominal(), &vector![0.1, 1.0, 0.1, 0.0], &far, 60_000).unwrap().outcome
+    }
+    let damping = || Damping::below(0.03).at_most(0.1).unwrap();
+    for second in [150.0, 100.0, 50.0] {
+        let k = [150.0, second, 80.0, 20.0];
+        assert_eq!(outcome(DampedLeastSquares::new(k, damping()).unwrap()), Outcome::OutOfReach, "{k:?}");
+        assert_eq!(outcome(JacobianTranspose::new(k).unwrap()), Outcome::OutOfReach, "transpose, {k:?}");
+    }
+}
+
+/// However strongly a law is damped, and slowly let go of a stretched arm: the goal lies inwards, in line with it.
+#[test]
+fn strong_damping_is_not_out_of_reach() {
+    for (most, k, inwards) in [(1.0, 20.0, 0.1), (0.5, 1.0, 0.1), (1.0, 1.0, 0.3), (0.1, 20.0, 0.1)] {
+        let law = DampedLeastSquares::new([k; 4], Damping::below(0.2).at_most(most).unwrap()).unwrap();
+        let clik = Clik::new(ghost::task(), law, 1e-3, JointLimits::rates([3.0; 4]).unwrap(), [1e-5; 4]).unwrap();
+        let start = vector![0.0, 0.0, 0.1, 0.0];
+        let at = Pose::of(&ghost::nominal(), &start);
+        let goal = Pose { position: at.position - vector![inwards, 0.0, 0.0], ..at };
+        let reached = clik.approach(&ghost::nominal(), &start, &goal, 200_000).unwrap();
+        assert_eq!(reached.outcome, Outcome::Converged, "lambda {most}, K {k}: {reached:?}");
+    }
+}
+
 /// From postures to the poses of others: all are reached where the scalar has the digits, and none is called out of reach where rounding
 /// keeps a small gain from its tolerance.
 #[test]

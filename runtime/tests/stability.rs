@@ -5,23 +5,24 @@
 mod common;
 
 use armgen_runtime::{
-    control::{Adaptive, BoundaryLayer, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust},
+    control::{Adaptive, BoundaryLayer, Interval, InverseDynamics, NullSpace, OperationalSpace, PdGravity, Robust},
     linalg::{left_singular, Damping},
     reference::{JointReference, OperationalReference, Pose, State},
     robot::Kinematics,
     simulation::{Integrator, Plant},
     stability::{
-        analyse, analyse_start, Delay, Linearise, LineariseAtRest, LineariseInMotion, MotionAnalysis, Report, SampledLoop,
+        analyse, analyse_start, Delay, Linearise, LineariseAtRest, LineariseInMotion, MotionAnalysis, Report, Rest, SampledLoop,
         StabilityError, StablePeriod,
     },
     task::{Row, Task},
 };
 use common::{
     close, close_percent, ghost,
+    gimbal::Gimbal,
     mass::{Mass, FREE},
     scara::{Scara, NOMINAL},
 };
-use nalgebra::{vector, Vector4};
+use nalgebra::{vector, Vector3, Vector4};
 
 fn report<C: LineariseAtRest<Scara<f64>, Scara<f64>, 4>>(controller: &C, delay: Delay) -> Report<f64> {
     let report = analyse(&ghost::loaded(), &ghost::nominal(), controller, &ghost::postures(), 1e-3, delay).unwrap();
@@ -258,6 +259,93 @@ fn an_operational_law_rests_where_it_is_said_to() {
     // Without a spring nothing holds it.
     let loose = LineariseAtRest::settle(&relaxed([0.0; 4]), &ghost::loaded(), &ghost::nominal(), &q);
     assert!(loose.is_some_and(|rest: armgen_runtime::stability::Rest<f64, 4>| !rest.is_held));
+}
+
+/// Far from its reference an orientation error does not turn by -J: rows of three angles rest 0.2 rad off, and the feedback there is the
+/// derivative of the torque all the same; so is that of the integral of a row beside others that rest off.
+#[test]
+fn a_rest_off_the_reference_is_linearised_there() {
+    let (plant, model) = (Gimbal { load: vector![60.0, -80.0, 50.0] }, Gimbal { load: Vector3::zeros() });
+    let task = Task::new([Row::Rx, Row::Ry, Row::Rz]).unwrap();
+    let reference = vector![0.3, 0.4, -0.5];
+    let goal = Pose::of(&model, &reference);
+    for k_i in [[0.0; 3], [2000.0, 0.0, 0.0]] {
+        let law = OperationalSpace::new(task, [400.0; 3], [40.0; 3], k_i, 1e-3).unwrap();
+        let said: Rest<f64, 3> = law.settle(&plant, &model, &reference).unwrap();
+        let e = task.error(&goal, &Pose::of(&model, &said.q));
+        assert!(said.is_held && e.norm() > 0.15 && e.norm() < 0.4, "{e}");
+        let (pose, h) = (OperationalReference::at_rest(goal), 1e-5);
+        let mut held = law;
+        // What the integral holds.
+        let mut arm = Plant::new(&plant, State::at_rest(said.q), Integrator::RungeKutta4 { substeps: 1 });
+        for _ in 0..20_000 {
+            arm.advance(&held.torque(&model, &pose, arm.state()).unwrap().tau, 1e-3).unwrap();
+        }
+        assert!((arm.state().q - said.q).amax() < 1e-9, "{} {}", arm.state().q, said.q);
+        for i in 0..3 {
+            let mut d = Vector3::zeros();
+            d[i] = h;
+            let torque = |q: Vector3<f64>| held.clone().torque(&model, &pose, &State::at_rest(q)).unwrap().tau;
+            let by_position = (torque(said.q + d) - torque(said.q - d)) / (2.0 * h);
+            let off = (said.feedback.position.column(i) - by_position).amax();
+            assert!(off < 1e-6 * said.feedback.position.amax(), "{i}: {off}");
+            let error = |q: Vector3<f64>| task.error(&goal, &Pose::of(&model, &q));
+            let turned = (error(said.q + d) - error(said.q - d)) / (2.0 * h);
+            for k in 0..said.feedback.state_by_position.nrows() {
+                assert!((said.feedback.state_by_position[(k, i)] - turned[k]).abs() < 1e-8);
+            }
+        }
+    }
+}
+
+/// What is frozen, or held by its bound, leaves the load to F(Lambda e) + K_D Lambda e: the quill rests low by 5 g / ((50 + 25) 500) m.
+#[test]
+fn an_estimate_that_cannot_come_to_the_truth_rests_off_the_reference() {
+    let (plant, model, reference) = (ghost::loaded(), ghost::nominal(), ghost::start());
+    let (low, high) = (NOMINAL.map(|p| p - 1.0), NOMINAL.map(|p| p + 2.0));
+    let law = adaptive_scaled(500.0, K_D);
+    let third = std::array::from_fn(|i| i == 2);
+    let bounded = law.with_projection(Interval::new(low, high).unwrap());
+    for (law, missing) in [(law.with_frozen([true; 14]), 5.0), (law.with_frozen(third), 5.0), (bounded, 3.0)] {
+        let said: Rest<f64, 4> = law.settle(&plant, &model, &reference).unwrap();
+        let off = missing * 9.81 / ((50.0 + 25.0) * 500.0);
+        assert!(said.is_held);
+        close("the quill", (reference[2] - said.q[2]).abs(), off, 1e-9);
+        assert_eq!(said.feedback.torque_by_state.ncols(), 0);
+        // The torque of the law itself at that estimate.
+        let mut estimate = NOMINAL;
+        estimate[2] += 5.0 - missing;
+        let rest = JointReference::at_rest(reference);
+        let torque = |x: &State<f64, 4>| law.law(&model, &rest, x, &estimate.into()).unwrap().0.tau;
+        let h = 1e-6;
+        for i in 0..4 {
+            let mut d = Vector4::zeros();
+            d[i] = h;
+            let by_position = (torque(&State::at_rest(said.q + d)) - torque(&State::at_rest(said.q - d))) / (2.0 * h);
+            let by_rates = (torque(&State { q: said.q, dq: d }) - torque(&State { q: said.q, dq: -d })) / (2.0 * h);
+            let scale = 1.0 + said.feedback.position.amax();
+            assert!((said.feedback.position.column(i) - by_position).amax() < 1e-6 * scale, "{i}");
+            assert!((said.feedback.velocity.column(i) - by_rates).amax() < 1e-6 * scale, "{i}");
+        }
+        let report = analyse(&plant, &model, &law, &[reference], 1e-3, Delay::NONE).unwrap();
+        close("offset", report.offset, (reference - said.q).amax(), 1e-15);
+    }
+    // Of what gravity does not ask for it does not matter where it stays.
+    let mut elsewhere = NOMINAL;
+    elsewhere[0] += 3.0;
+    let first = std::array::from_fn(|i| i == 0);
+    let law = Adaptive::new([500.0; 4], K_D, [10.0; 14], elsewhere, 1e-3).unwrap().with_frozen(first);
+    let said: Rest<f64, 4> = law.settle(&plant, &model, &reference).unwrap();
+    assert!(said.is_held && (said.q - reference).amax() < 1e-12 && said.feedback.torque_by_state.ncols() == 1);
+    // One half of a force makes up for the other one, which is frozen.
+    let (plant, q) = (Mass { force: 8.0, ..FREE }, vector![0.3]);
+    let halves = Adaptive::new([10.0], [5.0], [1.0; 2], [1.0, 0.0], 1e-3).unwrap();
+    let rest = |law: Adaptive<f64, 1, 2>| -> Rest<f64, 1> { law.settle(&plant, &FREE, &q).unwrap() };
+    let one = rest(halves.with_frozen([true, false]));
+    assert!(one.is_held && (one.q - q).amax() < 1e-12 && one.feedback.torque_by_state.ncols() == 1);
+    let none = rest(halves.with_frozen([true; 2]));
+    // (8 - 1) N by 5 * 10 N/m.
+    close("both frozen", (none.q - q).amax(), 7.0 / 50.0, 1e-9);
 }
 
 /// x relaxed: one joint motion is free, under a spring of this stiffness and a damper.

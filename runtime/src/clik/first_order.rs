@@ -19,6 +19,9 @@ pub struct Rates<T, const N: usize> {
 
 /// A law that turns errors into joint rates.
 pub trait Algorithm<R: Kinematics<N>, const N: usize, const M: usize> {
+    /// Diagonal of K. The law stands where J' K e = 0, as far as joint rates follow from the error.
+    fn gain(&self) -> SVector<R::Real, M>;
+
     /// Joint rates, rad/s or m/s, at `q` for the error `e` of the task rows, desired minus actual, the desired velocity `v` of the rows and their
     /// Jacobian `j`.
     ///
@@ -35,6 +38,10 @@ pub trait Algorithm<R: Kinematics<N>, const N: usize, const M: usize> {
 }
 
 impl<R: Kinematics<N>, A: Algorithm<R, N, M> + ?Sized, const N: usize, const M: usize> Algorithm<R, N, M> for &A {
+    fn gain(&self) -> SVector<R::Real, M> {
+        (**self).gain()
+    }
+
     fn rates(
         &self,
         robot: &R,
@@ -47,7 +54,7 @@ impl<R: Kinematics<N>, A: Algorithm<R, N, M> + ?Sized, const N: usize, const M: 
     }
 }
 
-fn gain<T: RealField + Copy, const M: usize>(k: [T; M]) -> Result<SVector<T, M>, SettingError> {
+fn positive<T: RealField + Copy, const M: usize>(k: [T; M]) -> Result<SVector<T, M>, SettingError> {
     let k = k.into();
     settings::positive(Setting::Proportional, &k)?;
     Ok(k)
@@ -65,11 +72,15 @@ impl<T: RealField + Copy, const M: usize> JacobianInverse<T, M> {
     /// # Errors
     /// Where an element is not positive and finite.
     pub fn new(k: [T; M]) -> Result<Self, SettingError> {
-        Ok(Self { k: gain(k)? })
+        Ok(Self { k: positive(k)? })
     }
 }
 
 impl<R: Kinematics<N>, const N: usize, const M: usize> Algorithm<R, N, M> for JacobianInverse<R::Real, M> {
+    fn gain(&self) -> SVector<R::Real, M> {
+        self.k
+    }
+
     fn rates(
         &self,
         _: &R,
@@ -95,7 +106,7 @@ impl<T: RealField + Copy, const M: usize> JacobianTranspose<T, M> {
     /// # Errors
     /// Where an element is not positive and finite.
     pub fn new(k: [T; M]) -> Result<Self, SettingError> {
-        Ok(Self { k: gain(k)? })
+        Ok(Self { k: positive(k)? })
     }
 
     /// T_s lambda_max(J' K J) of the Jacobian `j` of the task rows at the sampling period `period`, s.
@@ -111,6 +122,10 @@ impl<T: RealField + Copy, const M: usize> JacobianTranspose<T, M> {
 }
 
 impl<R: Kinematics<N>, const N: usize, const M: usize> Algorithm<R, N, M> for JacobianTranspose<R::Real, M> {
+    fn gain(&self) -> SVector<R::Real, M> {
+        self.k
+    }
+
     fn rates(
         &self,
         _: &R,
@@ -139,7 +154,7 @@ impl<T: RealField + Copy, O, const M: usize> PseudoInverse<T, O, M> {
     /// Where an element of K is not positive and finite, or k_0 is negative or not finite.
     pub fn new(k: [T; M], k_0: T, objective: O) -> Result<Self, SettingError> {
         settings::not_negative_scalar(Setting::NullSpace, k_0)?;
-        Ok(Self { k: gain(k)?, k_0, objective, damping: None })
+        Ok(Self { k: positive(k)?, k_0, objective, damping: None })
     }
 
     /// The same with a damped inverse near singularities, instead of [`ClikError::Singular`] at them.
@@ -156,6 +171,10 @@ where
     R: Kinematics<N>,
     O: Objective<R, N>,
 {
+    fn gain(&self) -> SVector<R::Real, M> {
+        self.k
+    }
+
     fn rates(
         &self,
         robot: &R,
@@ -196,11 +215,15 @@ impl<T: RealField + Copy, const M: usize> DampedLeastSquares<T, M> {
     /// # Errors
     /// Where an element of K is not positive and finite.
     pub fn new(k: [T; M], damping: Damping<T>) -> Result<Self, SettingError> {
-        Ok(Self { k: gain(k)?, damping })
+        Ok(Self { k: positive(k)?, damping })
     }
 }
 
 impl<R: Kinematics<N>, const N: usize, const M: usize> Algorithm<R, N, M> for DampedLeastSquares<R::Real, M> {
+    fn gain(&self) -> SVector<R::Real, M> {
+        self.k
+    }
+
     fn rates(
         &self,
         _: &R,

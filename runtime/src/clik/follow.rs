@@ -123,7 +123,7 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
             Outcome::Converged
         } else if let Some(joint) = stopped {
             Outcome::JointLimit { joint }
-        } else if rates.damped && points_out(&j, &error) {
+        } else if rates.damped && points_out(&j, &self.algorithm.gain().component_mul(&error)) {
             Outcome::OutOfReach
         } else if rates.damped {
             Outcome::Damped
@@ -139,9 +139,10 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
     /// used up.
     ///
     /// The arm is at rest where a step that no rate limit slowed down changes the error by a millionth of it at most, or by no more than
-    /// rounding does, and where a joint limit is in its way or the error points where it cannot move. It can rest in a singular posture with
-    /// the goal in line with it, within reach, and see no way there. So where it comes to rest without a joint limit in its way it is moved
-    /// aside, each time, by 0.01 rad or m in each joint; if it then comes to rest no nearer, the goal is out of reach. A tolerance that the
+    /// rounding does, and where a joint limit is in its way or J' K e = 0: the error, as the law weighs it, points where the arm cannot move. It
+    /// can rest in a singular posture with the goal in line with it, within reach, and see no way there. So where it comes to rest without a
+    /// joint limit in its way it is moved aside, by 0.01 rad or m in each joint the first time and by 0.1 from then on; if after one of the
+    /// latter it comes to rest no nearer, the goal is out of reach. A tolerance that the
     /// rounding of q += T_s dq does not let a small gain come to, in single precision above all, uses up the steps.
     ///
     /// # Errors
@@ -163,6 +164,8 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
         let mut q = *start;
         // The step that led to `q`, unless it was slowed down (and not stopped besides), and how far from the goal the arm has come to rest before.
         let (mut last, mut rested_at): (Option<Step<T, N, M>>, Option<T>) = (None, None);
+        let [first_aside, next_aside] = [0.01, 0.1].map(lit::<T>);
+        let mut aside = first_aside;
         for steps in 0..most_steps {
             let (step, slowed) = self.advance(robot, &q, &reference)?;
             let reached = |outcome| Ok(Reached { q, error: step.error, steps, outcome });
@@ -171,9 +174,11 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
             }
             let distance = step.error.norm();
             let rests = |last: &Step<T, N, M>| {
-                (step.error - last.error).norm() <= rounding.max(last.error.norm() * lit(1e-6))
+                let changes = (step.error - last.error).norm() > rounding.max(last.error.norm() * lit(1e-6));
+                let weighted = self.algorithm.gain().component_mul(&step.error);
+                !changes
                     && (matches!(last.outcome, Outcome::JointLimit { .. })
-                        || points_out(&self.task.jacobian(&robot.geometric_jacobian(&q)), &step.error))
+                        || points_out(&self.task.jacobian(&robot.geometric_jacobian(&q)), &weighted))
             };
             let Some(rested) = last.filter(rests) else {
                 q = step.q;
@@ -187,9 +192,12 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
             if rested_at.is_some_and(|before| distance > before * lit(0.999)) {
                 return reached(Outcome::OutOfReach);
             }
-            (last, rested_at) = (None, Some(distance));
-            let aside = SVector::from_fn(|i, _| lit::<T>(if i % 2 == 0 { 0.01 } else { -0.01 }));
-            q = self.limits.stop(&q, &(q + aside)).q;
+            // Strong damping lets go of a singular posture so slowly beside it that the arm seems to rest there: that is not judged.
+            rested_at = (aside == next_aside).then_some(distance);
+            last = None;
+            let by = SVector::from_fn(|i, _| if i % 2 == 0 { aside } else { -aside });
+            aside = next_aside;
+            q = self.limits.stop(&q, &(q + by)).q;
         }
         let error = self.task.error(goal, &Pose::of(robot, &q));
         let outcome = if self.converged(&error) { Outcome::Converged } else { Outcome::OutOfSteps };
@@ -197,7 +205,8 @@ impl<A, T: RealField + Copy, const N: usize, const M: usize> Clik<A, T, N, M> {
     }
 }
 
-/// Whether no joint motion closes the error: J' e vanishes, to a hundredth of what a direction fully in reach would give.
+/// Whether the law moves no joint for the weighted error e = K (x_d - x): J' e vanishes, to a hundredth of what a direction fully in reach
+/// would give.
 fn points_out<T: RealField + Copy, const M: usize, const N: usize>(j: &SMatrix<T, M, N>, e: &SVector<T, M>) -> bool {
     j.tr_mul(e).norm() <= lit::<T>(0.01) * j.norm() * e.norm()
 }

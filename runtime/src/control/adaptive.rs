@@ -7,9 +7,13 @@
 //! u = Y pi^ + tau_known + F_l^(q, dq) + K_D sigma,        d pi^/dt = K_pi^-1 Y' sigma
 //! ```
 //!
-//! with F_l^ the friction that grows with the load, which is not linear in the parameters and is taken from the model, make V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decrease: the errors vanish, the estimate need not
-//! be right. That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever
-//! V says: compute the spectral radius of the sampled loop first (module `stability`).
+//! with F_l^ the friction that grows with the load, which is not linear in the parameters and is taken from the model. Where that is the
+//! plant's, V = 1/2 sigma' B sigma + e' Lambda K_D e + 1/2 (pi^ - pi)' K_pi (pi^ - pi) decreases: the errors vanish, the estimate need not
+//! be right. Where it is not, because the load is another one, dV/dt has sigma' (F_l^ - F_l) beside: then the errors need not vanish, and
+//! without a projection the estimate may drift.
+//!
+//! That holds in continuous time. Sampled, the law is unstable where Lambda and K_D are too large for the period, whatever V says: compute
+//! the spectral radius of the sampled loop first (module `stability`).
 
 use super::{check_joint, issue, ControlError, Torque, TorqueLimits};
 use crate::{
@@ -101,8 +105,8 @@ impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
         Self { limits: Some(limits), ..self }
     }
 
-    /// The same where nothing drives the estimate on: at the true parameters, at the bound of the interval that excludes them, and at
-    /// the present estimate of what is frozen. What is held by a bound moves no more than what is frozen.
+    /// The same with the estimate at the true parameters, at the bound of the interval that excludes them, and at the present value of what is
+    /// frozen. What is held by a bound moves no more than what is frozen.
     #[cfg(feature = "std")]
     pub(crate) fn at_rest(&self, parameters: &SVector<T, P>) -> Self {
         let mut settled = *self;

@@ -10,7 +10,8 @@ pub enum Verdict {
     Complete,
     /// None was found, and none is near.
     Unreachable,
-    /// A change of the pose by its own rounding could change their number; two that have met are listed once, as `double`.
+    /// A change of the pose by its own rounding could change their number; two that have met are listed once, as `double`, and
+    /// two that may have met each as `double`.
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,

@@ -3,12 +3,12 @@
 use nalgebra::{RealField, SMatrix, SVector};
 
 /// Jacobian of `f` at `x` by central differences.
-pub(super) fn derivative<T: RealField + Copy, const N: usize>(
+pub(super) fn derivative<T: RealField + Copy, const N: usize, const M: usize>(
     x: &SVector<T, N>,
-    f: impl Fn(&SVector<T, N>) -> SVector<T, N>,
-) -> SMatrix<T, N, N> {
+    f: impl Fn(&SVector<T, N>) -> SVector<T, M>,
+) -> SMatrix<T, M, N> {
     let h = T::default_epsilon().cbrt();
-    let mut jacobian = SMatrix::<T, N, N>::zeros();
+    let mut jacobian = SMatrix::<T, M, N>::zeros();
     for i in 0..N {
         let (mut low, mut high) = (*x, *x);
         low[i] -= h;

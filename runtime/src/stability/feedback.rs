@@ -2,7 +2,8 @@
 //! variables and δv of the rates dq.
 //!
 //! At rest C dq is of second order and drops out, so the derivatives are B, F and dg/dq of the model. B and F come from the model
-//! exactly; dg/dq by central differences of g, the only approximation (to the square of their step, cube root of epsilon).
+//! exactly; dg/dq by central differences of g, and so does the derivative of what holds an arm off its reference (to the square of their
+//! step, cube root of epsilon).
 
 use super::{difference::derivative, rest::rest};
 use crate::{
@@ -11,7 +12,7 @@ use crate::{
     reference::Pose,
     robot::{Dynamics, Regressor},
 };
-use nalgebra::{DMatrix, RealField, SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, RealField, SMatrix, SVector};
 
 /// A linear feedback with states m of the controller (estimate or integral).
 #[derive(Clone, Debug, PartialEq)]
@@ -209,49 +210,110 @@ impl<P: Dynamics<N>, R: Dynamics<N, Real = P::Real>, const N: usize> LineariseAt
     }
 }
 
-/// At rest sigma = -(Lambda δq + δv) and the estimate moves along K_pi^-1 Y_0' with Y_0 = Y(q, 0, 0, 0): its states are the at most N
-/// combinations that Y_0 K_pi^-1 Y_0' = L L' excites, u = L m, dm/dt = L' sigma.
+/// At rest at q under a reference e from there dq_r = Lambda e, sigma = Lambda e - Lambda δq - δv, and the estimate moves along K_pi^-1 Y_0'
+/// with Y_0 = Y(q, 0, 0, 0): its states are the at most N combinations that Y_0 K_pi^-1 Y_0' = L L' excites, u = L m, dm/dt = L' sigma. What
+/// e alone excites, as it does the estimate of viscous friction, which drifts, is left out.
 impl<R: Regressor<N, P>, const N: usize, const P: usize> Linearise<R, N> for Adaptive<R::Real, N, P> {
     fn linearise(&self, model: &R, q: &SVector<R::Real, N>) -> Option<Feedback<R::Real, N>> {
+        Some(self.about(model, q, &SVector::zeros()))
+    }
+}
+
+impl<T: RealField + Copy, const N: usize, const P: usize> Adaptive<T, N, P> {
+    /// Y pi^ + tau_known at rates dq_r and no accelerations.
+    fn modelled<R: Regressor<N, P, Real = T>>(&self, model: &R, [q, dq, dqr, ddqr]: [&SVector<T, N>; 4]) -> SVector<T, N> {
+        model.regressor(q, dq, dqr, ddqr) * self.estimate + model.known_torque(q, dq, dqr, ddqr)
+    }
+
+    /// The combinations of the estimate that move at rest at `q`: L.
+    fn excited<R: Regressor<N, P, Real = T>>(&self, model: &R, q: &SVector<T, N>) -> DMatrix<T> {
         let still = SVector::zeros();
-        let torque = |q: &SVector<R::Real, N>, dqr: &SVector<R::Real, N>, ddqr: &SVector<R::Real, N>| {
-            model.regressor(q, &still, dqr, ddqr) * self.estimate + model.known_torque(q, &still, dqr, ddqr)
-        };
-        let rest = torque(q, &still, &still);
-        let (mut b, mut f) = (SMatrix::<R::Real, N, N>::zeros(), SMatrix::<R::Real, N, N>::zeros());
-        for i in 0..N {
-            let mut e = SVector::zeros();
-            e[i] = nalgebra::one::<R::Real>();
-            b.set_column(i, &(torque(q, &still, &e) - rest));
-            f.set_column(i, &(torque(q, &e, &still) - rest));
-        }
-        let dg = derivative(q, |q| torque(q, &still, &still));
-        let k_d = SMatrix::from_diagonal(&self.k_d);
-        // dq_r = -Lambda δq and ddq_r = -Lambda δv.
-        let position = dg - columns_scaled(&(f + k_d), &self.lambda);
-        let velocity = -columns_scaled(&b, &self.lambda) - k_d;
         let y = model.regressor(q, &still, &still, &still);
-        let l = excited(&(columns_scaled(&y, &self.adaptation_gain) * y.transpose()));
+        excited(&(columns_scaled(&y, &self.adaptation_gain) * y.transpose()))
+    }
+
+    /// The feedback at rest at `q`, the reference `e` from there.
+    fn about<R: Regressor<N, P, Real = T>>(&self, model: &R, q: &SVector<T, N>, e: &SVector<T, N>) -> Feedback<T, N> {
+        let (still, dqr) = (SVector::zeros(), self.lambda.component_mul(e));
+        let rest = self.modelled(model, [q, &still, &still, &still]);
+        let held = self.modelled(model, [q, &still, &dqr, &still]);
+        let (mut b, mut f, mut c) = (SMatrix::<T, N, N>::zeros(), SMatrix::<T, N, N>::zeros(), SMatrix::<T, N, N>::zeros());
+        for i in 0..N {
+            let mut unit = SVector::zeros();
+            unit[i] = T::one();
+            b.set_column(i, &(self.modelled(model, [q, &still, &still, &unit]) - rest));
+            f.set_column(i, &(self.modelled(model, [q, &still, &unit, &still]) - rest));
+            // C(q, δv) dq_r: what friction makes of either rate cancels.
+            let moving = self.modelled(model, [q, &unit, &dqr, &still]) - self.modelled(model, [q, &unit, &still, &still]);
+            c.set_column(i, &(moving - (held - rest)));
+        }
+        let dg = derivative(q, |q| self.modelled(model, [q, &still, &still, &still]));
+        let k_d = SMatrix::from_diagonal(&self.k_d);
+        // dq_r = Lambda (e - δq) and ddq_r = -Lambda δv.
+        let position = dg - columns_scaled(&(f + k_d), &self.lambda);
+        let velocity = c - columns_scaled(&b, &self.lambda) - k_d;
+        let l = self.excited(model, q);
         let transpose = l.transpose();
         let lambda = DMatrix::from_fn(N, N, |i, j| if i == j { self.lambda[i] } else { nalgebra::zero() });
-        Some(Feedback {
+        Feedback {
             position,
             velocity,
             state_by_position: -(&transpose * lambda),
             state_by_velocity: -transpose,
             torque_by_state: l,
-        })
+        }
     }
 }
 
+/// With the parameters of the plant the arm rests on its reference. Where some of the estimate cannot come there, what still moves makes up for
+/// it as far as it can: at rest L' sigma = 0, and the torque that is lacking has no component beside the columns of L but what
+/// F(Lambda e) + K_D Lambda e hold.
 impl<P, R, const N: usize, const K: usize> LineariseAtRest<P, R, N> for Adaptive<R::Real, N, K>
 where
     P: Regressor<N, K>,
     R: Regressor<N, K, Real = P::Real>,
 {
-    fn settle(&self, plant: &P, model: &R, q: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
-        let feedback = self.at_rest(&plant.parameters()).linearise(model, q)?;
-        Some(Rest { q: *q, is_held: true, feedback })
+    fn settle(&self, plant: &P, model: &R, reference: &SVector<R::Real, N>) -> Option<Rest<R::Real, N>> {
+        let law = self.at_rest(&plant.parameters());
+        if law.estimate == plant.parameters() {
+            return Some(Rest { q: *reference, is_held: true, feedback: law.about(model, reference, &SVector::zeros()) });
+        }
+        let still = SVector::zeros();
+        // The component in the columns of L.
+        let along = |l: &DMatrix<R::Real>, x: &SVector<R::Real, N>| {
+            let x = DVector::from_column_slice(x.as_slice());
+            let part = (l.transpose() * l).cholesky().map(|square| l * square.solve(&(l.transpose() * x)));
+            part.map_or_else(SVector::zeros, |part| SVector::from_column_slice(part.as_slice()))
+        };
+        let held = |q: &SVector<R::Real, N>| {
+            let (l, dqr) = (law.excited(model, q), law.lambda.component_mul(&(reference - q)));
+            let torque = law.modelled(model, [q, &still, &dqr, &still]) - law.modelled(model, [q, &still, &still, &still])
+                + law.k_d.component_mul(&dqr);
+            torque - along(&l, &torque) + along(&l, &dqr)
+        };
+        let lack = |q: &SVector<R::Real, N>| {
+            let lacking = plant.gravity(q) + plant.friction(&still) - law.modelled(model, [q, &still, &still, &still]);
+            lacking - along(&law.excited(model, q), &lacking)
+        };
+        Some(rest_off(reference, held, lack, |q| {
+            let e = reference - q;
+            let l = law.excited(model, q);
+            // What the estimate has taken over, in the direction in which it moves.
+            let torque = plant.gravity(q) + plant.friction(&still)
+                - law.modelled(model, [q, &still, &law.lambda.component_mul(&e), &still])
+                - law.k_d.component_mul(&law.lambda).component_mul(&e);
+            let mut taken = law;
+            let y = model.regressor(q, &still, &still, &still);
+            let by = (l.transpose() * &l).cholesky().map(|square| {
+                let torque = DVector::from_column_slice(torque.as_slice());
+                l.clone() * square.solve(&square.solve(&(l.transpose() * torque)))
+            });
+            if let Some(by) = by {
+                let by = SVector::<R::Real, N>::from_column_slice(by.as_slice());
+                taken.estimate += y.tr_mul(&by).component_mul(&law.adaptation_gain);
+            }
+            taken.about(model, q, &e)
+        }))
     }
 }
 
@@ -312,6 +374,11 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         Some(inverse)
     }
 
+    /// y_0 at rest at `q`: K_N (q_0 - q), with the reference for the posture q_0 of the null space.
+    fn posture_acceleration(&self, reference: &SVector<T, N>, q: &SVector<T, N>) -> SVector<T, N> {
+        self.null_space.map_or_else(SVector::zeros, |null_space| null_space.gains().0.component_mul(&(reference - q)))
+    }
+
     /// At rest at `q` under `reference`: J+ and the errors e of the rows, y_0 of the null space, and the a with J* (a - J y_0) + y_0 = y, as
     /// far as rows of J can give y: a = (J J*)^-1 J (y - y_0) + J y_0. `None` where the posture is singular.
     fn at_rest<R: Dynamics<N, Real = T>>(
@@ -324,7 +391,7 @@ impl<T: RealField + Copy, const N: usize, const M: usize> OperationalSpace<T, N,
         let j = self.task.jacobian(&model.geometric_jacobian(q));
         let inverse = RightInverse::new(&j)?;
         let e = self.task.error(&Pose::of(model, reference), &Pose::of(model, q));
-        let y_0 = self.null_space.map_or_else(SVector::zeros, |n| n.gains().0.component_mul(&(reference - q)));
+        let y_0 = self.posture_acceleration(reference, q);
         let through = j * self.inverse(&j)?;
         let a = RightInverse::new(&through)?.solve(&(j * (y - y_0))) + j * y_0;
         Some(AtRest { inverse, e, y_0, a })
@@ -374,13 +441,22 @@ where
         if found.is_some() {
             feedback = self.linearise(model, &q)?;
         }
-        // What holds the arm joins the derivative by q.
-        if let Some(AtRest { a, y_0, .. }) = missing(&q).and_then(|y| self.at_rest(model, reference, &q, &y)) {
-            feedback.position += derivative(&q, |q| {
+        // Off the reference the error turns otherwise than by -J, and what holds the arm depends on q: the whole torque, by differences.
+        if let Some(AtRest { e, a, .. }) = missing(&q).and_then(|y| self.at_rest(model, reference, &q, &y)) {
+            let goal = Pose::of(model, reference);
+            let error = |q: &SVector<R::Real, N>| self.task.error(&goal, &Pose::of(model, q));
+            feedback.position = derivative(&q, |q| {
                 let j = self.task.jacobian(&model.geometric_jacobian(q));
-                let y = self.inverse(&j).map(|inverse| inverse * (a - j * y_0) + y_0);
-                y.map_or_else(SVector::zeros, |y| model.inertia_matrix(q) * y)
+                let y_0 = self.posture_acceleration(reference, q);
+                let rows = a + self.k_p.component_mul(&(error(q) - e));
+                let y = self.inverse(&j).map(|inverse| inverse * (rows - j * y_0) + y_0);
+                y.map_or_else(SVector::zeros, |y| model.inertia_matrix(q) * y + model.gravity(q))
             });
+            let by_position = derivative(&q, error);
+            let rows = (0..M).filter(|i| self.k_i[*i] > nalgebra::zero());
+            for (k, row) in rows.enumerate() {
+                feedback.state_by_position.row_mut(k).copy_from(&by_position.row(row));
+            }
         }
         Some(Rest { q, is_held: found.is_some(), feedback })
     }

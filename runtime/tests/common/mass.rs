@@ -1,6 +1,6 @@
 //! A point mass of 2 kg on a line.
 
-use armgen_runtime::robot::{Dynamics, EquationsOfMotion, Kinematics};
+use armgen_runtime::robot::{Dynamics, EquationsOfMotion, Kinematics, Regressor};
 use nalgebra::{vector, Matrix4, SMatrix, SVector};
 use std::cell::Cell;
 
@@ -65,5 +65,30 @@ impl Dynamics<1> for Mass {
     }
     fn potential_energy(&self, q: &SVector<f64, 1>) -> f64 {
         self.force * q[0] + 0.5 * self.stiffness * q[0] * q[0]
+    }
+}
+
+/// The force in two halves, which one motion does not tell apart; all else is known.
+impl Regressor<1, 2> for Mass {
+    fn regressor(
+        &self,
+        _: &SVector<f64, 1>,
+        _: &SVector<f64, 1>,
+        _: &SVector<f64, 1>,
+        _: &SVector<f64, 1>,
+    ) -> SMatrix<f64, 1, 2> {
+        SMatrix::repeat(1.0)
+    }
+    fn known_torque(
+        &self,
+        q: &SVector<f64, 1>,
+        _: &SVector<f64, 1>,
+        _: &SVector<f64, 1>,
+        ddqr: &SVector<f64, 1>,
+    ) -> SVector<f64, 1> {
+        ddqr * 2.0 + q * self.stiffness + vector![self.friction]
+    }
+    fn parameters(&self) -> SVector<f64, 2> {
+        SVector::repeat(0.5 * self.force)
     }
 }

@@ -2,6 +2,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 pub mod ghost;
+pub mod gimbal;
 pub mod mass;
 pub mod scara;
 
