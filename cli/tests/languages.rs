@@ -108,6 +108,32 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
             vec!["--language", "javascript", "--ik"],
             "--ik does not go with `--language javascript`: inverse kinematics is written in Rust and in C",
         ),
+        (
+            vec!["--language", "matlab", "--out", "+end"],
+            "`end` is a word of MATLAB or Octave, and no package can be called by it: write `--out +end_`",
+        ),
+        (vec!["--language", "matlab", "--out", "+_robot"], "a letter first"),
+        (vec!["--language", "matlab", "--out", "+endfunction"], "write `--out +endfunction_`"),
+        (
+            vec!["--language", "python", "--out", "class.py"],
+            "`class` is a word of Python, and no module can be imported by it: write `--out class_.py`",
+        ),
+        (
+            vec!["--language", "python", "--out", "numpy.py"],
+            "would be imported in place of the library `numpy`: write `--out robot.py`",
+        ),
+        (
+            vec!["--language", "python", "--out", "robot.pyi"],
+            "could not be imported, since `import` looks for .py: write `--out robot.py`",
+        ),
+        (
+            vec!["--language", "javascript", "--out", "robot.cjs"],
+            "Node takes a module with `export` from .mjs, or .js: write `--out robot.mjs`",
+        ),
+        (
+            vec!["--language", "c", "--out", "math.h"],
+            "would be found in place of <math.h> of the C library: write `--out robot.h`",
+        ),
         (vec!["--language", "python", "--ik"], "--ik does not go with `--language python`"),
         (vec!["--language", "matlab", "--ik"], "--ik does not go with `--language matlab`"),
     ] {
@@ -118,4 +144,14 @@ fn what_a_language_lacks_is_refused_with_a_way_out() {
         assert!(said.contains(words), "{arguments:?}: {said}");
     }
     assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0, "nothing is written where something fails");
+}
+
+/// Words of another language are names like others.
+#[test]
+fn a_word_of_one_language_is_a_name_in_another() {
+    let folder = folder("words");
+    for (language, out) in [("matlab", "+fn"), ("python", "fn.py"), ("javascript", "class.mjs"), ("c", "end.hpp")] {
+        check(&folder, &["generate", &scara(), "--language", language, "--out", out, "--functions", "gravity"], 0);
+        assert!(folder.join(out).exists(), "{out}");
+    }
 }

@@ -97,7 +97,8 @@ const COMMANDS: Layers = &[
     ("input", &["terminal"]),
     ("output", &["terminal"]),
     ("companions", &[]),
-    ("commands", &["companions", "input", "output", "table", "terminal"]),
+    ("file_names", &[]),
+    ("commands", &["companions", "file_names", "input", "output", "table", "terminal"]),
 ];
 
 /// From a text and a description to a verdict; `docs/certificate.md` says what each step is for.

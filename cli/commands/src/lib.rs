@@ -4,15 +4,17 @@
 //! The robot that `armgen run` moves is handed in by the program: here nothing is compiled for one.
 //!
 //! ```text
-//! lib.rs       arguments, dispatch
-//! commands/    one file per command
-//! input.rs     descriptions from files
-//! terminal.rs  standard output and error: colour, closed pipes
-//! table.rs     aligned tables
+//! lib.rs         arguments, dispatch
+//! commands/      one file per command
+//! file_names.rs  what the file of a module may be called
+//! input.rs       descriptions from files
+//! terminal.rs    standard output and error: colour, closed pipes
+//! table.rs       aligned tables
 //! ```
 
 mod commands;
 mod companions;
+mod file_names;
 mod input;
 mod output;
 mod table;

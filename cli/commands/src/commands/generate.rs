@@ -17,7 +17,7 @@ use armgen_verify::reader::ModuleText;
 
 use super::verify::{certificate_beside, with_spinner};
 use crate::output::{place, same_file, write};
-use crate::{companions, input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
+use crate::{companions, file_names, input, terminal, ScalarName, TrigName, DONE, FAULTY, UNREADABLE};
 
 /// What the module is to be.
 #[derive(Debug, clap::Args)]
@@ -119,7 +119,7 @@ pub(crate) fn run(file: &Path, out: Option<&Path>, choices: &Choices, beside: &B
     if let (None, [first, ..]) = (out, beside.flags().as_slice()) {
         terminal::error(&format!(
             "{first} writes beside the module: say where that goes, with `--out {}`",
-            file_of(language, "robot")
+            file_names::file_of(language, "robot")
         ));
         return UNREADABLE;
     }
@@ -214,14 +214,6 @@ fn write_all(files: &[Output], description: &Path, folder: Option<&Path>) -> Res
         .try_for_each(|(path, text)| write(path, text).map_err(|error| format!("cannot write {}: {error}", path.display())))
 }
 
-/// The name of a file of a language, or of a folder.
-fn file_of(language: Language, stem: &str) -> String {
-    match language {
-        Language::Matlab => format!("+{stem}"),
-        language => format!("{stem}.{}", language.extensions()[0]),
-    }
-}
-
 /// What stands in the folder of a package and is not of it could hide a function.
 fn warn_of_others(folder: &Path, files: &[Output]) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
@@ -245,27 +237,14 @@ fn unfit(
     beside: &Beside,
 ) -> Option<String> {
     let title = language.title();
-    let extension = out.and_then(Path::extension).and_then(|extension| extension.to_str());
-    if let Some(other) = extension.and_then(Language::of_extension).filter(|other| *other != language) {
-        let (out, name) = (out.unwrap_or(Path::new("")).display(), other.name());
-        let file = file_of(language, "robot");
-        return Some(format!(
-            "{out} is a file of {}, and the module is in {title}: write `--language {name}` or `--out {file}`",
-            other.title()
-        ));
+    if let Some(reason) = out.and_then(|out| file_names::unfit(language, out)) {
+        return Some(reason);
     }
     if beside.native && language != Language::Python {
         return Some("--native goes with `--language python`: it is a library that Python loads".into());
     }
     if language == Language::Rust {
         return None;
-    }
-    let name = out.and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
-    let of_package = |name: &String| name.strip_prefix('+').is_some_and(|name| name.is_ascii() && validate::is_rust_name(name));
-    if let Some(name) = name.filter(|name| language == Language::Matlab && !of_package(name)) {
-        return Some(format!(
-            "`{name}` is no package of MATLAB, a folder whose name is `+` and a name of letters, digits and `_`: write `--out +robot`"
-        ));
     }
     let only_rust = [
         (beside.bounds, "--bounds", "its companion is Rust"),
