@@ -110,7 +110,8 @@ pub trait Dynamics<const N: usize>: Kinematics<N> {
     fn kinetic_energy(&self, q: &SVector<Self::Real, N>, dq: &SVector<Self::Real, N>) -> Self::Real;
 
     /// Potential energy U(q), J: that of gravity, zero where all masses, rotors included, lie at the origin of the base frame, and
-    /// 1/2 k_s (q - rest)^2 of each spring.
+    /// 1/2 k_s (q - rest)^2 of each spring. Of base parameters, which leave out what no torque depends on, U and a constant: differences and the
+    /// gradient are the same.
     fn potential_energy(&self, q: &SVector<Self::Real, N>) -> Self::Real;
 }
 

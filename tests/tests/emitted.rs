@@ -170,6 +170,22 @@ fn obey_the_laws() {
     }
 }
 
+/// Base parameters leave a constant of the potential energy out: its changes are those of the arm, itself it is another.
+#[test]
+fn energies_of_base_parameters_change_as_those_of_the_arm() {
+    let robot = emitted("base_set");
+    let energies = |seed: u64| {
+        let a = Arguments { q: random::state(robot.dof(), seed).q, pi: robot.nominal(), ..Arguments::default() };
+        [robot.call("potential_energy_with", &a)[0], robot.call("potential_energy", &a)[0]]
+    };
+    let [with, plain] = energies(0);
+    for seed in 1..20 {
+        let [other_with, other_plain] = energies(seed);
+        agree("a change of U", &[other_with - with], &[other_plain - plain], ORACLE);
+    }
+    assert!((with - plain).abs() > 1.0, "U_with {with} and U {plain} J are the same");
+}
+
 /// A robot of which one function is wrong in one entry, by little.
 struct Planted<'a> {
     robot: &'a Emitted,

@@ -111,6 +111,7 @@ fn described<'a>(manipulator: &Manipulator, gravity: &'a [Number; 3], name: &str
         has_more_friction: manipulator.has_more_friction(),
         has_stribeck: manipulator.has_stribeck(),
         has_load_friction: manipulator.has_load_friction(),
+        grouped: manipulator.regressor == RegressorChoice::Base,
         turned_joint: turned,
         cost: operations(&function.program),
         method,

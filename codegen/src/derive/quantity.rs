@@ -166,6 +166,8 @@ pub struct Documentation {
     pub stribeck: Option<&'static str>,
     /// What friction that grows with the load adds, said of arms that have it.
     pub load: Option<&'static str>,
+    /// What base parameters leave out, said of the form with them at run time.
+    pub base: Option<&'static str>,
     /// Whether a module that lacks the function says so; one of which it does not is not asked for by most arms, and its trait knows what
     /// it is there.
     pub said_missing: bool,
@@ -212,6 +214,7 @@ impl Documentation {
             more_friction: None,
             stribeck: None,
             load: None,
+            base: None,
             said_missing: true,
         }
     }
@@ -224,6 +227,11 @@ impl Documentation {
     /// The same with what Stribeck friction adds.
     pub const fn with_stribeck(self, stribeck: &'static str) -> Documentation {
         Documentation { stribeck: Some(stribeck), ..self }
+    }
+
+    /// The same with what base parameters leave out.
+    pub const fn with_base(self, base: &'static str) -> Documentation {
+        Documentation { base: Some(base), ..self }
     }
 
     /// The same with what friction that grows with the load adds.

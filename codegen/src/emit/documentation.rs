@@ -88,6 +88,8 @@ pub struct Described<'a> {
     pub has_stribeck: bool,
     /// Whether friction grows with the load of a joint.
     pub has_load_friction: bool,
+    /// Whether the parameters at run time are base parameters.
+    pub grouped: bool,
     /// The joint whose variable it turns by a constant angle, counted from 1.
     pub turned_joint: Option<usize>,
     /// Its operations in words.
@@ -106,6 +108,7 @@ pub(super) fn described<'a>(function: &Function, module: &'a Module) -> Describe
         has_more_friction: module.has_more_friction,
         has_stribeck: module.has_stribeck,
         has_load_friction: module.has_load_friction,
+        grouped: module.base_parameters,
         turned_joint: turned_joint(function),
         cost: cost(&Cost::of(function)),
         method: function.method,
@@ -141,6 +144,7 @@ impl Described<'_> {
             more_friction,
             stribeck,
             load,
+            base,
             ..
         } = self.quantity.documentation;
         let (result, failure) = match self.with_parameters {
@@ -161,6 +165,7 @@ impl Described<'_> {
         blocks.extend(of_joints.map(Block::text));
         if self.with_parameters {
             blocks.push(Block::text("The parameters are given at run time; what is not among them is as in the description."));
+            blocks.extend(base.filter(|_| self.grouped).map(Block::text));
         }
         blocks.push(Block::Formula(formula));
         blocks.push(Block::List(self.arguments().map(argument).chain([format!("Returns {result}")]).collect()));
@@ -327,7 +332,8 @@ mod tests {
 
     #[test]
     fn every_link_leads_somewhere() {
-        const CONSTANTS: [&str; 4] = ["PARAMETER_NAMES", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS", "TASK"];
+        const CONSTANTS: [&str; 5] =
+            ["PARAMETER_NAMES", "NOMINAL_PARAMETERS", "BASE_PARAMETER_NAMES", "NOMINAL_BASE_PARAMETERS", "TASK"];
         let shown = |link: Link<'_>| match link {
             Link::Function(name) => format!("<{name}()>"),
             Link::Argument(name) => format!("<{name}>"),
@@ -337,8 +343,8 @@ mod tests {
             }
         };
         for quantity in catalogue::quantities() {
-            let Documentation { title, formula, result, result_with, .. } = quantity.documentation;
-            for text in [title, formula, result].into_iter().chain(result_with) {
+            let Documentation { title, formula, result, result_with, base, .. } = quantity.documentation;
+            for text in [title, formula, result].into_iter().chain(result_with).chain(base) {
                 let text = linked(text, &shown);
                 assert!(!text.contains(['{', '}']), "{text}");
             }

@@ -33,6 +33,11 @@ pub static POTENTIAL_ENERGY: Quantity = Quantity {
             "an energy, J.",
         )
         .with_springs("A spring of a joint adds 1/2 k_s (q_i - rest)².")
+        .with_base(
+            "Base parameters leave out what no torque depends on: this is the energy of the arm that has them in place of the standard ones, and \
+             0 for those that are not among them. At {NOMINAL_PARAMETERS} it is {potential_energy} and a constant, \
+             U_with(pi, q) - U_with(pi, q0) = U(q) - U(q0) for all q and q0.",
+        )
     },
     recursion: Recursion::new(RewriteScope::KeepParameters, |pool, arm, _, _| vec![potential_energy(pool, arm)]),
     missing: Quantity::MISSING_WITHOUT_MASS,
