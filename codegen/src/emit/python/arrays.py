@@ -21,11 +21,26 @@ def _broadcast(shapes: list[tuple[int, ...]]) -> tuple[int, ...]:
     return tuple(lengths)
 
 
-def _enter(*arguments: tuple[str, Any, int]) -> tuple[Any, tuple[int, ...], list[Any]]:
-    # The library, the leading axes of the result, and each argument with its entries along the first axis.
+class _Entries(list[Any]):
+    # What stands along the first axis of an array, each with an index for every axis, as the array API wants it.
+
+    def __init__(self, array: Any) -> None:
+        super().__init__(array[i, ...] for i in range(array.shape[0]))
+        self.array = array
+
+
+def _another_type(xp: Any, name: str, array: Any) -> TypeError:
+    remedy = f"make it with dtype={xp.__name__}.{DTYPE}"
+    if DTYPE == "float64" and xp.__name__.startswith("jax") and xp.zeros(1).dtype != xp.float64:
+        remedy += " after jax.config.update(\"jax_enable_x64\", True)"
+    return TypeError(f"{name} has entries of {array.dtype}, and {DTYPE} is wanted: {remedy}")
+
+
+def _enter(*arguments: tuple[str, Any, int]) -> tuple[Any, tuple[int, ...], list[_Entries]]:
+    # The library, the leading axes of the result, and the entries of each argument.
     xp = _namespace(arguments[0][1])
     shapes: list[tuple[int, ...]] = []
-    arrays: list[Any] = []
+    entries: list[_Entries] = []
     for name, value, length in arguments:
         own = _namespace(value)
         if own is not xp:
@@ -33,22 +48,21 @@ def _enter(*arguments: tuple[str, Any, int]) -> tuple[Any, tuple[int, ...], list
         wanted = getattr(xp, DTYPE)
         array = value if hasattr(value, "dtype") and hasattr(value, "shape") else xp.asarray(value, dtype=wanted)
         if array.dtype != wanted:
-            advice = " (jax.config.update(\"jax_enable_x64\", True) switches them on)" if xp.__name__.startswith("jax") else ""
-            raise TypeError(f"{name} has entries of {array.dtype}, and {DTYPE} is wanted{advice}")
+            raise _another_type(xp, name, array)
         shape = tuple(array.shape)
         if not shape or shape[-1] != length:
             raise ValueError(f"{name} has the shape {shape}, and the last axis should have {length} entries")
         shapes.append(shape[:-1])
         # With one axis at least behind the entries: some libraries give numbers without axes another type.
-        arrays.append(xp.moveaxis(array, -1, 0) if shape[:-1] else xp.reshape(array, (length, 1)))
-    return xp, _broadcast(shapes), arrays
+        entries.append(_Entries(xp.moveaxis(array, -1, 0) if shape[:-1] else xp.reshape(array, (length, 1))))
+    return xp, _broadcast(shapes), entries
 
 
-def _leave(xp: Any, like: Any, shape: tuple[int, ...], lengths: tuple[int, ...], entries: tuple[Any, ...]) -> Any:
+def _leave(xp: Any, like: _Entries, shape: tuple[int, ...], lengths: tuple[int, ...], entries: tuple[Any, ...]) -> Any:
     # Entries, numbers among them, as one array with the leading axes in front.
     own = shape if shape else (1,)
     if not entries:
-        return xp.reshape(like[:0], shape + lengths)
+        return xp.reshape(like.array[:0, ...], shape + lengths)
     arrays = [entry if hasattr(entry, "shape") else xp.full_like(like[0], entry) for entry in entries]
     stacked = xp.stack([xp.broadcast_to(array, own) for array in arrays])
     result = xp.reshape(stacked, lengths + shape)
@@ -64,19 +78,19 @@ def _at_once(xp: Any, array: Any) -> bool:
     return bool(not recorded and type(array) is xp.Tensor and array.device.type == "cpu")
 
 
-def _many(xp: Any, shape: tuple[int, ...], arguments: tuple[Any, ...]) -> bool:
+def _many(xp: Any, shape: tuple[int, ...], arguments: tuple[_Entries, ...]) -> bool:
     # Whether there are more states than an operation should pass over. For derivatives torch wants them whole.
     count = 1
     for length in shape:
         count *= length
-    recorded = any(getattr(argument, "requires_grad", False) for argument in arguments)
-    return count > _BLOCK and not recorded and all(_at_once(xp, argument) for argument in arguments)
+    recorded = any(getattr(argument.array, "requires_grad", False) for argument in arguments)
+    return count > _BLOCK and not recorded and all(_at_once(xp, argument.array) for argument in arguments)
 
 
-def _in_blocks(xp: Any, shape: tuple[int, ...], function: Callable[..., _Result], arguments: tuple[Any, ...]) -> _Result:
+def _in_blocks(xp: Any, shape: tuple[int, ...], function: Callable[..., _Result], arguments: tuple[_Entries, ...]) -> _Result:
     # The function for so many states at a time that what an operation leaves is in the processor's cache for the next.
-    def flat(argument: Any) -> Any:
-        state = xp.moveaxis(argument, 0, -1)
+    def flat(argument: _Entries) -> Any:
+        state = xp.moveaxis(argument.array, 0, -1)
         return xp.reshape(xp.broadcast_to(state, shape + state.shape[-1:]), (-1, state.shape[-1]))
 
     def joined(parts: tuple[Any, ...]) -> Any:

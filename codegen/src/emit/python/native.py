@@ -21,11 +21,13 @@ def _cache() -> Path:
     return (Path(base) if base else Path.home() / ".cache") / "armgen"
 
 
-def _compiler(wanted: Optional[str]) -> str:
+def _compiler(wanted: Optional[str]) -> list[str]:
+    # The program and its options. What is a program as it stands has none, though there may be blanks in its path.
     for name in [wanted] if wanted else [os.environ.get("CC"), "cc", "gcc", "clang"]:
-        found = shutil.which(name) if name else None
-        if found:
-            return found
+        for command in ([name], shlex.split(name)) if name else ():
+            found = shutil.which(command[0]) if command else None
+            if found:
+                return [found, *command[1:]]
     raise RuntimeError(
         f"no C compiler{' ' + repr(wanted) if wanted else ''} was found: install one (Debian: gcc) or name it, load(compiler=...); "
         "the module over arrays, without _native, does without"
@@ -35,20 +37,21 @@ def _compiler(wanted: Optional[str]) -> str:
 def load(compiler: Optional[str] = None, flags: Optional[Sequence[str]] = None, folder: Optional[str] = None) -> Native:
     """Compiles the functions, once, and loads them.
 
-    - `compiler`: a C compiler with the options of GCC; otherwise that of the variable CC, or cc, gcc or clang.
-    - `flags`: otherwise -O3 -march=native. What reorders sums, such as -ffast-math, is refused by the source.
+    - `compiler`: a C compiler that takes the options of GCC, perhaps with options of its own behind it, "gcc -m64"; otherwise that of the
+      variable CC, or cc, gcc or clang. Flags stand behind its options, and win.
+    - `flags`: otherwise -O3 -march=native. What reorders sums or takes other numbers, such as -ffast-math, is refused by the source.
     - `folder`: where the library is kept, under a name that is a hash of source, compiler, flags and processor; otherwise armgen in the user's
       cache folder.
 
     The result has the functions of the module over arrays, with the same names, shapes and bits.
     """
-    path = _compiler(compiler)
+    command = _compiler(compiler)
     own = ["-O3", "-march=native"] if flags is None else list(flags)
     own += ["-std=c99", "-fPIC", "-shared", "-ffp-contract=off", "-fno-tree-slp-vectorize"]
     source = Path(__file__).with_suffix(".c")
     text = source.read_bytes()
-    version = subprocess.run([path, "--version"], capture_output=True, text=True, check=False).stdout
-    said = "\0".join([path, version, *own, _processor()]).encode()
+    version = subprocess.run([*command, "--version"], capture_output=True, text=True, check=False).stdout
+    said = "\0".join([*command, version, *own, _processor()]).encode()
     kept = Path(folder) if folder is not None else _cache()
     library = kept / f"{_NAME}-{hashlib.sha256(text + said).hexdigest()[:32]}.{'dll' if sys.platform == 'win32' else 'so'}"
     if not library.exists():
@@ -56,9 +59,9 @@ def load(compiler: Optional[str] = None, flags: Optional[Sequence[str]] = None, 
         handle, beside = tempfile.mkstemp(suffix=".new", dir=kept)
         os.close(handle)
         try:
-            run = subprocess.run([path, *own, str(source), "-o", beside, "-lm"], capture_output=True, text=True, check=False)
+            run = subprocess.run([*command, *own, str(source), "-o", beside, "-lm"], capture_output=True, text=True, check=False)
             if run.returncode != 0:
-                raise RuntimeError(f"{path} {' '.join(own)}: {run.stderr}")
+                raise RuntimeError(f"{' '.join([*command, *own])}: {run.stderr}")
             # Complete or not at all.
             os.replace(beside, library)
         finally:

@@ -30,7 +30,7 @@ pub fn print(module: &Module, origin: &Origin) -> Native {
     let mut text = head(module, origin, &Notes::default(), "#");
     text +=
         "\n\"\"\"The functions as a library of C, for many states at a time: `load()` compiles it where it is used.\"\"\"\n\n";
-    text += "from __future__ import annotations\n\nimport ctypes\nimport hashlib\nimport math\nimport os\nimport platform\nimport shutil\n";
+    text += "from __future__ import annotations\n\nimport ctypes\nimport hashlib\nimport math\nimport os\nimport platform\nimport shlex\nimport shutil\n";
     text += "import subprocess\nimport sys\nimport tempfile\nfrom pathlib import Path\nfrom typing import Any, NamedTuple, Optional, Sequence, Tuple\n\n";
     text += "import numpy as np\n\n__all__ = [\"Native\", \"load\"]\n";
     let dtype = match module.scalar {

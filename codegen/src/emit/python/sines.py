@@ -6,7 +6,7 @@ def _all(xp: Any, truths: Any) -> bool:
         return False
 
 
-def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
+def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     # Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > @limit@ are the library's.
     # @sines_of_arrays@
     x = xp.stack(angles)
@@ -30,5 +30,5 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
     cosine = c * a + s * b
     inside = x * x <= @square@
     if _all(xp, inside):
-        return sine, cosine
-    return xp.where(inside, sine, xp.sin(x)), xp.where(inside, cosine, xp.cos(x))
+        return _Entries(sine), _Entries(cosine)
+    return _Entries(xp.where(inside, sine, xp.sin(x))), _Entries(xp.where(inside, cosine, xp.cos(x)))

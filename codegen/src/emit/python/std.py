@@ -1,3 +1,3 @@
-def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
+def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     x = xp.stack(angles)
-    return xp.sin(x), xp.cos(x)
+    return _Entries(xp.sin(x)), _Entries(xp.cos(x))

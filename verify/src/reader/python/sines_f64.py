@@ -6,7 +6,7 @@ def _all(xp: Any, truths: Any) -> bool:
         return False
 
 
-def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
+def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     # Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > 65536 are the library's.
     # n is the integer nearest to 2x/pi: + 0.0 makes it no -0.
     # x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 37 bits. Their products
@@ -34,5 +34,5 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[Any, Any]:
     cosine = c * a + s * b
     inside = x * x <= 4294967296.0
     if _all(xp, inside):
-        return sine, cosine
-    return xp.where(inside, sine, xp.sin(x)), xp.where(inside, cosine, xp.cos(x))
+        return _Entries(sine), _Entries(cosine)
+    return _Entries(xp.where(inside, sine, xp.sin(x))), _Entries(xp.where(inside, cosine, xp.cos(x)))
