@@ -106,10 +106,17 @@ pub fn constants_comments(described: &DescribedParameters) -> Vec<(&'static str,
 pub fn function_comment(described: &Described<'_>, note: Option<&str>) -> String {
     let mut all = described.blocks(true, note);
     all.insert(1, Block::Verbatim(vec![call(described)]));
-    all.push(Block::text(
-        "Columns of arguments are states, a single column is that of all; `m[i][j]` of state k is m(i, j, k), indices from 1. What is said of \
-         the head of this file stands in Contents.m.",
-    ));
+    let lists = described.quantity.result.iter().find_map(|part| part.element);
+    let entries = match lists {
+        None => "`m[i][j]` of state k is m(i, j, k), indices from 1.",
+        Some(_) => {
+            "`m[link][i][j]` of state k is m(i, j, link, k), indices from 1: link 1 is the one that joint 1 moves; the base is none of them, and \
+             neither is the end effector's frame, which has the tool."
+        }
+    };
+    all.push(Block::text(format!(
+        "Columns of arguments are states, a single column is that of all; {entries} What is said of the head of this file stands in Contents.m."
+    )));
     comment(&all, &format!("{}  ", camel(&described.name()).to_uppercase()))
 }
 
@@ -253,8 +260,9 @@ fn in_blocks(text: &mut String, module: &Module, function: &Function, name: &str
     match names.as_slice() {
         [one] => define(text, "n", &format!("size({one}, 2)")),
         several => {
-            let sizes: Vec<String> = several.iter().map(|name| format!("size({name}, 2)")).collect();
-            define(text, "n", &format!("max([{}])", sizes.join(", ")));
+            // None where an argument has no states, though another has the single one of all.
+            let sizes = several.iter().map(|name| format!("size({name}, 2)")).collect::<Vec<_>>().join(", ");
+            define(text, "n", &format!("max([{sizes}]) * min([{sizes}, 1])"));
         }
     }
     for argument in &function.arguments {

@@ -277,7 +277,10 @@ impl Reader<'_> {
         let columns: Vec<String> = names.iter().map(|name| format!("size({name}, 2)")).collect();
         match columns.as_slice() {
             [one] => lines.expect(&format!("    n = {one};"))?,
-            several => lines.expect(&format!("    n = max([{}]);", several.join(", ")))?,
+            several => {
+                let all = several.join(", ");
+                lines.expect(&format!("    n = max([{all}]) * min([{all}, 1]);"))?;
+            }
         }
         for argument in arguments {
             let rows = if *argument == Argument::Pi { self.sizes.p } else { self.sizes.n };
