@@ -127,9 +127,10 @@ fn c(kit: &Kit, module: &str) -> String {
     };
     let epsilon = if kit.real == Float::F32 { "FLT_EPSILON" } else { "DBL_EPSILON" };
     let mut text = format!("#include <float.h>\n#include <stdio.h>\n\n#include {module:?}\n\n#define EPSILON {epsilon}\n\n/* States at which values are known. */\n");
-    for (name, values) in named(&kit.states[0]) {
+    // Without the base parameters of a robot, whose functions with them are judged by those without.
+    let with = kit.values.iter().any(|value| value.with);
+    for (name, _) in named(&kit.states[0]).into_iter().filter(|(name, _)| with || *name != "pi") {
         let length = if name == "pi" { "ROBOT_PARAMETERS" } else { "ROBOT_DOF" };
-        debug_assert!(!values.is_empty());
         let rows = kit.states.iter().filter_map(|state| named(state).into_iter().find(|(other, _)| *other == name));
         let rows: Vec<String> = rows.map(|(_, values)| format!("{{{}}}", numbers(values))).collect();
         let _ = writeln!(text, "static const robot_real state_{name}[{}][{length}] = {{{}}};", kit.states.len(), rows.join(", "));
