@@ -1,9 +1,11 @@
 //! The C face as a stranger uses it: a static library of its own without `std`, and a C program that links it and checks values.
 
+use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::schedule::{Options, Selection};
 use armgen_codegen::{generate, source::Source, Generated};
 use armgen_tests::signatures::of_module;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -135,6 +137,37 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
 fn a_c_program_links_and_finds_the_values_of_the_scara() {
     check("scara.yaml", Scalar::F64, "c_face_f64");
     check("scara.yaml", Scalar::F32, "c_face_f32");
+}
+
+/// The macros of a header that callers see, each once, with their values; `SAME_BITS` has two.
+fn macros(header: &str, own: &str) -> BTreeMap<String, String> {
+    const INNER: [&str; 8] = ["UNFUSED", "INLINE", "SIN(x)", "COS(x)", "VECTOR_LANES", "VECTOR_AT(from)", "SAME_BITS", "LANES"];
+    let defined = header.lines().filter_map(|line| line.strip_prefix(&format!("#define {own}_")));
+    let defined = defined.map(|line| line.split_once(' ').unwrap_or((line, "")));
+    let seen = defined.filter(|(name, _)| !INNER.contains(name) && !name.starts_with("IK_"));
+    seen.map(|(name, value)| (name.to_string(), value.to_string())).collect()
+}
+
+/// A caller can go from the header with the functions themselves to that of the module in Rust, and back.
+#[test]
+fn both_headers_have_the_same_macros_and_declarations() {
+    for (robot, own) in [("scara.yaml", "SCARA"), ("panda7.yaml", "PANDA7")] {
+        let generated = generate_of(robot, Scalar::F64, Selection::default());
+        let inverse_kinematics = generated.inverse_kinematics_for_c().expect("a construction").header;
+        let standalone = [generated.in_language(Language::C), generated.inverse_kinematics_in_c().expect("a construction")];
+        let of_rust = [generated.c.header, inverse_kinematics];
+        for (k, (standalone, of_rust)) in standalone.iter().zip(&of_rust).enumerate() {
+            assert_eq!(macros(standalone, own), macros(of_rust, own), "{robot} {k}");
+            assert!(k == 1 || [standalone, of_rust].iter().all(|text| text.contains(&format!("#define {own}_SAME_BITS 1\n"))));
+            let defined = standalone.replace("static inline ", "").replace("\n{", ";");
+            let declared = of_rust.split(";\n").filter_map(|piece| piece.rsplit("*/\n").next());
+            let declared: Vec<&str> = declared.filter(|declared| declared.contains('(')).collect();
+            assert!(declared.len() > [20, 2][k], "{robot}: {declared:?}");
+            for declared in declared {
+                assert!(defined.contains(&format!("{declared};")), "{robot}: {declared}");
+            }
+        }
+    }
 }
 
 /// The wrappers are the only emitted text with `unsafe`, and each block of it gives its reason.

@@ -226,6 +226,16 @@ fn a_package_is_called_as_its_help_says() {
 }
 
 #[test]
+fn arrays_need_the_array_api_and_no_more() {
+    page::check_array_api();
+}
+
+#[test]
+fn entries_of_another_type_are_told_what_is_taken() {
+    page::check_other_types();
+}
+
+#[test]
 fn torch_has_the_bits_of_numpy_and_its_derivatives() {
     page::check_torch();
 }
@@ -236,6 +246,7 @@ fn the_test_file_of_each_language_passes_and_finds_a_planted_error() {
         page::check_tests("scara", Scalar::F64, language);
     }
     page::check_tests("scara4", Scalar::F32, Language::C);
+    page::check_tests("base_set", Scalar::F64, Language::C);
     page::check_tests("scara4", Scalar::F32, Language::Python);
 }
 

@@ -24,7 +24,9 @@ use crate::parallel::parallel_map;
 use crate::program::{Function, Module};
 use crate::ring::Symbol;
 use body::Body;
-pub(super) use inverse_kinematics::{about_redundancy, branches, items as items_of_inverse_kinematics, meanings};
+pub(super) use inverse_kinematics::{
+    about_redundancy, about_target, branches, items as items_of_inverse_kinematics, meanings, what_is_invalid,
+};
 pub use inverse_kinematics::{print_inverse_kinematics, print_inverse_kinematics_test, print_inverse_kinematics_trait};
 use literal::literal;
 pub use runtime::single_traits;

@@ -138,6 +138,49 @@ fn every_class_is_translated() {
     assert!(made_up().iter().all(|(name, ..)| names.contains(*name)) && names.contains(FEW), "{names:?}");
 }
 
+/// What comments say is there: the constants of the loop under the name that they have, and of `t` what is read of it.
+#[test]
+fn comments_speak_of_what_c_has() {
+    let chosen = ["ur5", "panda7", "iiwa", "position3r", "planar3r", FEW];
+    let arms = arms(|name| chosen.contains(&name));
+    assert_eq!(arms.len(), 2 * chosen.len());
+    for Arm { name, c, .. } in arms {
+        assert!(!c.contains("`LOOP`"), "{name}");
+        for word in c.split("the `offsets` of `").skip(1).filter_map(|rest| rest.split('`').next()) {
+            assert!(c.contains(&format!(" {word} = {{")) && c.contains(" offsets;\n"), "{name}: {word}");
+        }
+        let about = c.split("/* All joint variables that take the end effector to the ").nth(1);
+        let about =
+            about.and_then(|about| about.split("*/").next()).unwrap_or_else(|| panic!("{name}: the function has no comment"));
+        let position = name == "position3r";
+        assert_eq!(about.starts_with("position of t.\n * t: a pose"), position, "{name}: {about}");
+        assert_eq!(c.contains("/* All postures that reach a position. */"), position, "{name}");
+        assert_eq!(c.contains(" 4 /* the position is not finite */"), position, "{name}");
+        assert_eq!(name == "iiwa", about.contains("x is k × e normalised"), "{name}: {about}");
+    }
+}
+
+/// A robot `arm` with inverse kinematics beside one that is called `arm_ik`, as the first one's header is.
+#[test]
+fn no_guard_is_that_of_another_robot() {
+    if !there("gcc") {
+        return;
+    }
+    let folder = folder("inverse_kinematics_guards");
+    let (_, text) = robots().into_iter().find(|(name, _)| name == "ur5").expect("the UR5");
+    let named = |name: &str| generated(name, &text.replacen("name: ur5", &format!("name: {name}"), 1), Scalar::F64);
+    let (one, other) = (named("arm"), named("arm_ik"));
+    let write = |path: &str, text: &str| std::fs::write(folder.join(path), text).expect("a file can be written");
+    let c = armgen_codegen::emit::Language::C;
+    write("arm.h", &one.in_language(c));
+    write("arm_ik.h", &one.inverse_kinematics_in_c().expect("a construction"));
+    write("other.h", &other.in_language(c));
+    write("main.c", "#include \"arm.h\"\n#include \"arm_ik.h\"\n#include \"other.h\"\nint main(void)\n{\n    \
+        double q[6] = {0}, t[4][4], u[4][4];\n    arm_solutions found;\n    arm_direct_kinematics(q, t);\n    arm_ik_direct_kinematics(q, u);\n    \
+        arm_inverse_kinematics((const double (*)[4])t, &found);\n    return 0;\n}\n");
+    succeed(Command::new("gcc").args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]).arg(folder.join("main.c")));
+}
+
 /// Two classes, a joint that is given, a position that is polished and an arm with few joints, by one compiler. Some 20 s of a processor.
 #[test]
 fn modules_in_c_have_the_bits_of_rust() {
@@ -163,8 +206,13 @@ fn every_class_in_c_has_the_bits_of_rust() {
         for compiler in ["g++", "clang++"].into_iter().filter(|compiler| there(compiler)) {
             let file = folder.join("header.cpp");
             succeed(Command::new(compiler).args(["-std=c++11", "-fsyntax-only"]).args(WARNINGS).arg(&file));
-            let refused = Command::new(compiler).args(["-ffast-math", "-fsyntax-only"]).arg(&file).output().expect("it starts");
-            assert!(String::from_utf8_lossy(&refused.stderr).contains("this file computes nonsense under -ffast-math"));
+            for (flag, told) in [
+                ("-ffast-math", "this file computes nonsense under -ffast-math"),
+                ("-ffinite-math-only", "this file takes what is no number for one"),
+            ] {
+                let refused = Command::new(compiler).args([flag, "-fsyntax-only"]).arg(&file).output().expect("it starts");
+                assert!(String::from_utf8_lossy(&refused.stderr).contains(told), "{compiler} {flag}");
+            }
         }
     }
 }

@@ -24,6 +24,8 @@ pub(super) const COMMENTS: Comments = Comments { line: None, block: Some(("/*", 
 
 const PROLOGUE: &str = include_str!("c/prologue.h");
 const EPILOGUE: &str = include_str!("c/epilogue.h");
+/// The fused operation.
+const FUSED: &str = include_str!("c/fused.h");
 const SIGN: &str = include_str!("c/sign.h");
 const STRIBECK: &str = include_str!("c/stribeck.h");
 const STD: &str = include_str!("c/std.h");
@@ -33,12 +35,10 @@ const FAST_F32: &str = include_str!("c/fast_f32.h");
 const BETWEEN: &str = include_str!("c/between.h");
 
 /// Texts that are the same in every module.
-pub(super) const FIXED: [&str; 8] = [PROLOGUE, EPILOGUE, SIGN, STRIBECK, STD, FAST_F64, FAST_F32, BETWEEN];
+pub(super) const FIXED: [&str; 9] = [PROLOGUE, EPILOGUE, FUSED, SIGN, STRIBECK, STD, FAST_F64, FAST_F32, BETWEEN];
 
 /// The sines of the C library; of angles beyond the range of the module's own ones, where it has some.
 const LIBRARY: &str = "#include <math.h>\n#define ROBOT_SIN(x) sin(x)\n#define ROBOT_COS(x) cos(x)\n";
-/// The fused operation.
-const FUSED: &str = "#define ROBOT_FMA(x, y, z) fma(x, y, z)\n#include <math.h>\n";
 const NONE: &str = "#ifdef ROBOT_NO_MATH_H\n#define ROBOT_SIN(x) (((x) - (x)) / ((x) - (x)))\n\
     #define ROBOT_COS(x) (((x) - (x)) / ((x) - (x)))\n#else\n";
 
@@ -120,9 +120,9 @@ pub(super) fn read(text: &str) -> Result<Module, Fault> {
         Some("float") => (Float::F32, "float", "f"),
         _ => return Err(lines.fault("the module has no type of its numbers")),
     };
-    let fused = lines.peek().starts_with(&format!("#define {upper}_FMA("));
+    let fused = lines.is(&format!("#ifndef {upper}_NO_MATH_H"));
     if fused {
-        fixed(&mut lines, &FUSED.replace("fma(", &format!("fma{suffix}(")))?;
+        fixed(&mut lines, &FUSED.replace("@f@", suffix))?;
     }
     let library = LIBRARY.replace("sin(", &format!("sin{suffix}(")).replace("cos(", &format!("cos{suffix}("));
     let trig = if lines.is(&format!("#ifdef {upper}_NO_MATH_H")) {

@@ -6,6 +6,7 @@ use std::process::Command;
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
+use armgen_codegen::schedule::Options;
 use armgen_codegen::Generated;
 use armgen_verify::reader::ModuleText;
 
@@ -61,6 +62,7 @@ pub(crate) fn check_page() {
             let mut command = Command::new(python);
             command.current_dir(&folder).env("XDG_CACHE_HOME", folder.join("cache")).arg("compiled.py");
             prints(&mut command, &block("Python, compiled", "text"));
+            check_compiler_with_options(&folder, python);
         }
     }
     if there("octave-cli", "octave") {
@@ -71,6 +73,33 @@ pub(crate) fn check_page() {
             &block("MATLAB and Octave", "text"),
         );
     }
+}
+
+/// A compiler with options, given by CC or as an argument, gets them; one whose path has a blank is taken as it stands.
+fn check_compiler_with_options(folder: &Path, python: &str) {
+    let compiler = folder.join("my cc");
+    write(compiler.clone(), "#!/bin/sh\necho \"$@\" >> given\nexec cc \"$@\"\n");
+    succeed(Command::new("chmod").arg("+x").arg(&compiler));
+    write(
+        folder.join("compilers.py"),
+        "import os, pathlib
+import scara_native
+
+def given(compiler, expected):
+    path = pathlib.Path('given')
+    path.unlink(missing_ok=True)
+    scara_native.load(compiler, flags=['-O0'], folder='kept')
+    asked, compiled = path.read_text().splitlines()
+    assert asked == expected[0] and compiled.startswith(expected[1]), path.read_text()
+
+own = os.path.abspath('my cc')
+given(own, ('--version', '-O0 '))
+given(f\"'{own}' -g0 -DX='a b'\", ('-g0 -DX=a b --version', '-g0 -DX=a b -O0 '))
+os.environ['CC'] = f\"'{own}' -g0\"
+given(None, ('-g0 --version', '-g0 -O0 '))
+",
+    );
+    succeed(Command::new(python).current_dir(folder).arg("compilers.py"));
 }
 
 /// What the callers of a package are told: of a row where a column is wanted, of other numbers, by `help`.
@@ -104,7 +133,20 @@ pub(crate) fn check_package() {
     assert(model.dof == 4 && strcmp(model.name, 'scara') && numel(model.jointNames) == 4);
     assert(isequal(scara.gravityWith(model.nominalParameters, q), scara.gravity(q)) || ...
         max(max(abs(scara.gravityWith(model.nominalParameters, q) - scara.gravity(q)))) < 1e-9);
-    assert(isequal(size(scara.gravity(zeros(4, 0))), [4, 0]));
+    % No states, as the columns of no solutions are.
+    none = zeros(4, 0);
+    assert(isequal(size(scara.gravity(none)), [4, 0]) && isequal(size(scara.linkFrames(none)), [4, 4, 4, 0]));
+    assert(isequal(size(scara.inverseDynamics(none, [1; 2; 3; 4], zeros(4, 1))), [4, 0]));
+    assert(isequal(size(scara.coriolisMatrix([1; 2; 3; 4], none)), [4, 4, 0]));
+    assert(isequal(size(scara.kineticEnergyWith(model.nominalParameters, none, [1; 2; 3; 4])), [1, 0]));
+    told(@() scara.coriolisMatrix(none, zeros(4, 2)), 'armgen:size', 'dq is 4 x 2 where 4 x 1 is wanted');
+    frames = scara.linkFrames(q);
+    jacobians = scara.linkJacobians(q);
+    q2 = q(:, 2) + [0; 0; 0; 1]; % link 3 knows nothing of joint 4
+    moved = scara.linkFrames(q2);
+    assert(isequal(frames(:, :, 3, 2), moved(:, :, 3)) && ~isequal(frames(:, :, 4, 2), moved(:, :, 4)));
+    assert(~any(any(jacobians(:, 2:4, 1, 2))) && any(jacobians(:, 1, 1, 2)));
+    assert(~isempty(strfind(evalc('help scara.linkFrames'), 'm(i, j, link, k), indices from 1: link 1 is the one that joint 1 moves')));
     assert(isequal(block(q, q, q), scara.inverseDynamics(q, q, q)));
     % More states than a block has, the last block of one.
     many = linspace(-3, 3, 4 * 8193);
@@ -184,6 +226,119 @@ assert near(vmap(scara.inertia_matrix)(few), scara.inertia_matrix(few))
 ",
     );
     succeed(Command::new(python).current_dir(&folder).arg("main.py"));
+}
+
+/// Arrays of a library that has the array API and no more, where an index is complete or has an ellipsis, with the bits of NumPy. Such a library
+/// is made up here; the one that is made for it runs where it is installed.
+pub(crate) fn check_array_api() {
+    let Some(python) = numpy() else { return };
+    let (folder, generated) = folder_of("languages_array_api");
+    write(folder.join("scara.py"), generated.in_language(Language::Python));
+    let other = crate::generated(&common::source("dry_friction"), Scalar::F32, Trig::Std);
+    write(folder.join("friction.py"), other.in_language(Language::Python));
+    write(
+        folder.join("main.py"),
+        "import inspect
+import types
+import warnings
+
+import numpy as np
+
+import friction
+import scara
+
+warnings.simplefilter('ignore')
+bare = lambda value: value.array if isinstance(value, Strict) else [bare(v) for v in value] if isinstance(value, (list, tuple)) else value
+library = types.ModuleType('strict')
+
+
+class Strict:
+    def __init__(self, array):
+        self.array = np.asarray(array)
+        self.dtype, self.shape = self.array.dtype, self.array.shape
+
+    def __array_namespace__(self):
+        return library
+
+    def __getitem__(self, key):
+        key = key if isinstance(key, tuple) else (key,)
+        assert Ellipsis in key or len(key) == self.array.ndim, f'{key} of {self.array.ndim} axes'
+        return Strict(self.array[key])
+
+
+for name in 'add radd sub rsub mul rmul truediv rtruediv lt le gt ge neg'.split():
+    name = f'__{name}__'
+    setattr(Strict, name, lambda own, *other, name=name: Strict(getattr(own.array, name)(*map(bare, other))))
+for name in 'abs asarray broadcast_to cos full_like moveaxis ones_like reshape round sin stack where zeros_like'.split():
+    setattr(library, name, lambda *values, name=name, **named: Strict(getattr(np, name)(*map(bare, values), **named)))
+library.float64, library.float32 = np.float64, np.float32
+
+libraries = [library]
+try:
+    import array_api_strict
+    libraries.append(array_api_strict)
+except ImportError:
+    pass
+rng = np.random.default_rng(1)
+for module in (scara, friction):
+    for shape in ((), (3,), (2, 3)):
+        for name in (name for name in module.__all__ if name[0].islower()):
+            function = getattr(module, name)
+            of = lambda argument: module.PARAMETERS if argument == 'pi' else module.DOF
+            states = [rng.uniform(-9, 9, shape + (of(a),)).astype(module.DTYPE) for a in inspect.signature(function).parameters]
+            states[-1] = states[-1] * np.asarray(7e4, module.DTYPE)
+            expected = function(*states)
+            for xp in libraries:
+                found = function(*map(xp.asarray, states))
+                pairs = zip(expected, found) if isinstance(expected, tuple) else [(expected, found)]
+                for a, b in pairs:
+                    assert isinstance(b, type(xp.asarray(1.0))), name
+                    assert np.array_equal(a, getattr(b, 'array', None) if xp is library else b._array, equal_nan=True), name
+",
+    );
+    succeed(Command::new(python).current_dir(&folder).arg("main.py"));
+}
+
+/// What is said of entries of another type leads to what is taken: of torch and jax, with and without 64 bits.
+pub(crate) fn check_other_types() {
+    let (folder, generated) = folder_of("languages_types");
+    write(folder.join("scara.py"), generated.in_language(Language::Python));
+    write(
+        folder.join("narrow.py"),
+        crate::generated(&common::source("scara"), Scalar::F32, Trig::Fast).in_language(Language::Python),
+    );
+    let said = "def said(call):
+    try:
+        call()
+    except TypeError as error:
+        return str(error)
+    raise AssertionError('nothing was said')
+
+
+";
+    let torch = "import narrow, scara, torch
+q = torch.zeros(4)
+assert said(lambda: scara.gravity(q)).endswith('float64 is wanted: make it with dtype=torch.float64')
+assert scara.gravity(q.to(dtype=torch.float64)).dtype == torch.float64 and narrow.gravity(q).dtype == torch.float32
+";
+    let jax = "import jax, narrow, scara
+whole = jax.numpy.arange(4)
+narrow_only = 'float32 is wanted: make it with dtype=jax.numpy.float32'
+assert said(lambda: narrow.gravity(whole)).endswith(narrow_only)
+remedy = 'make it with dtype=jax.numpy.float64 after jax.config.update(\"jax_enable_x64\", True)'
+for q in (whole, jax.numpy.zeros(4)):
+    assert said(lambda: scara.gravity(q)).endswith(remedy)
+jax.config.update('jax_enable_x64', True)
+assert said(lambda: scara.gravity(whole)).endswith('float64 is wanted: make it with dtype=jax.numpy.float64')
+assert said(lambda: narrow.gravity(jax.numpy.zeros(4))).endswith(narrow_only)
+assert scara.gravity(jax.numpy.zeros(4, dtype=jax.numpy.float64)).dtype == jax.numpy.float64
+";
+    for (library, calls) in [("torch", torch), ("jax", jax)] {
+        if let Some(python) = python_with(library) {
+            write(folder.join("main.py"), format!("{said}{calls}"));
+            succeed(Command::new(python).current_dir(&folder).arg("main.py"));
+        }
+    }
 }
 
 /// The test file of a language passes beside the module, and fails beside one whose gravity is another.
@@ -298,7 +453,7 @@ pub(crate) fn check_declarations() {
     }
 }
 
-/// Flags that let a compiler reorder sums, of which it says so and of which it does not.
+/// Flags that let a compiler reorder sums, of which GCC says so and Clang does not.
 const PARTS_OF_FAST_MATH: [&[&str]; 4] = [
     &["-ffast-math", "-fno-finite-math-only"],
     &["-funsafe-math-optimizations"],
@@ -306,12 +461,19 @@ const PARTS_OF_FAST_MATH: [&[&str]; 4] = [
     &["-freciprocal-math"],
 ];
 
-/// What reorders sums is refused by the header itself, or changes nothing where the compiler does not say that it was given; and without
-/// `math.h` it needs no header.
+/// Flags under which what is no number is taken for one, or zeros have other signs, with the compilers that say that they were given them.
+const OTHER_NUMBERS: [(&str, &[&str]); 2] =
+    [("-ffinite-math-only", &["gcc", "clang", "arm-none-eabi-gcc"]), ("-fno-signed-zeros", &["gcc", "arm-none-eabi-gcc"])];
+
+/// What reorders sums or takes other numbers is refused by the header itself, or changes nothing where the compiler does not say that it was
+/// given; other flags are taken, and without `math.h` no header is needed.
 pub(crate) fn check_fast_math() {
     let (folder, generated) = folder_of("languages_fast_math");
     write(folder.join("scara.h"), generated.in_language(Language::C));
     write(folder.join("twice.c"), "#include \"scara.h\"\n#include \"scara.h\"\n");
+    let fused = Options { trig: Trig::Fast, fuse: true, ..Options::default() };
+    write(folder.join("fused.c"), "#include \"fused.h\"\n");
+    write(folder.join("fused.h"), common::generate_with(&common::source("scara"), &fused).in_language(Language::C));
     let caller = [
         "#include <stdio.h>\n#include \"scara.h\"\nint main(void)\n{",
         "double q[SCARA_DOF] = {0.1, 0.2, 0.3, 0.4}, tau[SCARA_DOF];",
@@ -323,15 +485,19 @@ pub(crate) fn check_fast_math() {
         "}\nreturn 0;\n}\n",
     ];
     write(folder.join("caller.c"), caller.join("\n"));
-    for compiler in ["gcc", "clang"] {
-        if !there(compiler, compiler) {
+    for compiler in ["gcc", "clang", "arm-none-eabi-gcc"] {
+        // Its C library is not everywhere.
+        let bare = compiler.starts_with("arm");
+        if !there(compiler, if bare { "gcc-arm-none-eabi" } else { compiler }) {
             continue;
         }
-        let compile = |flags: &[&str]| {
+        let compile_file = |file: &str, flags: &[&str]| {
             let mut command = Command::new(compiler);
-            command.current_dir(&folder).args(["-O2", "-Wall", "-Werror", "-c", "-o", "twice.o", "twice.c"]).args(flags);
+            command.current_dir(&folder).args(["-O2", "-Wall", "-Werror", "-c", "-o", "twice.o", file]).args(flags);
+            command.args(bare.then_some("-DSCARA_NO_MATH_H"));
             command
         };
+        let compile = |flags: &[&str]| compile_file("twice.c", flags);
         let check_refused = |flags: &[&str]| {
             let output = compile(flags).output().expect("it is there");
             let told = String::from_utf8_lossy(&output.stderr).contains("compile without");
@@ -345,14 +511,23 @@ pub(crate) fn check_fast_math() {
             Command::new(folder.join("caller")).output().expect("it was compiled").stdout
         };
         check_refused(&["-ffast-math"]);
-        let plain = run(&[]);
+        check_refused(&["-Ofast"]);
+        for (flag, _) in OTHER_NUMBERS.iter().filter(|(_, told_by)| told_by.contains(&compiler)) {
+            check_refused(&[flag]);
+        }
+        for flags in [&[][..], &["-O3"], &["-Os", "-std=c99"]] {
+            succeed(&mut compile(flags));
+        }
+        let plain = (compiler == "clang").then(|| run(&[]));
         for flags in PARTS_OF_FAST_MATH {
-            match compiler {
-                "gcc" => check_refused(flags),
-                _ => assert_eq!(run(flags), plain, "{compiler} {flags:?}"),
+            match &plain {
+                None => check_refused(flags),
+                Some(plain) => assert_eq!(run(flags), *plain, "{compiler} {flags:?}"),
             }
         }
-        succeed(&mut compile(&[]));
-        succeed(&mut compile(&["-DSCARA_NO_MATH_H", "-nostdinc", "-ffreestanding"]));
+        for file in ["twice.c", "fused.c"] {
+            succeed(&mut compile_file(file, &["-DSCARA_NO_MATH_H", "-nostdinc", "-ffreestanding"]));
+        }
+        succeed(&mut compile_file("fused.c", &[]));
     }
 }

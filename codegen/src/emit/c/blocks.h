@@ -1,7 +1,8 @@
 
 /*
  * Functions for many states, as many at a time as there are lanes: each has the bits of the function for one state. A block lies side by side,
- * entry after entry, and what is missing to a whole block is filled up with its last state.
+ * entry after entry, and what is missing to a whole block is filled up with its last state. Results may not lie where arguments do, as they may for
+ * one state: those of a block are written before the arguments of the next are read.
  */
 #define ROBOT_LANES @
 

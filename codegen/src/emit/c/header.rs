@@ -6,6 +6,7 @@ use super::{prefix, returns_a_number};
 use crate::catalogue::{Absent, Length};
 use crate::emit::documentation::{self, Block, Described, DescribedParameters, Link};
 use crate::emit::origin::Origin;
+use crate::emit::plain::of_robot;
 use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::program::listing::decimal;
@@ -48,6 +49,7 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
     let name = prefix(module);
     let upper = macros_of(&name);
     let mut text = opening(origin, &[], &[], &upper);
+    text += &of_robot(OF_RUST, &name, &upper);
     text += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
     text += &macros(module);
     text += POINTERS;
@@ -60,11 +62,16 @@ pub(super) fn header(module: &Module, origin: &Origin) -> String {
     text
 }
 
+/// What the header that holds the functions has besides.
+const OF_RUST: &str = "/*\n * The functions are those of the module in Rust, with its bits, whatever the C compiler. No header is included, as with \
+     ROBOT_NO_MATH_H\n * where the header holds the functions itself: INFINITY, where a limit below is infinite, is in math.h.\n */\n\
+     #define ROBOT_SAME_BITS 1\n\n";
+
 /// What is said of all functions.
 pub(super) const POINTERS: &str =
     "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
 
-/// The scalar and the macros.
+/// The name, the scalar and the other macros.
 pub(super) fn macros(module: &Module) -> String {
     let name = prefix(module);
     let upper = macros_of(&name);
@@ -87,11 +94,16 @@ pub(super) fn macros(module: &Module) -> String {
         braces(vec![number(low, "-INFINITY"), number(high, "INFINITY")])
     };
     let positions = module.joints.iter().map(position);
+    let revolute = module.joints.iter().map(|joint| if joint.is_revolute { "1" } else { "0" }.to_string());
     let _ = write!(
         text,
-        "/* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
+        "/* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */\n\
+         #define {upper}_NAME \"{}\"\n#define {upper}_JOINT_IS_REVOLUTE {}\n\n\
+         /* The scalar of all functions. */\ntypedef {real} {name}_real;\n\n\
          /* Number of joints, of parameters, and of rows of the operational space. */\n\
          #define {upper}_DOF {}\n#define {upper}_PARAMETERS {}\n#define {upper}_TASK_ROWS {}\n\n",
+        module.name,
+        braces(revolute.collect()),
         module.joints.len(),
         module.parameters.len(),
         module.task.len(),

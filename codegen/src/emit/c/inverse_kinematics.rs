@@ -7,17 +7,17 @@ use super::{prefix, CFace};
 use crate::emit::documentation::Block;
 use crate::emit::origin::Origin;
 use crate::emit::rust;
-use crate::inverse_kinematics::InverseKinematics;
+use crate::inverse_kinematics::{InverseKinematics, Target};
 use crate::kinds::Scalar;
 use crate::program::Module;
 
-/// The verdicts in the order of their numbers, and what C is told of each.
-const VERDICTS: [(&str, &str); 5] = [
-    ("Complete", "all solutions are listed, as far as the construction can tell"),
-    ("Unreachable", "none was found; `miss` says by how much the construction missed"),
-    ("NearDouble", "the rounding of t decides about some"),
-    ("Continuum", "some joints can move while the end effector stays"),
-    ("Invalid", "an entry of t is not finite, or its rotation none"),
+/// The verdicts in the order of their numbers, and what C is told of each; nothing where that depends on the arm.
+const VERDICTS: [(&str, Option<&str>); 5] = [
+    ("Complete", Some("all solutions are listed, as far as the construction can tell")),
+    ("Unreachable", Some("none was found; `miss` says by how much the construction missed")),
+    ("NearDouble", Some("the rounding of t decides about some")),
+    ("Continuum", Some("some joints can move while the end effector stays")),
+    ("Invalid", None),
 ];
 
 /// The C face of inverse kinematics; nothing where the arm has no construction.
@@ -53,7 +53,7 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
     let names = Names::of(&module.name, module.scalar, module.joints.len());
     let mut text = opening(&names, found, origin);
     text += "#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
-    text += &types(&names, found);
+    text += &types(&names, found, "`LOOP` in the module in Rust");
     let functions = functions(&names, found);
     text += &functions.iter().map(|(about, signature)| format!("{about}{signature};\n")).collect::<Vec<_>>().join("\n");
     text + "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
@@ -63,24 +63,36 @@ fn header(module: &Module, found: &InverseKinematics, origin: &Origin) -> String
 pub(super) fn opening(names: &Names, found: &InverseKinematics, origin: &Origin) -> String {
     let upper = &names.upper;
     let text = said(&origin.head(&[format!("Inverse kinematics: {}; at most {} solutions.", found.class, found.most)]));
-    text + &format!("#ifndef ARMGEN_{upper}_IK_H\n#define ARMGEN_{upper}_IK_H\n\n")
+    // No name of a robot makes a guard of this end: that of a header of functions ends in `_H`.
+    let guard = format!("ARMGEN_{upper}_INVERSE_KINEMATICS");
+    text + &format!("#ifndef {guard}\n#define {guard}\n\n")
 }
 
-/// The macros and the structs of both headers.
-pub(super) fn types(names: &Names, found: &InverseKinematics) -> String {
+/// What the arm is to reach, in words.
+fn reached(target: Target) -> &'static str {
+    match target {
+        Target::Pose | Target::Planar => "pose",
+        Target::Position => "position",
+        Target::Pointing => "position and direction",
+    }
+}
+
+/// The macros and the structs of both headers; `way`: what holds the constants of the loop, in words.
+pub(super) fn types(names: &Names, found: &InverseKinematics, way: &str) -> String {
     let Names { robot, upper, real, joints: dof } = names;
-    let most = found.most;
-    let mut text = said(&["At most so many postures reach a pose, where they are finitely many.".into()]);
+    let (most, target) = (found.most, reached(found.target));
+    let mut text = said(&[format!("At most so many postures reach a {target}, where they are finitely many.")]);
     text += &format!("#define {upper}_MAX_SOLUTIONS {most}\n\n");
     text += &said(&["What is known of the solutions, `verdict`:".into()]);
     for (number, (name, means)) in VERDICTS.iter().enumerate() {
+        let means = means.unwrap_or_else(|| rust::what_is_invalid(found));
         text += &format!("#define {upper}_{} {number} /* {means} */\n", spelled(name));
     }
     let branches = rust::branches(found);
     if !branches.is_empty() {
         let names = branches.iter().map(|name| format!("    \"{name}\"")).collect::<Vec<_>>().join(", \\\n");
         text += "\n";
-        text += &said(&rust::meanings(found).iter().map(|line| line.trim().to_owned()).collect::<Vec<_>>());
+        text += &said(&rust::meanings(found, way).iter().map(|line| line.trim().to_owned()).collect::<Vec<_>>());
         text += &format!("#define {upper}_BRANCHES {{ \\\n{names}}}\n");
     }
     text + &format!(
@@ -88,7 +100,7 @@ pub(super) fn types(names: &Names, found: &InverseKinematics) -> String {
          uint32_t branch; /* which of the construction's ways leads here */\n    \
          uint32_t is_double; /* 1: two solutions meet here */\n    \
          uint32_t free; /* bit i: joint i + 1 has one of many values, which the construction chose */\n}} {robot}_solution;\n\n\
-         /* All postures at a pose. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
+         /* All postures that reach a {target}. */\ntypedef struct {{\n    uint32_t verdict;\n    uint32_t count;\n    \
          {real} miss; /* where there is none: by how much the construction missed, a hint; otherwise 0 */\n    \
          {robot}_solution all[{upper}_MAX_SOLUTIONS]; /* zeros from count on */\n}} {robot}_solutions;\n\n"
     )
@@ -97,7 +109,10 @@ pub(super) fn types(names: &Names, found: &InverseKinematics) -> String {
 /// The functions of both headers: what is said of each, and its declaration.
 pub(super) fn functions(names: &Names, found: &InverseKinematics) -> Vec<(String, String)> {
     let Names { robot, real, joints: dof, .. } = names;
-    let mut about = vec!["All joint variables that take the end effector to t, its pose in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.".to_owned()];
+    let mut about = vec![
+        format!("All joint variables that take the end effector to the {} of t.", reached(found.target)),
+        format!("t: {}.", rust::about_target(found.target)),
+    ];
     about.extend(rust::about_redundancy(found).map(|about| format!("redundancy: {about}.")));
     let redundancy = found.redundancy.as_ref().map_or(String::new(), |_| format!("    {real} redundancy,\n"));
     let mut functions = vec![(

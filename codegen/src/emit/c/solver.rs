@@ -121,7 +121,7 @@ pub fn print(
     }
     text += "#ifndef __cplusplus\n#include <stdbool.h>\n#endif\n\n";
     text += &own(PROLOGUE);
-    text += &types(&names, found);
+    text += &types(&names, found, &format!("`{inner}_loop`"));
     text += "/*\n * From here on to the functions at the end: the construction and its building blocks.\n */\n\n";
     let library = match scalar {
         Scalar::F64 => DOUBLE,

@@ -26,6 +26,7 @@ const STRIBECK: &str = include_str!("stribeck.h");
 const SIGN: &str = include_str!("sines/sign.h");
 const STD: &str = include_str!("sines/std.h");
 const FAST: &str = include_str!("sines/fast.h");
+const FUSED: &str = include_str!("fused.h");
 
 /// The lanes of a vector of angles: what a processor with vectors always has, up to `VECTOR`.
 const OF_FOUR: &str = "#define ROBOT_VECTOR_LANES 4\n#define ROBOT_VECTOR_AT(from) {(from)[0], (from)[1], (from)[2], (from)[3]}";
@@ -43,10 +44,6 @@ pub(super) fn print(module: &Module, origin: &Origin, notes: &Notes) -> String {
     text += &of_robot(&sine_of_library(module), &c.name, &c.upper);
     text += &of_robot(PROLOGUE, &c.name, &c.upper);
     text += &of_robot(VECTORS, &c.name, &c.upper);
-    let _ = writeln!(text, "/* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */");
-    let _ = writeln!(text, "#define {}_NAME \"{}\"", c.upper, module.name);
-    let revolute: Vec<&str> = module.joints.iter().map(|joint| if joint.is_revolute { "1" } else { "0" }).collect();
-    let _ = writeln!(text, "#define {}_JOINT_IS_REVOLUTE {{{}}}\n", c.upper, revolute.join(", "));
     text += &macros(module);
     text += "\n";
     if asks_for_sines(module) {
@@ -99,10 +96,7 @@ fn fused(module: &Module) -> String {
         Scalar::F64 => "",
         Scalar::F32 => "f",
     };
-    format!(
-        "/* x y + z, rounded once: an instruction where the compiler is told of a processor that has it (-mfma, -march=native), else a call. */\n\
-         #define ROBOT_FMA(x, y, z) fma{suffix}(x, y, z)\n#include <math.h>\n\n"
-    )
+    FUSED.replace("@f@", suffix)
 }
 
 /// Where the sines of the C library come from, if any are needed.

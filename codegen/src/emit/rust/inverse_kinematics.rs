@@ -211,7 +211,7 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
     });
     let branches = branches(found);
     let count = usize_literal(branches.len());
-    let meanings = meanings(found);
+    let meanings = meanings(found, "`LOOP`");
     let loops = match found.loops() {
         [way] => {
             let (count, way) = (usize_literal(way.order.len()), arrangement(way, scalar));
@@ -263,8 +263,8 @@ fn constants(joints: &[Joint], scalar: Scalar, found: &InverseKinematics) -> Tok
     }
 }
 
-/// The documentation of `BRANCHES`: what each bit says.
-pub(in crate::emit) fn meanings(found: &InverseKinematics) -> Vec<String> {
+/// The documentation of `BRANCHES`: what each bit says; `way`: what holds the constants of the loop, in words.
+pub(in crate::emit) fn meanings(found: &InverseKinematics, way: &str) -> Vec<String> {
     if found.choices.is_empty() {
         return vec![
             " The names of branches: none, for the solutions are ordered by their joint variables, and `branch` is 0.".into()
@@ -272,7 +272,7 @@ pub(in crate::emit) fn meanings(found: &InverseKinematics) -> Vec<String> {
     }
     let mut lines = vec![
         " What a solution's `branch` says, by its number; empty where no solution has it. A bit is 0 in the first of its ways, where the sign".into(),
-        " that is named is positive (angles as the loop has them: with the `offsets` of `LOOP`). The words are names of the signs, not of the looks of".into(),
+        format!(" that is named is positive (angles as the loop has them: with the `offsets` of {way}). The words are names of the signs, not of the looks of"),
         " the arm:".into(),
         String::new(),
     ];
@@ -340,6 +340,36 @@ fn arrangement(way: &Arrangement, scalar: Scalar) -> TokenStream {
     }
 }
 
+/// What the argument `t` is.
+pub(in crate::emit) fn about_target(target: Target) -> &'static str {
+    match target {
+        Target::Pose => {
+            "the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read"
+        }
+        Target::Position => {
+            "a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it"
+        }
+        Target::Pointing => {
+            "a pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m, of which position and z axis are to be \
+             reached; the last row is not read"
+        }
+        Target::Planar => {
+            "the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the \
+             task leaves out"
+        }
+    }
+}
+
+/// What is refused as `Invalid`.
+pub(in crate::emit) fn what_is_invalid(found: &InverseKinematics) -> &'static str {
+    match (found.target, &found.redundancy) {
+        (Target::Position, None) => "the position is not finite",
+        (Target::Position, Some(_)) => "the position or the redundancy is not finite",
+        (_, None) => "an entry of t is not finite or its rotation none to 1e-6",
+        (_, Some(_)) => "an entry of t is not finite or its rotation none to 1e-6, or the redundancy is not finite",
+    }
+}
+
 /// What the argument beside the pose is, of a redundant arm.
 pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<String> {
     Some(match found.redundancy.as_ref()? {
@@ -348,7 +378,8 @@ pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<Str
             format!("the joint variable q{}, {unit}", given.joint + 1)
         }
         Redundancy::Swivel => {
-            "the swivel angle, rad, of the elbow about the line from shoulder to wrist, measured as `shoulder_elbow_wrist` says"
+            "the swivel angle, rad, of the elbow about the direction e from shoulder to wrist, from x towards e × x: x is k × e normalised, \
+             k = (e + z0) × y0, y0 and z0 axes of the base frame; the elbow is the point of axis 4 that is nearest to axis 3"
                 .into()
         }
     })
@@ -356,13 +387,9 @@ pub(in crate::emit) fn about_redundancy(found: &InverseKinematics) -> Option<Str
 
 fn function(found: &InverseKinematics, dof: usize) -> TokenStream {
     let body = solutions(found, dof);
-    let target = match found.target {
-        Target::Pose => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read.",
-        Target::Position => " `t`: a pose of the end effector in the base frame by rows, lengths in m, of which the position alone is read, as far as the task has it.",
-        Target::Pointing => " `t`: a pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m, of which position and z axis are to be reached; the last row is not read.",
-        Target::Planar => " `t`: the pose of the end effector in the base frame, T = (R p; 0 1) by rows, lengths in m; the last row is not read, nor what the task leaves out.",
-    };
-    let (given, invalid) = arguments_read(found);
+    let target = format!(" `t`: {}.", about_target(found.target));
+    let given = arguments_read(found);
+    let invalid = format!(" `Invalid`: {}.", what_is_invalid(found));
     let rows = found.own.as_ref().map(|_| {
         let tolerance = if matches!(found.construction, Construction::General(_)) { "`GENERAL_ROWS`" } else { "`ROUNDING`" };
         let lines = [
@@ -580,8 +607,8 @@ fn joints_with_given(others: usize, dof: usize) -> TokenStream {
     }
 }
 
-/// The statements that read the arguments, and the documentation of what is refused.
-fn arguments_read(found: &InverseKinematics) -> (TokenStream, &'static str) {
+/// The statements that read the arguments.
+fn arguments_read(found: &InverseKinematics) -> TokenStream {
     match found.target {
         Target::Position => {
             let condition = found.redundancy.as_ref().map(|_| quote!(|| !redundancy.is_finite()));
@@ -596,18 +623,13 @@ fn arguments_read(found: &InverseKinematics) -> (TokenStream, &'static str) {
                     #moved
                 }
             });
-            let invalid = match condition {
-                None => " `Invalid`: the position is not finite.",
-                Some(_) => " `Invalid`: the position or the redundancy is not finite.",
-            };
-            let given = quote! {
+            quote! {
                 let position = [x[3], y[3], z[3]];
                 if !position.iter().all(|p| p.is_finite()) #condition {
                     return Solutions::none(Verdict::Invalid);
                 }
                 #value
-            };
-            (given, invalid)
+            }
         }
         _ if found.redundancy.is_some() => {
             let value = found.given().map(|given| match given.place {
@@ -621,22 +643,20 @@ fn arguments_read(found: &InverseKinematics) -> (TokenStream, &'static str) {
                 },
             });
             let value = value.unwrap_or(quote!(let t: Frame = [x, y, z];));
-            let given = quote! {
+            quote! {
                 if !is_pose(t) || !redundancy.is_finite() {
                     return Solutions::none(Verdict::Invalid);
                 }
                 #value
-            };
-            (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6, or the redundancy is not finite.")
+            }
         }
         Target::Pose | Target::Planar | Target::Pointing => {
-            let given = quote! {
+            quote! {
                 if !is_pose(t) {
                     return Solutions::none(Verdict::Invalid);
                 }
                 let t: Frame = [x, y, z];
-            };
-            (given, " `Invalid`: an entry of t is not finite or its rotation none to 1e-6.")
+            }
         }
     }
 }

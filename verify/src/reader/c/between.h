@@ -1,5 +1,3 @@
-/* x y + z, rounded once: an instruction where the compiler is told of a processor that has it (-mfma, -march=native), else a call. */
-#define ROBOT_FMA
 /* With ROBOT_NO_MATH_H defined no header is needed: sines of angles beyond the range of the ones below are then not numbers. */
 #ifdef ROBOT_NO_MATH_H
 /* Name of the robot, and whether each joint turns (q in rad) or slides (q in m). */

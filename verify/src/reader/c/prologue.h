@@ -1,5 +1,7 @@
 #if defined(__FAST_MATH__) || defined(_M_FP_FAST) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
 #error "this file computes nonsense under -ffast-math, its parts and /fp:fast, which reorder sums: compile without"
+#elif (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0) || defined(__NO_SIGNED_ZEROS__)
+#error "this file takes what is no number for one under -ffinite-math-only, and zeros have other signs under -fno-signed-zeros: compile without"
 #endif
 
 /*
