@@ -1,7 +1,7 @@
 //! The oracle judged: against stored values of another library, a closed form of the book, and the laws of mechanics.
 
 use armgen_tests::oracle::{rank, times, Description, Matrix, Model};
-use armgen_tests::precision::{agree, deviation, CHECK_STATE, DUAL, FORWARD_RESIDUAL, REFERENCE};
+use armgen_tests::precision::{agree, deviation, CHECK_STATE, DIFFERENCES, DUAL, FORWARD_RESIDUAL, REFERENCE};
 use armgen_tests::random::{self, State};
 use armgen_tests::reference::{description, reference, ROBOTS};
 use armgen_tests::technical_project;
@@ -267,21 +267,49 @@ fn tricky_arms_obey_the_laws() {
     }
 }
 
-/// dtau/dq and dtau/ddq against central differences, on an arm that has everything.
+/// dtau/dq and dtau/d(dq) against central differences, on arms that have between them every force that depends on q or dq.
 #[test]
 fn derivatives_of_the_inverse_dynamics() {
-    let arm = model(&random::arm(3));
-    let State { q, dq, ddq, .. } = random::state(arm.dof(), 3);
-    let (by_q, by_dq) = arm.inverse_dynamics_derivatives(&q, &dq, &ddq);
-    let h = 1e-5;
-    for k in 0..arm.dof() {
-        let at = |v: &[f64], s: f64| v.iter().enumerate().map(|(i, x)| if i == k { x + s * h } else { *x }).collect::<Vec<_>>();
-        let difference = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<_>>();
-        let column = |m: &Matrix| m.iter().map(|row| row[k]).collect::<Vec<_>>();
-        let tau = |q: &[f64], dq: &[f64]| arm.inverse_dynamics(q, dq, &ddq);
-        agree("dtau/dq", &column(&by_q), &difference(tau(&at(&q, 1.0), &dq), tau(&at(&q, -1.0), &dq)), 1e-6);
-        agree("dtau/ddq", &column(&by_dq), &difference(tau(&q, &at(&dq, 1.0)), tau(&q, &at(&dq, -1.0))), 1e-6);
+    let file = |name: &str| std::fs::read_to_string(format!("{}/robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"))).expect(name);
+    let mut arms: Vec<(String, String)> = random::tricky().map(|(name, text)| (name.to_owned(), text.to_owned())).to_vec();
+    arms.extend(["dry_friction", "load_friction"].map(|name| (name.to_owned(), file(name))));
+    arms.extend((0..12).map(|seed| (format!("seed {seed}"), random::arm(seed))));
+    arms.extend((0..12).map(|seed| (format!("posed seed {seed}"), random::posed_arm(seed))));
+    let mut there = std::collections::BTreeSet::new();
+    for (i, (name, text)) in arms.iter().enumerate() {
+        let arm = model(text);
+        for joint in &arm.joints {
+            let has = [
+                ("slide", joint.prismatic),
+                ("rotor", joint.motor.is_some()),
+                ("viscous", joint.viscous.is_some()),
+                ("cubic", joint.cubic.is_some()),
+                ("Stribeck", joint.stribeck.is_some()),
+                ("load", joint.load != 0.0),
+                ("spring", joint.stiffness.is_some()),
+            ];
+            there.extend(has.iter().filter(|(_, has)| *has).map(|(what, _)| *what));
+        }
+        let State { q, dq, ddq, .. } = random::state(arm.dof(), i as u64);
+        let (by_q, by_dq) = arm.inverse_dynamics_derivatives(&q, &dq, &ddq);
+        let h = 1e-5;
+        for k in 0..arm.dof() {
+            let at =
+                |v: &[f64], s: f64| v.iter().enumerate().map(|(i, x)| if i == k { x + s * h } else { *x }).collect::<Vec<_>>();
+            let difference = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * h)).collect::<Vec<_>>();
+            let column = |m: &Matrix| m.iter().map(|row| row[k]).collect::<Vec<_>>();
+            let tau = |q: &[f64], dq: &[f64]| arm.inverse_dynamics(q, dq, &ddq);
+            let (to_q, to_dq) = ([at(&q, 1.0), at(&q, -1.0)], [at(&dq, 1.0), at(&dq, -1.0)]);
+            agree(&format!("{name}: dtau/dq"), &column(&by_q), &difference(tau(&to_q[0], &dq), tau(&to_q[1], &dq)), DIFFERENCES);
+            agree(
+                &format!("{name}: dtau/d(dq)"),
+                &column(&by_dq),
+                &difference(tau(&q, &to_dq[0]), tau(&q, &to_dq[1])),
+                DIFFERENCES,
+            );
+        }
     }
+    assert_eq!(there.len(), 7, "{there:?}");
 }
 
 #[test]
