@@ -5,8 +5,8 @@ use armgen_codegen::validate::impossible_inertia;
 
 use crate::number::Decimal;
 use crate::pose::Turn;
-use crate::snap::Written;
 use crate::values::Values;
+use crate::written::Written;
 use crate::Code;
 
 /// A mass distribution in a frame.

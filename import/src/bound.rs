@@ -20,7 +20,7 @@
 use crate::body::Body;
 use crate::chain::{Arm, Row};
 use crate::pose::{Pose, Turn};
-use crate::snap::Written;
+use crate::written::Written;
 
 /// What a bound is multiplied by: more than all roundings here.
 const UP: f64 = 1.0 + 1e-9;

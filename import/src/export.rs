@@ -294,7 +294,7 @@ impl Writer<'_> {
         }
         self.rounded += 3;
         let float = |value: &Value| value.as_ref().and_then(|e| self.values.of(e)).map_or(0.0, |number| number.to_f64());
-        let written = |value: &Value| crate::snap::Written { value: float(value), ..crate::snap::Written::zero() };
+        let written = |value: &Value| crate::written::Written { value: float(value), ..crate::written::Written::zero() };
         let turn = match rotation {
             RotationDescription::Rpy(angles) => crate::pose::Turn::Rpy(angles.value.each_ref().map(written)),
             RotationDescription::Quat(quat) => crate::pose::Turn::Quat(quat.value.each_ref().map(written), 0.0),

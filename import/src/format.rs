@@ -8,9 +8,9 @@ use armgen_codegen::source::Span;
 use crate::body::Body;
 use crate::number::Decimal;
 use crate::pose::Pose;
-use crate::snap::Written;
 use crate::tree::Tree;
 use crate::values::Values;
+use crate::written::Written;
 
 /// How a joint of the chain moves.
 #[derive(Clone, Debug)]

@@ -4,6 +4,7 @@
 //! ```text
 //! xml.rs     text -> XML tree with places, bounded
 //! number.rs  digits as they stand
+//! written.rs a number of robot.yaml beside what the file says
 //! snap.rs    1.5708 is pi/2
 //! pose.rs body.rs   frames and mass distributions, as robot.yaml writes them
 //! values.rs  attributes as numbers, with what must hold for them
@@ -43,6 +44,7 @@ mod tree;
 mod unread;
 mod urdf;
 mod values;
+mod written;
 mod xml;
 mod yaml;
 

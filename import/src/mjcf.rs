@@ -26,9 +26,9 @@ use crate::body::Body;
 use crate::format::{Extent, Format, Motion};
 use crate::number::Decimal;
 use crate::pose::{nothing, Pose, Turn};
-use crate::snap::Written;
 use crate::tree::{Joint, Kind, Role, Tree};
 use crate::values::Values;
+use crate::written::Written;
 use crate::xml::{attribute, child, place, shown};
 use crate::Code;
 

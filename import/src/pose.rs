@@ -2,7 +2,7 @@
 
 use armgen_codegen::source::Span;
 
-use crate::snap::Written;
+use crate::written::Written;
 
 /// A translation and a rotation.
 #[derive(Clone, Debug)]

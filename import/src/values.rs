@@ -5,7 +5,8 @@ use armgen_codegen::source::{Source, Span};
 use roxmltree::Node;
 
 use crate::number::{decimal, Decimal};
-use crate::snap::{Snap, Written};
+use crate::snap::Snap;
+use crate::written::Written;
 use crate::xml::{attribute, shown};
 use crate::Code;
 

@@ -8,7 +8,7 @@ use crate::body::{Body, ELEMENTS};
 use crate::chain::{Arm, Row};
 use crate::pose::{Pose, Turn};
 use crate::report::Report;
-use crate::snap::Written;
+use crate::written::Written;
 
 /// Why a description that takes tensors as they are written says so.
 const IMPOSSIBLE: &str = "B(q) may not be positive definite: for kinematics and a look, not for control";

@@ -7,8 +7,8 @@ use super::classes::Element;
 use super::{opposite, Mjcf};
 use crate::number::Decimal;
 use crate::pose::{factor, AxisAngle, Turn};
-use crate::snap::Written;
 use crate::values::Values;
+use crate::written::Written;
 use crate::Code;
 
 const WRITINGS: [&str; 5] = ["quat", "axisangle", "xyaxes", "zaxis", "euler"];
