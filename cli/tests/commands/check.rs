@@ -1,0 +1,124 @@
+//! What `armgen check` says of a description.
+
+use std::fs;
+
+use crate::{check, err, file, folder, out};
+
+#[test]
+fn a_valid_file_gives_a_summary_and_code_0() {
+    let output = check(&["check", &file("robots/scara.yaml")], 0);
+    let text = out(&output);
+    assert!(text.contains("valid, with 1 warning"), "{text}");
+    assert!(text.contains("a motion can identify 11 of 14"), "{text}");
+    assert!(text.contains("m_l1 + 16*I_l1 + 16*I_m1\n"), "{text}");
+    assert!(text.contains("I_l2 + I_m2\n"), "{text}");
+    assert!(err(&output).contains("warning[triangle-inequality]"), "warnings go to standard error");
+    assert!(!text.contains("warning["));
+}
+
+#[test]
+fn a_summary_shows_links_and_what_identification_would_miss() {
+    let text = out(&check(&["check", &file("tests/data/iiwa14.yaml")], 0));
+    assert!(text.contains("m/s²: z0 points up\n"), "{text}");
+    assert!(text.contains("  2 j2       6.35     0.0003   0.059   0.042             0.0590008                    0\n"), "{text}");
+    assert!(
+        text.contains(
+            "  2 j2                  0.0305  0.0304  0.011                   0.0693             0.1    0.1    0.22              2800\n"
+        ),
+        "{text}"
+    );
+    assert!(text.contains("  2 j2   revolute  [0, 0, 0.2025] rpy [pi/2, 0, pi]   [0, 0, 1]\n"), "{text}");
+    assert!(text.contains("\n  tool: [0, 0, 0.045]\n") && !text.contains("q = 0 is outside"), "{text}");
+    // From the sum of the lengths along the vertical arm: 0.36 + 0.42 + 0.4 + 0.126.
+    assert!(text.lines().any(|line| line.starts_with("  end effector") && line.contains("(0, 0, 1.306)")), "{text}");
+    assert!(text.contains("a motion can identify 50 combinations of them"), "{text}");
+    assert!(text.contains("`base_regressor` has 36 columns of these 50:\n  the other 14 are 0"), "{text}");
+}
+
+#[test]
+fn a_base_parameter_is_listed_with_its_combination() {
+    let text = out(&check(&["check", &file("tests/robots/base_set.yaml")], 0));
+    assert!(text.contains("26 in all"), "{text}");
+    assert!(text.contains("-1/2*mcy2 + Ixy2"), "{text}");
+}
+
+#[test]
+fn a_faulty_file_gives_every_place_and_code_1() {
+    let path = file("tests/bad/many-faults.yaml");
+    for command in ["check", "show", "generate", "count"] {
+        let output = check(&[command, &path], 1);
+        assert_eq!(out(&output), "", "nothing but messages");
+        assert!(err(&output).contains(&format!("--> {path}:")), "{}", err(&output));
+        assert!(err(&output).lines().last().expect("messages").contains("errors"), "{}", err(&output));
+    }
+    check(&["check", &file("tests/bad/empty-file.yaml")], 1);
+    check(&["check", &file("tests/bad/yaml-syntax-bracket.yaml")], 1);
+}
+
+#[test]
+fn an_unreadable_file_gives_code_2() {
+    let folder = folder("unreadable");
+    let latin = folder.join("latin1.yaml");
+    fs::write(&latin, b"name: a\n# caf\xe9\n").expect("a file");
+    let output = check(&["check", latin.to_str().expect("UTF-8")], 2);
+    assert!(err(&output).contains("not UTF-8: line 2"), "{}", err(&output));
+    let output = check(&["check", folder.join("none.yaml").to_str().expect("UTF-8")], 2);
+    assert!(err(&output).contains("cannot read"), "{}", err(&output));
+    check(&["check", folder.to_str().expect("UTF-8")], 2);
+    // The worst of several decides.
+    check(&["check", &file("robots/scara.yaml"), &file("tests/bad/empty-file.yaml")], 1);
+}
+
+/// Two slides: without a turned tensor, a density, an axis beside the centres of mass.
+const CART: &str = "name: cart
+convention: standard
+gravity: [0, 0, -9.81]
+joints:
+  - {name: x, type: prismatic, a: 0, alpha: pi/2, d: 0.5, theta: 0, link: {mass: 10}}
+  - {name: y, type: prismatic, a: 0, alpha: 0, d: 0, theta: 0, link: {mass: 2}}
+regressor: base
+";
+
+#[test]
+fn the_summary_explains_the_columns_that_it_has() {
+    let robot = folder("columns").join("robot.yaml");
+    let path = robot.to_str().expect("UTF-8");
+    fs::write(&robot, CART).expect("a file");
+    let text = out(&check(&["check", path], 0));
+    assert!(text.contains("com: in the link's own frame\n") && text.contains("radius of gyration: sqrt(I/m)"), "{text}");
+    for absent in ["payload", "its axis:", "next axis", "turned", "8000 kg/m³", "take `regressor: base`"] {
+        assert!(!text.contains(absent), "{absent} in {text}");
+    }
+    let text = out(&check(&["check", &file("robots/panda7.yaml")], 0));
+    for present in ["its axis:", "next axis:", "turned:", "8000 kg/m³", "take `regressor: base`"] {
+        assert!(text.contains(present), "{present} in {text}");
+    }
+    assert!(!text.contains("lighter than foam"), "{text}");
+    // A value in lines of its own stands in one line of its table.
+    let row = "  - {name: x, type: prismatic, a: 0, alpha: pi/2, d: 0.5, theta: 0, link: {mass: 10}}\n";
+    let block = "  - name: x\n    type: prismatic\n    a: 0\n    alpha: pi/2\n    d: >\n      0.5\n      + 0.25\n    theta: 0\n    link: {mass: 10}\n";
+    assert!(CART.contains(row));
+    let block = CART.replace(row, block);
+    fs::write(&robot, block).expect("a file");
+    let text = out(&check(&["check", path], 0));
+    assert!(text.contains("1 x    prismatic      0         pi/2  q1 + 0.5 + 0.25            0\n"), "{text}");
+}
+
+/// The page calls the same three links of the UR5 doubtful.
+#[test]
+fn links_lighter_than_foam_are_named() {
+    let output = check(&["check", "--strict", &file("robots/ur5.yaml")], 0);
+    assert!(out(&output).contains("\n  lighter than foam: 4 joint4, 5 joint5, 6 joint6\n"), "{}", out(&output));
+}
+
+#[test]
+fn a_warning_beside_an_error_of_the_equations_is_said_once() {
+    let robot = folder("once").join("robot.yaml");
+    let text = fs::read_to_string(file("robots/panda7.yaml")).expect("a description");
+    assert!(text.contains("d: 0.333"), "{text}");
+    fs::write(&robot, text.replacen("d: 0.333", "d: 1e308", 1)).expect("a file");
+    let said = err(&check(&["check", robot.to_str().expect("UTF-8")], 1));
+    assert_eq!(said.matches("warning[implausible-reach]").count(), 1, "{said}");
+    assert_eq!(said.matches("error[out-of-range]").count(), 1, "{said}");
+    assert!(said.contains(": 1 error and 1 warning"), "{said}");
+}
