@@ -299,7 +299,7 @@ in_both_scalars! {
             // Of no size, wherever it is asked for: that adds no root to those of the coefficients, and takes none away unsaid.
             let noise = 3e-2;
             let found = circle_roots::<9, 20>(&a, &b, noise, 0.0, |_| [0.0; 9]);
-            assert!(found.anew <= 240 && (found.near || found.count % 2 == 0), "{found:?}");
+            assert!(found.anew <= 240 && (found.near || found.count.is_multiple_of(2)), "{found:?}");
             for root in found.all[..found.count].iter().filter(|root| !root.double) {
                 let at = angle(root);
                 let value: f64 = (0..9).map(|k| a[k] as f64 * (k as f64 * at).cos() + if k == 0 { 0.0 } else { b[k] as f64 * (k as f64 * at).sin() }).sum();
