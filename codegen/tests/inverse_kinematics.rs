@@ -4,6 +4,8 @@
 mod arms;
 #[path = "inverse_kinematics/in_c.rs"]
 mod in_c;
+#[path = "../../tests/src/installed.rs"]
+mod installed;
 #[path = "inverse_kinematics/project.rs"]
 mod project;
 

@@ -1,6 +1,6 @@
 //! Pages in a real browser, opened from disk: every message on the console and every request but the file fails the test.
 //!
-//! Where there is no browser a line says so, and the tests pass.
+//! Where there is no browser a line says so, and the tests pass (`tests/src/installed.rs`).
 
 #[path = "browser/budgets.rs"]
 mod budgets;
@@ -12,6 +12,8 @@ mod driver;
 mod equations;
 #[path = "browser/figures.rs"]
 mod figures;
+#[path = "../../tests/src/installed.rs"]
+mod installed;
 #[path = "browser/logs.rs"]
 mod logs;
 #[path = "browser/pages.rs"]

@@ -1,5 +1,8 @@
 //! The files of `page/web` under the tests that stand beside them, by Node, and their types, by TypeScript; without these a line says so, and
-//! the test passes.
+//! the test passes (`tests/src/installed.rs`).
+
+#[path = "../../tests/src/installed.rs"]
+mod installed;
 
 use std::process::Command;
 
@@ -8,8 +11,7 @@ fn the_files_of_the_script_pass_their_own_tests() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/web/tests");
     let mut files: Vec<_> = std::fs::read_dir(folder).expect("the tests").map(|entry| entry.expect("an entry").path()).collect();
     files.sort();
-    if !Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success()) {
-        println!("skipped: no `node` here (Debian: nodejs)");
+    if !installed::there("node", "nodejs") {
         return;
     }
     let output = Command::new("node").arg("--test").args(files).output().expect("node runs");
@@ -23,7 +25,7 @@ fn the_types_that_the_files_of_the_script_say_are_theirs() {
     let said = Command::new("tsc").arg("--version").output().map(|output| String::from_utf8_lossy(&output.stdout).into_owned());
     let major = said.ok().and_then(|said| said.split([' ', '.']).nth(1)?.parse::<u32>().ok());
     if major.is_none_or(|major| major < 5) {
-        println!("skipped: no `tsc` of TypeScript 5 or later here");
+        installed::left_out("no `tsc` of TypeScript 5 or later here (npm: typescript)");
         return;
     }
     let options = "--strict false --allowJs --checkJs --noEmit --strictNullChecks --skipLibCheck --target es2022 --module es2022 --lib dom,dom.iterable,es2022";

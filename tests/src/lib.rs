@@ -14,7 +14,7 @@
 //!   [`interpreter`]: programs carried out without a compiler; [`functions`]: any of them;
 //! - [`judge`]: every function of a robot against the oracle at one state;
 //! - [`count`]: the operations that stand in an emitted text;
-//! - [`project`]: projects of strangers, built without network.
+//! - [`project`]: projects of strangers, built without network; [`installed`]: compilers and interpreters, where they are there.
 
 #[macro_use]
 mod answers;
@@ -23,6 +23,7 @@ pub mod count;
 pub mod emitted;
 pub mod formula;
 pub mod functions;
+pub mod installed;
 pub mod interpreter;
 pub mod judge;
 pub mod oracle;

@@ -127,7 +127,7 @@ fn check(robot: &str, scalar: Scalar, folder: &str) {
         .current_dir(&folder));
     run(&mut Command::new(folder.join("check_redundant")));
     // C++ reads the same header.
-    if Command::new("c++").arg("--version").output().is_ok() {
+    if armgen_tests::installed::there("c++", "g++") {
         write("header.cpp", "#include \"robot.h\"\n#include \"robot_ik.h\"\n");
         run(Command::new("c++").args(["-Wall", "-Wextra", "-Werror", "-fsyntax-only", "header.cpp"]).current_dir(&folder));
     }

@@ -41,3 +41,39 @@ fn files_that_pages_name_are_there() {
     }
     assert!(named > 10, "pages name {named} files: their form has changed");
 }
+
+/// Files of Rust in a folder and in those within it.
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        let name = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if entry.is_dir() && name != "target" && !name.starts_with('.') {
+            files(&entry, found);
+        } else if entry.extension().is_some_and(|extension| extension == "rs") {
+            found.push(entry);
+        }
+    }
+}
+
+/// A test that `cargo test` leaves out is run by somebody: CONTRIBUTING.md has the command of its target.
+#[test]
+fn ignored_tests_have_a_command() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("in the workspace");
+    let page = fs::read_to_string(root.join("CONTRIBUTING.md")).expect("a page");
+    let commands: Vec<&str> = page.lines().filter(|line| line.contains("cargo test") && line.contains("-- --ignored")).collect();
+    let mut all = Vec::new();
+    files(root, &mut all);
+    let mut ignored = 0;
+    for path in all {
+        let text = fs::read_to_string(&path).expect("a text");
+        ignored += text.lines().filter(|line| line.trim_start().starts_with("#[ignore")).count();
+        if text.lines().any(|line| line.trim_start().starts_with("#[ignore")) {
+            // CRATE/tests/TARGET.rs or CRATE/tests/TARGET/FILE.rs.
+            let relative = path.strip_prefix(root).expect("in the project").to_string_lossy().into_owned();
+            let (package, target) = relative.split_once("/tests/").expect("an ignored test stands in a folder of tests");
+            let target = target.split(['/', '.']).next().expect("a name");
+            let wanted = format!("-p armgen-{package} --test {target} ");
+            assert!(commands.iter().any(|command| command.contains(&wanted)), "{relative}: no command with `{wanted}`");
+        }
+    }
+    assert!(ignored > 3, "{ignored} tests are ignored: their form has changed");
+}

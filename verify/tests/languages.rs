@@ -5,6 +5,8 @@
 //! `cargo test --release -p armgen-verify --test languages -- --ignored --nocapture`.
 
 mod common;
+#[path = "../../tests/src/installed.rs"]
+mod installed;
 #[path = "languages/mutation.rs"]
 mod mutation;
 #[path = "languages/page.rs"]

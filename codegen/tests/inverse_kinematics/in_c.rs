@@ -19,11 +19,7 @@ fn succeed(command: &mut Command) -> String {
 }
 
 fn there(compiler: &str) -> bool {
-    let found = Command::new(compiler).arg("--version").output().is_ok_and(|output| output.status.success());
-    if !found {
-        println!("skipped: no `{compiler}` here (Debian: gcc, g++, clang)");
-    }
-    found
+    crate::installed::there(compiler, "gcc, g++, clang")
 }
 
 fn folder(name: &str) -> PathBuf {

@@ -12,17 +12,18 @@ use std::time::Duration;
 
 use serde_json::{json, Value};
 
+use crate::installed::{left_out, runs};
+
 /// The browser of this machine: `CHROMIUM`, or one of the usual names; none is said in a line.
 pub(crate) fn program() -> Option<&'static str> {
     static FOUND: OnceLock<Option<String>> = OnceLock::new();
     let found = FOUND.get_or_init(|| {
         let named = std::env::var("CHROMIUM").ok();
         let mut names = named.iter().map(String::as_str).chain(["chromium", "chromium-browser", "google-chrome"]);
-        let there = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success());
-        names.find(there).map(str::to_owned).filter(|_| cfg!(unix))
+        names.find(|name| runs(name, &["--version"])).map(str::to_owned).filter(|_| cfg!(unix))
     });
     if found.is_none() {
-        println!("skipped: no `chromium` here (Debian: chromium); CHROMIUM names another browser of its kind");
+        left_out("no `chromium` here (Debian: chromium); CHROMIUM names another browser of its kind");
     }
     found.as_deref()
 }

@@ -1,9 +1,12 @@
-//! Compilers and interpreters: whether they are there, and running them.
+//! Compilers and interpreters: whether they are there (`tests/src/installed.rs`), and running them.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use armgen_codegen::Generated;
+
+pub(crate) use crate::installed::there;
+use crate::installed::{left_out, runs};
 
 /// Runs a command; what went wrong if it failed or warned.
 #[track_caller]
@@ -11,15 +14,6 @@ pub(crate) fn succeed(command: &mut Command) {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     assert!(output.status.success() && !err.contains("warning"), "{command:?}: {}\n{out}{err}", output.status);
-}
-
-/// Whether a program is there; a line says which package brings it if not.
-pub(crate) fn there(program: &str, package: &str) -> bool {
-    let found = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
-    if !found {
-        println!("skipped: no `{program}` here (Debian: {package})");
-    }
-    found
 }
 
 pub(crate) fn write(path: PathBuf, text: impl AsRef<[u8]>) {
@@ -34,10 +28,9 @@ pub(crate) fn numpy() -> Option<&'static str> {
 /// A Python that has a library.
 pub(crate) fn python_with(library: &str) -> Option<&'static str> {
     let import = format!("import {library}");
-    let has = |python: &&str| Command::new(python).args(["-c", &import]).output().is_ok_and(|output| output.status.success());
-    let found = ["python3", "/usr/bin/python3"].into_iter().find(has);
+    let found = ["python3", "/usr/bin/python3"].into_iter().find(|python| runs(python, &["-c", &import]));
     if found.is_none() {
-        println!("skipped: no Python with {library} here (Debian: python3-{library})");
+        left_out(&format!("no Python with {library} here (Debian: python3-{library})"));
     }
     found
 }

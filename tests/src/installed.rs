@@ -1,0 +1,41 @@
+//! Programs of this machine that a test may need, and what is left out where they are not installed.
+//!
+//! What is left out is said in a line, which also joins the file that `ARMGEN_SKIPPED` names; `.ci/run` prints that file at its end. Where
+//! `ARMGEN_REQUIRE_TOOLS` is set, it is a failure instead. Tests of other crates take this file in by its path; scripts have `tests/skip.sh`.
+#![allow(dead_code, missing_docs, unreachable_pub)]
+
+use std::io::Write;
+use std::process::Command;
+
+/// Whether a program runs with these arguments and succeeds.
+pub fn runs(program: &str, arguments: &[&str]) -> bool {
+    Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
+}
+
+/// Whether a program is there; if not, what needs it is left out, and a line says which package of Debian brings it.
+#[track_caller]
+pub fn there(program: &str, package: &str) -> bool {
+    let found = runs(program, &["--version"]);
+    if !found {
+        left_out(&format!("no `{program}` here (Debian: {package})"));
+    }
+    found
+}
+
+/// Says that something is left out, and why.
+///
+/// # Panics
+///
+/// Where `ARMGEN_REQUIRE_TOOLS` asks for everything.
+#[track_caller]
+pub fn left_out(why: &str) {
+    let wanted = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty());
+    println!("skipped: {why}");
+    if let Some(path) = wanted("ARMGEN_SKIPPED") {
+        let mut file = std::fs::File::options().append(true).create(true).open(&path).expect("ARMGEN_SKIPPED names a file");
+        // The name of a test's thread is that of the test.
+        let test = std::thread::current().name().unwrap_or("a test").to_owned();
+        file.write_all(format!("{test}: {why}\n").as_bytes()).expect("ARMGEN_SKIPPED can be written");
+    }
+    assert!(wanted("ARMGEN_REQUIRE_TOOLS").is_none(), "ARMGEN_REQUIRE_TOOLS is set, and there is {why}");
+}
