@@ -5,6 +5,9 @@
 /// Six frames in a row come to about 50 u.
 pub const CLOSED: Real = 1024.0 * UNIT_ROUNDOFF;
 
+/// How far a loop may stay open that is not closed once more where solutions meet: next to what six frames come to.
+const NEXT_TO_ROUNDING: Real = 0.125 * CLOSED;
+
 /// What N joints have to meet, in as many equations: six close a loop, J1 L1 ... J6 L6 = 1; three bring the origin of J1 L1 J2 L2 J3 L3 to a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Loop<'a, const N: usize> {
@@ -127,7 +130,7 @@ impl<const N: usize> Loop<'_, N> {
                 if closed.residual < best.residual {
                     best = closed;
                 }
-                if best.residual <= 0.125 * CLOSED * self.length {
+                if best.residual <= NEXT_TO_ROUNDING * self.length {
                     return best;
                 }
                 if again {
@@ -244,7 +247,7 @@ fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J,
         let mut branch = *branch;
         if branch.double || branch.free != 0 {
             let (_, residual) = closing.equations(&branch.joints);
-            if !(residual <= 0.125 * CLOSED * closing.length) {
+            if !(residual <= NEXT_TO_ROUNDING * closing.length) {
                 let best = closing.close_beside(&branch.joints, residual);
                 if !(best.residual <= CLOSED * closing.length) {
                     kept.near = true;
