@@ -117,6 +117,10 @@ pub(crate) enum Check {
     DividedStates,
     /// Floats: values of what divides stay in the scalar.
     DividedLeaves,
+    /// Floats: values of what divides are not far above entries and arguments on the way.
+    DividedHeadroom,
+    /// Floats: what divides keeps in single precision what it keeps in double.
+    DividedSingle,
     /// Constants: the name of the robot, before all else.
     Robot,
     /// Constants: they are there.

@@ -17,6 +17,8 @@
 //!      times the errors, since they know no correlation
 //! (e)  of functions that divide, at each of the random states among them where E leaves 29 bits of the largest entry, with S that one
 //! (f)  powers and angles are those of the equations ([`mod@crate::powers`])
+//! (g)  of functions that divide, at the states of (e), no value is above what (a) says, and in f32 an entry is off by at most what (e) says in
+//!      units of f32, where that is a 256th of the largest entry or less
 //! ```
 //!
 //! There are two boxes, with all angles and prismatic joints as far to one side as to the other: one has all parameters up to the largest
@@ -37,8 +39,8 @@
 //! three each, and none is a loss that a user would notice beside the equations themselves.
 //!
 //! Of functions that divide, what no quotient takes part in is held to (a) to (d) where it meets the first one, beside twice the largest of
-//! the torques, the Jacobian and the inertia matrix, of which it is a part, the whole to (e); an entry in which no quotient takes part, to
-//! as many times the same as it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has 2^(12
+//! the torques, the Jacobian and the inertia matrix, of which it is a part, and a rounding of its own, since it is larger than all of these
+//! where a link is short, the whole to (e) and (g); an entry in which no quotient takes part, to as many times the same as it is larger. Where E is not finite, as where a mass can be 0 that the plain program divides by, (c) has 2^(12
 //! + 5n/2) u S instead of it, with S the largest entry of the function. Intervals say nothing behind a quotient in general; of
 //! `forward_dynamics` the bound of torques ([`mod@crate::residual`]) does.
 
@@ -73,6 +75,9 @@ const LOST: f64 = (1 << 24) as f64;
 
 /// As many times the error that a plain program really has at states.
 const MEASURED: f64 = 256.0;
+
+/// Of errors of this part of a value squares count.
+const SQUARES: f64 = 1.0 / 256.0;
 
 /// Batches of states.
 const BATCHES: usize = 5;
@@ -277,9 +282,13 @@ impl<'a> Trial<'a> {
     /// What makes a function useless in floats, if it is.
     pub fn fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
         let (errors, compared) = self.judge(program, values, Sensitivities::WhereNeeded);
-        self.leaves(&errors)
-            .or_else(|| compared.iter().find_map(Compared::unfit))
-            .or_else(|| self.divided_leaves(program).filter(|_| !undivided_operands(program).is_empty()))
+        self.leaves(&errors).or_else(|| compared.iter().find_map(Compared::unfit)).or_else(|| {
+            if undivided_operands(program).is_empty() {
+                None
+            } else {
+                self.divided_leaves(program)
+            }
+        })
     }
 
     /// All errors beside what is allowed of them.
@@ -299,7 +308,10 @@ impl<'a> Trial<'a> {
         }
         let part = program.part(&operands);
         let mut errors = self.errors(&part, values);
-        let yardsticks = self.of_operands(program, &operands);
+        let mut yardsticks = self.of_operands(program, &operands);
+        if let Some(runs) = &errors.runs {
+            yardsticks.iter_mut().enumerate().for_each(|(k, plain)| plain.hold_value(runs.states.iter().map(|state| state[k].0)));
+        }
         let mut compared = self.undivided(&part, &mut errors, &yardsticks, sensitivities);
         compared.extend(self.divided(program, values, sensitivities));
         compared.extend(self.measured(program, values, self.plain.get(&program.name).map_or(&[][..], Vec::as_slice)));
@@ -373,8 +385,7 @@ impl<'a> Trial<'a> {
             return Some(Unfit::Leaves("a value can leave f64 at a state of the box".into()));
         }
         let (_, largest) = errors.boxes[which];
-        let headroom = 2f64.powi(64) * size.max(self.arguments).max(1.0).powi(3);
-        (largest > headroom && Check::Headroom.is_made()).then(|| {
+        (largest > headroom(size, self.arguments) && Check::Headroom.is_made()).then(|| {
             let (largest, size) = (two_digits(largest), two_digits(size));
             Unfit::Leaves(format!("values of up to {largest} on the way to entries of up to {size} can leave the scalar"))
         })
@@ -552,19 +563,51 @@ impl<'a> Trial<'a> {
         self.runs(program, values).map_or_else(Vec::new, |mut runs| self.at_states(program, &mut runs, &asked, sensitivities))
     }
 
-    /// That a value of what divides leaves the scalar at a state.
+    /// That what divides leaves the scalar at a state, comes near to it on the way, or loses more in single precision than in double. Bounds are
+    /// of f64, in which nothing is too large or too small that is so for f32.
     fn divided_leaves(&self, program: &Program) -> Option<Unfit> {
         let (real, unit) = (self.module.real, Float::F64.unit());
         let plain = self.plain.get(&program.name)?;
+        let literals: Vec<f64> = program.literals.iter().map(|literal| literal.value).collect();
         let states: Vec<&Arguments<f64>> = self.states().collect();
-        let leaves = |state: usize| {
+        self.judged().find_map(|state| {
             let of = |side: fn(&(f64, f64)) -> f64| worst(plain.iter().map(|entry| side(&entry.states[state])));
-            let lost = of(|(error, _)| *error) / (unit * of(|(_, size)| *size));
-            // Of a single number the quotients alone are finite in f64.
-            FACTOR * lost * real.unit() < 1.0 && program.run_float(states[state], real).iter().any(|value| !value.is_finite())
-        };
-        (Check::DividedLeaves.is_made() && self.judged().any(leaves))
-            .then(|| Unfit::Leaves(format!("a value leaves {} at a state of the box", real.name())))
+            let size = of(|(_, size)| *size);
+            let lost = FACTOR * real.unit() * of(|(error, _)| *error) / (unit * size);
+            // Of a single number the quotients alone are finite in f64; nor is anything asked where this is no number.
+            if exceeds(lost, 1.0) {
+                return None;
+            }
+            let found = program.run_float(states[state], real);
+            if Check::DividedLeaves.is_made() && found.iter().any(|value| !value.is_finite()) {
+                return Some(Unfit::Leaves(format!("a value leaves {} at a state of the box", real.name())));
+            }
+            // The arguments that the module has.
+            let rounded = states[state].map(|x| if real == Float::F32 { f64::from(x as f32) } else { x });
+            let values = program.values(&rounded, &literals);
+            let largest = worst(values.iter().flatten().map(|value| value.abs()));
+            if Check::DividedHeadroom.is_made() && largest > headroom(size, self.arguments) {
+                let (largest, size) = (two_digits(largest), two_digits(size));
+                return Some(Unfit::Leaves(format!("values of {largest} on the way to entries of up to {size} can leave the scalar")));
+            }
+            // Squares of errors count where few digits are left.
+            if real == Float::F64 || !Check::DividedSingle.is_made() || lost > SQUARES {
+                return None;
+            }
+            let mut entries = program.outputs.iter().zip(found).zip(plain);
+            entries.find_map(|((output, found), plain)| {
+                let error = (found - values[output.step]?).abs();
+                let allowed = FACTOR * real.unit() / unit * (plain.states[state].0 + unit * size) + real.smallest_normal();
+                exceeds(error, allowed).then(|| {
+                    let (error, allowed) = (two_digits(error), two_digits(allowed));
+                    Unfit::Loses(format!(
+                        "rounding makes an error of {error} in {}, in {} at a state of the box: the equations ask for {allowed} at most",
+                        output.place,
+                        real.name()
+                    ))
+                })
+            })
+        })
     }
 
     /// A text in f64, with running bounds; the arguments are those of the module's scalar.
@@ -583,6 +626,11 @@ impl<'a> Trial<'a> {
         }
         Some(Runs { table, states })
     }
+}
+
+/// As large as values may be on the way to entries of this size.
+fn headroom(size: f64, arguments: f64) -> f64 {
+    2f64.powi(64) * size.max(arguments).max(1.0).powi(3)
 }
 
 /// Whether a is larger than b, or one of the two is not a number.

@@ -92,7 +92,9 @@ fn forward_dynamics_are_judged_as_well() {
     forward(Scalar::F64, "t29 + 1e17 - 1e17", why);
     forward(Scalar::F64, "t29 + (1e17 * c2 - 1e17 * c2)", why);
     forward(Scalar::F64, "t29 + (1e200 * 1e200 - 1e200 * 1e200)", "a value can leave f64");
-    forward(Scalar::F32, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", why);
+    forward(Scalar::F32, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", "a value leaves f32");
+    forward(Scalar::F32, "t29 * 1e30 * 1e-30", "on the way to entries");
+    forward(Scalar::F32, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", "rounding makes an error of");
 }
 
 /// A literal has the exact value that stands at its place, and not another one that rounds to the same float.

@@ -232,6 +232,27 @@ fn modules_made_without_a_pass_are_right() {
     assert!(others > 5);
 }
 
+/// Lengths of a centimetre, and of what calibration leaves of parallel axes: operands of quotients are larger than torques there.
+#[test]
+fn short_links_are_no_loss() {
+    for (length, twist) in [("0.01", "0"), ("0.5", "0.001"), ("1e-5", "0.3")] {
+        let joint = |name: &str| {
+            format!(
+                "  - {{name: {name}, type: revolute, a: {length}, alpha: {twist}, d: 0.1, theta: 0, link: {{mass: 3, com: [-0.2, 0.01, 0.02], \
+                 inertia: {{xx: 0.1, yy: 0.2, zz: 0.2, xy: 0.01}}}}}}\n"
+            )
+        };
+        let text = format!(
+            "name: two\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n{}{}regressor: standard\n",
+            joint("a"),
+            joint("b")
+        );
+        let source = Source::new("two.yaml", text);
+        let module = armgen_codegen::generate(&source, &Options::default()).0.expect("a module").module;
+        assert_eq!(armgen_verify::verify(&source, &module, None).first_fault(), None, "{length} {twist}");
+    }
+}
+
 /// What no entry needs is not run exactly, and what is needed and long costs no more than it may.
 #[test]
 fn long_exact_values_are_bounded() {

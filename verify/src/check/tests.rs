@@ -401,8 +401,14 @@ fn floats(tally: &mut Tally, scara: &Given) {
     let scaled = "(9.313225746154785e-10 / (9.313225746154785e-10 * t25))";
     reciprocal(tally, scaled, &[&foreign[..], &comments].concat());
     let single = given("scara", &Options { scalar: Scalar::F32, ..Options::default() });
-    let of_quotients = [the_box, intervals, states, (DividedLeaves, "forward_dynamics: a value leaves f32")];
-    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &of_quotients);
+    let headroom = (DividedHeadroom, "on the way to entries of up to");
+    let of_single = (DividedSingle, "forward_dynamics: rounding makes an error of");
+    let leaves = (DividedLeaves, "forward_dynamics: a value leaves f32");
+    forward(tally, &single, "t29 * 1e25 * 1e25 * 1e-25 * 1e-25", &[leaves, headroom, of_single]);
+    // Two roundings more do not change the two digits of the bound that is stated.
+    let scaled = "[t29 * 1e30 * 1e-30,";
+    tally.module(&single, "pub fn forward_dynamics(", "[t29,", scaled, &[headroom, (Cost, said), (Prose, said)]);
+    forward(tally, &single, "t29 * 1e-25 * 1e-25 * 1e25 * 1e25", &[of_single]);
 }
 
 /// Signs of what is 0 over the reals, and of a torque in two forms.

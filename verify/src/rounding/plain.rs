@@ -55,6 +55,14 @@ impl Plain {
         worst(self.finite().map(|(_, size)| *size))
     }
 
+    /// Allows an operand a rounding of its own value at each state: it can be larger than all that it is part of, as a quotient by a short link is.
+    pub(super) fn hold_value(&mut self, values: impl Iterator<Item = f64>) {
+        for ((error, size), value) in self.states.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
+            *error = error.max(Float::F64.unit() * value.abs());
+            *size = size.max(value.abs());
+        }
+    }
+
     /// That of so many times the entry.
     pub(super) fn times(&self, scale: f64) -> Plain {
         let states = self.states.iter().map(|(error, size)| (scale * error, scale * size)).collect();
