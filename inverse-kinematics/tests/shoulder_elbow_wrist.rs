@@ -126,7 +126,7 @@ in_both_scalars! {
 
     #[test]
     fn degenerate_poses_are_said() {
-        let [(arm, way), (bent, bent_way), _] = arms();
+        let [(arm, way), ..] = arms();
         // Stretched, with shoulder, elbow and wrist on the axes of joints 3 and 5: these can move, against each other.
         let q = points_of(&[0.3, 0.4, -0.5, 0.0, 0.7, 0.8, 0.2]);
         let t = arm.forward(&q);
@@ -146,19 +146,34 @@ in_both_scalars! {
         far[0][3] += 3.0;
         let found = shoulder_elbow_wrist(&way, &far, 0.3);
         assert!(found.count == 0 && found.miss > 0.5 && found.miss < 6.0, "{}", found.miss);
-        // The wrist straight below the shoulder: the base's z axis in the frame of joint 1.
-        let t0 = bent.forward(&points_of(&[0.3, 0.9, -0.5, 1.0, 0.7, 0.8, 0.2]));
-        let goal = inverse(&bent_way.links_at(&t0)[6]);
-        let to_wrist = minus(column(&goal, 3), [0.0, 0.0, bent.c[1][2][3]]);
-        let (now, below) = (rotate(&bent.c[0], to_wrist), -dot(to_wrist, to_wrist).sqrt());
-        let mut t = t0;
-        for (row, (x, to)) in t.iter_mut().zip(now.iter().zip([0.0, 0.0, below])) {
-            row[3] += to - x;
-        }
-        let found = shoulder_elbow_wrist(&bent_way, &t, 0.3);
-        assert!(found.near && found.count > 0);
-        for branch in found.found() {
-            assert!(defect(&bent.forward(&branch.joints), &t) < if SINGLE { 1e-4 } else { 1e-12 });
+    }
+
+    /// The wrist straight below the shoulder, the pole of the swivel angle's reference, and beside it by ever less, until squares of that vanish.
+    #[test]
+    fn postures_beside_the_pole_have_their_pose() {
+        let [_, turned, _] = arms();
+        let [_, (mut upright, mut upright_way), _] = arms();
+        (upright.c[0], upright_way.after) = (IDENTITY, IDENTITY);
+        for (arm, way) in [turned, (upright, upright_way)] {
+            let t0 = arm.forward(&points_of(&[0.3, 0.9, -0.5, 1.0, 0.7, 0.8, 0.2]));
+            let goal = inverse(&way.links_at(&t0)[6]);
+            let to_wrist = minus(column(&goal, 3), [0.0, 0.0, arm.c[1][2][3]]);
+            let (now, below) = (rotate(&arm.c[0], to_wrist), -dot(to_wrist, to_wrist).sqrt());
+            for decade in 3..200 {
+                let off = (10.0 as Real).powi(-decade);
+                for beside in [[0.3 * off, -0.8 * off], [0.0, off], [off, 0.0]] {
+                    let mut t = t0;
+                    for (row, (x, to)) in t.iter_mut().zip(now.iter().zip([beside[0], beside[1], below])) {
+                        row[3] += to - x;
+                    }
+                    let found = shoulder_elbow_wrist(&way, &t, 0.3);
+                    assert!(found.count > 0 && (found.near || off > ROUNDING), "{off}");
+                    for branch in found.found() {
+                        let missed = defect(&arm.forward(&branch.joints), &t);
+                        assert!(missed < if SINGLE { 1e-5 } else { 1e-13 }, "{missed} beside the pole by {off}");
+                    }
+                }
+            }
         }
     }
 }

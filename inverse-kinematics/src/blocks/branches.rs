@@ -7,7 +7,7 @@ pub struct Branch<const J: usize> {
     pub joints: [[Real; 2]; J],
     /// Which way was taken where there were several: a bit or two for each block, in the order in which they were solved; 0 is its first solution.
     pub signs: u16,
-    /// Two solutions meet here as far as rounding lets one tell; this one stands for both.
+    /// Two solutions meet here as far as rounding lets one tell: this one stands for both, or the other one is listed, too, as `double`.
     pub double: bool,
     /// How far rounding may have moved the angles, rad; roughly, and largest near places where solutions meet.
     pub error: Real,

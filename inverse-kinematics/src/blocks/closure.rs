@@ -226,7 +226,8 @@ pub fn polish<const J: usize, const N: usize>(found: &mut Branches<J, N>, closin
 
 /// Brings solutions of closed forms to the pose where several meet. There a block may know its angle to the root of rounding only, and what is
 /// computed from that angle misses the pose by as much. Only solutions that are `double` or have a joint that is free are looked at, and those that
-/// close the loop stay as they are. The others are brought there by `close_beside`; one that cannot be is none, and says `near`.
+/// close the loop stay as they are. The others are brought there by `close_beside`; one that cannot be is none, and says `near`. Where that leaves
+/// none the one that came nearest is given, as `double`, if it misses by the root of rounding at most.
 pub fn close_where_solutions_meet<const J: usize, const N: usize>(found: &mut Branches<J, N>, closing: &Loop<J>) {
     let mut meet = false;
     for branch in found.found() {
@@ -243,6 +244,7 @@ pub fn close_where_solutions_meet<const J: usize, const N: usize>(found: &mut Br
 fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J, N>, closing: &Loop<J>) {
     let mut kept = Branches { all: found.all, ..Branches::new() };
     (kept.miss, kept.near, kept.continuum) = (found.miss, found.near, found.continuum);
+    let (mut nearest, mut least) = (Branch { joints: [[1.0, 0.0]; J], signs: 0, double: true, error: 0.0, free: 0 }, Real::INFINITY);
     for branch in found.found() {
         let mut branch = *branch;
         if branch.double || branch.free != 0 {
@@ -251,6 +253,11 @@ fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J,
                 let best = closing.close_beside(&branch.joints, residual);
                 if !(best.residual <= CLOSED * closing.length) {
                     kept.near = true;
+                    if best.residual < least {
+                        least = best.residual;
+                        nearest = branch;
+                        nearest.joints = best.joints;
+                    }
                     continue;
                 }
                 branch.joints = best.joints;
@@ -260,6 +267,10 @@ fn close_those_that_meet<const J: usize, const N: usize>(found: &mut Branches<J,
             }
         }
         kept.add(branch);
+    }
+    if kept.count == 0 && least <= SAME * sqrt(UNIT_ROUNDOFF) * closing.length {
+        nearest.double = true;
+        kept.add(nearest);
     }
     *found = kept;
 }

@@ -35,7 +35,7 @@ pub fn line_and_circle(a: Real, b: Real, d: Real, noise: Real, doubt: Real) -> L
     let r = length(a, b);
     let gap = r - d.abs();
     let slack = noise + doubt;
-    if gap > noise && r > noise {
+    if gap > noise && r > noise && slack >= noise {
         let over = 1.0 / r;
         let (x, y) = (a * over, b * over);
         let along = d * over;

@@ -12,7 +12,11 @@ fn swivel_reference(base: &Frame, e: Vector) -> ([Vector; 2], Real) {
     let k = cross(minus(e, t), rotate_back(base, [0.0, 1.0, 0.0]));
     let across = cross(k, e);
     let size = sqrt(dot(across, across));
-    let x = if size > 0.0 { scaled(across, 1.0 / size) } else { any_across(e) };
+    // At the pole itself no direction is left of it, and squares of what is left fall below the scalar.
+    let x = if size > UNIT_ROUNDOFF * UNIT_ROUNDOFF { scaled(across, 1.0 / size) } else { any_across(e) };
+    // Rounding of e is large beside k there.
+    let bent = minus(x, scaled(e, dot(e, x)));
+    let x = scaled(bent, 1.0 / sqrt(dot(bent, bent)));
     ([x, cross(e, x)], size)
 }
 

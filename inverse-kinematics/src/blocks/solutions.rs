@@ -8,7 +8,8 @@ pub enum Verdict {
     Complete,
     /// No solution was found, and none is near.
     Unreachable,
-    /// A change of the pose by its own rounding could change the number of solutions; two that have met are listed once, as `double`.
+    /// A change of the pose by its own rounding could change the number of solutions; two that have met are listed once, as `double`, and two
+    /// that may have met each as `double`.
     NearDouble,
     /// Some joints can move while the end effector stays.
     Continuum,

@@ -9,7 +9,7 @@ pub struct ThreeTurns {
     pub turns: [[[Real; 2]; 3]; 2],
     /// The two solutions meet as far as rounding lets one tell, with t1 and t3 determined; one is given.
     pub double: bool,
-    /// Axes 1 and 3 are parallel: only t1 + t3 or t1 - t3 is determined; t1 = 0 is given.
+    /// Axes 1 and 3 are parallel: only t1 + t3 or t1 - t3 is determined; t1 = 0 is given, or where they are so by doubt alone what t1 comes to.
     pub free: bool,
     /// The defect in the cosine between axes 1 and 3 where there is none, else 0.
     pub miss: Real,
