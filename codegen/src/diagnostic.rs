@@ -396,13 +396,17 @@ impl Diagnostics {
         self.errors() > 0
     }
 
-    /// All of them as text, each with `NAME:LINE:COLUMN` and the source line underlined, in the order of [`Diagnostics::iter`].
+    /// As text, each with `NAME:LINE:COLUMN` and the source line underlined, in the order of [`Diagnostics::iter`].
     pub fn render(&self, source: &Source, colour: Colour) -> String {
         let (mut text, mut rendered, mut bytes) = (String::new(), 0, 0);
-        for diagnostic in self.list.iter().take(RENDERED) {
-            if bytes >= RENDERED_BYTES {
-                break;
+        let mut names_error = !self.has_errors();
+        for diagnostic in &self.list {
+            let is_error = diagnostic.code.severity() == Severity::Error;
+            // Whatever stands before it, one error is shown: it is why there is no arm.
+            if (rendered >= RENDERED || bytes >= RENDERED_BYTES) && (names_error || !is_error) {
+                continue;
             }
+            names_error |= is_error;
             let window = window(diagnostic, source);
             text.push_str(&render(diagnostic, source, window, colour));
             text.push_str("\n\n");

@@ -12,7 +12,7 @@ const ARM: &str = include_str!("slips/arm.yaml");
 /// What has slipped, the text, what stands there instead, and what must be said.
 type Slip = (&'static str, &'static str, &'static str, &'static [&'static str]);
 
-const SLIPS: [Slip; 55] = [
+const SLIPS: [Slip; 68] = [
     // Dashes, columns, brackets.
     ("a dash forgotten", "  - name: shoulder", "    name: shoulder", &["dash", ":24:5"]),
     ("the first dash forgotten", "  - name: base", "    name: base", &["a dash is missing", ":11:5"]),
@@ -43,6 +43,29 @@ const SLIPS: [Slip; 55] = [
     ),
     ("a colon forgotten", "    alpha: pi/2", "    alpha pi/2", &["colon", ":14:"]),
     ("no space after a colon", "    alpha: pi/2", "    alpha:pi/2", &["space", ":14:"]),
+    (
+        "no space before a list",
+        "{position: [-pi, pi]",
+        "{position:[-pi, pi]",
+        &["a colon must be followed by a space", "`position: [...`"],
+    ),
+    ("a colon twice", "yy: 0.21", "yy::0.21", &["`yy: 0.21`"]),
+    ("no space before a quote", "yy: 0.21", "yy:'0.21'", &["`yy: '0.21'`"]),
+    (
+        "no space in a lone line",
+        "parameters:\n  l1: 0.425\n  payload_mass: 3",
+        "parameters:\n  l1:0.425\n  payload_mass:3",
+        &["a colon must be followed by a space", "`l1: 0.425`", ":7:5"],
+    ),
+    (
+        "no space in a lone line of a joint",
+        "friction: {viscous: 0.4, coulomb: 1.5}",
+        "friction:\n      viscous:0.4",
+        &["a colon must be followed by a space", "`viscous: 0.4`"],
+    ),
+    ("a mark of order within", "mass: 8.2", "mass: \u{feff}8.2", &["byte order mark", "remove it"]),
+    ("a wide blank before a comment", "mass: 8.2", "mass: 8.2\u{2003}# kg", &["a space of another width", "type a space"]),
+    ("a comment of C left open", "d: 0.32", "d: 0.32/* m", &["a comment?"]),
     ("a bracket left open", "com: [-0.21, 0, 0.1]", "com: [-0.21, 0, 0.1", &["bracket", ":33:"]),
     ("a brace left open", "xy: 0.001}", "xy: 0.001", &["bracket", ":21:"]),
     ("a tab", "    alpha: pi/2", "\talpha: pi/2", &["tab", ":14:"]),
@@ -57,6 +80,9 @@ const SLIPS: [Slip; 55] = [
     ("an inertia with its unit", "inertia: 6e-5", "inertia: 0.6 kgcm²", &["0.00006"]),
     ("a rotor speed with its unit", "velocity: 3,", "velocity: 180 deg/s,", &["deg(180)"]),
     ("a torque with its unit", "effort: 60", "effort: 60 Nm", &["`60`"]),
+    ("an inertia without its square", "yy: 0.21", "yy: 0.21 kg m", &["torque", "inertia", "`0.21`"]),
+    ("a unit that is none", "d: 0.32", "d: 5kg/m", &["leave the unit out"]),
+    ("an infinite friction", "friction: {viscous: 0.4, coulomb: 1.5}", "friction: inf", &["`friction: {viscous: 0.2}`"]),
     ("a decimal comma", "a: 0.36", "a: 0,36", &["decimal point"]),
     ("a time with ms", "d: 0.32", "d: 1 ms", &["0.001"]),
     ("a minus sign of typography", "[-0.15, 0, 0.02]", "[−0.15, 0, 0.02]", &["minus"]),
@@ -99,6 +125,18 @@ const SLIPS: [Slip; 55] = [
         &["xy", "yx", "0.001", "0.002"],
     ),
     ("a tensor of six elements", "{xx: 0.008, yy: 0.05, zz: 0.048}", "[0.008, 0.05, 0.048, 0.001, 0, 0]", &["xx", "which order"]),
+    (
+        "a pose whose numbers are long",
+        "payload: {mass",
+        "tool: [0, 0, sqrt(2)/10 + sqrt(3)/10 + 0.00000000000000001]\npayload: {mass",
+        &["`tool: {xyz: [0, 0, 0.1], rpy: [0, pi/2, 0]}`"],
+    ),
+    (
+        "a tensor whose numbers are long",
+        "{xx: 0.008, yy: 0.05, zz: 0.048}",
+        "[0.008, 0.05, 0.04800000000000000000000000000000000000000001]",
+        &["`inertia: {xx: ..., yy: ..., zz: ...}`"],
+    ),
     ("a fixed joint", "name: elbow\n    type: revolute", "name: elbow\n    type: fixed", &["Leave a fixed joint out"]),
     // Values in other units, or in other places.
     ("a length in mm", "a: 0.36", "a: 360", &["mm", "0.36"]),

@@ -20,6 +20,7 @@ use armgen_codegen::description::{
     RegressorDescription, RobotDescription, RotationDescription, SpringDescription, StribeckDescription, Value, INERTIA_ELEMENTS,
 };
 use armgen_codegen::diagnostic::{Code, Diagnostic, Diagnostics};
+use armgen_codegen::document::yaml::has_comment;
 use armgen_codegen::document::Expression;
 use armgen_codegen::exact::{Number, Polynomial};
 use armgen_codegen::inverse_kinematics::{self, Redundancy};
@@ -29,6 +30,9 @@ use armgen_codegen::source::{Source, Span};
 use armgen_codegen::validate;
 
 use self::write::Writer;
+
+/// Said of a description with comments.
+pub(crate) const COMMENTS: &str = "comments of the description are left out";
 
 /// A description in another convention.
 #[derive(Clone, Debug)]
@@ -160,8 +164,8 @@ impl<'d> Converter<'d> {
         }
         let head = self.lines.iter().map(|line| format!("# {line}\n")).collect::<String>();
         // Of the way here, not of the description.
-        if self.source.text().lines().any(|line| line.trim_start().starts_with('#') || line.contains(" #")) {
-            self.lines.push("comments of the description are left out".into());
+        if has_comment(self.source.text()) {
+            self.lines.push(COMMENTS.into());
         }
         Some(Converted { yaml: head + &text.join("\n") + "\n", lines: self.lines })
     }

@@ -18,7 +18,7 @@ mod text;
 use std::collections::BTreeSet;
 
 use armgen_codegen::description::{
-    AttachedDescription, BodyDescription, Convention, JointDescription, PoseDescription, PosturesDescription,
+    AttachedDescription, BodyDescription, Convention, JointDescription, MotorDescription, PoseDescription, PosturesDescription,
     RegressorDescription, RobotDescription, RotationDescription, Value,
 };
 use armgen_codegen::diagnostic::Diagnostics;
@@ -361,36 +361,41 @@ impl Writer<'_> {
     }
 
     fn say_what_is_left_out(&mut self, description: &RobotDescription, joints: &[JointDescription]) {
-        let names = |has: fn(&JointDescription) -> bool| -> Vec<&str> {
-            joints.iter().filter(|joint| has(joint)).filter_map(|joint| Some(joint.name.as_ref()?.value.as_str())).collect()
-        };
         let mut lines = Vec::new();
-        let mut joints_with = |what: &str, has: fn(&JointDescription) -> bool| {
-            let names = names(has);
+        let mut joints_with = |what: &str, has: &dyn Fn(&JointDescription) -> bool| {
+            let with = joints.iter().filter(|joint| has(joint));
+            let names: Vec<String> = with.filter_map(|joint| Some(format!("`{}`", joint.name.as_ref()?.value))).collect();
             if !names.is_empty() {
-                lines.push(format!("{what}: {}", names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")));
+                lines.push(format!("{what}: {}", names.join(", ")));
             }
         };
-        joints_with("a URDF has no rotors; left out at", |joint| joint.motor.is_some());
-        joints_with("the viscous friction of rotors, times ratio², is part of `damping` at", |joint| {
-            joint.motor.as_ref().is_some_and(|motor| motor.viscous.is_some())
+        // What is 0 is not left out.
+        let is_some = |value: &Value| !self.number(value).is_zero();
+        let of_motor = |joint: &JointDescription, value: fn(&MotorDescription) -> &Value| {
+            joint.motor.as_ref().is_some_and(|motor| is_some(value(motor)))
+        };
+        joints_with("a URDF has no rotors; left out at", &|joint| {
+            of_motor(joint, |motor| &motor.inertia) || of_motor(joint, |motor| &motor.mass)
         });
-        let masses = joints.iter().filter_map(|joint| Some(self.number(&joint.motor.as_ref()?.mass).to_f64()));
-        let mass: f64 = masses.sum();
-        if mass != 0.0 {
-            joints_with(&format!("the masses of rotors, {mass} kg in all, are not in the masses of the URDF"), |joint| {
-                joint.motor.as_ref().is_some_and(|motor| motor.mass.is_some())
-            });
-        }
-        joints_with("a URDF has no armature; left out at", |joint| joint.armature.is_some());
-        joints_with("a URDF has no springs; left out at", |joint| joint.spring.is_some());
-        joints_with("a URDF's friction has no `offset`, `cubic`, `load` and `stribeck`; left out at", |joint| {
-            joint.friction.offset.is_some()
-                || joint.friction.cubic.is_some()
-                || joint.friction.load.is_some()
-                || joint.friction.stribeck.is_some()
+        joints_with("the viscous friction of rotors, times ratio², is part of `damping` at", &|joint| {
+            of_motor(joint, |motor| &motor.viscous)
         });
-        joints_with("a URDF demands `effort` and `velocity`; 0 stands for one that is not given at", |joint| {
+        let masses = joints.iter().filter_map(|joint| Some(self.number(&joint.motor.as_ref()?.mass)));
+        let mass = masses.fold(Number::zero(), |sum, mass| &sum + &mass);
+        let mass = mass.as_rational().and_then(ending).unwrap_or_else(|| mass.to_f64().to_string());
+        joints_with(&format!("the masses of rotors, {mass} kg in all, are not in the masses of the URDF"), &|joint| {
+            of_motor(joint, |motor| &motor.mass)
+        });
+        joints_with("a URDF has no armature; left out at", &|joint| is_some(&joint.armature));
+        joints_with("a URDF has no springs; left out at", &|joint| {
+            joint.spring.as_ref().is_some_and(|spring| is_some(&spring.stiffness))
+        });
+        joints_with("a URDF's friction has no `offset`, `cubic`, `load` and `stribeck`; left out at", &|joint| {
+            let friction = &joint.friction;
+            let stribeck = friction.stribeck.as_ref().is_some_and(|stribeck| is_some(&stribeck.torque));
+            stribeck || [&friction.offset, &friction.cubic, &friction.load].into_iter().any(is_some)
+        });
+        joints_with("a URDF demands `effort` and `velocity`; 0 stands for one that is not given at", &|joint| {
             let prismatic = joint.kind.as_ref().is_some_and(|kind| kind.value == JointKind::Prismatic);
             let any = joint.limits.position.is_some() || joint.limits.velocity.is_some() || joint.limits.effort.is_some();
             (any || prismatic) && (joint.limits.velocity.is_none() || joint.limits.effort.is_none())

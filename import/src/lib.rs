@@ -129,5 +129,8 @@ fn in_rows(yaml: &str, to: Convention, diagnostics: &mut Diagnostics) -> Option<
         let help = "import it with `--convention urdf`, and see what `armgen check` says of that";
         diagnostics.push(Diagnostic::new(Code::NoRows, xml::beginning(), message, "", help));
     }
-    converted.map(|converted| Converted { yaml: head + &converted.yaml, ..converted })
+    let mut converted = converted?;
+    // They are import's own, and what they say stands in the report.
+    converted.lines.retain(|line| line != convert::COMMENTS);
+    Some(Converted { yaml: head + &converted.yaml, ..converted })
 }

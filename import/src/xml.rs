@@ -43,6 +43,9 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
     let ends = matches!(error, Error::UnclosedRootNode | Error::UnexpectedEndOfStream);
     let at = if ends { text.trim_end().char_indices().last().map_or(0, |(at, _)| at) } else { offset(source, error.pos()) };
     let span = Span::new(at, character_end(text, at));
+    if let Some((message, help)) = entity(text, at, error) {
+        return Diagnostic::new(Code::XmlSyntax, span, message, "here", help);
+    }
     let opened = unclosed_quote(text, if ends { text.len() } else { at });
     if let Some((character, entity)) = opened.and_then(|opened| unescaped(text, opened, at)) {
         let message = format!("a value holds `{character}`, which XML takes for the beginning of something else");
@@ -96,6 +99,27 @@ fn refusal(source: &Source, error: &Error) -> Diagnostic {
     match open {
         Some(open) => fault.also(open, "opened here, and not closed"),
         None => fault,
+    }
+}
+
+/// What is wrong with an entity at a place, and what to do about it.
+fn entity(text: &str, at: usize, error: &Error) -> Option<(String, String)> {
+    const ENTITIES: [&str; 5] = ["amp", "lt", "gt", "quot", "apos"];
+    let word = text.get(at..)?.strip_prefix('&')?;
+    let word = &word[..word.find(|c: char| !(c.is_alphanumeric() || c == '#')).unwrap_or(word.len())];
+    let is_number = word.strip_prefix('#').is_some_and(|digits| digits.starts_with(|c: char| c.is_ascii_digit() || c == 'x'));
+    match error {
+        Error::UnknownEntityReference(name, _) => Some((
+            format!("there is no entity `&{};`", shown(name)),
+            "write what it stands for; XML itself has `&amp;`, `&lt;`, `&gt;`, `&quot;` and `&apos;`".to_owned(),
+        )),
+        Error::MalformedEntityReference(_) if ENTITIES.contains(&word) || is_number => {
+            Some((format!("the entity `&{}` does not end", shown(word)), format!("end it with `;`: `&{};`", shown(word))))
+        }
+        Error::MalformedEntityReference(_) => {
+            Some(("a `&` stands here, with which XML begins an entity".to_owned(), "write `&amp;` for it".to_owned()))
+        }
+        _ => None,
     }
 }
 

@@ -195,4 +195,6 @@ fn comments_that_are_left_out_are_named() {
     assert!(!said(arm));
     assert!(said(&format!("# of my hands\n{arm}")));
     assert!(said(&arm.replace("name: a\n", "name: a # of my hands\n")));
+    let attached = "link: {mass: 1, attached: [{name: \"cam #2\", mass: 1}], ";
+    assert!(!said(&arm.replace("link: {mass: 1, ", attached)), "a `#` in quotes");
 }

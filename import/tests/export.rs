@@ -73,6 +73,25 @@ fn the_friction_of_rotors_is_part_of_damping_and_their_masses_are_named() {
     assert!(none.urdf.contains("damping=\"0.50\"") && !none.lines.join("\n").contains("damping"), "{}", none.urdf);
 }
 
+/// Masses add up exactly, and what is 0 is not left out.
+#[test]
+fn what_is_nothing_is_not_named_as_left_out() {
+    let lines = |joints: &[&str]| {
+        let joint = |(i, more): (usize, &&str)| {
+            format!(
+                "  - {{name: j{i}, type: revolute, axis: [0, 0, 1], link: {{mass: 1, inertia: {{xx: 1, yy: 1, zz: 1}}}}, {more}}}\n"
+            )
+        };
+        let joints: String = joints.iter().enumerate().map(joint).collect();
+        exported(&format!("name: a\nconvention: urdf\ngravity: [0, 0, -9.81]\njoints:\n{joints}")).lines.join("\n")
+    };
+    let masses = lines(&["motor: {mass: 0.1}", "motor: {mass: 0.2}", "motor: {mass: 0, inertia: 1e-4}"]);
+    assert!(masses.contains("rotors, 0.3 kg in all, are not in the masses of the URDF: `j0`, `j1`"), "{masses}");
+    assert!(!masses.contains("of the URDF: `j0`, `j1`, `j2`"), "{masses}");
+    let zeros = "motor: {viscous: 0}, armature: 0, friction: {offset: 0, cubic: 0, load: 0}";
+    assert_eq!(lines(&[zeros]), "");
+}
+
 #[test]
 fn a_faulty_description_is_refused() {
     let (exported, diagnostics) = export(&Source::new("robot.yaml", "name: 3"));

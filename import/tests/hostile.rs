@@ -225,3 +225,50 @@ fn many_bodies_within_frames_are_read_in_bounded_time() {
     let loop_of_classes = "<default class='a'><default class='b'><default class='a'><joint/></default></default></default>";
     check(format!("<mujoco>{loop_of_classes}<worldbody><body>{inertial}<joint class='b'/></body></worldbody></mujoco>"), None);
 }
+
+/// Kind and text of each thing that is said of a file.
+fn said(text: &str) -> Vec<(&'static str, String)> {
+    let (_, diagnostics) = import(&Source::new("robot.xml", text), &Options::default());
+    diagnostics.iter().map(|d| (d.code.name(), format!("{}; {}", d.message, d.help))).collect()
+}
+
+/// Each entity, in a value and between tags: what ends it, or what stands for it.
+#[test]
+fn entities_are_told_what_they_lack() {
+    for (written, expected) in [
+        ("&gt ", "end it with `;`: `&gt;`"),
+        ("&#48 ", "end it with `;`: `&#48;`"),
+        ("&foo;", "there is no entity `&foo;`"),
+        ("a & b", "write `&amp;`"),
+        ("& ", "write `&amp;`"),
+    ] {
+        for text in [format!("<robot name=\"{written}\"/>"), format!("<robot name=\"r\">{written}</robot>")] {
+            let said = said(&text);
+            assert!(said.len() == 1 && said[0].1.contains(expected), "{text}: {said:?}");
+        }
+    }
+}
+
+/// What is missing is told, and not what follows from it.
+#[test]
+fn classes_of_a_file_that_is_not_there_are_not_called_unknown() {
+    let body = r#"<body name="link" childclass="arm"><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/><joint name="one" class="big"/></body>"#;
+    let codes =
+        |inside: &str| -> Vec<&str> { said(&format!("<mujoco>{inside}</mujoco>")).iter().map(|(code, _)| *code).collect() };
+    assert_eq!(codes(&format!(r#"<include file="d.xml"/><worldbody>{body}</worldbody>"#)), ["mjcf-feature"]);
+    assert_eq!(codes(r#"<actuator><motor class="big" joint="one"/></actuator>"#), ["missing-element"]);
+    let unknown = said(&format!("<mujoco><worldbody>{body}</worldbody></mujoco>"));
+    assert!(
+        unknown.iter().all(|(code, said)| *code == "unknown-class" && said.contains("add the one of this class")),
+        "{unknown:?}"
+    );
+    assert_eq!(unknown.len(), 2);
+}
+
+#[test]
+fn names_within_what_stands_for_others_are_not_read() {
+    let composite = r#"<composite type="cable" count="3 1 1"><joint kind="main" solreffix="1 1"/></composite>"#;
+    let said = said(&format!("<mujoco><worldbody>{composite}</worldbody></mujoco>"));
+    assert!(said.iter().any(|(code, _)| *code == "mjcf-feature"), "{said:?}");
+    assert!(!said.iter().any(|(code, _)| code.starts_with("misspelt") || code.starts_with("unread")), "{said:?}");
+}

@@ -2,6 +2,7 @@
 
 use super::Convention;
 use crate::diagnostic::Code;
+use crate::document::excerpt;
 use crate::document::reader::{Fields, Reader};
 use crate::document::yaml::{Kind, Node};
 use crate::source::Spanned;
@@ -130,14 +131,19 @@ impl Reader<'_> {
 
     /// Whether a pose is written as numbers without names, which is reported.
     pub(super) fn pose_as_numbers(&mut self, node: &Node, items: &[Node], name: &str) -> bool {
-        let text =
-            |item: &Node| if let Kind::Scalar(scalar) = &item.kind { Some(crate::document::excerpt(&scalar.text)) } else { None };
-        let Some(numbers) = items.iter().map(text).collect::<Option<Vec<_>>>().filter(|numbers| !numbers.is_empty()) else {
+        let texts: Option<Vec<&str>> = items
+            .iter()
+            .map(|item| if let Kind::Scalar(scalar) = &item.kind { Some(scalar.text.as_str()) } else { None })
+            .collect();
+        let Some(numbers) = texts.filter(|numbers| !numbers.is_empty()) else {
             return false;
         };
         let (xyz, rest) = numbers.split_at(numbers.len().min(3));
         let xyz = format!("xyz: [{}]", xyz.join(", "));
         let help = match (numbers.len(), rest) {
+            _ if numbers.iter().any(|number| excerpt(number) != *number) => {
+                format!("write `{name}: {{xyz: [0, 0, 0.1], rpy: [0, pi/2, 0]}}`")
+            }
             (3, _) => format!("write `{name}: {{{xyz}}}`"),
             (6, rpy) => format!(
                 "write `{name}: {{{xyz}, rpy: [{}]}}`, if the last three are angles about fixed x, y and z",
@@ -171,7 +177,11 @@ impl Reader<'_> {
                 let unsymmetric = ELEMENTS.iter().find(|(_, i, j)| !same(at(*i, *j), at(*j, *i)));
                 if let Some((name, i, j)) = unsymmetric {
                     let mirrored: String = name.chars().rev().collect();
-                    message = format!("the tensor is not symmetric: {name} is {}, {mirrored} is {}", at(*i, *j), at(*j, *i));
+                    message = format!(
+                        "the tensor is not symmetric: {name} is {}, {mirrored} is {}",
+                        excerpt(at(*i, *j)),
+                        excerpt(at(*j, *i))
+                    );
                     either = "the two are one element; see which of them is right, and ";
                 }
                 let elements: Vec<(&str, &str)> = ELEMENTS.iter().map(|(name, i, j)| (*name, at(*i, *j))).collect();
@@ -198,7 +208,9 @@ impl Reader<'_> {
 /// Elements by name, without zeros.
 fn mapping(elements: &[(&str, &str)]) -> String {
     let kept = elements.iter().filter(|(_, text)| text.parse() != Ok(0.0));
-    let entries: Vec<String> = kept.map(|(name, text)| format!("{name}: {}", crate::document::excerpt(text))).collect();
+    // What is shortened cannot be copied.
+    let is_short = elements.iter().all(|(_, text)| excerpt(text) == *text);
+    let entries: Vec<String> = kept.map(|(name, text)| format!("{name}: {}", if is_short { text } else { "..." })).collect();
     format!("{{{}}}", entries.join(", "))
 }
 

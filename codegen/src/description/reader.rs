@@ -146,6 +146,10 @@ impl Reader<'_> {
 
     fn parameters(&mut self, node: &Node, key: Span) -> Vec<ParameterDescription> {
         let Kind::Mapping(entries) = &node.kind else {
+            let names = self.keys_without_space(node);
+            if !names.is_empty() {
+                return names.into_iter().map(|name| ParameterDescription { name, value: None }).collect();
+            }
             self.wrong_kind(
                 node,
                 key,

@@ -56,6 +56,24 @@ fn faults_of_one_long_line_are_counted_where_they_would_take_long_to_show() {
     assert!(rendered.len() < 2000, "{}", rendered.len());
 }
 
+/// An error is shown whatever stands before it: it is why there is no arm.
+#[test]
+fn the_first_error_is_shown_behind_all_warnings() {
+    let shown = |text: String, warnings: usize| {
+        let source = Source::new("robot.yaml", text);
+        let mut diagnostics = Diagnostics::new();
+        for start in 0..warnings + 2 {
+            let code = if start < warnings { Code::UnusedParameter } else { Code::UnknownKey };
+            diagnostics.push(Diagnostic::new(code, Span::new(start, start + 1), "message", "label", "help"));
+        }
+        let rendered = diagnostics.render(&source, Colour::Never);
+        assert!(rendered.ends_with(" more not shown\n\n"));
+        (rendered.matches("warning[unused-parameter]").count(), rendered.matches("error[unknown-key]").count())
+    };
+    assert_eq!(shown("x".repeat(RENDERED_BYTES / 3 + 1), 10), (3, 1));
+    assert_eq!(shown("x\n".repeat(RENDERED), RENDERED + 10), (RENDERED, 1));
+}
+
 #[test]
 fn an_empty_text_has_a_place_too() {
     let source = Source::new("robot.yaml", "");

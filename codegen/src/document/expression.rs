@@ -146,13 +146,22 @@ impl Expression {
         }
     }
 
-    /// Whether `deg` stands in it.
-    pub fn has_degrees(&self) -> bool {
+    /// Whether it is an angle in degrees: `deg(..)`, or a multiple or part of that by whole numbers. Other factors may be lengths: a rack
+    /// slides by the radius of its pinion times the angle.
+    pub fn is_in_degrees(&self) -> bool {
+        fn is_whole(factor: &Expression) -> bool {
+            match &factor.kind {
+                ExpressionKind::Decimal(value) => value.is_int(),
+                ExpressionKind::Negate(a) => is_whole(a),
+                _ => false,
+            }
+        }
         match &self.kind {
-            ExpressionKind::Decimal(_) | ExpressionKind::Pi | ExpressionKind::Name(_) => false,
             ExpressionKind::Degrees(_) => true,
-            ExpressionKind::Negate(a) | ExpressionKind::Root(a) => a.has_degrees(),
-            ExpressionKind::Binary(_, a, b) => a.has_degrees() || b.has_degrees(),
+            ExpressionKind::Negate(a) => a.is_in_degrees(),
+            ExpressionKind::Binary(Operator::Multiply, a, b) if is_whole(a) => b.is_in_degrees(),
+            ExpressionKind::Binary(Operator::Multiply | Operator::Divide, a, b) if is_whole(b) => a.is_in_degrees(),
+            _ => false,
         }
     }
 
@@ -279,7 +288,9 @@ impl<'a> Parser<'a> {
             }
             if self.rest().starts_with('*') {
                 let (label, help) = match operator {
-                    Operator::Divide if self.rest().contains("*/") => ("a comment?", COMMENT),
+                    Operator::Divide if self.rest().contains("*/") || self.rest()[1..].starts_with(char::is_whitespace) => {
+                        ("a comment?", COMMENT)
+                    }
                     Operator::Divide => ("two operators", "write one operator between two values"),
                     _ => ("powers are not supported", "write the product out: `a*a`"),
                 };
@@ -452,6 +463,7 @@ impl<'a> Parser<'a> {
                 ));
             }
             let help = units::without(&self.text[..self.at], self.rest())
+                .or_else(|| units::compound(self.rest()))
                 .unwrap_or_else(|| format!("write `{number}*{}` if a product is meant", excerpt(word)));
             return Err(self.error(self.at, end, "this sticks to a number", help));
         }
@@ -470,6 +482,10 @@ impl<'a> Parser<'a> {
         };
         if let Some(help) = units::without(&self.text[..self.at], self.rest()) {
             return self.error(self.at, self.text.trim_end().len(), "a unit", help);
+        }
+        let before = self.text[..self.at].char_indices().next_back().filter(|_| c == '#');
+        if let Some((at, name)) = before.and_then(|(at, blank)| Some((at, super::invisible(blank)?))) {
+            return self.error(at, self.at, name, "type a space instead, with which a comment begins");
         }
         if let Some(name) = super::invisible(c) {
             let help = "remove it, or type a space: it came with a text that was pasted";

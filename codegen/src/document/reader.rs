@@ -128,10 +128,18 @@ impl<'d> Reader<'d> {
         Some(root)
     }
 
+    /// The keys of `m:5` where a mapping is wanted; the missing blank is reported.
+    pub fn keys_without_space(&mut self, node: &Node) -> Vec<Spanned<String>> {
+        super::yaml::keys_without_space(node, self.diagnostics)
+    }
+
     /// The keys of a mapping; unknown and missing ones are reported, the latter at `at`.
     pub fn mapping<'n>(&mut self, node: &'n Node, what: &str, at: Span, keys: &[Key]) -> Option<Fields<'n>> {
         let names: Vec<&'static str> = keys.iter().map(|key| key.name).collect();
         let Kind::Mapping(entries) = &node.kind else {
+            if !self.keys_without_space(node).is_empty() {
+                return None;
+            }
             let expected = format!("{what} is a mapping of keys to values, found {}", node.describe());
             let help = format!("{}keys here: {}", written_out(node, what, keys), names.join(", "));
             self.report(Code::WrongKind, visible(node, at), expected, "not `key: value`", help);
@@ -263,7 +271,8 @@ impl<'d> Reader<'d> {
 /// How a mapping is written where `node` stands instead, if its keys have examples: a lone number goes under the key that is a number alone.
 fn written_out(node: &Node, what: &str, keys: &[Key]) -> String {
     let examples: Vec<&str> = keys.iter().map(|key| key.example).filter(|example| !example.is_empty()).collect();
-    let is_number = |text: &str| text.parse::<f64>().is_ok();
+    // `inf` and `nan` are floats, but no values.
+    let is_number = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
     let entries = match (&node.kind, &examples[..]) {
         (_, []) => return String::new(),
         (Kind::Scalar(scalar), [only]) if is_number(&scalar.text) => match only.split_once(": ") {

@@ -327,6 +327,8 @@ impl Builder<'_> {
         let is_quote = quote.is_some();
         if let Some(cause) = quote.or_else(|| cause::find(text, at, error.kind()).filter(|_| !in_brackets)) {
             (span, message, help) = (cause.span, cause.message, cause.help);
+        } else if matches!(error.kind(), ErrorKind::FlowMappingValueAdjacentCollection) {
+            help = key_before(text, at).map_or(help, |(word, bracket)| format!("write `{word}: {bracket}...`"));
         }
         let code = match error.kind() {
             ErrorKind::RecursionLimitExceeded => Code::TooLarge,
@@ -359,6 +361,11 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// Whether a comment stands in a text.
+pub fn has_comment(text: &str) -> bool {
+    cause::quote_and_comment(text).1
 }
 
 /// The key that `node` is, unless it is none or stands here already.
@@ -403,17 +410,44 @@ fn parted(
         return None;
     }
     let (word, rest) = key.value.split_once(':')?;
+    let rest = rest.trim_start_matches(':');
     if !cause::is_word(word) || rest.is_empty() || seen.contains_key(word) {
         return None;
     }
     let colon = key.span.start + word.len();
-    let (message, _) = explain(&ErrorKind::InvalidMappingValueWhitespace);
-    let help = format!("write `{word}: {}`", super::excerpt(rest));
-    diagnostics.push(Diagnostic::new(Code::YamlSyntax, Span::new(colon, colon + 1), message, "here", help));
+    diagnostics.push(wants_space(Span::new(colon, colon + 1), word, rest));
     let word = Spanned::new(word.to_owned(), Span::new(key.span.start, colon));
     seen.insert(word.value.clone(), word.span);
-    let scalar = Scalar { text: rest.to_owned(), plain: true, verbatim: Some(colon + 1) };
-    Some((word, Node { span: Span::new(colon + 1, key.span.end), kind: Kind::Scalar(scalar) }))
+    let span = Span::new(key.span.end - rest.len(), key.span.end);
+    let quote = rest.chars().next().filter(|c| matches!(c, '"' | '\''));
+    let quoted = quote.and_then(|quote| rest[1..].strip_suffix(quote));
+    let (text, verbatim) = (quoted.unwrap_or(rest).to_owned(), span.start + usize::from(quoted.is_some()));
+    let scalar = Scalar { text, plain: quoted.is_none(), verbatim: Some(verbatim) };
+    Some((word, Node { span, kind: Kind::Scalar(scalar) }))
+}
+
+/// That a colon, at a place, wants a blank.
+fn wants_space(colon: Span, word: &str, rest: &str) -> Diagnostic {
+    let (message, _) = explain(&ErrorKind::InvalidMappingValueWhitespace);
+    Diagnostic::new(Code::YamlSyntax, colon, message, "here", format!("write `{word}: {}`", super::excerpt(rest)))
+}
+
+/// The key before a colon at a place, and the bracket behind it.
+fn key_before(text: &str, at: usize) -> Option<(&str, char)> {
+    let bracket = text.get(at..)?.strip_prefix(':')?.chars().next()?;
+    let word = text[..at].rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
+    cause::is_word(word).then_some((word, bracket))
+}
+
+/// The keys of `m:5`, where a mapping is wanted and YAML takes a text, of one line or several; the first one's missing blank is reported.
+pub(super) fn keys_without_space(node: &Node, diagnostics: &mut Diagnostics) -> Vec<Spanned<String>> {
+    let Kind::Scalar(Scalar { text, plain: true, .. }) = &node.kind else { return Vec::new() };
+    let parts = text.split_whitespace().filter_map(|part| part.split_once(':'));
+    let keys: Vec<_> = parts.filter(|(word, rest)| cause::is_word(word) && !rest.is_empty()).collect();
+    let Some((first, rest)) = keys.first().filter(|(word, _)| text.starts_with(&format!("{word}:"))) else { return Vec::new() };
+    let colon = node.span.start + first.len();
+    diagnostics.push(wants_space(Span::new(colon, colon + 1), first, rest));
+    keys.iter().map(|(word, _)| Spanned::new((*word).to_owned(), node.span)).collect()
 }
 
 /// What the reader's complaint means, and what to do about it.
@@ -432,7 +466,13 @@ fn explain(kind: &ErrorKind) -> (String, String) {
             "a `key: value` cannot stand here",
             "begin it on a line of its own with the indentation of its neighbours; put a text that contains a colon in quotes",
         ),
-        E::InvalidMappingValueWhitespace => ("a colon must be followed by a space", "write `key: value`"),
+        E::BomInsideDocument => (
+            "a byte order mark, U+FEFF, stands within the text, where nobody sees it",
+            "remove it: type anew what stands around it",
+        ),
+        E::InvalidMappingValueWhitespace | E::FlowMappingValueAdjacentCollection => {
+            ("a colon must be followed by a space", "write `key: value`")
+        }
         E::BlockSequenceEntryNotAllowed | E::BlockEntryInFlowCollection | E::InvalidBlockEntryWhitespace => (
             "a list entry cannot begin here",
             "begin `- value` on a line of its own; between [ and ] separate the values by commas instead",

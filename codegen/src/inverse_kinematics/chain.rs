@@ -179,11 +179,14 @@ impl Chain {
             return Err("the last axis and the z axis of the end effector have no common normal in numbers".into());
         };
         if !last.prismatic && is_parallel(&self.tool) && is_zero(&between.normal.0) {
+            // One joint more than the five that a position and a direction ask for can be spared.
+            let rest = match self.joints.len() - 1 {
+                5 => "`target: pointing` is a target of the other 5".to_owned(),
+                others => format!("the other {others} reach a position, one of them given"),
+            };
             return Err(format!(
                 "the last joint turns about the z axis of the end effector, which position and direction leave open; \
-                 `target: pose` gives the postures at which all six rows are met, and in a description without that joint \
-                 the other {} reach a position, one of them given",
-                self.joints.len() - 1
+                 `target: pose` gives the postures at which all six rows are met, and in a description without that joint {rest}"
             ));
         }
         let (turn, d) = between.before;

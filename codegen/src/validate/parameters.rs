@@ -237,6 +237,8 @@ impl<'d> Parameters<'d> {
         };
         let help = if within == Within::Parameter(name) {
             "a value may use the names above it, and not its own: write a number".to_owned()
+        } else if let Some(meant) = self.spelt_otherwise(name).filter(|_| within.adds_variable(name).is_some()) {
+            format!("did you mean `{meant}`? Otherwise define `{shown}` under `parameters`")
         } else if let Some(key) = within.adds_variable(name) {
             format!("the joint variable is added to `{key}` by itself: write what else stands there, its offset, or 0")
         } else if self.later.contains(name) {
@@ -253,6 +255,12 @@ impl<'d> Parameters<'d> {
             format!("define it under `parameters`, which has {}{more}", known.join(", "))
         };
         Diagnostic::new(Code::UnknownName, span, format!("the name `{shown}` is not defined"), "unknown name", help)
+    }
+
+    /// The defined name that differs in capitals and `_` alone.
+    fn spelt_otherwise(&self, name: &str) -> Option<&'d str> {
+        let letters = |name: &str| name.replace('_', "").to_lowercase();
+        self.entries.iter().map(|entry| entry.name).find(|known| letters(known) == letters(name))
     }
 
     /// Makes numbers of the names in divisors and under roots.

@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | `implausible-reach` | a length, all lengths together, or a limit of a slide beyond 30 m | the longest arms, of space stations and concrete pumps, have links of some 10 m; 0.05 m written in mm is 50 |
 //! | `implausible-mass` | masses of more than 2000 kg per cube of what the arm spans | industrial arms have 3 to 80; a solid cube of that side made of light alloy has 2700 |
-//! | the same | a payload of five times the mass of all links | hydraulic arms lift some four times their own |
+//! | the same | a payload of five times the mass of all links and motors, under gravity | hydraulic arms lift some four times their own |
 //! | `outlying-mass` | a link of five times the mass of all others together, unless its inertia is that of a body of such a mass: that of a ball less dense than light alloy | the heaviest links of arms have about half of the whole; a torso below a head has more, but its inertia says so, too, and a slip of ten in a mass makes the ball 316 times as dense |
 //! | `implausible-com` | a centre of mass farther from its frame than the arm is long | it lies within its link; a payload is no longer than the arm |
 //! | `implausible-inertia` | a radius of gyration above what the link, or for a payload the arm, spans | two point masses at the ends of a rod have half; files that are much in use have up to 0.95 |
@@ -98,10 +98,9 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         }
     }
     let mut reach: f64 = lengths.iter().sum();
-    if let Some(tool) = &description.tool {
-        reach += translation(tool, "the tool", context);
-    }
-    check_reach(joints, &lengths, reach, context);
+    let tool = description.tool.as_ref().map(|tool| (translation(tool, "the tool", context), tool.key));
+    reach += tool.map_or(0.0, |(length, _)| length);
+    check_reach(joints, &lengths, tool, reach, context);
     let strokes: Vec<f64> = joints.iter().map(|joint| stroke(joint, context)).collect();
     if reach < 2.0 * SMALL_REACH {
         reach += strokes.iter().filter(|stroke| stroke.is_finite()).sum::<f64>();
@@ -125,7 +124,8 @@ pub(super) fn check(description: &RobotDescription, context: &mut Context<'_>) {
         check_friction(joint, &called, context);
     }
     if let Some(payload) = &description.payload {
-        arm.check_payload(payload, doubted, context);
+        let weightless = description.gravity.as_ref().is_some_and(|g| g.value.iter().all(|g| number(g, context) == 0.0));
+        arm.check_payload(payload, doubted, weightless, context);
     }
     if !doubtful {
         arm.check_densities(context);
@@ -178,8 +178,8 @@ fn length(value: &Value, what: &str, context: &mut Context<'_>) -> f64 {
     size.abs()
 }
 
-/// All lengths together, where none of them is too long by itself.
-fn check_reach(joints: &[JointDescription], lengths: &[f64], reach: f64, context: &mut Context<'_>) {
+/// All lengths together, where none of them is too long by itself; `tool` has length and place of the tool's.
+fn check_reach(joints: &[JointDescription], lengths: &[f64], tool: Option<(f64, Span)>, reach: f64, context: &mut Context<'_>) {
     let Some(longest) = (0..lengths.len()).reduce(|a, b| if lengths[b] > lengths[a] { b } else { a }) else { return };
     let is_told = context.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::ImplausibleReach);
     if reach <= LONGEST || is_told {
@@ -188,7 +188,8 @@ fn check_reach(joints: &[JointDescription], lengths: &[f64], reach: f64, context
     let joint = &joints[longest];
     let rows = [&joint.a, &joint.d].map(|value| (number(value, context).abs(), value.as_ref()));
     let value = rows.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).and_then(|(_, value)| value);
-    let span = value.map(|value| written(value, context)).or(joint.origin.as_ref().map(|origin| origin.key));
+    let of_joint = value.map(|value| written(value, context)).or(joint.origin.as_ref().map(|origin| origin.key));
+    let span = tool.filter(|(length, _)| *length > lengths[longest]).map(|(_, key)| key).or(of_joint);
     let message = format!("the lengths of the arm add up to {} m: no arm is as long", short(reach));
     let help = format!("lengths are in m; if these are in cm, the arm is {} m long", short(reach / 1e2));
     context.report(Code::ImplausibleReach, span.unwrap_or(joint.span), message, "the longest; all in cm?", help);
@@ -216,10 +217,10 @@ fn check_stroke(joint: &JointDescription, called: &str, context: &mut Context<'_
     }
 }
 
-/// Whether a value is written with `deg`, by itself or by the name that it is.
+/// Whether a value is an angle in degrees, by itself or by the name that it is.
 fn is_in_degrees(value: &Expression, context: &Context<'_>) -> bool {
     let definition = value.as_name().and_then(|name| context.evaluator.parameters.get(name)).and_then(|entry| entry.value);
-    definition.unwrap_or(value).has_degrees()
+    definition.unwrap_or(value).is_in_degrees()
 }
 
 fn dust(value: &Value, what: &str, unit: &str, context: &mut Context<'_>) {
@@ -360,23 +361,25 @@ impl Arm<'_> {
         self.check_inertia(&body, self.span(i, com), doubted, context)
     }
 
-    /// Mass, centre of mass and inertia of the payload. It may be longer than a link, and is not longer than the arm.
-    fn check_payload(&self, payload: &BodyDescription, doubted: bool, context: &mut Context<'_>) {
+    /// Mass, centre of mass and inertia of the payload. It may be longer than a link, and is not longer than the arm; where nothing has a
+    /// weight it may have any mass.
+    fn check_payload(&self, payload: &BodyDescription, doubted: bool, weightless: bool, context: &mut Context<'_>) {
         let mass = number(&payload.mass, context);
         let bodies = self
             .joints
             .iter()
             .filter_map(|joint| joint.link.as_ref())
             .flat_map(|link| std::iter::once(&link.mass).chain(link.attached.iter().map(|other| &other.body.mass)));
-        let total: f64 = bodies.map(|mass| number(mass, context)).sum();
+        let motors = self.joints.iter().filter_map(|joint| joint.motor.as_ref()).map(|motor| &motor.mass);
+        let total: f64 = bodies.chain(motors).map(|mass| number(mass, context)).sum();
         if self.reach < SMALL_REACH || mass <= 0.0 {
             return;
         }
-        let is_heavy = !doubted && total > 0.0 && mass > OUTLYING * total;
+        let is_heavy = !doubted && !weightless && total > 0.0 && mass > OUTLYING * total;
         if let (true, Some(expression)) = (is_heavy, &payload.mass) {
             let span = written(expression, context);
             let message = format!(
-                "the payload weighs {} kg, {} times as much as the links of the arm together",
+                "the payload weighs {} kg, {} times as much as links and motors of the arm together",
                 short(mass),
                 short((mass / total).round())
             );

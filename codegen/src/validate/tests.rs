@@ -448,6 +448,74 @@ fn a_heavy_last_link_is_doubted_where_its_inertia_or_its_size_does_not_bear_it()
     check_values(&torso(17, 0.01, 0.3), &[Code::ImplausibleMass]);
 }
 
+/// What is said first of an arm.
+fn said_first(text: &str) -> String {
+    let source = Source::new("robot.yaml", text);
+    read(&source).1.render(&source, Colour::Never).split("\n\n").next().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn a_defined_name_is_meant_before_a_joint_variable() {
+    let slide = ("type: revolute", "type: prismatic");
+    for (edits, meant) in [
+        (vec![("parameters: {}", "parameters: {theta_1: 0.3}"), ("theta: 0", "theta: theta1 + theta_1")], "`theta_1`"),
+        (vec![slide, ("parameters: {}", "parameters: {d_2: 0.3}"), ("d: 0.25", "d: d2 + d_2")], "`d_2`"),
+        (vec![slide, ("parameters: {}", "parameters: {D2: 0.3}"), ("d: 0.25", "d: d2 + D2")], "`D2`"),
+    ] {
+        let said = said_first(&arm(&edits));
+        assert!(said.contains(&format!("did you mean {meant}?")), "{said}");
+    }
+    let said = said_first(&arm(&[("parameters: {}", "parameters: {theta_2: 0.3}"), ("theta: 0", "theta: theta1 + theta_2")]));
+    assert!(said.contains("is added to `theta` by itself"), "{said}");
+}
+
+/// 2 kg of link carry 12 kg only with their motor of 1 kg, or where nothing weighs.
+#[test]
+fn a_payload_counts_against_links_and_motors_under_gravity() {
+    let with = |edits: &[(&str, &str)]| {
+        said_first(
+            &arm(&[edits, &[("", "payload: {mass: 12, com: [0, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}\n")]].concat()),
+        )
+    };
+    assert!(with(&[]).contains("implausible-mass"), "{}", with(&[]));
+    let (motor, space) = (("link:", "motor: {ratio: 50, mass: 1}\n    link:"), ("[0, 0, -9.81]", "[0, 0, 0]"));
+    assert!(!with(&[motor]).contains("implausible-mass"), "{}", with(&[motor]));
+    assert!(!with(&[space]).contains("implausible-mass"), "{}", with(&[space]));
+}
+
+#[test]
+fn a_slide_by_the_radius_of_a_pinion_is_no_angle() {
+    let said = |low: &str| {
+        said_first(&arm(&[
+            ("type: revolute", "type: prismatic"),
+            ("parameters: {}", "parameters: {r: 0.02, turn: deg(30)}"),
+            ("theta: 0", &format!("theta: 0\n    limits: {{position: [{low}, 2], velocity: r*turn}}")),
+        ]))
+    };
+    for angle in ["-deg(180)", "-2*deg(90)", "deg(-180)*2", "-deg(180)/2", "-turn"] {
+        assert!(said(angle).contains("degrees-suspected"), "{angle}: {}", said(angle));
+    }
+    for length in ["-r*deg(180)", "-0.02*deg(180)", "-deg(180)*r/2", "-1"] {
+        assert!(!said(length).contains("degrees-suspected"), "{length}: {}", said(length));
+    }
+}
+
+#[test]
+fn the_longest_length_may_be_that_of_the_tool() {
+    let said = said_first(&arm(&[("", "tool: {xyz: [0, 0, 29.9]}\n")]));
+    assert!(said.contains("add up to 30.65 m") && said.contains("robot.yaml:13:1"), "{said}");
+    let said = said_first(&arm(&[("a: 0.5", "a: 20"), ("", "tool: {xyz: [0, 0, 15]}\n")]));
+    assert!(said.contains("add up to 35.25 m") && said.contains("robot.yaml:8:"), "{said}");
+}
+
+#[test]
+fn names_have_no_blanks_that_are_none_of_yaml() {
+    for blank in ['\u{a0}', '\u{1680}', '\u{2003}', '\u{202f}', '\u{205f}', '\u{3000}'] {
+        let said = said_first(&arm(&[("name: arm", &format!("name: a{blank}b"))]));
+        assert!(said.contains(&format!("U+{:04X}, which cannot be seen", u32::from(blank))), "{said}");
+    }
+}
+
 #[test]
 fn warnings_can_be_allowed() {
     let text = arm(&[("gravity: [0, 0, -9.81]", "gravity: [0, 0, -981]")]);

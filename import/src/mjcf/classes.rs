@@ -65,6 +65,11 @@ impl<'a> Classes<'a> {
 
     /// Reports elements that name a class that there is none of. The elements of `default` are what makes a class.
     pub(super) fn refuse_unknown(&self, root: Node<'a, '_>, diagnostics: &mut Diagnostics) {
+        // The class may be in the file that is to be included, or in the one that this one is a part of: both are told.
+        let tags = || root.descendants().filter(Node::is_element).map(|node| node.tag_name().name());
+        if tags().any(|tag| tag == "include") || !tags().any(|tag| tag == "worldbody") {
+            return;
+        }
         let mut guesses = GUESSES;
         let sections = root.children().filter(|section| section.tag_name().name() != "default");
         let named = sections.flat_map(|section| section.descendants()).filter(Node::is_element);
@@ -76,7 +81,9 @@ impl<'a> Classes<'a> {
             // Of the first few only: there may be as many classes as elements.
             let help = match guesses {
                 0 => "name a class that a `default` has".to_owned(),
-                _ if self.by_name.is_empty() => "the file has no `default`: take the name out".to_owned(),
+                _ if self.by_name.is_empty() => {
+                    "the file has no `default`: add the one of this class, from the file that the model was taken from".to_owned()
+                }
                 _ => meant(name, &self.by_name.keys().copied().collect::<Vec<_>>()),
             };
             guesses = guesses.saturating_sub(1);

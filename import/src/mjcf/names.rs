@@ -119,7 +119,12 @@ const SINGLE: [(&str, &[&str]); 1] = [("body", &["inertial"])];
 /// Warns of what nothing reads of the sections that are read.
 pub(super) fn warn_of_unread<'a, 'i: 'a>(root: Node<'a, 'i>, diagnostics: &mut Diagnostics) {
     let read = ["compiler", "option", "default", "worldbody"].into_iter().flat_map(|name| sections(root, name));
-    let inside: Vec<Node<'a, 'i>> = read.flat_map(|section| section.descendants()).filter(Node::is_element).collect();
+    // What stands in an element for others has names of its own, and is refused.
+    let written_out = |node: &Node<'a, 'i>| {
+        !node.ancestors().skip(1).any(|outer| ["composite", "flexcomp", "replicate"].contains(&outer.tag_name().name()))
+    };
+    let inside: Vec<Node<'a, 'i>> =
+        read.flat_map(|section| section.descendants()).filter(|node| node.is_element() && written_out(node)).collect();
     let inside = inside.iter().copied();
     unread::warn_of_elements(std::iter::once(root).chain(inside.clone()), &ELEMENTS_OF, diagnostics);
     unread::warn_of_repeated(inside.clone(), &SINGLE, diagnostics);

@@ -83,6 +83,11 @@ const UNITS: &[(&str, To, &str)] = &[
     ("kHz", To::Power(3), "1/s"),
 ];
 
+/// Units of a torque with kgf or gf for which kg or g is written: without the square they are those of an inertia. The factors to N m, the
+/// powers of ten to kg m², and the inertia that may be meant.
+const TORQUES_OR_INERTIAS: [(&str, &str, i32, &str); 3] =
+    [("kgm", "9.80665", 0, "kg m²"), ("kgcm", "0.0980665", -4, "kg cm²"), ("gcm", "9.80665e-5", -7, "g cm²")];
+
 /// What to write instead of `before` and a unit, if `rest` is one. Where more than a number stands before it, what the unit belongs to is not
 /// guessed.
 pub(super) fn without(before: &str, rest: &str) -> Option<String> {
@@ -95,6 +100,19 @@ pub(super) fn without(before: &str, rest: &str) -> Option<String> {
     };
     let is_decimal = number.chars().all(|c| c.is_ascii_digit() || c == '.') && number.matches('.').count() <= 1;
     let plain = is_decimal && number.contains(|c: char| c.is_ascii_digit());
+    // `kg-cm` is how data sheets of servos have it; without the dash a square may be forgotten.
+    let either = TORQUES_OR_INERTIAS.iter().find(|(name, ..)| *name == unit && !rest.contains('-'));
+    if let Some((_, factor, power, inertia)) = either {
+        return Some(match plain {
+            true => format!(
+                "a torque, in N m, is `{sign}{number}*{factor}`; an inertia in {inertia} is `{sign}{}` in kg m²",
+                shifted(number, *power)
+            ),
+            false => format!(
+                "leave the unit out; a torque is in N m: multiply what has this unit by {factor}; an inertia in {inertia} is in kg m²: by 1e{power}"
+            ),
+        });
+    }
     Some(match (to, plain) {
         (To::Power(0), true) => format!("remove the unit: write `{sign}{number}`; all values are in SI units, here in {si}"),
         (To::Power(0), false) => format!("remove the unit: all values are in SI units, here in {si}"),
@@ -115,6 +133,14 @@ pub(super) fn without(before: &str, rest: &str) -> Option<String> {
             format!("multiply what has this unit by {factor} and leave the unit out: all values are in SI units, here in {si}")
         }
     })
+}
+
+/// What is said of a unit that is none of those above, if it is a quotient of them such as `kg/m`.
+pub(super) fn compound(rest: &str) -> Option<String> {
+    let mut parts = rest.trim().split('/').map(squeezed);
+    let is_unit = |part: &String| UNITS.iter().any(|(name, ..)| name == part);
+    (rest.contains('/') && parts.all(|part| is_unit(&part)))
+        .then(|| "leave the unit out: all values are in SI units (m, kg, s, rad, N), without saying so".to_owned())
 }
 
 /// A unit without blanks, `*`, `·`, `^`, and without `-` and `.` between letters; squares as 2.
@@ -195,6 +221,15 @@ mod tests {
         check(&["kg-cm", "kgcm", "kgf cm", "kgf.cm", "kg*cm", "kg cm"], gravity / 100.0);
         check(&["kgf m", "kg-m"], gravity);
         check(&["g-cm", "gf cm"], gravity / 1e5);
+        // The square of an inertia may be forgotten, but of no weight.
+        let said = |unit: &str| without("15 ", unit).unwrap_or_default();
+        for (unit, inertia) in [("kg m", "`15`"), ("kg cm", "`0.0015`"), ("kg*cm", "`0.0015`"), ("g cm", "`0.0000015`")] {
+            assert!(said(unit).contains(inertia) && said(unit).contains("a torque"), "{unit}: {}", said(unit));
+            assert!(without("2*l ", unit).is_some_and(|said| said.contains("an inertia")), "{unit}");
+        }
+        for unit in ["kgf m", "kgf cm", "kg-cm", "kg-m", "g-cm"] {
+            assert!(!said(unit).contains("inertia"), "{unit}: {}", said(unit));
+        }
         check(&["oz-in", "ozf in"], pound / 16.0 * 0.0254);
         check(&["lb-in", "in-lb", "lbf in"], pound * 0.0254);
         check(&["ft-lb", "lbf ft"], pound * 0.3048);

@@ -265,6 +265,12 @@ fn key_without_colon(text: &str, at: usize) -> Option<Cause> {
 
 /// The quote that is open at the end of a text.
 fn opened_quote(text: &str) -> Option<usize> {
+    quote_and_comment(text).0
+}
+
+/// The quote that is open at the end of a text, and whether there is a comment before.
+pub(super) fn quote_and_comment(text: &str) -> (Option<usize>, bool) {
+    let mut comment = false;
     let mut open: Option<(usize, char)> = None;
     // The last character, and the last one that is no blank, a line's end among them.
     let (mut last, mut visible) = ('\n', '\n');
@@ -275,7 +281,10 @@ fn opened_quote(text: &str) -> Option<usize> {
             Some((_, '\'')) if c == '\'' && characters.next_if(|(_, next)| *next == '\'').is_some() => {}
             Some((_, quote)) if c == quote => open = None,
             Some(_) => {}
-            None if c == '#' && last.is_whitespace() => while characters.next_if(|(_, next)| *next != '\n').is_some() {},
+            None if c == '#' && last.is_whitespace() => {
+                comment = true;
+                while characters.next_if(|(_, next)| *next != '\n').is_some() {}
+            }
             None if matches!(c, '"' | '\'') && matches!(visible, '\n' | ':' | '-' | '?' | '[' | '{' | ',') => {
                 open = Some((at, c))
             }
@@ -286,5 +295,5 @@ fn opened_quote(text: &str) -> Option<usize> {
             visible = c;
         }
     }
-    open.map(|(at, _)| at)
+    (open.map(|(at, _)| at), comment)
 }
