@@ -133,6 +133,11 @@ fn a_path_is_no_experiment_and_no_file_that_is_read_is_written_over() {
     let output = run(&folder, &[&path]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(err(&output).contains("path.yaml is a path, not an experiment"), "{}", err(&output));
+    let second = folder.join("second.yaml");
+    fs::copy(&path, &second).expect("a file");
+    let output = run(&folder, &[&path, &second]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(err(&output).contains("path.yaml and 1 more are paths, not experiments"), "{}", err(&output));
     // A figure of `own` is called as the log of `own_postures`; as a file it may be read, too.
     let out = folder.join("again");
     fs::create_dir_all(&out).expect("a folder");

@@ -94,6 +94,11 @@ fn the_summary_explains_the_columns_that_it_has() {
         assert!(text.contains(present), "{present} in {text}");
     }
     assert!(!text.contains("lighter than foam"), "{text}");
+    // 7 links of 10 parameters, of which 27 do not move it.
+    let panda = fs::read_to_string(file("robots/panda7.yaml")).expect("a description");
+    fs::write(&robot, panda.replace("regressor: standard", "regressor: base")).expect("a file");
+    let text = out(&check(&["check", path], 0));
+    assert!(text.contains("`regressor` has all 43."), "{text}");
     // A value in lines of its own stands in one line of its table.
     let row = "  - {name: x, type: prismatic, a: 0, alpha: pi/2, d: 0.5, theta: 0, link: {mass: 10}}\n";
     let block = "  - name: x\n    type: prismatic\n    a: 0\n    alpha: pi/2\n    d: >\n      0.5\n      + 0.25\n    theta: 0\n    link: {mass: 10}\n";
@@ -102,6 +107,10 @@ fn the_summary_explains_the_columns_that_it_has() {
     fs::write(&robot, block).expect("a file");
     let text = out(&check(&["check", path], 0));
     assert!(text.contains("1 x    prismatic      0         pi/2  q1 + 0.5 + 0.25            0\n"), "{text}");
+    let tool = format!("{CART}tool:\n  xyz: [0, # across\n    0,\n    0.1]\n");
+    fs::write(&robot, tool).expect("a file");
+    let text = out(&check(&["check", path], 0));
+    assert!(text.contains("  tool: [0, 0, 0.1]\n"), "{text}");
 }
 
 /// The page calls the same three links of the UR5 doubtful.

@@ -112,6 +112,20 @@ fn companions_of_another_description_are_told() {
         let said = err(&output);
         assert!(said.contains(&format!("goes with {with}: verify that one")) && !said.contains("writes module"), "{said}");
     }
+    // A header of the same name may be a module by itself, which no option of the other language renews.
+    for (languages, told) in [(["c", "rust"], "--c-abi"), (["rust", "c"], "--ik renews")] {
+        let (modules, robots) = (languages.map(|language| if language == "c" { "h" } else { "rs" }), [&first, &second]);
+        let beside = folder.join(languages[0]);
+        fs::create_dir_all(&beside).expect("a folder");
+        for i in 0..2 {
+            let module = beside.join(format!("robot.{}", modules[i]));
+            let mut arguments =
+                vec!["generate", robots[i].as_str(), "--language", languages[i], "--out", module.to_str().expect("UTF-8")];
+            arguments.extend(if i == 0 && languages[0] == "rust" { &["--ik", "--c-abi"][..] } else { &[] });
+            let said = err(&check(&arguments, 0));
+            assert!(!said.contains(told), "{languages:?}: {said}");
+        }
+    }
     let output = check(&["verify", &second, &path("robot_ik.rs")], 1);
     assert!(err(&output).contains("is of another description: it was made from scara4.yaml (input "), "{}", err(&output));
 }

@@ -187,7 +187,7 @@ fn warn_of_stale(source: &Source, language: Language, out: &Path, beside: &Besid
     }
     let hash = Origin::of(source).hash;
     let others = companions::beside(out, language).into_iter().filter(|(path, _)| files.iter().all(|(own, _)| own != path));
-    for (path, flag) in others.filter(|(path, _)| companions::is_of_another(path, &hash)) {
+    for (path, flag) in others.filter(|(path, _)| companions::is_of_another(path, language, &hash)) {
         terminal::warning(&format!(
             "{} was not written again and is of another description: {flag} renews it, or remove it",
             path.display()

@@ -32,8 +32,12 @@ pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &So
     }
     match paths.as_slice() {
         [] => {}
-        [path] if experiments.is_empty() && others.is_empty() && code == DONE => {
-            terminal::error(&format!("{} is a path, not an experiment: name the experiment that follows it", path.display()));
+        [path, more @ ..] if experiments.is_empty() && others.is_empty() && code == DONE => {
+            let said = match more.len() {
+                0 => "is a path, not an experiment: name the experiment that follows it".to_owned(),
+                more => format!("and {more} more are paths, not experiments: name the experiments that follow them"),
+            };
+            terminal::error(&format!("{} {said}", path.display()));
             return FAULTY;
         }
         [first, more @ ..] => {

@@ -70,9 +70,12 @@ fn dh_row(source: &Source, row: &JointDescription, i: usize, manipulator: &Manip
     texts
 }
 
-/// What stands in the file, in one line.
+/// What stands in the file, in one line, without comments.
 fn in_one_line(source: &Source, span: Span) -> String {
-    source.slice(span).split_whitespace().collect::<Vec<_>>().join(" ")
+    let words = |line: &'_ str| -> Vec<String> {
+        line.split_whitespace().take_while(|word| !word.starts_with('#')).map(str::to_owned).collect()
+    };
+    source.slice(span).lines().flat_map(words).collect::<Vec<_>>().join(" ")
 }
 
 /// The origin and the axis, as written.
