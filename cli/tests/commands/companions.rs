@@ -151,6 +151,8 @@ fn an_arm_without_inverse_kinematics_is_told() {
         let output = check(&["generate", &yaml, "--language", language, "--out", &module, "--ik"], code);
         assert!(err(&output).contains("there is no") && err(&output).contains(": "), "{}", err(&output));
         assert_eq!(err(&output).contains("nothing is written"), code == 1, "{}", err(&output));
+        let remedy = "in a description without that joint `target: pointing` is a target of the other 5";
+        assert_eq!(err(&output).contains(remedy), code == 1, "{}", err(&output));
         assert_eq!(Path::new(&module).exists(), code == 0);
     }
 }
