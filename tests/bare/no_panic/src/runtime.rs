@@ -294,6 +294,7 @@ fn follow<R, A, E, const N: usize, const M: usize, const P: usize>(
     let Ok(algorithm) = algorithm else { return };
     let j = Task::jacobian(&task, &Kinematics::geometric_jacobian(robot, &state.q));
     keep(Algorithm::rates(&algorithm, robot, &state.q, &vector(), &vector(), &j));
+    keep(Algorithm::gain(&algorithm));
     let Ok(clik) = Clik::new(task, algorithm, number(), limits, numbers()) else { return };
     keep((Clik::step(&clik, robot, &state.q, reference), Clik::task(&clik)));
     keep(Clik::approach(&clik, robot, &state.q, &reference.pose, black_box(3)));
