@@ -279,40 +279,34 @@ where
             return Some(Rest { q: *reference, is_held: true, feedback: law.about(model, reference, &SVector::zeros()) });
         }
         let still = SVector::zeros();
-        // The component in the columns of L.
-        let along = |l: &DMatrix<R::Real>, x: &SVector<R::Real, N>| {
-            let x = DVector::from_column_slice(x.as_slice());
-            let part = (l.transpose() * l).cholesky().map(|square| l * square.solve(&(l.transpose() * x)));
-            part.map_or_else(SVector::zeros, |part| SVector::from_column_slice(part.as_slice()))
+        // L (L'L)^-1, whose transpose gives the coordinates of a torque along the columns of L.
+        let dual = |l: &DMatrix<R::Real>| {
+            let square = (l.transpose() * l).cholesky();
+            square.map_or_else(|| DMatrix::zeros(N, l.ncols()), |square| l * square.inverse())
         };
+        let column = |x: DVector<R::Real>| SVector::<R::Real, N>::from_column_slice(x.as_slice());
+        let dynamic = |x: &SVector<R::Real, N>| DVector::from_column_slice(x.as_slice());
+        // The component in the columns of L.
+        let along = |l: &DMatrix<R::Real>, x: &SVector<R::Real, N>| column(l * (dual(l).transpose() * dynamic(x)));
+        let modelled = |q: &SVector<R::Real, N>, dqr: &SVector<R::Real, N>| law.modelled(model, [q, &still, dqr, &still]);
+        let rates = |q: &SVector<R::Real, N>| law.lambda.component_mul(&(reference - q));
+        let holding = |q: &SVector<R::Real, N>| modelled(q, &rates(q)) - modelled(q, &still) + law.k_d.component_mul(&rates(q));
+        let lacking = |q: &SVector<R::Real, N>| plant.gravity(q) + plant.friction(&still) - modelled(q, &still);
         let held = |q: &SVector<R::Real, N>| {
-            let (l, dqr) = (law.excited(model, q), law.lambda.component_mul(&(reference - q)));
-            let torque = law.modelled(model, [q, &still, &dqr, &still]) - law.modelled(model, [q, &still, &still, &still])
-                + law.k_d.component_mul(&dqr);
-            torque - along(&l, &torque) + along(&l, &dqr)
+            let (l, torque) = (law.excited(model, q), holding(q));
+            torque - along(&l, &torque) + along(&l, &rates(q))
         };
         let lack = |q: &SVector<R::Real, N>| {
-            let lacking = plant.gravity(q) + plant.friction(&still) - law.modelled(model, [q, &still, &still, &still]);
-            lacking - along(&law.excited(model, q), &lacking)
+            let torque = lacking(q);
+            torque - along(&law.excited(model, q), &torque)
         };
         Some(rest_off(reference, held, lack, |q| {
-            let e = reference - q;
-            let l = law.excited(model, q);
             // What the estimate has taken over, in the direction in which it moves.
-            let torque = plant.gravity(q) + plant.friction(&still)
-                - law.modelled(model, [q, &still, &law.lambda.component_mul(&e), &still])
-                - law.k_d.component_mul(&law.lambda).component_mul(&e);
+            let dual = dual(&law.excited(model, q));
+            let by = column(&dual * (dual.transpose() * dynamic(&(lacking(q) - holding(q)))));
             let mut taken = law;
-            let y = model.regressor(q, &still, &still, &still);
-            let by = (l.transpose() * &l).cholesky().map(|square| {
-                let torque = DVector::from_column_slice(torque.as_slice());
-                l.clone() * square.solve(&square.solve(&(l.transpose() * torque)))
-            });
-            if let Some(by) = by {
-                let by = SVector::<R::Real, N>::from_column_slice(by.as_slice());
-                taken.estimate += y.tr_mul(&by).component_mul(&law.adaptation_gain);
-            }
-            taken.about(model, q, &e)
+            taken.estimate += model.regressor(q, &still, &still, &still).tr_mul(&by).component_mul(&law.adaptation_gain);
+            taken.about(model, q, &(reference - q))
         }))
     }
 }
