@@ -72,16 +72,19 @@ pub fn turn_about<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> T {
 /// Rotation vector of the swing of `e` beside base axis `axis` (0, 1, 2 for x, y, z); rad, of a length in [0, pi], at right angles to `axis`.
 ///
 /// `e` is a swing, about an axis at right angles to `axis`, and after it a turn about `axis`, which does not count. With i the axis and
-/// (i, j, k) in cyclic order the swing turns by phi = atan2(s, e_ii), s = hypot(e_ij, e_ik), and is (phi/s) (e_ik, -e_ij) in j and k. Where
+/// (i, j, k) in cyclic order the swing turns by phi = atan2(s, e_ii), s = |(e_ij, e_ik)|, and is (phi/s) (e_ik, -e_ij) in j and k. Where
 /// `e` turns `axis` over its direction is free, and j is taken.
 pub fn swing<T: RealField + Copy>(e: &Matrix3<T>, axis: usize) -> Vector3<T> {
     let [i, j, k] = cyclic(axis);
-    let (sine, cosine) = (e[(i, j)].hypot(e[(i, k)]), e[(i, i)]);
+    let (x, y, cosine) = (e[(i, k)], -e[(i, j)], e[(i, i)]);
     let mut swing = Vector3::zeros();
-    if sine > T::zero() {
-        // The direction first: an angle over a subnormal sine is beyond the scalar.
-        let angle = sine.atan2(cosine);
-        (swing[j], swing[k]) = (angle * (e[(i, k)] / sine), -angle * (e[(i, j)] / sine));
+    // The direction first: an angle over a subnormal sine is beyond the scalar, and so may be the square of a sine.
+    let largest = x.abs().max(y.abs());
+    if largest > T::zero() {
+        let (x, y) = (x / largest, y / largest);
+        let norm = (x * x + y * y).sqrt();
+        let angle = (norm * largest).atan2(cosine) / norm;
+        (swing[j], swing[k]) = (angle * x, angle * y);
     } else if cosine < T::zero() {
         swing[j] = T::pi();
     }

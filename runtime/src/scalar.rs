@@ -41,7 +41,8 @@ pub(crate) fn seconds<T: RealField>(t: Duration) -> T {
     nalgebra::convert(seconds)
 }
 
-/// The nearest duration; `None` for what is negative, not finite or too long.
+/// The nearest duration; `None` for what is negative, not finite or too long. There once in a program, not wherever a plan calls it.
+#[inline(never)]
 pub(crate) fn duration<T: RealField>(seconds: T) -> Option<Duration> {
     if is_single::<T>() {
         Duration::try_from_secs_f32(nalgebra::try_convert(seconds)?).ok()
