@@ -135,11 +135,6 @@ impl Function {
         }
         fused
     }
-
-    /// The name of the form that writes its result where the caller says.
-    pub fn name_into(&self) -> String {
-        format!("{}_into", self.name())
-    }
 }
 
 /// A joint of the emitted module; limits that are not given are infinite.

@@ -11,7 +11,7 @@ use crate::derive::derivation::Derivation;
 use crate::derive::parameters::{nominal, ParameterKind, View};
 use crate::exact::Number;
 use crate::kinds::{JointKind, Scalar};
-use crate::manipulator::{self, Manipulator};
+use crate::manipulator;
 use crate::parallel::parallel_map;
 pub use crate::pass::{Pass, Passes};
 use crate::program::{Cost, Function, Joint, Module, Operand, Operation, Output, Step, Trig};
@@ -109,15 +109,17 @@ fn function(model: &Model, quantity: &'static Quantity, with_parameters: bool, o
                 Some((pool, entries)) => Derivation { pool, entries, ..derivation },
                 None => derivation,
             };
-            lower(&model.manipulator, quantity, with_parameters, &derivation)
+            lower(model, quantity, with_parameters, &derivation)
         })
         .min_by_key(|function| Cost::of(function).weight())
         .map(|function| Function { fuse: options.fuse, ..function })
         .expect("there is at least the recursion")
 }
 
-fn lower(manipulator: &Manipulator, quantity: &'static Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
-    let (steps, outputs) = steps(&derivation.pool, &derivation.entries);
+fn lower(model: &Model, quantity: &'static Quantity, with_parameters: bool, derivation: &Derivation) -> Function {
+    let base_parameters = if quantity.has_length(Length::BaseParameters) { model.base_parameters().len() } else { 0 };
+    let order = quantity.entries_by_columns(&model.sizes_with(base_parameters)).concat();
+    let (steps, outputs) = steps(&derivation.pool, &derivation.entries, &order);
     let mut arguments = quantity.arguments.to_vec();
     if with_parameters {
         arguments.insert(0, Argument::Pi);
@@ -126,19 +128,19 @@ fn lower(manipulator: &Manipulator, quantity: &'static Quantity, with_parameters
     let mut function =
         Function { quantity, with_parameters, arguments, steps, outputs, method, stribeck: BTreeMap::new(), fuse: false };
     let velocity = |symbol| match symbol {
-        Symbol::Stribeck(i) => Some((i, manipulator.joints[usize::from(i)].stribeck.as_ref()?.velocity.clone())),
+        Symbol::Stribeck(i) => Some((i, model.manipulator.joints[usize::from(i)].stribeck.as_ref()?.velocity.clone())),
         _ => None,
     };
     function.stribeck = function.symbols().into_iter().filter_map(velocity).collect();
     function
 }
 
-/// The steps that the expressions need, each after its operands, in the order in which the expressions ask for them.
-fn steps(pool: &Pool, exprs: &[ExprId]) -> (Vec<Step>, Vec<Output>) {
+/// The steps that the expressions need, each after its operands; expressions ask for them in that order.
+fn steps(pool: &Pool, exprs: &[ExprId], order: &[usize]) -> (Vec<Step>, Vec<Output>) {
     let mut steps: Vec<Step> = Vec::new();
     // By the index of the node.
     let mut done: Vec<Option<Operand>> = vec![None; pool.len()];
-    for &expr in exprs {
+    for expr in order.iter().map(|&i| exprs[i]) {
         let mut stack = vec![(expr.unsigned(), false)];
         while let Some((expr, ready)) = stack.pop() {
             if done[expr.index()].is_some() {

@@ -46,6 +46,7 @@ int main(void) {
     const double fall[SCARA_DOF] = {0.05371154081148763, -0.24057622390045058, 5.076483048335555, -1.5647156976791017};
     scara_real matrix[SCARA_DOF][SCARA_DOF], coriolis[SCARA_DOF][SCARA_DOF], vector[SCARA_DOF];
     scara_real frame[4][4], frames[SCARA_DOF][4][4], jacobian[6][SCARA_DOF], y[SCARA_DOF][SCARA_PARAMETERS];
+    scara_real acceleration[SCARA_DOF];
     double energy = 0;
     int i, k;
 
@@ -111,5 +112,11 @@ int main(void) {
     memcpy(vector, dq, sizeof vector);
     scara_inverse_dynamics(q, vector, ddq, vector);
     all("inverse_dynamics over its argument", vector, tau);
+    scara_forward_dynamics_with(pi, q, dq, ddq, acceleration);
+    memcpy(vector, ddq, sizeof vector);
+    scara_forward_dynamics_with(pi, q, dq, vector, vector);
+    for (i = 0; i < SCARA_DOF; i++) {
+        near_by("forward_dynamics_with over its argument", vector[i], acceleration[i]);
+    }
     return faults;
 }

@@ -35,7 +35,7 @@ pub fn count(text: &str) -> BTreeMap<String, Operations> {
         let syn::Item::Fn(function) = item else { continue };
         let name = function.sig.ident.to_string();
         let public = matches!(function.vis, syn::Visibility::Public(_));
-        let whole = if public { Some(name.strip_suffix(INTO).unwrap_or(&name)) } else { part_of(&name) };
+        let whole = name.strip_suffix(INTO).or(if public { Some(name.as_str()) } else { part_of(&name) });
         let Some(whole) = whole else { continue };
         counted.entry(whole.to_owned()).or_default().visit_block(&function.block);
     }
@@ -67,14 +67,15 @@ impl<'a> Visit<'a> for Operations {
                 match path.path.get_ident().map(ToString::to_string).as_deref() {
                     Some("sin_cos") => self.sincos += 1,
                     Some("stribeck") => self.exp += 1,
-                    Some("sign") => (),
+                    Some("sign" | "barrier") => (),
                     Some(name) if part_of(name).is_some() || name.ends_with(INTO) => (),
-                    _ => panic!("a call of something else than sin_cos, sign and stribeck"),
+                    _ => panic!("a call of something else than sin_cos, sign, stribeck and barrier"),
                 }
             }
             Expr::Index(index) => assert!(matches!(*index.index, Expr::Lit(_)), "an index that is no literal"),
             Expr::Array(_)
             | Expr::Assign(_)
+            | Expr::Field(_)
             | Expr::Lit(_)
             | Expr::Paren(_)
             | Expr::Path(_)
@@ -103,8 +104,8 @@ mod tests {
         check("let (s1, _) = sin_cos(q[0]); let t = s1 * q[1] - 2.0 + -0.5 * x / y; [-t, t, -1.0]", [2, 2, 1, 1, 1, 0]);
         check("let _ = q; [0.0]", [0; 6]);
         check("E { a: [[x + y * z; 1][0]], b: -(x + sign(dq[0])) }".replace("; 1][0]", "]").as_str(), [1, 2, 0, 1, 0, 0]);
-        check("y[0][1] = -t1; y[1][0] = t1 + 2.0;", [0, 1, 0, 1, 0, 0]);
-        check("let mut y = [[0.0; P]; DOF]; f_into(q, &mut y); y", [0; 6]);
+        check("by_q[0][1] = -t1; barrier(); by_dq[1] = t1 + 2.0;", [0, 1, 0, 1, 0, 0]);
+        check("let mut result = ([[0.0; P]; DOF], [0.0; P]); f_into(q, &mut result.0, &mut result.1); result", [0; 6]);
         check("let t1 = stribeck(dq[0], 0.05); [t1 * 2.0, -t1]", [1, 0, 0, 1, 0, 1]);
     }
 

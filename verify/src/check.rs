@@ -57,8 +57,8 @@ pub(crate) enum Check {
     Long,
     /// Bodies: results are written when all arguments are read.
     Aliases,
-    /// Bodies: rows of a matrix that is written follow each other.
-    Rows,
+    /// Bodies: each entry of a result is written once.
+    WrittenOnce,
     /// Bodies: brackets in brackets.
     Brackets,
     /// Bodies: the order of the joints in an angle.

@@ -81,11 +81,15 @@ pub struct Promise {
     pub parameters: bool,
 }
 
+/// An array in Rust whose entries are these, or its type.
+fn of_entries(lengths: Array, entry: &str) -> String {
+    lengths.iter().rev().fold(entry.to_string(), |of, length| format!("[{of};{}]", length.rust()))
+}
+
 impl Returned {
     /// The type in Rust, without blanks.
     pub fn rust(self) -> String {
-        let array =
-            |lengths: Array| lengths.iter().rev().fold("Real".to_string(), |of, length| format!("[{of};{}]", length.rust()));
+        let array = |lengths: Array| of_entries(lengths, "Real");
         match self {
             Returned::One(lengths) => array(lengths),
             Returned::List(all) => format!("({})", all.iter().map(|lengths| array(lengths)).collect::<Vec<_>>().join(",")),
@@ -143,13 +147,17 @@ impl Returned {
             format!("[{}]", rows.join(", "))
         }
         let mut entries = entries.iter();
-        let values: Vec<String> = self.arrays().iter().map(|(_, lengths)| array(lengths, &mut entries, sizes)).collect();
+        self.value_of(self.arrays().iter().map(|(_, lengths)| array(lengths, &mut entries, sizes)).collect())
+    }
+
+    /// The value in Rust whose arrays are these.
+    fn value_of(self, arrays: Vec<String>) -> String {
         match self {
-            Returned::One(_) => values.concat(),
-            Returned::List(_) => format!("({})", values.join(", ")),
+            Returned::One(_) => arrays.concat(),
+            Returned::List(_) => format!("({})", arrays.join(", ")),
             Returned::Fields(name, fields) => {
                 let fields: Vec<String> =
-                    fields.iter().zip(values).map(|((field, _), value)| format!("{field}: {value}")).collect();
+                    fields.iter().zip(arrays).map(|((field, _), array)| format!("{field}: {array}")).collect();
                 format!("{name} {{ {} }}", fields.join(", "))
             }
         }
@@ -168,16 +176,27 @@ impl Promise {
         with_parameters.then(|| "pi:&[Real;PARAMETERS]".into()).into_iter().chain(own).collect()
     }
 
-    /// The type in Rust, without blanks, of a result that a function of its own may write where the caller says, and its zeros: a matrix with a
-    /// column for each parameter.
-    pub(crate) fn written(&self) -> Option<[String; 2]> {
-        match self.returned {
-            Returned::One([rows, columns @ (Length::Parameters | Length::BaseParameters)]) => {
-                let [rows, columns] = [rows, columns].map(|length| length.rust());
-                Some([format!("[[Real;{columns}];{rows}]"), format!("[[0.0;{columns}];{rows}]")])
-            }
-            _ => None,
-        }
+    /// The results, by their names and with their types in Rust, without blanks, as a function of its own takes them that writes them where the
+    /// caller says; a number is returned.
+    pub(crate) fn written(&self) -> Option<Vec<(String, String)>> {
+        let named = self.returned.named();
+        let is_array = named.iter().all(|(_, lengths)| !lengths.is_empty());
+        is_array.then(|| named.into_iter().map(|(name, lengths)| (name, of_entries(lengths, "Real"))).collect())
+    }
+
+    /// Whether the function that writes its result is public: that of a matrix with a column for each parameter.
+    pub(crate) fn has_form_into(&self) -> bool {
+        matches!(self.returned, Returned::One([_, Length::Parameters | Length::BaseParameters]))
+    }
+
+    /// What stands in Rust in a function whose result that other function writes, but for `result` at the end.
+    pub(crate) fn calls_written(&self, with_parameters: bool, written: &str) -> String {
+        let zeros = self.returned.arrays().into_iter().map(|(_, lengths)| of_entries(lengths, "0.0"));
+        let value = self.returned.value_of(zeros.collect());
+        let arguments = with_parameters.then_some("pi").into_iter().chain(self.arguments.iter().copied()).map(String::from);
+        let results = self.returned.accesses().into_iter().map(|access| format!("&mut result{access}"));
+        let all: Vec<String> = arguments.chain(results).collect();
+        format!("let mut result = {value}; {written}({});", all.join(", "))
     }
 
     /// Length of an argument.

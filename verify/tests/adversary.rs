@@ -341,12 +341,49 @@ fn documentation_that_runs_is_refused() {
     );
 }
 
+/// A function that writes the result of another: each entry once, of values that are given before, and nothing else.
+#[test]
+fn results_are_written_as_they_are_returned() {
+    let given = scara();
+    let entry = "result[3][10] = 400.0 * dq[3];";
+    for (old, new, why) in [
+        ("[[0.0; BASE_PARAMETERS]; DOF]", "[[1.0; BASE_PARAMETERS]; DOF]", "`1.0` where an emitted module has `0.0`"),
+        (
+            "base_regressor_into(q, dq, ddq, &mut",
+            "regressor_into(q, dq, ddq, &mut",
+            "an emitted module has `base_regressor_into`",
+        ),
+        ("&mut result.1", "&mut result.0", "where an emitted module has"),
+        (
+            "\nfn forward_dynamics_derivatives_into(",
+            "\npub fn forward_dynamics_derivatives_into(",
+            "`pub` where an emitted module has `fn`",
+        ),
+        ("pub fn base_regressor_into(", "fn base_regressor_into(", "`fn` where an emitted module has `pub`"),
+        (entry, "", "does not have the 44 entries"),
+        (entry, "result[3][11] = 400.0 * dq[3];", "does not have the 44 entries"),
+        (entry, "result[3] = 400.0 * dq[3];", "`=` where an emitted module has `[`"),
+        (entry, "result[3][10][0] = 400.0 * dq[3];", "`[` where an emitted module has `=`"),
+        (entry, "result[3][10] = 400.0 * dq[3] + result[3][9];", "`result` is not a value that is given before"),
+        (entry, "by_q[3][10] = 400.0 * dq[3];", "`by_q` is no line and no part of the result"),
+        ("result[0][0] = ddq[0];", "result[0][0] = t1;", "`t1` is not a value that is given before"),
+        ("barrier();", "barrier(0);", "`0` where an emitted module has `)`"),
+        ("core::sync::atomic::compiler_fence(", "crate::compiler_fence(", "`crate` where an emitted module has `core`"),
+        ("fn barrier()", "fn barriers()", "`barriers` is not a private item"),
+    ] {
+        given.refused(old, new, why);
+    }
+    let number = "\n#[allow(dead_code, clippy::all)]\npub fn kinetic_energy_into(q: &[Real; DOF]) {}\n";
+    let why = "`kinetic_energy_into` is not a function that an emitted module has";
+    given.refused_text(&(given.module.clone() + number), why);
+}
+
 /// Bounds of a wrist's torque are a million times its errors, and those of torques at full speed hide what is lost at rest.
 #[test]
 fn digits_lost_in_small_torques_are_seen() {
     let puma = Given::new("puma560", Trig::Libm);
     let why = "in f64, at a state within the limits in [5]";
-    puma.refused("t89, t87, t71, t62, t53]", "t89, t87, t71, t62, t53 + 32768.0 - 32768.0]", why);
+    puma.refused("result[5] = t24;", "result[5] = t24 + 32768.0 - 32768.0;", why);
     let description = "name: arm\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  - {name: a, type: revolute, a: 0.5, alpha: 0, d: 0, theta: 0, \
         limits: {velocity: 59}, link: {mass: 3, com: [-0.25, 0, 0], inertia: {xx: 0.01, yy: 0.1, zz: 0.1}}}\n  - {name: b, type: revolute, \
         a: 0.4, alpha: 0, d: 0, theta: 0, limits: {velocity: 59}, link: {mass: 2, com: [-0.2, 0, 0], inertia: {xx: 0.01, yy: 0.05, zz: 0.05}}}\n";
@@ -510,7 +547,7 @@ fn run_time_parameters_may_be_anything() {
 
 /// A line of the function that is changed, as it stands, and another one.
 const FRICTION: &str = "[5e-5 * dq[0], 5e-5 * dq[1], 25.0 * dq[2], 2.0 * dq[3]]";
-const TORQUES: &str = "[t9 + 12.76 * ddq[0], t6 + 5e-5 * t7 - t8, t10, 0.38 * t1 - 1.4 * t2 + 2.0 * dq[3]]";
+const TORQUES: &str = "[t10 + 12.76 * ddq[0], t7 + 5e-5 * t8 - t9, t3, 0.38 * t1 - 1.4 * t2 + 2.0 * dq[3]]";
 const C2: &str = "    let (_, c2) = sin_cos(q[1]);\n";
 
 /// What is right in the box, and of a power outside that its equations do not have there.
@@ -562,8 +599,9 @@ fn each_entry_has_digits_of_its_own() {
     for given in [&scara, &single] {
         given.refused("[5e-5 * dq[0], ", "[5e-5 * dq[0] + 1000.0 - 1000.0, ", "friction: rounding can make an error of");
     }
-    let lost = "[t3 + 1000000.0 * dq[0] - 1000000.0 * dq[0], 0.0, 0.0, 0.0]";
-    scara.refused("[t3, 0.0, 0.0, 0.0]", lost, "coriolis_matrix: rounding can make an error of");
+    let rows = "[-t3, -(t2 + t3), 0.0, 0.0],\n        [t2, ";
+    let lost = "[-t3, -(t2 + t3), 0.0, 0.0],\n        [t2 + 1000000.0 * dq[0] - 1000000.0 * dq[0], ";
+    scara.refused(rows, lost, "coriolis_matrix: rounding can make an error of");
 }
 
 /// One array may be argument and result; names are told apart by 63 characters.

@@ -193,7 +193,7 @@ fn the_size_of_another_value_is_found() {
         let report = verify_with(&source, format!("{before}{function}").as_str(), claims.clone(), Effort::default());
         let of_function = report.functions.iter().find(|report| report.name == "load_friction").expect("a report on it");
         match &of_function.verdict {
-            Verdict::Different { entry, .. } => assert_eq!(entry, "[3]", "{changed}"),
+            Verdict::Different { entry, .. } => assert_eq!(entry, "[2]", "{changed}"),
             other => panic!("{changed}: {other:?}"),
         }
     }

@@ -48,10 +48,15 @@ impl Model {
 
     /// What the dimensions of the quantities depend on.
     pub fn sizes(&self) -> Sizes {
+        self.sizes_with(self.base_parameters().len())
+    }
+
+    /// The same with that number of base parameters, which are not looked for.
+    pub fn sizes_with(&self, base_parameters: usize) -> Sizes {
         Sizes {
             dof: self.manipulator.dof(),
             parameters: self.parameters.len(),
-            base_parameters: self.base_parameters().len(),
+            base_parameters,
             task: self.manipulator.task.len(),
         }
     }

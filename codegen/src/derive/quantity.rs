@@ -6,6 +6,8 @@
 //! Texts of documentation hold links in braces: `{gravity}` is a function, `{q}` an argument, `{PARAMETER_NAMES}` a constant of the module,
 //! each written as a language writes it. What stands between back quotes is code, the same everywhere.
 
+use std::collections::BTreeMap;
+
 use super::arm::Arm;
 use super::derivation::{Derivation, OVER_GROUPED_BODIES, OVER_THE_LINKS};
 use super::model::{Model, Sizes};
@@ -385,15 +387,28 @@ impl Quantity {
         self.result.iter().any(|part| part.lengths.contains(&length))
     }
 
-    /// Rows and columns of a result that Rust writes into memory of the caller: a matrix with a column for each parameter. For one that is returned
-    /// the compiler gathers rows apart, zeros and all, and copies them together.
-    pub fn written(&self, sizes: &Sizes) -> Option<[Length; 2]> {
-        match self.result {
-            [part @ ResultPart { lengths: &[rows, columns @ (Length::Parameters | Length::BaseParameters)], .. }] => {
-                (part.len(sizes) > 0).then_some([rows, columns])
+    /// The entries of the result by columns, in the order in which a program takes them: the last column first, which of joints is the one that a
+    /// recursion from the tip to the base has first; of parameters the first column first, as a body moves by the joints before it. Of a vector each
+    /// entry is a column, of a list of matrices each matrix. The same columns of the terms of one equation stand together, and those of several
+    /// results one result after the other.
+    pub fn entries_by_columns(&self, sizes: &Sizes) -> Vec<Vec<usize>> {
+        let mut columns: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+        let mut first = 0;
+        for (part, number) in self.result.iter().zip(0..) {
+            let count = part.len(sizes);
+            for entry in 0..count {
+                let column = match part.lengths {
+                    [] => 0,
+                    [list, _, _, ..] => entry / (count / list.of(sizes)),
+                    [.., last @ (Length::Parameters | Length::BaseParameters)] => entry % last.of(sizes),
+                    [.., last] => last.of(sizes) - 1 - entry % last.of(sizes),
+                };
+                let result = if self.structure.is_some() { 0 } else { number };
+                columns.entry((result, column)).or_default().push(first + entry);
             }
-            _ => None,
+            first += count;
         }
+        columns.into_values().collect()
     }
 
     /// The forms that it has: without parameters at run time, and perhaps with them.

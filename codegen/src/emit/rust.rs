@@ -1,5 +1,5 @@
 //! Rust text of a module: free functions over arrays, outer attributes only, so that the file serves as `mod robot;` and inside
-//! `include!` alike. No path outside `core` and `libm`, no index that is not a constant, no `unsafe`, no `cfg`.
+//! `include!` alike. No path outside `core` and `libm`, no index that is not a constant, no `unsafe`, no attribute `cfg`.
 
 mod batch;
 mod body;
@@ -9,6 +9,7 @@ mod literal;
 mod runtime;
 mod signature;
 mod sincos;
+pub(in crate::emit) mod written;
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote, ToTokens};
@@ -23,7 +24,6 @@ use crate::kinds::Scalar;
 use crate::parallel::parallel_map;
 use crate::program::{Function, Module};
 use crate::ring::Symbol;
-use body::Body;
 pub(super) use inverse_kinematics::{
     about_redundancy, about_target, branches, items as items_of_inverse_kinematics, meanings, what_is_invalid,
 };
@@ -31,7 +31,7 @@ pub use inverse_kinematics::{print_inverse_kinematics, print_inverse_kinematics_
 use literal::literal;
 pub use runtime::single_traits;
 pub(super) use signature::accesses;
-use signature::{argument, ignored, length, of_parts, structures, type_of, typed, usize_literal, with_fields};
+use signature::{ignored, of_parts, structures, type_of, typed, usize_literal, with_fields};
 
 const STRIBECK: &str = include_str!("rust/stribeck.rs");
 
@@ -62,9 +62,10 @@ impl Text {
             pub type Real = #real;
             #constants
         });
-        let private = private_block(module);
-        let batches = module.batch.map(|lanes| batch::modules(module, lanes));
         let functions = parallel_map(&module.functions, |f| function(module, f));
+        let (functions, has_barriers): (Vec<String>, Vec<bool>) = functions.into_iter().unzip();
+        let private = private_block(module, has_barriers.contains(&true));
+        let batches = module.batch.map(|lanes| batch::modules(module, lanes));
         Text { before, functions, after: formatted(quote!(#private #batches)) }
     }
 
@@ -261,50 +262,24 @@ fn base_constants(module: &Module, documented: &[(&'static str, Vec<String>)]) -
     })
 }
 
-/// A function without its documentation, and its parts.
-fn function(module: &Module, function: &Function) -> String {
-    let name = format_ident!("{}", function.name());
-    let arguments: Vec<TokenStream> = function.arguments.iter().map(typed).collect();
-    let ignored = ignored(function);
-    let sines = sincos::lines(module, function);
-    let Body { parts, lines, entries } = body::body(module, function);
-    let (returns, sizes) = (type_of(function.quantity), module.sizes());
-    let first = quote!(#ignored #(#sines)*);
-    let own = match function.quantity.written(&sizes) {
-        None => {
-            let frame = quote! {
-                #[allow(dead_code, clippy::all)]
-                pub fn #name(#(#arguments),*) -> #returns {}
-            };
-            let entries: Vec<TokenStream> = entries.iter().map(|entry| tokens(entry)).collect();
-            body::framed(frame, &first, &lines, &result(function.quantity, &entries, &sizes))
-        }
-        Some([rows, columns]) => {
-            let written = format_ident!("{}", function.name_into());
-            let documentation = format!(" As [`{name}`], written to `y`: every entry of it.");
-            let names = function.arguments.iter().map(|&a| argument(a).0);
-            let [height, width] = [rows, columns].map(length);
-            let columns = columns.of(&sizes);
-            let assignments =
-                entries.iter().enumerate().map(|(k, entry)| format!("y[{}][{}] = {entry};", k / columns, k % columns));
-            let lines: Vec<String> = lines.into_iter().chain(assignments).collect();
-            let allocated = formatted(quote! {
-                #[allow(dead_code, clippy::all)]
-                pub fn #name(#(#arguments),*) -> #returns {
-                    let mut y = [[0.0; #width]; #height];
-                    #written(#(#names,)* &mut y);
-                    y
-                }
-            });
-            let frame = quote! {
-                #[doc = #documentation]
-                #[allow(dead_code, clippy::all)]
-                pub fn #written(#(#arguments,)* y: &mut #returns) {}
-            };
-            allocated + &body::framed(frame, &first, &lines, &quote!())
-        }
+/// A function without its documentation, and its parts; whether barriers stand in it.
+fn function(module: &Module, function: &Function) -> (String, bool) {
+    let (ignored, sines) = (ignored(function), sincos::lines(module, function));
+    let (body, first, sizes) = (body::body(module, function), quote!(#ignored #(#sines)*), module.sizes());
+    let is_written = written::is_written(function, &sizes);
+    let own = if is_written {
+        written::function(function, &first, &body, &sizes)
+    } else {
+        let (name, returns) = (format_ident!("{}", function.name()), type_of(function.quantity));
+        let arguments = function.arguments.iter().map(typed);
+        let frame = quote! {
+            #[allow(dead_code, clippy::all)]
+            pub fn #name(#(#arguments),*) -> #returns {}
+        };
+        let entries: Vec<TokenStream> = body.entries.iter().map(|entry| tokens(entry)).collect();
+        body::framed(frame, &first, &body.lines, &result(function.quantity, &entries, &sizes))
     };
-    parts.into_iter().fold(own, |text, part| text + &part)
+    (body.parts.into_iter().fold(own, |text, part| text + &part), is_written && body.groups.len() > 1)
 }
 
 /// The value of a result from its entries.
@@ -315,6 +290,11 @@ fn result(quantity: &Quantity, entries: &[TokenStream], sizes: &Sizes) -> TokenS
         rest = others;
         nested(part.lengths, own, sizes)
     };
+    result_of(quantity, &mut part)
+}
+
+/// The value of a result whose parts are these.
+fn result_of(quantity: &Quantity, mut part: impl FnMut(&ResultPart) -> TokenStream) -> TokenStream {
     match (quantity.result, quantity.structure) {
         ([_, _, ..], Some(named)) => with_fields(&format_ident!("{}", named.name), quantity, part),
         _ => of_parts(quantity, &mut part, |_| quote!()),
@@ -334,8 +314,9 @@ pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
     module.functions.iter().flat_map(Function::symbols).any(|symbol| symbol.angle().is_some())
 }
 
-/// Sine and cosine, the sign of a rate and what is left of Stribeck friction: the only calls in the module.
-fn private_block(module: &Module) -> TokenStream {
+/// Sine and cosine, the sign of a rate, what is left of Stribeck friction and the barrier: what functions call besides their parts and those that
+/// write their results.
+fn private_block(module: &Module, has_barriers: bool) -> TokenStream {
     let all: Vec<Vec<Symbol>> = module.functions.iter().map(Function::symbols).collect();
     let sin_cos = asks_for_sines(module).then(|| sincos::functions(module, &all));
     let sign = asks_for_signs(module).then(|| {
@@ -358,7 +339,8 @@ fn private_block(module: &Module) -> TokenStream {
         let file: syn::File = syn::parse_str(STRIBECK).expect("the text to take in is a Rust file");
         file.into_token_stream()
     });
-    quote!(#sin_cos #sign #stribeck)
+    let barrier = has_barriers.then(written::barrier);
+    quote!(#sin_cos #sign #stribeck #barrier)
 }
 
 #[cfg(test)]
@@ -379,11 +361,11 @@ mod tests {
     /// Formatting the text of a function changes nothing; how many lines continue the one before.
     fn check(module: &Module) -> usize {
         for of in &module.functions {
-            let text = function(module, of);
+            let text = function(module, of).0;
             assert_eq!(text, formatted(tokens(&text)), "{}", of.name());
         }
         let continues = |line: &&str| line.trim_start().starts_with(['+', '-', '*']) && line.starts_with("        ");
-        module.functions.iter().map(|of| function(module, of).lines().filter(continues).count()).sum()
+        module.functions.iter().map(|of| function(module, of).0.lines().filter(continues).count()).sum()
     }
 
     #[test]
@@ -401,7 +383,9 @@ mod tests {
         gravity.steps.extend((first..first + 9000).map(|i| step(i - 1, i - 2)));
         let last = Output { operand: Operand::Step(first + 8999), negated: false };
         gravity.outputs.iter_mut().for_each(|output| *output = last.clone());
-        assert!(function(&long, long.functions.iter().find(|of| of.name() == "gravity").expect("as before")).contains("_part_7("));
+        assert!(function(&long, long.functions.iter().find(|of| of.name() == "gravity").expect("as before"))
+            .0
+            .contains("_part_7("));
         check(&long);
     }
 }

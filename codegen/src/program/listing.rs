@@ -420,6 +420,15 @@ impl Listing {
         constants
     }
 
+    /// How many lines stand before the last one that these entries use, that one included.
+    pub fn lines_before(&self, entries: &[usize]) -> usize {
+        let of_line = |name: &Name| match name {
+            Name::Step(line) => Some(*line),
+            Name::Argument(_) | Name::SineOrCosine(_) => None,
+        };
+        names(entries.iter().map(|&entry| &self.entries[entry])).iter().filter_map(of_line).max().unwrap_or(0)
+    }
+
     /// The lines of a long body in parts; none where it is not long.
     pub fn parts(&self) -> Vec<BodyPart> {
         if self.lines.len() <= LONG {

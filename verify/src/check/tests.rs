@@ -265,8 +265,8 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     );
     let deep = format!("let t1 = {}5.0 * c2 + 8.766{};\n", "(".repeat(17), ")".repeat(17));
     tally.module(scara, B, T1, &deep, &[(Brackets, "brackets in more than 16 others")]);
-    let rows = [(Rows, "row 3 where row 0 goes on or the next one begins")];
-    tally.module(scara, "pub fn base_regressor_into(", "y[0][1] =", "y[3][1] =", &rows);
+    let (first, twice) = ("result[0][0] = ddq[0];", [(WrittenOnce, "an entry of `result` is written twice")]);
+    tally.module(scara, "pub fn base_regressor_into(", first, &format!("{first} {first}"), &twice);
     tally.module(scara, B, "5.0 * c2", "5.00 * c2", &[(Shortest, "is not the shortest decimal of a float")]);
     let fast = given("scara", &Options { trig: Trig::Fast, ..Options::default() });
     let lanes = "let ([_, _, _, _], [c2, c9, _, _]) = sin_cos_four(1, q[1], q[1], q[1], q[1]);";
@@ -306,12 +306,12 @@ fn bodies_in_c(tally: &mut Tally, scara: &Given) {
         let fault = || verify_with(&scara.source, module, scara.claims.clone(), Effort::default()).first_fault();
         tally.peel(trick, layers, Last::Accepted, fault);
     };
-    let sum = "22.5 * dq[2] - 0.25 * t2";
+    let sum = "22.5 * dq[2] - 0.25 * t1";
     let local = format!("    const scara_real r3 = {sum};\n");
     let aliased = function.replacen(&local, "", 1).replacen("result[2] = r3;", &format!("result[2] = {sum};"), 1);
     c("an alias", &aliased, &[(Aliases, "an argument is read after an entry of the result is written")]);
     let end = function.find("\n}\n").expect("its end");
-    let long = function[..end].replace(" t1 ", &format!(" t1{} ", "a".repeat(62))) + &function[end..];
+    let long = function[..end].replace(" t3 ", &format!(" t3{} ", "a".repeat(62))) + &function[end..];
     c("a long name", &long, &[(Long, "where an emitted module has")]);
     let degrees = function.replacen("joint variables, rad", "joint variables, degrees", 1);
     c("degrees", &degrees, &[(Comments, "the comment says `* - `q`: joint variables, degrees")]);
@@ -421,7 +421,7 @@ fn signs(tally: &mut Tally) {
     let other = [(LoadSigns, "gravity: it takes the sign of what is no gravity torque"), twice];
     let difference = "44.145 * c3 - 25.48712763337603 * s3 + 12.0 * (sign(c3 + c3) - sign(2.0 * c3)),";
     tally.module(&load, "pub fn gravity(", entry, difference, &[&other[..], &[(Cost, said), (Prose, said)]].concat());
-    let (torque, again) = ("(sign(t3) * t3)", "(sign(t3) * t3) + sign(t3) - sign(44.145 * c3 - 25.48712763337603 * s3)");
+    let (torque, again) = ("(sign(t1) * t1)", "(sign(t1) * t1) + sign(t1) - sign(44.145 * c3 - 25.48712763337603 * s3)");
     tally.module(&load, "pub fn load_friction(", torque, again, &[&[twice][..], &comments].concat());
 }
 
@@ -462,7 +462,8 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
     tally.peel("a base parameter that is none", &layers, Last::Accepted, fault);
     // A column twice as large, of half of its combination.
     let mut text = edited(&scara.module, "const NOMINAL_BASE_PARAMETERS", "5.0,", "2.5,");
-    for (old, new) in [("y[0][1] = t2 + 0.5 * t5;", "y[0][1] = t1 + t5;"), ("y[1][1] = t2;", "y[1][1] = t1;")] {
+    for (old, new) in [("result[0][1] = t2 + 0.5 * t5;", "result[0][1] = t1 + t5;"), ("result[1][1] = t2;", "result[1][1] = t1;")]
+    {
         text = edited(&text, "pub fn base_regressor_into(", old, new);
     }
     let mut certificate = scara.certificate.clone();
@@ -492,16 +493,11 @@ fn base_parameters(tally: &mut Tally, scara: &Given) {
     // The second column twice, each with half of the value.
     let module = &scara.module;
     let at = module.find("pub fn base_regressor_into(").expect("the function");
-    let mut text = module[at..].to_string();
-    for (last_of_row, entry) in [
-        ("    y[0][10] = 0.0;\n", "y[0][11] = t2 + 0.5 * t5"),
-        ("    y[1][10] = 0.0;\n", "y[1][11] = t2"),
-        ("    y[2][10] = 0.0;\n", "y[2][11] = 0.0"),
-        ("    y[3][10] = 400.0 * dq[3];\n", "y[3][11] = 0.0"),
-    ] {
-        assert!(text.contains(last_of_row), "{last_of_row}");
-        text = text.replacen(last_of_row, &format!("{last_of_row}    {entry};\n"), 1);
-    }
+    let last = "    result[3][10] = 400.0 * dq[3];\n";
+    let column = ["t2 + 0.5 * t5", "t2", "0.0", "0.0"].iter().enumerate();
+    let column: String = column.map(|(row, entry)| format!("    result[{row}][11] = {entry};\n")).collect();
+    assert!(module[at..].contains(last));
+    let text = module[at..].replacen(last, &(last.to_string() + &column), 1);
     let mut text = module[..at].to_string() + &text;
     for (old, new) in [
         ("BASE_PARAMETERS: usize = 11", "BASE_PARAMETERS: usize = 12"),

@@ -1,8 +1,8 @@
 //! From the body of a function to its steps.
 //!
 //! ```text
-//! body   = { { line } result } | { let mut y = [[0.0; count]; count]; NAME_into(arguments, &mut y); y }
-//! body of NAME_into = { { line } { y[index][index] = sum ; } }      entries row by row, in the place of a result
+//! body   = { { line } result } | { let mut result = zeros; NAME_into(arguments, &mut result); result }
+//! body of NAME_into = { { line | part[index]... = sum ; | barrier(); } }    each entry of each part once, in the place of a result
 //! line   = let _ = ignored ;                                        arguments that are not needed: q or (q, dq)
 //!        | let (name, name) = sin_cos(angle) ;                      sin_cos_one in a module with the block for several angles
 //!        | let ([names], [names]) = sin_cos_four(count, angles) ;   four or eight, names of the first `count` ones
@@ -21,15 +21,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use super::constant::{decimal, integer};
-use super::items::{Part, Public};
+use super::items::{Part, Public, INTO};
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
 use crate::check::Check;
+use crate::contract::Returned;
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 
 /// Steps and entries of results in a module; that of 32 joints takes a third of it.
 const MOST_STEPS: usize = 4_000_000;
+/// Indices of an entry of a result: a list of matrices has three.
+const MOST_INDICES: usize = 3;
 /// Brackets in brackets, in a sum and in a result.
 const MOST_BRACKETS: usize = 16;
 
@@ -81,6 +84,8 @@ struct Compiler<'a, 'm, 's> {
     parts_called: BTreeSet<&'a str>,
     /// Parts called so far.
     parts: usize,
+    /// How many values are given before what is read; all where that is read in its order.
+    given: usize,
 }
 
 impl<'a> Reads<'a> for Compiler<'a, '_, '_> {
@@ -109,20 +114,24 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
         calls: BTreeSet::new(),
         parts_called: BTreeSet::new(),
         parts: 0,
+        given: usize::MAX,
     };
-    let written = compiler.shared.written.get(function.name).copied().zip(function.body_where_written());
-    if let Some((body, call)) = &written {
-        compiler.parser.expect(call)?;
-        compiler.parser = *body;
-    }
-    compiler.parser.expect("{")?;
-    while compiler.parser.is("let") {
-        compiler.line()?;
-    }
-    if written.is_some() {
-        compiler.assignments()?;
-    } else {
-        compiler.result(String::new(), 0)?;
+    match compiler.shared.written.get(function.name).copied().zip(function.promise()) {
+        Some((body, (promise, with))) => {
+            compiler.parser.expect("{")?;
+            compiler.parser.expect_lists(&promise.calls_written(with, &format!("{}{INTO}", function.name)))?;
+            compiler.parser.expect("result }")?;
+            compiler.parser = body;
+            compiler.parser.expect("{")?;
+            compiler.written(promise.returned)?;
+        }
+        None => {
+            compiler.parser.expect("{")?;
+            while compiler.parser.is("let") {
+                compiler.line()?;
+            }
+            compiler.result(String::new(), 0)?;
+        }
     }
     compiler.parser.expect("}")?;
     let Compiler { program, calls, parts_called, .. } = compiler;
@@ -441,7 +450,7 @@ impl<'a> Compiler<'a, '_, '_> {
     }
 
     fn value_of(&self, name: &Token<'a>) -> Result<usize, Fault> {
-        let value = self.scope.get(name.text).copied();
+        let value = self.scope.get(name.text).copied().filter(|&value| value < self.given);
         value.ok_or_else(|| name.fault(format!("{} is not a value that is given before", name.shown())))
     }
 
@@ -513,26 +522,52 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(values)
     }
 
-    /// The entries of a matrix, row by row: `y[0][0] = t1;`.
-    fn assignments(&mut self) -> Result<(), Fault> {
-        let (mut row, mut column) = (0, 0);
-        while self.parser.eat("y")? {
-            self.parser.expect("[")?;
-            let token = self.parser.take()?;
-            let index = integer(&token)?;
-            if column > 0 && index == row + 1 {
-                (row, column) = (index, 0);
+    /// Lines, entries of the result and barriers up to the end: `by_q[0][1] = t1;`. Entries are read behind all lines, in their order, as those of a
+    /// result that is returned: wherever an entry is written, its steps and literals have the same places in the program.
+    fn written(&mut self, returned: Returned) -> Result<(), Fault> {
+        let (named, accesses) = (returned.named(), returned.accesses());
+        // Where each begins, and how many values are given before.
+        let mut entries: BTreeMap<(usize, [usize; MOST_INDICES]), (Parser<'a>, usize)> = BTreeMap::new();
+        while !self.parser.is("}") {
+            if self.parser.is("let") {
+                self.line()?;
+                continue;
             }
-            if index != row && Check::Rows.is_made() {
-                return Err(token.fault(format!("row {index} where row {row} goes on or the next one begins")));
+            let name = self.parser.take()?;
+            if name.is("barrier") {
+                self.parser.expect("();")?;
+                self.calls.insert("barrier");
+                continue;
             }
-            self.parser.expect(&format!("][{column}] ="))?;
+            let part = named.iter().position(|(part, _)| name.is(part));
+            let part = part.ok_or_else(|| name.fault(format!("{} is no line and no part of the result", name.shown())))?;
+            let mut indices = [0; MOST_INDICES];
+            for (index, _) in indices.iter_mut().zip(named[part].1) {
+                self.parser.expect("[")?;
+                *index = integer(&self.parser.take()?)?;
+                self.parser.expect("]")?;
+            }
+            self.parser.expect("=")?;
             self.count()?;
-            let step = self.sum(0)?;
-            self.program.outputs.push(Output { place: format!("[{row}][{column}]"), step });
+            let entry = (self.parser, self.program.steps.len());
+            if entries.insert((part, indices), entry).is_some() && Check::WrittenOnce.is_made() {
+                return Err(name.fault(format!("an entry of {} is written twice", name.shown())));
+            }
+            while !self.parser.is(";") && self.parser.peek().kind != Kind::End {
+                self.parser.take()?;
+            }
             self.parser.expect(";")?;
-            column += 1;
         }
+        let end = self.parser;
+        for ((part, indices), (beginning, before)) in entries {
+            (self.parser, self.given) = (beginning, before);
+            let step = self.sum(0)?;
+            self.parser.expect(";")?;
+            let indices = indices.iter().zip(named[part].1).map(|(index, _)| format!("[{index}]"));
+            let place = accesses[part].clone() + &indices.collect::<String>();
+            self.program.outputs.push(Output { place, step });
+        }
+        self.parser = end;
         Ok(())
     }
 

@@ -91,12 +91,9 @@ pub(super) struct Public<'a> {
 }
 
 impl Public<'_> {
-    /// Its body where another function writes its result.
-    pub(super) fn body_where_written(&self) -> Option<String> {
-        let (promise, with) = Promise::of(self.name)?;
-        let [_, zeros] = promise.written()?;
-        let arguments: Vec<&str> = with.then_some("pi").into_iter().chain(promise.arguments.iter().copied()).collect();
-        Some(format!("{{ let mut y = {zeros}; {}{INTO}({}, &mut y); y }}", self.name, arguments.join(", ")))
+    /// What it promises, and whether of parameters at run time.
+    pub(super) fn promise(&self) -> Option<(&'static Promise, bool)> {
+        Promise::of(self.name)
     }
 }
 
@@ -227,7 +224,8 @@ impl<'a> Items<'a> {
         let keyword = parser.take()?;
         let named = *parser;
         let name = parser.peek();
-        let is_private = !public && matches!(keyword.text, "fn" | "const") && !name.text.contains("_part_");
+        let writes = keyword.is("fn") && name.text.ends_with(INTO);
+        let is_private = !public && matches!(keyword.text, "fn" | "const") && !name.text.contains("_part_") && !writes;
         // All but private items, whose documentation is compared with the rest of them.
         let mut documentation = Vec::new();
         if !is_private {
@@ -239,7 +237,7 @@ impl<'a> Items<'a> {
             (true, "type") => self.scalar(parser, &head),
             (true, "const") => self.constant(parser, head),
             (true, "struct") => self.structure(parser, &head),
-            (true, "fn") if name.text.ends_with(INTO) => self.written(parser, &head),
+            (_, "fn") if writes => self.written(parser, &head),
             (true, "fn") => self.function(parser, head),
             (false, "fn") if !is_private => {
                 parser.expect(&format!("{ALL_LINTS} #[inline(never)] fn"))?;
@@ -330,16 +328,24 @@ impl<'a> Items<'a> {
         parser.skip("{", "}")
     }
 
-    /// A public function that writes the result of another where the caller says; its body is read with that one.
+    /// A function that writes the result of another where the caller says; its body is read with that one.
     fn written(&mut self, parser: &mut Parser<'a>, head: &Head<'a>) -> Result<(), Fault> {
         let name = head.name;
         let whole = name.text.strip_suffix(INTO).and_then(|whole| Some((whole, Promise::of(whole)?)));
         let found = whole.and_then(|(whole, (promise, with))| Some((whole, promise, with, promise.written()?)));
-        let (whole, promise, with, [result, _]) =
+        let (whole, promise, with, results) =
             found.ok_or_else(|| name.fault(format!("{} is not a function that an emitted module has", name.shown())))?;
-        parser.expect(&format!("{ALL_LINTS} pub fn {}", name.text))?;
-        self.documented(&head.documentation, &format!("As [`{whole}`], written to `y`: every entry of it."), &head.first);
-        signature(parser, &format!("({},y:&mut{result})", promise.typed(with).join(",")))?;
+        let public = if promise.has_form_into() { "pub " } else { "" };
+        parser.expect(&format!("{ALL_LINTS} {public}fn {}", name.text))?;
+        let names: Vec<String> = results.iter().map(|(name, _)| format!("`{name}`")).collect();
+        let listed = match names.split_last() {
+            Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
+            _ => names.concat(),
+        };
+        self.documented(&head.documentation, &format!("As [`{whole}`], written to {listed}: every entry."), &head.first);
+        let results = results.into_iter().map(|(name, of)| format!("{name}:&mut{of}"));
+        let all: Vec<String> = promise.typed(with).into_iter().chain(results).collect();
+        signature(parser, &format!("({})", all.join(",")))?;
         let body = *parser;
         parser.expect("{")?;
         *parser = body;

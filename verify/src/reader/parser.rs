@@ -64,6 +64,21 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// The same of a text in which all brackets hold lists, behind whose last entry the formatter may put a comma.
+    pub(super) fn expect_lists(&mut self, text: &str) -> Result<(), Fault> {
+        let mut wanted = Lexer::new(text);
+        loop {
+            let want = wanted.next()?;
+            if want.kind == Kind::End {
+                return Ok(());
+            }
+            if want.is(")") || want.is("}") {
+                self.eat(",")?;
+            }
+            self.expect(want.text)?;
+        }
+    }
+
     /// Goes behind the bracket that closes the one that stands here; other kinds of brackets are not counted.
     pub(super) fn skip(&mut self, open: &str, close: &str) -> Result<(), Fault> {
         let (first, mut deep) = (self.token, 0usize);

@@ -1,5 +1,5 @@
-//! The private functions that answer for sine, cosine, sign and what is left of Stribeck friction. The equations take these as inputs, so that no equation can judge them: they are
-//! accepted by their texts alone.
+//! The private functions that answer for sine, cosine, sign and what is left of Stribeck friction, which equations take as inputs, and the barrier, which
+//! computes nothing: no equation can judge them, and they are accepted by their texts alone.
 //!
 //! The texts stand here once more, and are not those of the generator taken in: what is right is decided where it is checked. Whoever changes the
 //! generator's block of sines (`codegen/src/emit/rust/sincos`) has to find the new one right and copy it, as it is emitted, to `sines/`.
@@ -19,12 +19,16 @@ const OF_STD: &str =
     "/// Sine and cosine of an angle in rad.\n#[inline]\nfn sin_cos(x: Real) -> (Real, Real) {\n    x.sin_cos()\n}";
 const SIGN: &str = "/// Sign of a rate: 0 at rest, not a number for what is not a number.\n#[inline]\n\
     fn sign(x: Real) -> Real {\n    if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { x }\n}";
+const BARRIER: &str = "/// Between two columns: where there are vectors a compiler would take entries of several columns together, and hold too \
+    many values for that.\n#[inline]\nfn barrier() {\n    if cfg!(any(target_feature = \"sse2\", target_feature = \"neon\", \
+    target_feature = \"simd128\")) {\n        core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);\n    }\n}";
 const STRIBECK: &str = include_str!("sines/stribeck.rs");
 const FAST_F64: &str = include_str!("sines/fast_f64.rs");
 const FAST_F32: &str = include_str!("sines/fast_f32.rs");
 
 /// All names.
-pub(super) const NAMES: [&str; 13] = [
+pub(super) const NAMES: [&str; 14] = [
+    "barrier",
     "sign",
     "stribeck",
     "sin_cos",
@@ -67,6 +71,7 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
     for (&name, &place) in private {
         let is = |text: &str| place.clone().expect(text);
         match name {
+            "barrier" => is(BARRIER)?,
             "sign" => is(SIGN)?,
             "stribeck" => is(STRIBECK.trim_end())?,
             "sin_cos" if !fast && is(OF_STD).is_ok() => trig = Some("std"),
@@ -91,7 +96,7 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
 /// Whether exactly those private items are there that the calls of some functions need.
 pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>, real: Float) -> Result<(), Fault> {
     let mut needed = calls.clone();
-    if calls.iter().any(|name| !["sign", "stribeck", "sin_cos"].contains(name)) {
+    if calls.iter().any(|name| !["barrier", "sign", "stribeck", "sin_cos"].contains(name)) {
         needed.extend(FAST);
         needed.extend((real == Float::F32).then_some("sin_cos_reduced"));
     }

@@ -187,6 +187,11 @@ fn entries(function: &syn::ItemFn) -> Vec<Expr> {
     found
 }
 
+/// Whether it computes what the module is for: public, or the writer of what a public one returns.
+fn is_of_the_module(function: &syn::ItemFn) -> bool {
+    matches!(function.vis, syn::Visibility::Public(_)) || function.sig.ident.to_string().ends_with("_into")
+}
+
 /// A module that can be changed at its places.
 pub(crate) struct Mutable {
     file: File,
@@ -207,7 +212,7 @@ impl Mutable {
 
     fn walk(item: &mut Item, entries: &[Expr], walk: &mut Walk<'_>) -> Option<String> {
         match item {
-            Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => {
+            Item::Fn(function) if is_of_the_module(function) => {
                 for line in 0..function.block.stmts.len() {
                     let names = if walk.counting { Vec::new() } else { operands(&function.block, line) };
                     let names = [names.as_slice(), entries].concat();

@@ -8,7 +8,7 @@ use proc_macro2::TokenStream;
 use super::{prefix, returns_a_number};
 use crate::catalogue::{Length, Quantity};
 use crate::emit::origin::Origin;
-use crate::emit::rust;
+use crate::emit::rust::{self, written};
 use crate::program::{Function, Module};
 
 /// An output of a function: its name in C, what Rust writes after the result to have it, and its dimensions, outermost first.
@@ -46,15 +46,16 @@ fn wrapper(module: &Module, function: &Function) -> String {
         |out: &Out| out.lengths.iter().rev().fold("Real".to_string(), |of, length| format!("[{of}; {}]", length.constant()));
     let mut parameters: Vec<String> = arguments.iter().map(|(name, length)| format!("{name}: *const [Real; {length}]")).collect();
     parameters.extend(outs.iter().map(|out| format!("{}: *mut {}", out.name, shape(out))));
-    let references: Vec<String> = arguments.iter().map(|(name, _)| format!("&*{name}")).collect();
-    let call = format!("{name}({})", references.join(", "));
+    let list = |sign: &str| arguments.iter().map(|(name, _)| format!("{sign}{name}")).collect::<Vec<_>>().join(", ");
+    let call = format!("{name}({})", list("&*"));
     let readable =
         "SAFETY: the caller promises that each argument points to an array of this length; nothing is written meanwhile.";
     let mut text = String::new();
     let _ = writeln!(text, "/// [`{name}`] for C.\n///\n/// # Safety");
     let _ = writeln!(
         text,
-        "/// Each pointer leads to an array of the length in its type, aligned for `Real`. They may lead to the same one."
+        "/// Each pointer leads to an array of the length in its type, aligned for `Real`. A result may lie where arguments do, but not where\n\
+         /// another result does."
     );
     let _ = writeln!(text, "#[unsafe(no_mangle)]");
     let returns = if outs.is_empty() { " -> Real" } else { "" };
@@ -73,15 +74,18 @@ fn wrapper(module: &Module, function: &Function) -> String {
         [] => {
             let _ = writeln!(text, "    unsafe {{ {call} }}");
         }
-        [out] if function.quantity.written(&module.sizes()).is_some() => {
-            let names: Vec<&str> = arguments.iter().map(|(name, _)| *name).collect();
-            let list = |sign: &str| names.iter().map(|name| format!("{sign}{name}")).collect::<Vec<_>>().join(", ");
-            let _ = writeln!(text, "    let ({}) = unsafe {{ ({}) }};", list(""), list("*"));
+        outs if written::is_written(function, &module.sizes()) => {
+            let _ = match arguments.as_slice() {
+                [(name, _)] => writeln!(text, "    let {name} = unsafe {{ *{name} }};"),
+                _ => writeln!(text, "    let ({}) = unsafe {{ ({}) }};", list(""), list("*")),
+            };
             let _ = writeln!(
                 text,
-                "    // SAFETY: the caller promises that the result points to an array of this shape; the arguments are copies."
+                "    // SAFETY: as the caller promises, each result points to an array of this shape, apart from the others; what C holds there is some number, \
+                 and written before it is read; the arguments are copies."
             );
-            let _ = writeln!(text, "    unsafe {{ {}({}, &mut *{}) }}", function.name_into(), list("&"), out.name);
+            let results: Vec<String> = outs.iter().map(|out| format!("&mut *{}", out.name)).collect();
+            let _ = writeln!(text, "    unsafe {{ {}({}, {}) }}", written::name_into(function), list("&"), results.join(", "));
         }
         outs => {
             let _ = writeln!(text, "    let value = unsafe {{ {call} }};");

@@ -69,7 +69,7 @@ const OF_RUST: &str = "/*\n * The functions are those of the module in Rust, wit
 
 /// What is said of all functions.
 pub(super) const POINTERS: &str =
-    "\n/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */\n";
+    "\n/* Arrays are by rows. A result may lie where arguments do, but not where another result does. */\n";
 
 /// The name, the scalar and the other macros.
 pub(super) fn macros(module: &Module) -> String {

@@ -11,7 +11,7 @@ use super::{formatted, tokens};
 use crate::emit::plain::{self, Syntax};
 use crate::exact::Number;
 use crate::kinds::Scalar;
-use crate::program::listing::{decimal, BodyPart, Line, Listing, Name};
+use crate::program::listing::{decimal, BodyPart, Expression, Line, Listing, Name};
 use crate::program::{Function, Module};
 
 /// What stands before a line of a body.
@@ -49,6 +49,16 @@ pub(super) struct Body {
     pub(super) lines: Vec<String>,
     /// The entries of the result.
     pub(super) entries: Vec<String>,
+    /// The entries in the order in which they are written: numbers first, then by columns.
+    pub(super) groups: Vec<Group>,
+}
+
+/// Entries that are written together.
+pub(super) struct Group {
+    /// Which these are.
+    pub(super) entries: Vec<usize>,
+    /// How many lines stand before them.
+    pub(super) before: usize,
 }
 
 /// The body of a function in one piece: its lines, and the entries of the result.
@@ -63,12 +73,27 @@ pub(super) fn whole(module: &Module, function: &Function) -> (Vec<TokenStream>, 
 pub(super) fn body(module: &Module, function: &Function) -> Body {
     let listing = Listing::of(function);
     let entries = entries(&listing, module.scalar);
+    let mut groups = groups(&listing, function.quantity.entries_by_columns(&module.sizes()));
     let parts = listing.parts();
     if parts.is_empty() {
-        return Body { parts: Vec::new(), lines: lines(&listing.lines, module.scalar), entries };
+        return Body { parts: Vec::new(), lines: lines(&listing.lines, module.scalar), entries, groups };
     }
-    let (parts, lines) = parts.iter().zip(1..).map(|(part, number)| of_part(module, function, part, number)).unzip();
-    Body { parts, lines, entries }
+    let (parts, lines): (Vec<String>, Vec<String>) =
+        parts.iter().zip(1..).map(|(part, number)| of_part(module, function, part, number)).unzip();
+    // Lines are calls, and what an entry needs may come from any of them.
+    groups.iter_mut().filter(|group| group.before > 0).for_each(|group| group.before = lines.len());
+    Body { parts, lines, entries, groups }
+}
+
+/// Numbers, then what is left of each column, behind the lines that it uses.
+fn groups(listing: &Listing, columns: Vec<Vec<usize>>) -> Vec<Group> {
+    let is_number = |&entry: &usize| matches!(listing.entries[entry], Expression::Constant(_));
+    let (numbers, columns): (Vec<Vec<usize>>, Vec<Vec<usize>>) =
+        columns.into_iter().map(|column| column.into_iter().partition(is_number)).unzip();
+    let mut numbers = numbers.concat();
+    numbers.sort_unstable();
+    let group = |entries: Vec<usize>| Group { before: listing.lines_before(&entries), entries };
+    [numbers].into_iter().chain(columns).filter(|entries| !entries.is_empty()).map(group).collect()
 }
 
 /// A part of a long function, and the line that calls it.

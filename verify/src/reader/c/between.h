@@ -10,5 +10,5 @@ typedef
 #define ROBOT_TASK
 /* Initialisers of arrays. Limits are rad or m, per s, N m or N; infinite (math.h) where the description gives none. */
 #define ROBOT_JOINT_NAMES
-/* Arrays are by rows; arguments and results point to distinct or to the same memory, as the caller likes. */
+/* Arrays are by rows. A result may lie where arguments do, but not where another result does. */
 static inline
