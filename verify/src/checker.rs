@@ -101,7 +101,7 @@ impl<K: Arithmetic> Point<K> {
         let expected = self.reference.values.get(&program.name)?;
         let Some(literals) = self.literals_of(program, literals) else { return Some((0, "has a constant that divides by 0")) };
         let longest: usize = expected.iter().map(Element::bits).max().unwrap_or(0);
-        let values = program.run_within(Limits::beside(longest), &self.reference.state, &literals);
+        let values = program.run_within(Limits::beside(longest, expected.len()), &self.reference.state, &literals);
         if let Some(entry) = values.iter().position(Option::is_none) {
             let before = values[..entry].iter().zip(expected).position(|(value, expected)| value.as_ref() != Some(expected));
             if before.is_none() || base && program.name == ENERGY_WITH {

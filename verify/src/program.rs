@@ -192,9 +192,11 @@ pub fn by_addition<E: Element>((sine, cosine): (E, E), turn: &Turn<'_, E>) -> (E
 const MOST_BITS: usize = 1 << 20;
 /// What the exact values of a function may cost, in products of words: the squares of their lengths, as common divisors of fractions do.
 const MOST_WORK: u64 = 1 << 32;
-/// The same beside entries of a known length, and as many steps with values of four times that may be added.
+/// The same beside entries of a known length; as many steps with values of four times that may be added, and as many for each entry: the derivatives
+/// of the forward dynamics of 32 joints take 76 steps for an entry, nearly all of them long.
 const MOST_WORK_BESIDE: u64 = 1 << 28;
 const LONG_STEPS: u64 = 1 << 12;
+const LONG_STEPS_OF_AN_ENTRY: u64 = 1 << 6;
 
 /// How long exact values may be.
 #[derive(Clone, Copy, Debug)]
@@ -212,11 +214,15 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// Where the entries are known to have so many bits: values on the way to them are some times as long, an acceleration under five roots
+    /// Where that many entries are known to have so many bits: values on the way to them are some times as long, an acceleration under five roots
     /// can have a million bits itself.
-    pub fn beside(longest: usize) -> Limits {
+    pub fn beside(longest: usize, entries: usize) -> Limits {
         let long = 4 * longest;
-        Limits { bits: MOST_BITS.max(long), work: MOST_WORK_BESIDE + LONG_STEPS * squared_words(long as u64) }
+        let steps = LONG_STEPS + LONG_STEPS_OF_AN_ENTRY * entries as u64;
+        Limits {
+            bits: MOST_BITS.max(long),
+            work: MOST_WORK_BESIDE.saturating_add(steps.saturating_mul(squared_words(long as u64))),
+        }
     }
 }
 
@@ -390,5 +396,18 @@ impl Program {
             };
         }
         (0..self.outputs.len()).filter(move |&i| touched[self.outputs[i].step])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_arms_stay_within_the_limits() {
+        // The derivatives of the forward dynamics of a chain of 32 joints at a rational point: 3072 entries of 8048 bits by 232 986 steps.
+        let work = 232_986 * squared_words(3 * 8192);
+        assert!(Limits::beside(8048, 3072).work > work, "{work}");
+        assert!(Limits::beside(200, 16).work < 2 * MOST_WORK_BESIDE);
     }
 }
