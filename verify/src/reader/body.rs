@@ -25,7 +25,7 @@ use super::items::{Part, Public, INTO};
 use super::lexer::{Fault, Kind, Token};
 use super::parser::{Parser, Reads};
 use crate::check::Check;
-use crate::contract::Returned;
+use crate::contract::{Promise, Returned};
 use crate::enclosure::Float;
 use crate::program::{Angle, Argument, Output, Program, Step};
 
@@ -116,7 +116,7 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
         parts: 0,
         given: usize::MAX,
     };
-    match compiler.shared.written.get(function.name).copied().zip(function.promise()) {
+    match compiler.shared.written.get(function.name).copied().zip(Promise::of(function.name)) {
         Some((body, (promise, with))) => {
             compiler.parser.expect("{")?;
             compiler.parser.expect_lists(&promise.calls_written(with, &format!("{}{INTO}", function.name)))?;

@@ -90,13 +90,6 @@ pub(super) struct Public<'a> {
     pub(super) body: Parser<'a>,
 }
 
-impl Public<'_> {
-    /// What it promises, and whether of parameters at run time.
-    pub(super) fn promise(&self) -> Option<(&'static Promise, bool)> {
-        Promise::of(self.name)
-    }
-}
-
 /// A part of a public function that is too long for one: `NAME_part_K`.
 #[derive(Clone, Debug)]
 pub(super) struct Part<'a> {
