@@ -139,13 +139,8 @@ impl Module {
         }
         items.check_companions()?;
         let trig = sines::check(&items.private, real)?;
-        let shared = Shared {
-            real,
-            parts: &items.parts,
-            written: &items.written,
-            together: trig == Some("fast"),
-            steps: AtomicUsize::new(0),
-        };
+        let shared =
+            Shared { real, parts: &items.parts, written: &items.written, fast: trig == Some("fast"), steps: AtomicUsize::new(0) };
         let compiled = parallel_map(&items.public, |function| body::compile(function, &shared));
         // Which function was too much would depend on the threads.
         if shared.is_too_long() {

@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::collections::BTreeMap;
+
 use armgen_codegen::emit::Language;
 use armgen_codegen::kinds::Scalar;
 use armgen_codegen::program::Trig;
@@ -11,7 +13,7 @@ use armgen_codegen::source::Source;
 use armgen_verify::certificate::Certificate;
 use armgen_verify::checker::Effort;
 use armgen_verify::claims::Claims;
-use armgen_verify::reader::ModuleText;
+use armgen_verify::reader::{Module, ModuleText};
 use armgen_verify::{certify, document_bounds, verify, verify_with};
 
 struct Given {
@@ -299,13 +301,19 @@ fn steps_that_no_emitted_body_has_are_refused() {
     given.refused("[10.0 * c2 + 21.526, t1, -0.25, -1.02]", "[10.0 * c2 + 21.526, t1, -0.25]", "16 entries");
 }
 
-/// The block for several angles has a `sin_cos` of its own, which is right near 0 alone.
+/// The fast sines have a `sin_cos` of their own, which is right near 0 alone.
 #[test]
 fn sines_of_several_angles_are_asked_for_as_armgen_asks() {
     let given = Given::new("scara", Trig::Fast);
-    let line = "let (_, c2) = sin_cos_one(q[1]);";
+    let line = "let c2 = cos_one(q[1]);";
     given.refused(line, "let (_, c2) = sin_cos(q[1]);", "`sin_cos` is no function that gives");
     given.refused(line, "let (_, c2) = sin_cos_beyond(q[1]);", "`sin_cos_beyond` is no function that gives");
+    given.refused(line, "let c2 = sin_alone(q[1]);", "`sin_alone` is not a value");
+    given.refused(line, "let c2 = sin_one(q[1]);", "inertia_matrix[0][0]: differs from the equations");
+    given.refused(line, "let c2 = cos_one(q[2]);", "inertia_matrix[0][0]: differs from the equations");
+    given.refused(line, "let c2 = cos_one(q[1], q[2]);", "`q` where an emitted module has `)`");
+    given.refused(line, "let c2 = cos_one(q[1]) + 0.5;", "`+` where an emitted module has `;`");
+    given.refused(line, "let c2 = 0.5 + cos_one(q[1]);", "`cos_one` is not a value");
     given.refused(line, "let ([_, _, _, _], [c2, _, _, _]) = sin_cos_four(1, q[1]);", "takes 4 angles");
     given.refused(line, "let ([_, _, _, _], [c2, _, _, _]) = sin_cos_four(0, q[1], q[1], q[1], q[1]);", "does not take 0 angles");
     given.refused(
@@ -316,10 +324,51 @@ fn sines_of_several_angles_are_asked_for_as_armgen_asks() {
     given.refused("any(target_feature = \"sse2\"", "any(windows, target_feature = \"sse2\"", "where an emitted module has");
     given.refused("0.1666666666666663", "0.1666666666666664", "where an emitted module has");
     given.refused("#[inline(always)]\nfn sin_cos", "#[inline]\nfn sin_cos", "where an emitted module has");
-    let module = &given.module;
-    let cold = &module[module.find("/// The same where one").expect("it is there")..];
-    let cold = &cold[..cold.find("\n}\n").expect("an end") + 3];
-    given.refused_text(&module.replace(cold, ""), "the module does not have it");
+    // A constant's brackets hold what is there, and nothing else.
+    given.refused(
+        "const SIN_COS_QUADRANTS: [[f64; 2]; 4]",
+        "const SIN_COS_QUADRANTS: [[f64; 2]; 4 + 0]",
+        "where an emitted module has",
+    );
+    given.refused("[-0.0, -1.0],", "[-0.0, { std::process::exit(1); -1.0 }],", "where an emitted module has");
+    // Each private item is called or needed by one that is called, and an item that nothing needs is refused.
+    let items = fast_sines(&given.module);
+    assert!(items.len() > 12);
+    for text in items.values() {
+        given.refused_text(&given.module.replacen(text.as_str(), "", 1), "the module does not have");
+    }
+    let of_eight = fast_sines(&Given::new("ur5", Trig::Fast).module);
+    let others = of_eight.into_iter().filter(|(name, _)| !items.contains_key(name));
+    let others: Vec<(String, String)> = others.collect();
+    assert!(others.iter().any(|(name, _)| name == "sin_cos_eight"));
+    for (name, text) in others {
+        given.refused_text(&format!("{}\n{text}", given.module), &format!("`{name}` is needed by no function"));
+    }
+}
+
+/// The fast sines of a module by their names, each with its documentation.
+fn fast_sines(module: &str) -> BTreeMap<String, String> {
+    let items = module.split("\n\n").filter_map(|item| {
+        let rest = item.lines().find_map(|line| line.strip_prefix("fn ").or(line.strip_prefix("const ")))?;
+        Some((rest.split(['(', ':']).next()?.to_owned(), item.to_owned()))
+    });
+    items.filter(|(name, _)| ["sin_", "cos_", "SIN_COS"].iter().any(|begins| name.starts_with(begins))).collect()
+}
+
+/// A sine alone is a function of the fast sines, and of f64.
+#[test]
+fn a_sine_alone_belongs_to_the_fast_sines() {
+    let line = "let (_, c2) = sin_cos(q[1]);";
+    let libm = Given::new("scara", Trig::Libm);
+    libm.refused(line, "let c2 = cos_one(q[1]);", "`cos_one` is a function of modules with fast sines");
+    let fast = fast_sines(&Given::new("scara", Trig::Fast).module);
+    let why = "`sin_alone` is one of the fast sines, which the module does not have";
+    libm.refused_text(&format!("{}\n{}", libm.module, fast["sin_alone"]), why);
+    #[allow(clippy::needless_update)]
+    let options = Options { scalar: Scalar::F32, trig: Trig::Fast, ..Options::default() };
+    let module = common::generate_with(&common::source("scara"), &options).module;
+    let fault = Module::read(format!("{module}\n{}", fast["sin_alone"]).as_str()).map(drop).expect_err("an item of f64");
+    assert!(fault.to_string().contains("`sin_alone` is none of the fast sines of this scalar"), "{fault}");
 }
 
 /// `cargo test` runs what documentation holds.

@@ -11,8 +11,8 @@ const SINES: [&str; 5] = [
     REDUCTION[0],
     REDUCTION[1],
     REDUCTION[2],
-    "|r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is",
-    "the sine, and the signs.",
+    "|r| <= pi/4 (Remez). h is n/2 rounded to the nearest integer, halves to the even one: n - 2h and h modulo 2 say which of the two is the sine,",
+    "and the signs.",
 ];
 
 const SINES_OF_ARRAYS: [&str; 5] = [
@@ -26,7 +26,7 @@ const SINES_OF_ARRAYS: [&str; 5] = [
 const REDUCTION: [&str; 3] = [
     "n is the integer nearest to 2x/pi: @rounding@.",
     "x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have @bits@ bits. Their products",
-    "with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on",
+    "with n are exact, and so is x less the first; e holds the third product less what r rounds away. p and q are minimax on",
 ];
 
 const STRIBECK: [&str; 4] = [
@@ -37,7 +37,7 @@ const STRIBECK: [&str; 4] = [
 ];
 
 /// The numbers of the sines of a scalar.
-const NUMBERS: [(&str, [&str; 2]); 12] = [
+const NUMBERS: [(&str, [&str; 2]); 11] = [
     ("limit", ["65536", "128"]),
     ("square", ["4294967296.0", "16384.0"]),
     ("bits", ["37", "17"]),
@@ -47,13 +47,12 @@ const NUMBERS: [(&str, [&str; 2]); 12] = [
     ("first", ["1.5707963267923333", "1.5707855"]),
     ("second", ["2.5633441515839558e-12", "1.0804273e-5"]),
     ("third", ["1.0562999066987428e-23", "6.0771005e-11"]),
-    ("sixth", ["0.1666666666666663", "0.16666655"]),
     (
         "sine",
         [
-            "(0.008333333333322035 + z * -0.00019841269829660063) \
-             + zz * ((2.7557313668040543e-6 + z * -2.5050756282937577e-8) + zz * 1.5896732662311403e-10)",
-            "0.008332204 + z * -0.00019520518",
+            "(0.1666666666666663 + z * -0.008333333333322035) \
+             + zz * ((0.00019841269829660063 + z * -2.7557313668040543e-6) + zz * (2.5050756282937577e-8 + z * -1.5896732662311403e-10))",
+            "0.16666655 - z * (0.008332204 + z * -0.00019520518)",
         ],
     ),
     (
@@ -84,4 +83,30 @@ pub(super) fn filled(template: &str, scalar: Scalar, rounding: &str, value: &dyn
     };
     text = text.replace("@sign@", SIGN).replace("@rounding@", rounding);
     NUMBERS.iter().fold(text, |text, (name, values)| text.replace(&format!("@{name}@"), &value(values[column])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The numbers of a text, without signs: those with a point.
+    fn numbers(text: &str) -> Vec<String> {
+        let of = text.split(|c: char| !(c.is_ascii_digit() || ".e-".contains(c))).map(|word| word.trim_start_matches('-'));
+        of.filter(|word| word.contains('.') && word.starts_with(|c: char| c.is_ascii_digit())).map(str::to_owned).collect()
+    }
+
+    /// Rust has its own text, the others these numbers: the same ones.
+    #[test]
+    fn the_numbers_are_those_of_the_text_in_rust() {
+        for (k, text) in [include_str!("rust/sincos/fast_f64.rs"), include_str!("rust/sincos/fast_f32.rs")].iter().enumerate() {
+            let code: String =
+                text.lines().filter(|line| !line.trim_start().starts_with("//")).flat_map(|line| [line, "\n"]).collect();
+            let of_rust = numbers(&code);
+            for (name, values) in NUMBERS.iter().filter(|(name, _)| !["limit", "square", "bits", "adding"].contains(name)) {
+                for number in numbers(values[k]) {
+                    assert!(of_rust.contains(&number), "{name}: {number}");
+                }
+            }
+        }
+    }
 }

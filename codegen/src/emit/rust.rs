@@ -23,7 +23,6 @@ use crate::exact::Number;
 use crate::kinds::Scalar;
 use crate::parallel::parallel_map;
 use crate::program::{Function, Module};
-use crate::ring::Symbol;
 pub(super) use inverse_kinematics::{
     about_redundancy, about_target, branches, items as items_of_inverse_kinematics, meanings, what_is_invalid,
 };
@@ -317,8 +316,7 @@ pub(in crate::emit) fn asks_for_sines(module: &Module) -> bool {
 /// Sine and cosine, the sign of a rate, what is left of Stribeck friction and the barrier: what functions call besides their parts and those that
 /// write their results.
 fn private_block(module: &Module, has_barriers: bool) -> TokenStream {
-    let all: Vec<Vec<Symbol>> = module.functions.iter().map(Function::symbols).collect();
-    let sin_cos = asks_for_sines(module).then(|| sincos::functions(module, &all));
+    let sin_cos = asks_for_sines(module).then(|| sincos::functions(module));
     let sign = asks_for_signs(module).then(|| {
         let said = format!(" {SIGN}");
         quote! {

@@ -10,6 +10,11 @@ pub(crate) mod f64 {
     }
 
     #[allow(dead_code)] // The table of errors does without.
+    pub(crate) fn each_alone(x: f64) -> (f64, f64) {
+        (sin_one(x), cos_one(x))
+    }
+
+    #[allow(dead_code)] // The table of errors does without.
     pub(crate) fn four(count: usize, [a, b, c, d]: [f64; 4]) -> ([f64; 4], [f64; 4]) {
         sin_cos_four(count, a, b, c, d)
     }

@@ -1,13 +1,14 @@
 //! Sine and cosine of f32 in f32: the text that `armgen generate --scalar f32 --trig fast` emits, as a test of the generator holds.
 
-/// Largest angle, rad, that `sin_cos` reduces itself.
+/// Largest |angle|, rad, that `sin_cos` reduces.
 const SIN_COS_RANGE: f32 = 128.0;
 
 /// Sine and cosine of an angle, |x| <= `SIN_COS_RANGE`, each within 1 unit in the last place; the sine of -0 is -0. Without branches, so that
-/// a loop over angles becomes vector instructions, without fused multiply-add and without f64: the same bits everywhere, also where f64 is done in software.
+/// a loop over angles becomes vector instructions, without fused multiply-add and without f64: the same bits wherever f32 rounds to nearest by IEEE 754.
 ///
-/// x = n pi/2 + r - e with n the nearest integer to 2x/pi, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two
-/// have 17 bits. Their products with n are exact, and so is x less the first; e holds the third product less what r rounds away.
+/// x = n pi/2 + r - e with n the integer nearest to 2x/pi or, by rounding next to a tie, the one beside it, after Cody and Waite (1980): pi/2 is a sum
+/// of three numbers, of which the first two have 17 bits. Their products with n are exact, and so is x less the first; e holds the third product less
+/// what r rounds away.
 #[allow(clippy::all)]
 #[inline(always)]
 fn sin_cos(x: f32) -> (f32, f32) {
@@ -28,20 +29,20 @@ fn sin_cos(x: f32) -> (f32, f32) {
 
 /// Sine and cosine of n pi/2 + r - e, |r| <= pi/4 and e small beside it, n by its two lowest bits.
 ///
-/// The polynomials are minimax on |r| <= pi/4 (Remez): sin r = r + r^3 P(r^2), relative error 2^-27; cos r = 1 - r^2/2 + r^4 Q(r^2), error 2^-33.
-/// sin (r - e) = sin r - e and cos (r - e) = cos r + r e to what a float holds; 1 - r^2/2 is carried with its rounding.
-/// The lowest bits of n say which of the two is the sine, and the signs.
+/// The polynomials are minimax on |r| <= pi/4 (Remez): sin r = r - r^3 P(r^2), relative error 2^-27; cos r = 1 - r^2/2 + r^4 Q(r^2), error 2^-31.
+/// sin (r - e) = r - (e (1 - r^2/2) + r^3 P) and cos (r - e) = 1 - r^2/2 + (r e + r^4 Q), where e is so small beside r that no more of it shows. The
+/// rounding error of 1 - r^2/2 is added to the terms that follow. The two lowest bits of n say which of the two is the sine, and the signs.
 #[allow(clippy::all)]
 #[inline(always)]
 fn sin_cos_reduced(quadrant: u32, r: f32, e: f32) -> (f32, f32) {
     let z = r * r;
     let zz = z * z;
-    let p = 0.008332204 + z * -0.00019520518;
-    let sine = r - (e + (z * r) * (0.16666655 - z * p));
-    let q = (0.041666646 + z * -0.0013887332) + zz * 2.443618e-5;
     let half = 0.5 * z;
     let near = 1.0 - half;
-    let cosine = near + (((1.0 - near) - half) + (zz * q + r * e));
+    let p = 0.16666655 - z * (0.008332204 + z * -0.00019520518);
+    let sine = r - (e * near + (z * r) * p);
+    let q = (0.041666646 + z * -0.0013887332) + zz * 2.443618e-5;
+    let cosine = near + ((((1.0 - near) - half) + r * e) + zz * q);
 
     let exchange = (sine.to_bits() ^ cosine.to_bits()) & 0u32.wrapping_sub(quadrant & 1);
     let sine_sign = (quadrant & 2) << 30;

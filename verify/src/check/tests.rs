@@ -270,7 +270,7 @@ fn bodies(tally: &mut Tally, scara: &Given) {
     tally.module(scara, B, "5.0 * c2", "5.00 * c2", &[(Shortest, "is not the shortest decimal of a float")]);
     let fast = given("scara", &Options { trig: Trig::Fast, ..Options::default() });
     let lanes = "let ([_, _, _, _], [c2, c9, _, _]) = sin_cos_four(1, q[1], q[1], q[1], q[1]);";
-    tally.module(&fast, B, "let (_, c2) = sin_cos_one(q[1]);", lanes, &[(Lanes, "none of the first 1 angles")]);
+    tally.module(&fast, B, "let c2 = cos_one(q[1]);", lanes, &[(Lanes, "none of the first 1 angles")]);
     let fused = given("scara", &Options { fuse: true, ..Options::default() });
     let b11 = "Real::mul_add(10.0, c2, 21.526)";
     let other = [

@@ -4,7 +4,8 @@
 //! body   = { { line } result } | { let mut result = zeros; NAME_into(arguments, &mut result); result }
 //! body of NAME_into = { { line | part[index]... = sum ; | barrier(); } }    each entry of each part once, in the place of a result
 //! line   = let _ = ignored ;                                        arguments that are not needed: q or (q, dq)
-//!        | let (name, name) = sin_cos(angle) ;                      sin_cos_one in a module with the block for several angles
+//!        | let (name, name) = sin_cos(angle) ;                      sin_cos_one in a module with the fast sines
+//!        | let name = sin_one(angle) ;                              or cos_one, in a module with the fast sines, in f64
 //!        | let ([names], [names]) = sin_cos_four(count, angles) ;   four or eight, names of the first `count` ones
 //!        | let name = sum ;
 //!        | let [names] = part(arguments, [names]) ;                 each part once, in order
@@ -43,8 +44,8 @@ pub(super) struct Shared<'a, 'm> {
     pub(super) parts: &'m BTreeMap<&'a str, Part<'a>>,
     /// The bodies of functions that write their result where the caller says.
     pub(super) written: &'m BTreeMap<&'a str, Parser<'a>>,
-    /// Whether there is a block for several angles at once.
-    pub(super) together: bool,
+    /// Whether the module has the fast sines.
+    pub(super) fast: bool,
     /// Steps and entries of all functions so far, whichever thread reads them.
     pub(super) steps: AtomicUsize,
 }
@@ -138,6 +139,9 @@ pub(super) fn compile<'a>(function: &Public<'a>, shared: &Shared<'a, '_>) -> Res
     Ok(Compiled { program, calls, parts_called })
 }
 
+/// The functions that give a sine or a cosine alone.
+const ALONE: [&str; 2] = ["sin_one", "cos_one"];
+
 /// The name of a value.
 fn value_name<'a>(token: &Token<'a>) -> Result<&'a str, Fault> {
     let rest = token.text.strip_prefix(['s', 'c', 't']).unwrap_or("");
@@ -185,7 +189,10 @@ impl<'a> Compiler<'a, '_, '_> {
                 let name = self.parser.take()?;
                 value_name(&name)?;
                 self.parser.expect("=")?;
-                let value = self.sum(0)?;
+                let value = match ALONE.iter().position(|function| self.parser.is(function)) {
+                    Some(which) => self.one_of_a_pair(which)?,
+                    None => self.sum(0)?,
+                };
                 self.parser.expect(";")?;
                 self.bind(&name, value)
             }
@@ -223,6 +230,25 @@ impl<'a> Compiler<'a, '_, '_> {
         Ok(names)
     }
 
+    /// A sine or a cosine alone.
+    fn one_of_a_pair(&mut self, which: usize) -> Result<usize, Fault> {
+        let function = self.parser.take()?;
+        if !self.shared.fast {
+            return Err(function.fault(format!("{} is a function of modules with fast sines", function.shown())));
+        }
+        self.calls.insert(ALONE[which]);
+        self.parser.expect("(")?;
+        let angle = self.angle()?;
+        self.parser.eat(",")?;
+        self.parser.expect(")")?;
+        Ok(self.pair(angle)?[which])
+    }
+
+    /// Sine and cosine of an angle, which are counted as a pair, whether both are used or not.
+    fn pair(&mut self, angle: Angle) -> Result<[usize; 2], Fault> {
+        Ok([self.push(Step::Sine(angle.clone()))?, self.push(Step::Cosine(angle))?])
+    }
+
     /// Behind `let`: the sines and cosines of one angle, or of several.
     fn waves(&mut self) -> Result<(), Fault> {
         self.parser.expect("(")?;
@@ -244,7 +270,7 @@ impl<'a> Compiler<'a, '_, '_> {
         };
         self.parser.expect("=")?;
         let function = self.parser.take()?;
-        let known: &[(&'static str, usize)] = match (several, self.shared.together) {
+        let known: &[(&'static str, usize)] = match (several, self.shared.fast) {
             (false, false) => &[("sin_cos", 1)],
             (false, true) => &[("sin_cos_one", 1)],
             (true, true) => &[("sin_cos_four", 4), ("sin_cos_eight", 8)],
@@ -283,7 +309,7 @@ impl<'a> Compiler<'a, '_, '_> {
                 }
                 continue;
             }
-            let (sine, cosine) = (self.push(Step::Sine(angle.clone()))?, self.push(Step::Cosine(angle))?);
+            let [sine, cosine] = self.pair(angle)?;
             self.bind(&sines[lane], sine)?;
             self.bind(&cosines[lane], cosine)?;
         }

@@ -359,7 +359,12 @@ impl<'a> Items<'a> {
         }
         let last = if head.keyword.is("fn") { "{" } else { ";" };
         while !parser.is(last) && parser.peek().kind != Kind::End {
-            parser.take()?;
+            // The type of an array has a `;` of its own.
+            if parser.is("[") {
+                parser.skip("[", "]")?;
+            } else {
+                parser.take()?;
+            }
         }
         if head.keyword.is("fn") {
             parser.skip("{", "}")

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::lexer::Fault;
+use super::lexer::{Fault, Kind, Lexer};
 use super::parser::Parser;
 use crate::check::Check;
 use crate::enclosure::Float;
@@ -27,13 +27,21 @@ const FAST_F64: &str = include_str!("sines/fast_f64.rs");
 const FAST_F32: &str = include_str!("sines/fast_f32.rs");
 
 /// All names.
-pub(super) const NAMES: [&str; 14] = [
+pub(super) const NAMES: [&str; 22] = [
     "barrier",
     "sign",
     "stribeck",
     "sin_cos",
     "SIN_COS_RANGE",
+    "SIN_COS_POLYNOMIALS",
+    "SIN_COS_QUADRANTS",
+    "sin_cos_polynomial",
+    "sin_cos_quadrant",
+    "sin_cos_of_rest",
     "sin_cos_one",
+    "sin_one",
+    "cos_one",
+    "sin_alone",
     "sin_cos_beyond",
     "sin_cos_reduced",
     "SIN_COS_VECTORS",
@@ -44,8 +52,8 @@ pub(super) const NAMES: [&str; 14] = [
     "sin_cos_each_of_eight",
 ];
 
-/// What the block for several angles at once always has.
-const FAST: [&str; 4] = ["SIN_COS_RANGE", "sin_cos", "sin_cos_one", "sin_cos_beyond"];
+/// What every module with the fast sines has, and no other.
+const OF_FAST: &str = "SIN_COS_RANGE";
 
 /// Private items by name, each at its documentation.
 pub(super) type Private<'a> = BTreeMap<&'a str, Parser<'a>>;
@@ -59,33 +67,37 @@ fn items(block: &'static str) -> impl Iterator<Item = (&'static str, &'static st
     })
 }
 
+/// The items of the fast sines, if the module has them.
+fn fast_of(private: &Private<'_>, real: Float) -> Option<BTreeMap<&'static str, &'static str>> {
+    let text = if real == Float::F64 { FAST_F64 } else { FAST_F32 };
+    private.contains_key(OF_FAST).then(|| items(text).collect())
+}
+
 /// Compares the private items with the texts that they must have; where the sines come from.
 pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'static str>, Fault> {
-    let fast = private.contains_key("sin_cos_one");
-    let block: BTreeMap<&str, &str> = match (fast, real) {
-        (false, _) => BTreeMap::new(),
-        (true, Float::F64) => items(FAST_F64).collect(),
-        (true, Float::F32) => items(FAST_F32).collect(),
-    };
-    let mut trig = fast.then_some("fast");
+    let fast = fast_of(private, real);
+    let mut trig = fast.is_some().then_some("fast");
     for (&name, &place) in private {
         let is = |text: &str| place.clone().expect(text);
         match name {
             "barrier" => is(BARRIER)?,
             "sign" => is(SIGN)?,
             "stribeck" => is(STRIBECK.trim_end())?,
-            "sin_cos" if !fast && is(OF_STD).is_ok() => trig = Some("std"),
-            "sin_cos" if !fast => {
+            "sin_cos" if fast.is_none() && is(OF_STD).is_ok() => trig = Some("std"),
+            "sin_cos" if fast.is_none() => {
                 is(if real == Float::F64 { OF_LIBM_F64 } else { OF_LIBM_F32 })?;
                 trig = Some("libm");
             }
-            name => match block.get(name) {
+            name => match fast.as_ref().and_then(|fast| fast.get(name)) {
                 Some(text) => is(text)?,
                 None if !Check::PrivateNames.is_made() => {}
                 None => {
-                    return Err(place
-                        .peek()
-                        .fault(format!("`{name}` belongs to a block for several angles, without `sin_cos_one`")))
+                    let why = if fast.is_some() {
+                        "is none of the fast sines of this scalar"
+                    } else {
+                        "is one of the fast sines, which the module does not have"
+                    };
+                    return Err(place.peek().fault(format!("`{name}` {why}")));
                 }
             },
         }
@@ -93,17 +105,15 @@ pub(super) fn check(private: &Private<'_>, real: Float) -> Result<Option<&'stati
     Ok(trig)
 }
 
-/// Whether exactly those private items are there that the calls of some functions need.
+/// Whether exactly those private items are there that the calls of some functions need, and those that such items need themselves.
 pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>, real: Float) -> Result<(), Fault> {
-    let mut needed = calls.clone();
-    if calls.iter().any(|name| !["barrier", "sign", "stribeck", "sin_cos"].contains(name)) {
-        needed.extend(FAST);
-        needed.extend((real == Float::F32).then_some("sin_cos_reduced"));
-    }
-    for (lanes, each) in [("sin_cos_four", "sin_cos_each_of_four"), ("sin_cos_eight", "sin_cos_each_of_eight")] {
-        if calls.contains(lanes) {
-            needed.extend([each, "SIN_COS_VECTORS"]);
-            needed.extend((real == Float::F64).then_some("SIN_COS_PAIRS"));
+    let fast = fast_of(private, real).unwrap_or_default();
+    let (mut needed, mut new) = (BTreeSet::new(), calls.clone());
+    while !new.is_empty() {
+        needed.append(&mut new);
+        for (_, text) in fast.iter().filter(|(name, _)| needed.contains(*name)) {
+            let named = words(text)?;
+            new.extend(fast.keys().filter(|name| named.contains(*name) && !needed.contains(*name)));
         }
     }
     if let Some(name) = needed.iter().find(|name| !private.contains_key(*name) && Check::PrivateThere.is_made()) {
@@ -115,6 +125,19 @@ pub(super) fn check_calls(private: &Private<'_>, calls: &BTreeSet<&'static str>,
     }
 }
 
+/// The words of one of the texts here, outside of comments.
+fn words(text: &'static str) -> Result<BTreeSet<&'static str>, Fault> {
+    let (mut lexer, mut words) = (Lexer::new(text), BTreeSet::new());
+    loop {
+        let token = lexer.next()?;
+        match token.kind {
+            Kind::End => return Ok(words),
+            Kind::Word => drop(words.insert(token.text)),
+            _ => {}
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,20 +146,27 @@ mod tests {
     use armgen_codegen::schedule::Options;
     use armgen_codegen::source::Source;
 
-    /// Where this fails, the generator's block has changed: decide whether the new one is right, then copy it.
+    /// Where this fails, the generator's block has changed: decide whether the new one is right, then copy it. One arm has the functions for four
+    /// angles, for one and for a sine alone, the other those for eight.
     #[test]
     fn the_blocks_are_those_that_are_emitted() {
-        for (file, lanes) in [("scara", "four"), ("panda7", "eight")] {
-            let path = format!("{}/../robots/{file}.yaml", env!("CARGO_MANIFEST_DIR"));
-            let source = Source::new("robot.yaml", std::fs::read_to_string(path).expect("a robot"));
-            for (scalar, block) in [(Scalar::F64, FAST_F64), (Scalar::F32, FAST_F32)] {
+        for (scalar, block) in [(Scalar::F64, FAST_F64), (Scalar::F32, FAST_F32)] {
+            let modules = ["scara", "panda7"].map(|file| {
+                let path = format!("{}/../robots/{file}.yaml", env!("CARGO_MANIFEST_DIR"));
+                let source = Source::new("robot.yaml", std::fs::read_to_string(path).expect("a robot"));
                 #[allow(clippy::needless_update)]
                 let options = Options { scalar, trig: Trig::Fast, ..Options::default() };
-                let module = armgen_codegen::generate(&source, &options).0.expect("a module").module;
-                for (name, text) in items(block) {
-                    let other = if lanes == "four" { "eight" } else { "four" };
-                    assert_eq!(module.contains(text), !name.ends_with(other), "{file} {scalar:?} {name}");
-                }
+                armgen_codegen::generate(&source, &options).0.expect("a module").module
+            });
+            for (name, text) in items(block) {
+                let is_fn = text.contains(&format!("\nfn {name}("));
+                let begins = if is_fn { format!("\nfn {name}(") } else { format!("\nconst {name}:") };
+                let there = modules.each_ref().map(|module| {
+                    let is_there = module.contains(&begins);
+                    assert_eq!(module.contains(text), is_there, "{scalar:?} {name}");
+                    is_there
+                });
+                assert!(there[0] || there[1], "{scalar:?} {name}");
             }
         }
     }

@@ -19,12 +19,12 @@ function sinCos(x) {
     const e = n * @third@ - ((first - r) - step);
     const z = r * r;
     const zz = z * z;
-    const p = @sine@;
-    const s = r - (e + (z * r) * (@sixth@ - z * p));
-    const q = @cosine@;
     const half = 0.5 * z;
     const top = 1.0 - half;
-    const c = top + (((1.0 - top) - half) + (zz * q + r * e));
+    const p = @sine@;
+    const s = r - (e * top + (z * r) * p);
+    const q = @cosine@;
+    const c = top + ((((1.0 - top) - half) + r * e) + zz * q);
     const h = (n * 0.5 + @round@) - @round@;
     const odd = n - 2.0 * h;
     const two = h - 2.0 * ((h * 0.5 + @round@) - @round@);

@@ -17,12 +17,12 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     e = n * @third@ - ((first - r) - step)
     z = r * r
     zz = z * z
-    p = @sine@
-    s = r - (e + (z * r) * (@sixth@ - z * p))
-    q = @cosine@
     half = 0.5 * z
     top = 1.0 - half
-    c = top + (((1.0 - top) - half) + (zz * q + r * e))
+    p = @sine@
+    s = r - (e * top + (z * r) * p)
+    q = @cosine@
+    c = top + ((((1.0 - top) - half) + r * e) + zz * q)
     b = 4.0 * (xp.round(n * 0.25) + 0.0) - n
     a = 1.0 - xp.abs(b)
     b = b * (1.0 + a)

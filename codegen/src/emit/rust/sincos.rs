@@ -3,9 +3,12 @@
 //! `libm` and `std` answer angle by angle. `fast` answers for four or eight angles at once: the text in `sincos/fast_f64.rs` and
 //! `sincos/fast_f32.rs`, real Rust files that are taken in as they stand. Its angles are arguments one by one, which travel in registers:
 //! a processor that reads a vector from numbers that were just written one by one waits for all the writes, longer than the sines take.
-//! One or two angles gain nothing from vectors and are asked for alone.
+//! A single angle, and in f32 each of two, gains nothing from vectors and is asked for by itself; in f64 without its cosine or its sine where that is
+//! not needed.
 
-use proc_macro2::TokenStream;
+use std::collections::BTreeSet;
+
+use proc_macro2::{TokenStream, TokenTree};
 use quote::{format_ident, quote, ToTokens};
 use syn::Item;
 
@@ -61,6 +64,16 @@ impl Asked {
         text
     }
 
+    /// `let (s2, c2) = sin_cos_one(q[1]);`, or one of the two. In f32 polynomials are so short that to choose one takes as many operations as both.
+    fn alone(&self, scalar: Scalar) -> TokenStream {
+        let (angle, sine, cosine) = (self.text(), &self.sine, &self.cosine);
+        match (scalar, self.angle.sine, self.angle.cosine) {
+            (Scalar::F64, Some(_), None) => quote!(let #sine = sin_one(#angle);),
+            (Scalar::F64, None, Some(_)) => quote!(let #cosine = cos_one(#angle);),
+            _ => quote!(let (#sine, #cosine) = sin_cos_one(#angle);),
+        }
+    }
+
     /// `q[1]`
     fn first(&self) -> TokenStream {
         entry(self.angle.terms[0].0)
@@ -99,10 +112,7 @@ fn together(asked: &[Asked], scalar: Scalar) -> Vec<TokenStream> {
     for group in asked.chunks(8) {
         let (lanes, function) = match (group.len(), scalar) {
             (1, _) | (2, Scalar::F32) => {
-                lines.extend(group.iter().map(|asked| {
-                    let (angle, sine, cosine) = (asked.text(), &asked.sine, &asked.cosine);
-                    quote!(let (#sine, #cosine) = sin_cos_one(#angle);)
-                }));
+                lines.extend(group.iter().map(|asked| asked.alone(scalar)));
                 continue;
             }
             (2..=4, _) => (4, "sin_cos_four"),
@@ -189,10 +199,14 @@ pub(super) fn of_lanes(module: &Module) -> TokenStream {
     }
 }
 
-/// The private functions behind the lines, for the symbols of each function.
-pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStream {
+/// The private functions behind the lines of all functions.
+pub(super) fn functions(module: &Module) -> TokenStream {
     let call = match (module.trig, module.scalar) {
-        (Trig::Fast, scalar) => return fast(scalar, functions),
+        (Trig::Fast, scalar) => {
+            let lines = module.functions.iter().flat_map(|function| lines(module, function));
+            let of_lanes = module.batch.map(|_| of_lanes(module));
+            return fast(scalar, quote!(#(#lines)* #of_lanes));
+        }
         (Trig::Std, _) => quote!(x.sin_cos()),
         (Trig::Libm, Scalar::F64) => quote!(libm::sincos(x)),
         (Trig::Libm, Scalar::F32) => quote!(libm::sincosf(x)),
@@ -206,19 +220,37 @@ pub(super) fn functions(module: &Module, functions: &[Vec<Symbol>]) -> TokenStre
     }
 }
 
-/// The items of the text for `fast` that these functions need.
-fn fast(scalar: Scalar, functions: &[Vec<Symbol>]) -> TokenStream {
+/// The items of the text for `fast` that these lines name, and those that such items name themselves.
+fn fast(scalar: Scalar, lines: TokenStream) -> TokenStream {
     let mut file =
         syn::parse_file(if scalar == Scalar::F64 { FAST_F64 } else { FAST_F32 }).expect("the text to take in is a Rust file");
-    let calls: String =
-        functions.iter().flat_map(|symbols| together(&asked(symbols, None), scalar)).map(|line| line.to_string()).collect();
-    let unused: Vec<&str> = ["four", "eight"].into_iter().filter(|lanes| !calls.contains(&format!("sin_cos_{lanes}"))).collect();
-    file.items.retain(|item| match item {
-        Item::Fn(function) => !unused.iter().any(|lanes| function.sig.ident.to_string().ends_with(lanes)),
-        Item::Const(constant) => constant.ident == "SIN_COS_RANGE" || unused.len() < 2,
-        _ => true,
-    });
+    let (mut needed, mut new) = (BTreeSet::new(), names(lines));
+    while !new.is_empty() {
+        needed.append(&mut new);
+        let items = file.items.iter().filter(|item| needed.contains(&name(item)));
+        new = items.flat_map(|item| names(item.to_token_stream())).filter(|name| !needed.contains(name)).collect();
+    }
+    file.items.retain(|item| needed.contains(&name(item)));
     file.into_token_stream()
+}
+
+/// The name of a function or a constant.
+fn name(item: &Item) -> String {
+    match item {
+        Item::Fn(function) => function.sig.ident.to_string(),
+        Item::Const(constant) => constant.ident.to_string(),
+        _ => unreachable!("the texts have functions and constants alone"),
+    }
+}
+
+/// All names in a text.
+fn names(text: TokenStream) -> BTreeSet<String> {
+    let of_token = |token| match token {
+        TokenTree::Ident(name) => BTreeSet::from([name.to_string()]),
+        TokenTree::Group(group) => names(group.stream()),
+        _ => BTreeSet::new(),
+    };
+    text.into_iter().flat_map(of_token).collect()
 }
 
 #[cfg(test)]
@@ -246,10 +278,18 @@ mod tests {
 
     #[test]
     fn one_angle_is_asked_for_alone_and_in_single_precision_two_are() {
-        check(&[Symbol::Sine(1)], &["let (s2, _) = sin_cos_one(q[1]);"]);
+        check(&[Symbol::Sine(1), Symbol::Cosine(1)], &["let (s2, c2) = sin_cos_one(q[1]);"]);
         let two = [Symbol::Sine(1), Symbol::Cosine(3), Symbol::Sine(3)];
         check(&two, &["let ([s2, s4, _, _], [_, c4, _, _]) = sin_cos_four(2, q[1], q[3], q[3], q[3]);"]);
         check_in(Scalar::F32, &two, &["let (s2, _) = sin_cos_one(q[1]);", "let (s4, c4) = sin_cos_one(q[3]);"]);
+    }
+
+    #[test]
+    fn of_one_angle_in_double_precision_what_is_not_needed_is_not_asked_for() {
+        check(&[Symbol::Sine(1)], &["let s2 = sin_one(q[1]);"]);
+        check(&[Symbol::Cosine(1)], &["let c2 = cos_one(q[1]);"]);
+        check_in(Scalar::F32, &[Symbol::Sine(1)], &["let (s2, _) = sin_cos_one(q[1]);"]);
+        check_in(Scalar::F32, &[Symbol::Cosine(1)], &["let (_, c2) = sin_cos_one(q[1]);"]);
     }
 
     #[test]
@@ -267,7 +307,7 @@ mod tests {
     fn more_than_eight_angles_come_in_groups() {
         let nine: Vec<Symbol> = (0..9).map(Symbol::Cosine).collect();
         let eight = "let ([_, _, _, _, _, _, _, _], [c1, c2, c3, c4, c5, c6, c7, c8]) = sin_cos_eight(8, q[0], q[1], q[2], q[3], q[4], q[5], q[6], q[7]);";
-        check(&nine, &[eight, "let (_, c9) = sin_cos_one(q[8]);"]);
+        check(&nine, &[eight, "let c9 = cos_one(q[8]);"]);
     }
 
     #[test]
@@ -291,19 +331,48 @@ mod tests {
         let pair = [Symbol::SineOf(turned), Symbol::CosineOf(turned)];
         check(&pair, &["let (s7_turned, c7_turned) = sin_cos_one(q[6] - 0.5);"]);
         let with_another = AngleSum { turned: true, plus: 0b110, minus: 0 };
-        check(&[Symbol::SineOf(with_another)], &["let (s2_3_turned, _) = sin_cos_one(q[1] + q[2] - 0.5);"]);
+        check(&[Symbol::SineOf(with_another)], &["let s2_3_turned = sin_one(q[1] + q[2] - 0.5);"]);
     }
 
     #[test]
     fn only_what_is_called_is_taken_in() {
-        let texts = |count: u8| fast(Scalar::F64, &[(0..count).map(|i| Symbol::Sine(i.into())).collect()]).to_string();
-        for (count, four, eight) in [(1, false, false), (2, true, false), (8, false, true), (11, true, true)] {
-            let text = texts(count);
-            assert_eq!(
-                (text.contains("_four"), text.contains("_eight"), text.contains("VECTORS")),
-                (four, eight, four || eight),
-                "{count}"
-            );
+        let items = |scalar, count: u8, of: fn(u8) -> Vec<Symbol>| {
+            let symbols: Vec<Symbol> = (0..count).flat_map(of).collect();
+            let lines = together(&asked(&symbols, None), scalar);
+            let file: syn::File = syn::parse2(fast(scalar, quote!(#(#lines)*))).expect("a file");
+            file.items.iter().map(name).collect::<Vec<_>>()
+        };
+        let sine = |i: u8| vec![Symbol::Sine(i.into())];
+        let both = |i: u8| vec![Symbol::Sine(i.into()), Symbol::Cosine(i.into())];
+        let alone = [
+            "SIN_COS_RANGE",
+            "sin_cos_quadrant",
+            "SIN_COS_POLYNOMIALS",
+            "sin_cos_polynomial",
+            "SIN_COS_QUADRANTS",
+            "sin_one",
+            "sin_alone",
+            "sin_cos_beyond",
+        ];
+        assert_eq!(items(Scalar::F64, 1, sine), alone);
+        let pair = [
+            "SIN_COS_RANGE",
+            "sin_cos_quadrant",
+            "SIN_COS_POLYNOMIALS",
+            "sin_cos_polynomial",
+            "sin_cos_of_rest",
+            "SIN_COS_QUADRANTS",
+            "sin_cos_one",
+            "sin_cos_beyond",
+        ];
+        assert_eq!(items(Scalar::F64, 1, both), pair);
+        let of_f32 = ["SIN_COS_RANGE", "sin_cos", "sin_cos_reduced", "sin_cos_one", "sin_cos_beyond"];
+        assert_eq!(items(Scalar::F32, 1, sine), of_f32);
+        for (count, four, eight) in [(2, true, false), (8, false, true), (11, true, true)] {
+            let items = items(Scalar::F64, count, sine);
+            let has = |name: &str| items.iter().any(|item| item == name);
+            assert_eq!((has("sin_cos_four"), has("sin_cos_each_of_four"), has("sin_cos_eight")), (four, four, eight), "{count}");
+            assert!(has("sin_cos") && has("sin_cos_one") && has("SIN_COS_VECTORS") && !has("sin_one"));
         }
     }
 }

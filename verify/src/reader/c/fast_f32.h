@@ -33,9 +33,9 @@ static inline void robot_sin_cos_beyond(int count, const robot_real *angle, robo
  *
  * n is the integer nearest to 2x/pi: adding 3/2 2^23 rounds.
  * x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 17 bits. Their products
- * with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on
- * |r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is
- * the sine, and the signs.
+ * with n are exact, and so is x less the first; e holds the third product less what r rounds away. p and q are minimax on
+ * |r| <= pi/4 (Remez). h is n/2 rounded to the nearest integer, halves to the even one: n - 2h and h modulo 2 say which of the two is the sine,
+ * and the signs.
  */
 ROBOT_INLINE void robot_sin_cos(int count, const robot_real *angle, robot_real *sine, robot_real *cosine)
 {
@@ -51,12 +51,12 @@ ROBOT_INLINE void robot_sin_cos(int count, const robot_real *angle, robot_real *
         const robot_vector e = n * 6.0771005e-11f - ((first - r) - step);
         const robot_vector z = r * r;
         const robot_vector zz = z * z;
-        const robot_vector p = 0.008332204f + z * -0.00019520518f;
-        const robot_vector s = r - (e + (z * r) * (0.16666655f - z * p));
-        const robot_vector q = (0.041666646f + z * -0.0013887332f) + zz * 2.443618e-5f;
         const robot_vector half = 0.5f * z;
         const robot_vector top = 1.0f - half;
-        const robot_vector c = top + (((1.0f - top) - half) + (zz * q + r * e));
+        const robot_vector p = 0.16666655f - z * (0.008332204f + z * -0.00019520518f);
+        const robot_vector s = r - (e * top + (z * r) * p);
+        const robot_vector q = (0.041666646f + z * -0.0013887332f) + zz * 2.443618e-5f;
+        const robot_vector c = top + ((((1.0f - top) - half) + r * e) + zz * q);
         const robot_vector h = (n * 0.5f + 12582912.0f) - 12582912.0f;
         const robot_vector odd = n - 2.0f * h;
         const robot_vector two = h - 2.0f * ((h * 0.5f + 12582912.0f) - 12582912.0f);

@@ -6,9 +6,9 @@ const wave = new Float64Array(2);
  *
  * n is the integer nearest to 2x/pi: adding 3/2 2^52 rounds.
  * x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 37 bits. Their products
- * with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on
- * |r| <= pi/4 (Remez). h is n/2 rounded to the nearest even integer of the two where n is odd: n - 2h and h modulo 2 say which of the two is
- * the sine, and the signs.
+ * with n are exact, and so is x less the first; e holds the third product less what r rounds away. p and q are minimax on
+ * |r| <= pi/4 (Remez). h is n/2 rounded to the nearest integer, halves to the even one: n - 2h and h modulo 2 say which of the two is the sine,
+ * and the signs.
  */
 function sinCos(x) {
     if (!(x >= -65536.0 && x <= 65536.0)) {
@@ -23,12 +23,12 @@ function sinCos(x) {
     const e = n * 1.0562999066987428e-23 - ((first - r) - step);
     const z = r * r;
     const zz = z * z;
-    const p = (0.008333333333322035 + z * -0.00019841269829660063) + zz * ((2.7557313668040543e-6 + z * -2.5050756282937577e-8) + zz * 1.5896732662311403e-10);
-    const s = r - (e + (z * r) * (0.1666666666666663 - z * p));
-    const q = (0.0416666666666666 + z * -0.0013888888888873453) + zz * ((2.4801587287964484e-5 + z * -2.7557313594775254e-7) + zz * (2.087558805713208e-9 + z * -1.1351822784169523e-11));
     const half = 0.5 * z;
     const top = 1.0 - half;
-    const c = top + (((1.0 - top) - half) + (zz * q + r * e));
+    const p = (0.1666666666666663 + z * -0.008333333333322035) + zz * ((0.00019841269829660063 + z * -2.7557313668040543e-6) + zz * (2.5050756282937577e-8 + z * -1.5896732662311403e-10));
+    const s = r - (e * top + (z * r) * p);
+    const q = (0.0416666666666666 + z * -0.0013888888888873453) + zz * ((2.4801587287964484e-5 + z * -2.7557313594775254e-7) + zz * (2.087558805713208e-9 + z * -1.1351822784169523e-11));
+    const c = top + ((((1.0 - top) - half) + r * e) + zz * q);
     const h = (n * 0.5 + 6755399441055744.0) - 6755399441055744.0;
     const odd = n - 2.0 * h;
     const two = h - 2.0 * ((h * 0.5 + 6755399441055744.0) - 6755399441055744.0);

@@ -10,7 +10,7 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     # Sines and cosines of angles, rad, each within 1 unit in the last place; those of |x| > 128 are the library's.
     # n is the integer nearest to 2x/pi: + 0.0 makes it no -0.
     # x = n pi/2 + r - e, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 17 bits. Their products
-    # with n are exact, and so is x less the first; e holds the third product less what r rounds away. The polynomials are minimax on
+    # with n are exact, and so is x less the first; e holds the third product less what r rounds away. p and q are minimax on
     # |r| <= pi/4 (Remez). b is at first -n modulo 4, from -2 to 2, then minus the sine of n pi/2, of which a is the cosine: the theorems of addition
     # are exact, as a product with 1 and a sum with 0 are, and s is 0 for x = 0 alone.
     x = xp.stack(angles)
@@ -21,12 +21,12 @@ def _sin_cos(xp: Any, angles: tuple[Any, ...]) -> tuple[_Entries, _Entries]:
     e = n * 6.0771005e-11 - ((first - r) - step)
     z = r * r
     zz = z * z
-    p = 0.008332204 + z * -0.00019520518
-    s = r - (e + (z * r) * (0.16666655 - z * p))
-    q = (0.041666646 + z * -0.0013887332) + zz * 2.443618e-5
     half = 0.5 * z
     top = 1.0 - half
-    c = top + (((1.0 - top) - half) + (zz * q + r * e))
+    p = 0.16666655 - z * (0.008332204 + z * -0.00019520518)
+    s = r - (e * top + (z * r) * p)
+    q = (0.041666646 + z * -0.0013887332) + zz * 2.443618e-5
+    c = top + ((((1.0 - top) - half) + r * e) + zz * q)
     b = 4.0 * (xp.round(n * 0.25) + 0.0) - n
     a = 1.0 - xp.abs(b)
     b = b * (1.0 + a)

@@ -46,12 +46,12 @@ ROBOT_INLINE void robot_sin_cos(int count, const robot_real *angle, robot_real *
         const robot_vector e = n * @third@ - ((first - r) - step);
         const robot_vector z = r * r;
         const robot_vector zz = z * z;
-        const robot_vector p = @sine@;
-        const robot_vector s = r - (e + (z * r) * (@sixth@ - z * p));
-        const robot_vector q = @cosine@;
         const robot_vector half = 0.5@f@ * z;
         const robot_vector top = 1.0@f@ - half;
-        const robot_vector c = top + (((1.0@f@ - top) - half) + (zz * q + r * e));
+        const robot_vector p = @sine@;
+        const robot_vector s = r - (e * top + (z * r) * p);
+        const robot_vector q = @cosine@;
+        const robot_vector c = top + ((((1.0@f@ - top) - half) + r * e) + zz * q);
         const robot_vector h = (n * 0.5@f@ + @round@) - @round@;
         const robot_vector odd = n - 2.0@f@ * h;
         const robot_vector two = h - 2.0@f@ * ((h * 0.5@f@ + @round@) - @round@);

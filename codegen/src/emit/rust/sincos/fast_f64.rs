@@ -1,56 +1,135 @@
-/// Largest angle, rad, that `sin_cos` reduces itself.
+/// Largest |angle|, rad, whose sine this module computes itself.
 const SIN_COS_RANGE: f64 = 65536.0;
 
-/// Sine and cosine of an angle, |x| <= `SIN_COS_RANGE`, each within 1 unit in the last place; the sine of -0 is -0. Without branches, so that
-/// a loop over angles becomes vector instructions, and without fused multiply-add: the same bits everywhere.
+/// x = n pi/2 + r - e, |x| <= `SIN_COS_RANGE`: a number whose two lowest bits are those of n, then r and e. n is the integer nearest to 2x/pi or, by
+/// rounding next to a tie, the one beside it; |r| exceeds pi/4 by at most 1e-11.
 ///
-/// x = n pi/2 + r - e with n the nearest integer to 2x/pi, after Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two
-/// have 37 bits. Their products with n are exact, and so is x less the first; e holds the third product less what r rounds away.
-/// The polynomials are minimax on |r| <= pi/4 (Remez): sin r = r + r^3 P(r^2), relative error 2^-57; cos r = 1 - r^2/2 + r^4 Q(r^2), error 2^-57.
-/// sin (r - e) = sin r - e and cos (r - e) = cos r + r e to what a float holds; 1 - r^2/2 is carried with its rounding.
-/// The lowest bits of n say which of the two is the sine, and the signs.
+/// After Cody and Waite (1980): pi/2 is a sum of three numbers, of which the first two have 37 bits. Their products with n are exact, and so is x
+/// less the first; e holds the third product less what r rounds away.
 #[allow(clippy::all)]
 #[inline(always)]
-fn sin_cos(x: f64) -> (f64, f64) {
+fn sin_cos_quadrant(x: f64) -> (u64, f64, f64) {
     /// Adding 3/2 2^52 rounds to an integer, whose lowest bits are then those of the sum.
     const TO_INTEGER: f64 = 6755399441055744.0;
     const TWO_OVER_PI: f64 = 0.6366197723675814;
     const HALF_PI: [f64; 3] = [1.5707963267923333, 2.5633441515839558e-12, 1.0562999066987428e-23];
     let shifted = x * TWO_OVER_PI + TO_INTEGER;
     let n = shifted - TO_INTEGER;
-    let quadrant = shifted.to_bits();
-
     let first = x - n * HALF_PI[0];
     let step = n * HALF_PI[1];
     let r = first - step;
-    let e = n * HALF_PI[2] - ((first - r) - step);
+    (shifted.to_bits(), r, n * HALF_PI[2] - ((first - r) - step))
+}
 
+/// P and -Q of sin r = r - r^3 P(r^2) and cos r = 1 - r^2/2 + r^4 Q(r^2), from the lowest coefficient: minimax on |r| <= pi/4 (Remez), relative errors
+/// of sine and cosine 2^-57.
+const SIN_COS_POLYNOMIALS: [[f64; 2]; 6] = [
+    [0.1666666666666663, -0.0416666666666666],
+    [-0.008333333333322035, 0.0013888888888873453],
+    [0.00019841269829660063, -2.4801587287964484e-5],
+    [-2.7557313668040543e-6, 2.7557313594775254e-7],
+    [2.5050756282937577e-8, -2.087558805713208e-9],
+    [-1.5896732662311403e-10, 1.1351822784169523e-11],
+];
+
+/// P(z) for k = 0, -Q(z) for k = 1; zz = z^2.
+#[allow(clippy::all)]
+#[inline(always)]
+fn sin_cos_polynomial(k: usize, z: f64, zz: f64) -> f64 {
+    const A: [[f64; 2]; 6] = SIN_COS_POLYNOMIALS;
+    (A[0][k] + z * A[1][k]) + zz * ((A[2][k] + z * A[3][k]) + zz * (A[4][k] + z * A[5][k]))
+}
+
+/// sin (r - e) = r - (e (1 - r^2/2) + r^3 P) and cos (r - e) = 1 - r^2/2 + (r e + r^4 Q), where e is so small beside r that no more of it shows. The
+/// rounding error of 1 - r^2/2 is added to the terms that follow.
+///
+/// `q` has the bits of -`sin_cos_polynomial(1, z, zz)`. Two of its additions are written as subtractions: LLVM would compute two polynomials with
+/// the same operations side by side in a vector of two, which takes longer.
+#[allow(clippy::all)]
+#[inline(always)]
+fn sin_cos_of_rest(r: f64, e: f64) -> (f64, f64) {
+    const A: [[f64; 2]; 6] = SIN_COS_POLYNOMIALS;
     let z = r * r;
     let zz = z * z;
-    let p = (0.008333333333322035 + z * -0.00019841269829660063)
-        + zz * ((2.7557313668040543e-6 + z * -2.5050756282937577e-8) + zz * 1.5896732662311403e-10);
-    let sine = r - (e + (z * r) * (0.1666666666666663 - z * p));
-    let q = (0.0416666666666666 + z * -0.0013888888888873453)
-        + zz * ((2.4801587287964484e-5 + z * -2.7557313594775254e-7) + zz * (2.087558805713208e-9 + z * -1.1351822784169523e-11));
     let half = 0.5 * z;
     let near = 1.0 - half;
-    let cosine = near + (((1.0 - near) - half) + (zz * q + r * e));
+    let sine = r - (e * near + (z * r) * sin_cos_polynomial(0, z, zz));
+    let q = (-A[0][1] - z * A[1][1]) - zz * ((A[2][1] + z * A[3][1]) + zz * (A[4][1] + z * A[5][1]));
+    (sine, near + ((((1.0 - near) - half) + r * e) + zz * q))
+}
 
-    let exchange = (sine.to_bits() ^ cosine.to_bits()) & 0u64.wrapping_sub(quadrant & 1);
-    let sine_sign = (quadrant & 2) << 62;
-    let cosine_sign = (quadrant.wrapping_add(1) & 2) << 62;
+/// Sine and cosine of an angle, |x| <= `SIN_COS_RANGE`, each within 1 unit in the last place; the sine of -0 is -0. Without branches, so that a loop
+/// over angles becomes vector instructions, and without fused multiply-add: the same bits wherever f64 rounds to nearest by IEEE 754.
+///
+/// The two lowest bits of n say which of the two is the sine, and the signs.
+#[allow(clippy::all)]
+#[inline(always)]
+fn sin_cos(x: f64) -> (f64, f64) {
+    let (n, r, e) = sin_cos_quadrant(x);
+    let (sine, cosine) = sin_cos_of_rest(r, e);
+    let exchange = (sine.to_bits() ^ cosine.to_bits()) & 0u64.wrapping_sub(n & 1);
+    let sine_sign = (n & 2) << 62;
+    let cosine_sign = (n.wrapping_add(1) & 2) << 62;
     (f64::from_bits(sine.to_bits() ^ exchange ^ sine_sign), f64::from_bits(cosine.to_bits() ^ exchange ^ cosine_sign))
 }
 
-/// Sine and cosine of an angle in rad.
+/// cos (n pi/2) and sin (n pi/2) by the two lowest bits of n. The zero of the first row has to be -0: the sine of x = -0 is -0 + cos (0) (-0) = -0.
+const SIN_COS_QUADRANTS: [[f64; 2]; 4] = [[1.0, -0.0], [-0.0, 1.0], [-1.0, -0.0], [-0.0, -1.0]];
+
+/// Sine and cosine of an angle in rad, each within 1 unit in the last place for |x| <= `SIN_COS_RANGE`: by the theorems of addition, in which
+/// products with 0, 1 and -1 are exact. The bits are those of a loop over several angles, which exchanges sine and cosine as integers; of one angle
+/// they would have to be moved to integer registers and back.
 #[allow(clippy::all)]
 #[inline]
 fn sin_cos_one(x: f64) -> (f64, f64) {
     if x.abs() <= SIN_COS_RANGE {
-        sin_cos(x)
+        let (n, r, e) = sin_cos_quadrant(x);
+        let (sine, cosine) = sin_cos_of_rest(r, e);
+        let [c, s] = SIN_COS_QUADRANTS[(n & 3) as usize];
+        (sine * c + cosine * s, cosine * c - sine * s)
     } else {
         sin_cos_beyond(x)
     }
+}
+
+/// Sine of an angle in rad, with the bits of `sin_cos_one`.
+#[allow(clippy::all)]
+#[inline]
+fn sin_one(x: f64) -> f64 {
+    if x.abs() <= SIN_COS_RANGE {
+        let (n, r, e) = sin_cos_quadrant(x);
+        sin_alone(n, r, e)
+    } else {
+        sin_cos_beyond(x).0
+    }
+}
+
+/// Cosine of an angle in rad, with the bits of `sin_cos_one`.
+#[allow(clippy::all)]
+#[inline]
+fn cos_one(x: f64) -> f64 {
+    if x.abs() <= SIN_COS_RANGE {
+        let (n, r, e) = sin_cos_quadrant(x);
+        sin_alone(n.wrapping_add(1), r, e)
+    } else {
+        sin_cos_beyond(x).1
+    }
+}
+
+/// sin (n pi/2 + r - e) by one polynomial, whose coefficients are chosen by the lowest bit of n: no branch depends on the quadrant.
+///
+/// With c = cos (n pi/2) and s = sin (n pi/2), of which one is 0 and the other 1 or -1, it is c sin (r - e) + s cos (r - e). Products with c and s
+/// are exact and a sum with 0 changes nothing, so that each operation rounds as in `sin_cos_of_rest`.
+#[allow(clippy::all)]
+#[inline(always)]
+fn sin_alone(n: u64, r: f64, e: f64) -> f64 {
+    let [c, s] = SIN_COS_QUADRANTS[(n & 3) as usize];
+    let z = r * r;
+    let p = sin_cos_polynomial((n & 1) as usize, z, z * z);
+    let half = 0.5 * z;
+    let near = 1.0 - half;
+    let small = (half - (1.0 - near)) * s - e * (r * s - near * c);
+    (r * c + near * s) - (small + (z * (r * c + z * s)) * p)
 }
 
 /// Sine and cosine of an angle that is beyond `SIN_COS_RANGE`, infinite or not a number.
