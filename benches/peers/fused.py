@@ -8,12 +8,10 @@
 A figure is how many times as fast the fused function is: the median over the rounds of bench.cpp of the ratio within each round.
 """
 import argparse
-import json
 import os
 import pathlib
 import shutil
 import statistics
-import subprocess
 import sys
 
 import run
@@ -33,7 +31,7 @@ def options():
     parser.add_argument("--armgen", type=pathlib.Path, help="the built program; cargo builds it if not given")
     parser.add_argument("--robots", type=names, default=ROBOTS, help="names in robots/, separated by commas")
     parser.add_argument("--functions", type=names, default=run.FUNCTIONS, help="names of functions, separated by commas")
-    parser.add_argument("--rounds", type=int, default=61)
+    parser.add_argument("--rounds", type=run.positive, default=61)
     parser.add_argument("--out", type=pathlib.Path, help="Markdown file for the table")
     return parser.parse_args()
 
@@ -68,9 +66,8 @@ def race(bench, robot, own, rounds):
     states = run.BUILD / f"{robot}.states"
     states.write_text(run.states_text(model.read_arm(run.description(robot))))
     peers = [f"{compiler}-{form}={library}:{robot}_" for (compiler, form), library in own.items()]
-    output = run.run([bench, states, rounds, "reference=" + peers[0].split("=")[1], *peers], stdout=subprocess.PIPE, text=True).stdout
     ratios = {}
-    for case in map(json.loads, output.splitlines()):
+    for case in run.measure(bench, states, rounds, peers[0].split("=")[1], peers):
         errors = {name: peer["error"] for name, peer in case["peers"].items() if "error" in peer}
         wrong = [name for name, error in errors.items() if not error <= TOLERANCE]
         if wrong:
