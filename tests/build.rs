@@ -19,7 +19,7 @@ const NARROW: [&str; 4] = ["everything", "puma560", "scara", "scara4"];
 
 /// The robots that are emitted with functions for many states.
 const BATCHES: [(&str, &str, Trig, Scalar, usize); 5] = [
-    // For one state it needs a sine alone, for many the pair.
+    // Functions for one state call `sin_cos_one` alone, those for many `sin_cos`, too.
     ("robots/single_joint.yaml", "single_joint_batch", Trig::Fast, Scalar::F64, 4),
     ("../robots/scara4.yaml", "scara4_batch", Trig::Fast, Scalar::F64, 8),
     ("../robots/scara4.yaml", "scara4_batch_f32", Trig::Fast, Scalar::F32, 16),

@@ -82,9 +82,9 @@ pub enum Outcome {
     RateLimited,
     /// Near a singularity: rates are damped, and the error closes more slowly than its gain says.
     Damped,
-    /// Near a singularity, and what is left of the error, as K weighs it, points where the arm cannot move now. Of a single step this does not say that the
-    /// goal is out of reach: it may be as far inwards, in line with a stretched arm. Of an [`approach`](Clik::approach) it does, as far as
-    /// the arm, moved aside, has come to rest no nearer.
+    /// Near a singularity, and what is left of the error, as K weighs it, points where the arm cannot move now. Of a single step this does not say
+    /// that the goal is out of reach: it may be as far inwards, in line with a stretched arm. Of an [`approach`](Clik::approach) it does, as far
+    /// as the arm, moved aside, has come to rest no nearer.
     OutOfReach,
     /// This joint stands at its limit and would have to go beyond.
     JointLimit {

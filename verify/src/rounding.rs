@@ -281,24 +281,25 @@ impl<'a> Trial<'a> {
 
     /// What makes a function useless in floats, if it is.
     pub fn fault(&self, program: &Program, values: &[Formula]) -> Option<Unfit> {
-        let (errors, compared) = self.judge(program, values, Sensitivities::WhereNeeded);
-        self.leaves(&errors).or_else(|| compared.iter().find_map(Compared::unfit)).or_else(|| {
-            if undivided_operands(program).is_empty() {
-                None
-            } else {
-                self.divided_leaves(program)
-            }
-        })
+        let operands = undivided_operands(program);
+        let (errors, compared) = self.judge(program, &operands, values, Sensitivities::WhereNeeded);
+        let unfit = self.leaves(&errors).or_else(|| compared.iter().find_map(Compared::unfit));
+        unfit.or_else(|| if operands.is_empty() { None } else { self.divided_leaves(program) })
     }
 
     /// All errors beside what is allowed of them.
     pub fn compared(&self, program: &Program, values: &[Formula]) -> Vec<Compared> {
-        self.judge(program, values, Sensitivities::Always).1
+        self.judge(program, &undivided_operands(program), values, Sensitivities::Always).1
     }
 
-    /// The errors of what no quotient takes part in, and all beside what is allowed of them.
-    fn judge(&self, program: &Program, values: &[Formula], sensitivities: Sensitivities) -> (Errors, Vec<Compared>) {
-        let operands = undivided_operands(program);
+    /// The errors of what no quotient takes part in, and all beside what is allowed of them. `operands`: the undivided ones of the program.
+    fn judge(
+        &self,
+        program: &Program,
+        operands: &[usize],
+        values: &[Formula],
+        sensitivities: Sensitivities,
+    ) -> (Errors, Vec<Compared>) {
         if operands.is_empty() {
             let mut errors = self.errors(program, values);
             let yardsticks = self.plain.get(&program.name).map_or(&[][..], Vec::as_slice);
@@ -306,9 +307,9 @@ impl<'a> Trial<'a> {
             compared.extend(self.measured(program, values, yardsticks));
             return (errors, compared);
         }
-        let part = program.part(&operands);
+        let part = program.part(operands);
         let mut errors = self.errors(&part, values);
-        let mut yardsticks = self.of_operands(program, &operands);
+        let mut yardsticks = self.of_operands(program, operands);
         if let Some(runs) = &errors.runs {
             yardsticks.iter_mut().enumerate().for_each(|(k, plain)| plain.hold_value(runs.states.iter().map(|state| state[k].0)));
         }

@@ -1,5 +1,5 @@
-//! Generates every robot in both scalars and with each trigonometry that needs no `std`, with a call of each function, and links the C
-//! library, which starts the program.
+//! Generates every robot in both scalars and with each trigonometry that needs no `std`, some with functions for many states, with a call of
+//! each function, and links the C library, which starts the program.
 
 use armgen_codegen::build_script::{Robot, Scalar, Trig};
 use std::{env, fs, path::PathBuf};
@@ -32,18 +32,13 @@ fn main() {
                 let runtime = fs::read_to_string(out.join(format!("{name}_runtime.rs"))).expect("it was written with it");
                 let texts = armgen_bare_calls::calls(&module) + &armgen_bare_calls::method_calls(&runtime);
                 fs::write(out.join(format!("{name}_calls.rs")), texts).expect("OUT_DIR can be written");
-                let include = |file: String| format!("    include!(concat!(env!(\"OUT_DIR\"), \"/{file}.rs\"));\n");
                 // One of inverse kinematics does for both trigonometries: it has its own.
                 let postures = fs::read_to_string(out.join(format!("{name}_ik.rs"))).expect("it was written with it");
                 let has_postures = trig == Trig::Libm && postures.contains("pub fn inverse_kinematics(");
                 let files = [name.clone(), format!("{name}_runtime"), format!("{name}_calls")].map(include).concat();
-                let mut module = |name: &str, files: &str| {
-                    modules +=
-                        &format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{files}}}\n");
-                };
-                module(&name, &files);
+                modules += &module_of(&name, &files);
                 if postures.contains("pub fn inverse_kinematics(") {
-                    module(&format!("{name}_ik"), &include(format!("{name}_ik")));
+                    modules += &module_of(&format!("{name}_ik"), &include(format!("{name}_ik")));
                 }
                 if has_postures {
                     if postures.contains("redundancy: Real") {
@@ -62,9 +57,36 @@ fn main() {
             }
         }
     }
+    // Of functions for many states each is the body for one state within the same loops: three robots show the loops, in both scalars, with both
+    // kinds of sines and with friction that grows with the load.
+    let many: [(&str, Scalar, Trig, usize); 3] = [
+        ("../../../robots/scara.yaml", Scalar::F64, Trig::Libm, 4),
+        ("../../robots/load_friction.yaml", Scalar::F64, Trig::Fast, 8),
+        ("../../robots/modified_prismatic.yaml", Scalar::F32, Trig::Fast, 16),
+    ];
+    for (path, scalar, trig, lanes) in many.into_iter().filter(|_| !planted) {
+        let robot = PathBuf::from(path);
+        let name = format!("{}_many", robot.file_stem().expect("a file has a name").to_string_lossy());
+        Robot::new(path).scalar(scalar).trig(trig).batch(lanes).file_stem(&name).generate();
+        let module = fs::read_to_string(out.join(format!("{name}.rs"))).expect("the module was just written");
+        fs::write(out.join(format!("{name}_calls.rs")), armgen_bare_calls::calls_of_many_states(&module))
+            .expect("OUT_DIR can be written");
+        modules += &module_of(&name, &[name.clone(), format!("{name}_calls")].map(include).concat());
+        calls += &format!("    {name}::each_function_of_many_states();\n");
+    }
     let text = format!("{modules}\nfn every_emitted_function() {{\n{calls}}}\n");
     fs::write(out.join("robots.rs"), text).expect("OUT_DIR can be written");
     println!("cargo::rerun-if-changed=../../../robots");
     println!("cargo::rerun-if-changed=../../robots");
     println!("cargo::rustc-link-lib=c");
+}
+
+/// The line that takes in a file of this build.
+fn include(file: String) -> String {
+    format!("    include!(concat!(env!(\"OUT_DIR\"), \"/{file}.rs\"));\n")
+}
+
+/// A module of these lines.
+fn module_of(name: &str, lines: &str) -> String {
+    format!("#[allow(dead_code, missing_docs, unreachable_pub, clippy::all)]\nmod {name} {{\n{lines}}}\n")
 }

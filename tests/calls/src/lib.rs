@@ -4,10 +4,12 @@
 //! a budget without anybody adding it to a list.
 
 mod functions;
+mod many_states;
 
 pub use functions::{named_functions, public_functions};
+pub use many_states::calls_of_many_states;
 use quote::{quote, ToTokens};
-use syn::{FnArg, Item, Pat, Type, TypeArray, TypeReference};
+use syn::{FnArg, Item, ItemFn, Pat, Type, TypeArray, TypeReference, Visibility};
 
 /// Rust text to be included beside the emitted module `module`: the arguments, and `each_function`, which visits a call of every
 /// public function by its name.
@@ -16,10 +18,7 @@ use syn::{FnArg, Item, Pat, Type, TypeArray, TypeReference};
 /// module holds, neither cut down to what a caller uses nor computed beforehand.
 pub fn calls(module: &str) -> String {
     let file = syn::parse_file(module).expect("an emitted module is a Rust file");
-    let visits = file.items.iter().filter_map(|item| match item {
-        Item::Fn(function) if matches!(function.vis, syn::Visibility::Public(_)) => Some(visit(function)),
-        _ => None,
-    });
+    let visits = public(&file.items).map(visit);
     let tokens = quote! {
         /// Arguments for every function of the module.
         #[derive(Clone, Copy, Debug)]
@@ -46,6 +45,14 @@ pub fn calls(module: &str) -> String {
         }
     };
     prettyplease::unparse(&syn::parse2(tokens).expect("calls are a Rust file"))
+}
+
+/// The public functions among these items.
+fn public(items: &[Item]) -> impl Iterator<Item = &ItemFn> {
+    items.iter().filter_map(|item| match item {
+        Item::Fn(function) if matches!(function.vis, Visibility::Public(_)) => Some(function),
+        _ => None,
+    })
 }
 
 /// Rust text to be included beside `runtime`, the emitted implementation of the traits, and the text of [`calls`]: `each_method`, which calls
@@ -95,7 +102,7 @@ fn implementation_calls(implementation: &syn::ItemImpl) -> Option<impl quote::To
     Some(quote!(#(#calls)*))
 }
 
-fn visit(function: &syn::ItemFn) -> impl quote::ToTokens {
+fn visit(function: &ItemFn) -> impl quote::ToTokens {
     let (name, output) = (&function.sig.ident, &function.sig.output);
     let text = name.to_string();
     let (mut types, mut values, mut memory) = (Vec::new(), Vec::new(), None);

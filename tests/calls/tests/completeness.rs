@@ -1,6 +1,6 @@
 //! The program that proves the absence of panics calls every public function there is.
 
-use armgen_bare_calls::{calls, method_calls, named_functions, public_functions};
+use armgen_bare_calls::{calls, calls_of_many_states, method_calls, named_functions, public_functions};
 use armgen_codegen::{schedule::Options, source::Source, Generated};
 use std::{collections::BTreeSet, fs, path::PathBuf};
 
@@ -9,8 +9,12 @@ fn project(path: &str) -> PathBuf {
 }
 
 fn generated() -> Generated {
+    generated_with(&Options::default())
+}
+
+fn generated_with(options: &Options) -> Generated {
     let text = fs::read_to_string(project("robots/scara.yaml")).expect("the robot is there");
-    let (generated, _) = armgen_codegen::generate(&Source::new("scara.yaml", text), &Options::default());
+    let (generated, _) = armgen_codegen::generate(&Source::new("scara.yaml", text), options);
     generated.expect("the description is valid")
 }
 
@@ -41,5 +45,20 @@ fn every_public_function_of_an_emitted_module_is_called() {
     assert!(functions.len() > 20, "{functions:?}");
     for function in functions {
         assert!(named.contains(function), "{function} is not called");
+    }
+}
+
+#[test]
+fn every_function_for_many_states_is_called() {
+    let module = generated_with(&Options { batch: Some(8), ..Options::default() }).module;
+    let called = calls_of_many_states(&module);
+    let (_, lanes) = module.split_once("pub mod lanes {").expect("lanes");
+    let (lanes, batch) = lanes.split_once("pub mod batch {").expect("batch");
+    for (of, text) in [("lanes", lanes), ("batch", batch)] {
+        let functions: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("    pub fn ")?.split('(').next()).collect();
+        assert!(functions.len() > 20, "{functions:?}");
+        for function in functions {
+            assert!(called.contains(&format!("{of}::{function}(")), "{of}::{function} is not called");
+        }
     }
 }
