@@ -1,5 +1,8 @@
 //! Error bounds: never exceeded, not far from the errors that occur, told apart from a fault, and the same in the companion that is emitted.
 
+#[path = "bounds/page.rs"]
+mod page;
+
 mod common;
 
 use std::path::Path;
