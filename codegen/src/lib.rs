@@ -16,27 +16,17 @@
 //! the stages themselves; the program and the checker stand on them, and they change as the stages do.
 
 pub mod build_script;
-pub mod diagnostic;
-pub mod source;
 
 #[doc(hidden)]
 pub mod catalogue;
 #[doc(hidden)]
 pub mod derive;
 #[doc(hidden)]
-pub mod description;
-#[doc(hidden)]
-pub mod document;
-#[doc(hidden)]
 pub mod emit;
 #[doc(hidden)]
+pub mod equations;
+#[doc(hidden)]
 pub mod inverse_kinematics;
-#[doc(hidden)]
-pub mod kinds;
-#[doc(hidden)]
-pub mod manipulator;
-#[doc(hidden)]
-pub mod parallel;
 #[doc(hidden)]
 pub mod pass;
 #[doc(hidden)]
@@ -45,14 +35,16 @@ pub mod program;
 pub mod schedule;
 #[doc(hidden)]
 pub mod show;
-#[doc(hidden)]
-pub mod suggest;
-#[doc(hidden)]
-pub mod validate;
 
-// The algebra, under the paths of the stages that stand on it.
+// The algebra and the description, under the paths of the stages that stand on them.
 #[doc(hidden)]
 pub use armgen_algebra::{exact, ring};
+#[doc(hidden)]
+pub use armgen_description::{codes, description, document, kinds, manipulator, parallel, suggest};
+pub use armgen_description::{diagnostic, source};
+// Validation ends with the equations, and callers look for the whole of it under its own name.
+#[doc(hidden)]
+pub use equations as validate;
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;

@@ -227,14 +227,3 @@ impl Module {
         constants.chain(parameters).find(|value| !self.scalar.holds(value))
     }
 }
-
-impl Scalar {
-    /// Whether the nearest float of a number is finite, and zero only for zero.
-    pub fn holds(self, value: &Number) -> bool {
-        let nearest = match self {
-            Scalar::F64 => value.to_f64(),
-            Scalar::F32 => f64::from(value.to_f32()),
-        };
-        nearest.is_finite() && (nearest != 0.0 || value.is_zero())
-    }
-}

@@ -1,5 +1,6 @@
 //! Small types that all stages share: what a number, a joint and a row of the task can be.
 
+use armgen_algebra::exact::Number;
 pub use armgen_algebra::exact::ParameterId;
 use armgen_algebra::ring::AngleSum;
 
@@ -14,6 +15,17 @@ pub enum Scalar {
     F64,
     /// 32 bits.
     F32,
+}
+
+impl Scalar {
+    /// Whether the nearest float of a number is finite, and zero only for zero.
+    pub fn holds(self, value: &Number) -> bool {
+        let nearest = match self {
+            Scalar::F64 => value.to_f64(),
+            Scalar::F32 => f64::from(value.to_f32()),
+        };
+        nearest.is_finite() && (nearest != 0.0 || value.is_zero())
+    }
 }
 
 /// Kinds of joint.

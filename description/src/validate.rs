@@ -12,17 +12,16 @@
 //! joints.rs      limits, motor, friction
 //! choices.rs     task, regressor
 //! places.rs      where things stand, for what is found out later
-//! equations.rs   faults that only the equations show
 //! plausible.rs   values that can be, but hardly are meant
 //! allow.rs       warnings that the file allows
 //! ```
 //!
-//! Absent from here on: spans, conventions, expressions, impossible values. Nothing after this stage can fail.
+//! Absent from here on: spans, conventions, expressions, impossible values. Faults that only equations show are left to who has equations: the
+//! generator and the checker derive them each in its own way.
 
 mod allow;
 mod bodies;
 mod choices;
-mod equations;
 mod evaluate;
 mod frames;
 mod geometry;
@@ -44,7 +43,6 @@ use crate::manipulator::{Joint, LinkId, Manipulator, Pose, RegressorChoice};
 use crate::source::{Source, Span};
 pub use allow::warning;
 pub use bodies::impossible_inertia;
-pub use equations::{product_out_of_range, values_leave_the_scalar};
 use evaluate::Evaluator;
 pub use names::{is_free_name, is_rust_name, module_name};
 pub use nominal::NominalValues;
@@ -55,21 +53,33 @@ pub use plausible::{density_of_cuboid, doubt_of_density};
 /// Most named quantities: more than all numbers of an arm with `MAX_JOINTS` joints.
 pub const MAX_PARAMETERS: usize = 1024;
 
-/// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
-/// There is an arm if and only if no diagnostic is an error.
-pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
-    read_for(source, Scalar::F64)
+/// What a description holds before anybody derives its equations.
+pub struct Structure {
+    /// The arm and the places of its parts; none if a part of it could not be read.
+    pub arm: Option<(Manipulator, Places)>,
+    /// All diagnostics, in the order in which they were found.
+    pub diagnostics: Diagnostics,
+    /// Kinds of warnings that the file allows.
+    allowed: Vec<String>,
 }
 
-/// As [`read`], with numbers that must fit `scalar`.
-pub fn read_for(source: &Source, scalar: Scalar) -> (Option<(Manipulator, Places)>, Diagnostics) {
+impl Structure {
+    /// The arm, and all diagnostics in the order of the text. There is an arm if and only if no diagnostic is an error.
+    pub fn finish(self) -> (Option<(Manipulator, Places)>, Diagnostics) {
+        let Structure { arm, mut diagnostics, allowed } = self;
+        diagnostics.allow(&allowed);
+        assert!(arm.is_some() || diagnostics.has_errors(), "what is no arm has a fault that says why");
+        diagnostics.sort();
+        (arm.filter(|_| !diagnostics.has_errors()), diagnostics)
+    }
+}
+
+/// Every check of a description that needs no equations; numbers must fit `scalar`.
+pub fn structure(source: &Source, scalar: Scalar) -> Structure {
     let (description, mut diagnostics) = RobotDescription::parse(source);
     let allowed = description.as_ref().map_or_else(Vec::new, |d| allow::check(&d.allow, &mut diagnostics));
-    let valid = description.and_then(|d| validate(source, &d, scalar, &mut diagnostics));
-    diagnostics.allow(&allowed);
-    assert!(valid.is_some() || diagnostics.has_errors(), "what is no arm has a fault that says why");
-    diagnostics.sort();
-    (valid.filter(|_| !diagnostics.has_errors()), diagnostics)
+    let arm = description.and_then(|d| validate(source, &d, scalar, &mut diagnostics));
+    Structure { arm, diagnostics, allowed }
 }
 
 /// Everything that the parts of the validation share.
@@ -150,7 +160,6 @@ fn validate(
         // There are no torques that a regressor could be of.
         manipulator.regressor = RegressorChoice::Names(Vec::new());
     }
-    equations::check(&manipulator, &places, context.diagnostics);
     Some((manipulator, places))
 }
 

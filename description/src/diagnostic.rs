@@ -48,7 +48,7 @@ impl AnyCode {
 /// Declares an enum of codes: each variant with its documentation, `Error` or `Warning`, and its stable name; all of them are in `ALL`.
 ///
 /// ```
-/// armgen_codegen::codes! {
+/// armgen_description::codes! {
 ///     /// Kinds of faults of a calibration file.
 ///     pub enum Code {
 ///         /// The key `camera` names no camera.

@@ -1,4 +1,4 @@
-//! Faults of a description that only its equations show:
+//! The last part of validation: faults of a description that only its equations show.
 //!
 //! - tau is not linear in the names that `regressor` lists together (a length, say, or a mass and its centre of mass both):
 //!   second derivatives of tau.
@@ -9,7 +9,6 @@
 
 use std::ops::Range;
 
-use super::{Places, Role};
 use crate::derive::arm::Arm;
 use crate::derive::constants::find_field;
 use crate::derive::newton_euler::{inverse_dynamics, Motion};
@@ -19,15 +18,34 @@ use crate::derive::quantities::{inertia, kinematics};
 use crate::derive::regressor::derivative_by_parameter;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Number;
-use crate::kinds::ParameterId;
-use crate::kinds::Scalar;
+use crate::kinds::{ParameterId, Scalar};
 use crate::manipulator::{Limits, Manipulator, RegressorChoice};
 use crate::ring::field::{Element, Field, MOST_ROOTS};
 use crate::ring::{ExprId, Pool, Symbol};
-use crate::source::Span;
+use crate::source::{Source, Span};
+use armgen_description::validate::structure;
+pub use armgen_description::validate::{
+    density_of_cuboid, doubt_of_density, impossible_inertia, is_free_name, is_rust_name, module_name, warning, JointPlaces,
+    NominalValues, Occurrence, Places, Role, MAX_PARAMETERS,
+};
+
+/// The arm that `source` describes, with the places of its parts, and all there is to say about the text, in its order.
+/// There is an arm if and only if no diagnostic is an error.
+pub fn read(source: &Source) -> (Option<(Manipulator, Places)>, Diagnostics) {
+    read_for(source, Scalar::F64)
+}
+
+/// As [`read`], with numbers that must fit `scalar`.
+pub fn read_for(source: &Source, scalar: Scalar) -> (Option<(Manipulator, Places)>, Diagnostics) {
+    let mut read = structure(source, scalar);
+    if let Some((manipulator, places)) = &read.arm {
+        check(manipulator, places, &mut read.diagnostics);
+    }
+    read.finish()
+}
 
 /// Reports every fault of a description that only its equations show.
-pub(super) fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnostics) {
+fn check(manipulator: &Manipulator, places: &Places, diagnostics: &mut Diagnostics) {
     let Some(field) = find_field(manipulator) else {
         let message = "the numbers of this arm hold too many different square roots to work with them exactly";
         let help = format!(
@@ -233,3 +251,6 @@ pub fn values_leave_the_scalar(manipulator: &Manipulator, places: &Places, scala
         None => Diagnostic::new(Code::OutOfRange, places.name, message, "the equations of this arm", help),
     }
 }
+
+#[cfg(test)]
+mod tests;
