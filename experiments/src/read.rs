@@ -67,7 +67,7 @@ pub fn experiment(file: &Path, source: &Source, robot: &Robot, open: Open<'_>) -
                 place,
                 "this describes a robot, not an experiment",
                 "a key of robot descriptions",
-                "`armgen run` moves the robot that it was built with: put this text into robot.yaml, rebuild, and run it without a file",
+                "the lab moves the robot of robot.yaml: put this text there, and type `cargo run --release -- run`",
             );
         } else if is_path(root) {
             return Parsed::Path;

@@ -45,9 +45,9 @@ fuzz_target!(|data: &[u8]| {
             let _ = motion.trajectory.sample(duration / 8 * i + Duration::from_nanos(u64::from(i)));
         }
     }
-    let arm = armgen_instance::built();
+    let arm = armgen_experiments::instance!(armgen_generated);
     match read::experiment(Path::new("fuzzed.yaml"), &Source::new("fuzzed.yaml", text), arm.robot(), &|_| Ok(PATH.to_owned())) {
-        Parsed::Experiment(experiment) => run(&experiment, &*arm),
+        Parsed::Experiment(experiment) => run(&experiment, &arm),
         Parsed::OtherRobot(_) | Parsed::Path => {}
         Parsed::Faulty(faulty) => {
             assert!(!faulty.is_empty());

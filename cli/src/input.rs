@@ -1,7 +1,5 @@
 //! Descriptions from files: read, checked, and what is wrong with them on standard error.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use armgen_codegen::catalogue::Absent;
@@ -12,53 +10,17 @@ use armgen_codegen::schedule::Selection;
 use armgen_codegen::source::Source;
 use armgen_codegen::validate;
 use armgen_codegen::Model;
-use armgen_verify::reader::LONGEST;
+pub(crate) use armgen_terminal::input::{counted, source};
+use armgen_terminal::input::{text, LONGEST, OTHERS_ARE_SHORT};
 
 use crate::terminal;
 use crate::{FAULTY, UNREADABLE};
-
-/// What is said of a file that is too long, but for a log.
-const OTHERS_ARE_SHORT: &str = "no file that armgen reads or writes is";
-
-/// The text of a file, or the exit code after a message that says why there is none.
-pub(crate) fn source(path: &Path) -> Result<Source, u8> {
-    Ok(Source::new(path.display().to_string(), text(path, OTHERS_ARE_SHORT)?))
-}
 
 /// The text of a log, which may well be longer than what is read: whoever has it is told what to do.
 pub(crate) fn log(path: &Path) -> Result<Source, u8> {
     let samples = armgen_page::SAMPLES;
     let remedy = format!("a page keeps {samples} samples at most, so give it the first line and, of the others, every tenth");
     Ok(Source::new(path.display().to_string(), text(path, &remedy)?))
-}
-
-/// The text of a file as it is; why it cannot be had goes to standard error, and what is said of one that is too long.
-fn text(path: &Path, of_long: &str) -> Result<String, u8> {
-    let name = path.display().to_string();
-    let mut bytes = Vec::new();
-    // Never more than that, whatever the file is: a device may have no end.
-    let read = File::open(path).and_then(|file| file.take(LONGEST as u64 + 1).read_to_end(&mut bytes));
-    read.map_err(|error| {
-        terminal::error(&format!("cannot read {name}: {error}"));
-        UNREADABLE
-    })?;
-    if bytes.len() > LONGEST {
-        terminal::error(&format!("{name} is longer than {} MiB: {of_long}", LONGEST >> 20));
-        return Err(UNREADABLE);
-    }
-    decoded(bytes).map_err(|fault| {
-        terminal::error(&format!("{name} {fault}"));
-        UNREADABLE
-    })
-}
-
-/// Bytes as a text, or what they are that are none.
-pub(crate) fn decoded(bytes: Vec<u8>) -> Result<String, String> {
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..valid].iter().filter(|&&b| b == b'\n').count() + 1;
-        format!("is not UTF-8: line {line} holds a byte that belongs to no character; save it as UTF-8")
-    })
 }
 
 /// A file that armgen has written: its text is what it is judged by, so a byte order mark in front of it, which reading drops, is refused.
@@ -163,11 +125,6 @@ pub(crate) fn model(path: &Path) -> Result<Model, u8> {
     let source = source(path)?;
     let (manipulator, _) = manipulator(&source, Scalar::F64, Warnings::Counted)?;
     Ok(Model::new(manipulator))
-}
-
-/// `1 error`, `2 errors`.
-pub(crate) fn counted(count: usize, word: &str) -> String {
-    format!("{count} {word}{}", if count == 1 { "" } else { "s" })
 }
 
 /// The functions of the names, all if there are none; what is wrong with a name goes to standard error.

@@ -4,28 +4,28 @@ use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use crate::{terminal, DONE, UNREADABLE};
+use crate::{DONE, UNREADABLE};
 
 /// Writes what was made from files, each with what it is, into another one; the exit code.
-pub(crate) fn write_other<'f>(read: impl IntoIterator<Item = (&'f Path, &'f str)>, out: &Path, text: &str) -> u8 {
+pub fn write_other<'f>(read: impl IntoIterator<Item = (&'f Path, &'f str)>, out: &Path, text: &str) -> u8 {
     if let Some((_, what)) = read.into_iter().find(|(file, _)| same_file(file, out)) {
-        terminal::error(&format!("{} is {what}: it would be overwritten; name another file", out.display()));
+        crate::error(&format!("{} is {what}: it would be overwritten; name another file", out.display()));
         return UNREADABLE;
     }
     if let Err(error) = write(out, text) {
-        terminal::error(&format!("cannot write {}: {error}", out.display()));
+        crate::error(&format!("cannot write {}: {error}", out.display()));
         return UNREADABLE;
     }
     DONE
 }
 
 /// Whether two paths lead to one file, whatever they are called, and whether it is there or not.
-pub(crate) fn same_file(a: &Path, b: &Path) -> bool {
+pub fn same_file(a: &Path, b: &Path) -> bool {
     place(a) == place(b)
 }
 
 /// Where a path leads: the same for all paths of one file, be it there or not.
-pub(crate) fn place(path: &Path) -> PathBuf {
+pub fn place(path: &Path) -> PathBuf {
     if let Ok(place) = path.canonicalize() {
         return place;
     }
@@ -37,7 +37,7 @@ pub(crate) fn place(path: &Path) -> PathBuf {
 }
 
 /// Writes beside the file first and then renames: nobody ever finds half of it. A folder that is not there is made.
-pub(crate) fn write(path: &Path, text: &str) -> std::io::Result<()> {
+pub fn write(path: &Path, text: &str) -> std::io::Result<()> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }

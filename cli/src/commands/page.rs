@@ -68,7 +68,7 @@ fn names(logs: &[PathBuf]) -> Result<Vec<String>, &Path> {
         .collect()
 }
 
-/// The unit of a column of `armgen run`, as far as its name tells it (docs/experiments.md).
+/// The unit of a column of an experiment, as far as its name tells it (docs/experiments.md).
 fn unit(name: &str) -> String {
     let known = [("t", "s"), ("x", "m"), ("y", "m"), ("z", "m"), ("e_x", "m"), ("e_y", "m"), ("e_z", "m"), ("angle", "rad")];
     let rest = [("speed", "m/s"), ("acceleration", "m/s²"), ("turn_rate", "rad/s"), ("turn_acceleration", "rad/s²")];

@@ -8,6 +8,5 @@ pub(crate) mod export;
 pub(crate) mod generate;
 pub(crate) mod import;
 pub(crate) mod page;
-pub(crate) mod run;
 pub(crate) mod show;
 pub(crate) mod verify;

@@ -1,4 +1,4 @@
-//! `armgen run` as its users run it: the table, the files, the exit codes.
+//! `lab run` as its users run it: the table, the files, the exit codes.
 //!
 //! The experiments of these tests are written for the robot that the program was built with, whichever it is, and expect what is true of any:
 //! so they are run, and not skipped, after robot.yaml has been edited. What the experiments of the repository give is tested in
@@ -8,10 +8,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use armgen_experiments::model::Robot;
+use armgen_experiments::run::Arm;
+
 fn run(folder: &Path, files: &[&Path]) -> Output {
     let out = folder.join("out");
     let _ = fs::remove_dir_all(&out);
-    Command::new(env!("CARGO_BIN_EXE_armgen")).arg("run").args(files).arg("--out").arg(&out).output().expect("the program runs")
+    Command::new(env!("CARGO_BIN_EXE_lab")).arg("run").args(files).arg("--out").arg(&out).output().expect("the program runs")
+}
+
+/// The robot that the program was built with.
+fn robot() -> Robot {
+    armgen_experiments::instance!(armgen_generated).robot().clone()
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -23,8 +31,8 @@ fn folder(name: &str) -> PathBuf {
 
 /// A file with an experiment for this robot, of which one expectation is w >= `w`.
 fn experiment(folder: &Path, name: &str, robot: &str, w: f64) -> PathBuf {
-    let arm = armgen_instance::built();
-    let q = vec!["0.3"; arm.robot().dof()].join(", ");
+    let arm = self::robot();
+    let q = vec!["0.3"; arm.dof()].join(", ");
     let text = format!(
         "robot: {robot}\ntitle: A posture\npostures:\n  - {{name: bent, q: [{q}]}}\ngrid: {{first: [0, 1], second: [0, 1]}}\nexpect:\n  \
          - {{quantity: bent.w, at_least: {w}}}\n  - {{quantity: bent.velocity_1, at_least: 0}}\n"
@@ -35,7 +43,7 @@ fn experiment(folder: &Path, name: &str, robot: &str, w: f64) -> PathBuf {
 }
 
 fn for_the_built_robot(folder: &Path, name: &str, w: f64) -> PathBuf {
-    experiment(folder, name, &armgen_instance::built().robot().name, w)
+    experiment(folder, name, &robot().name, w)
 }
 
 fn out(output: &Output) -> String {
@@ -85,8 +93,8 @@ fn a_file_that_is_not_there_gives_code_2() {
 #[test]
 fn a_path_that_is_too_long_or_no_text_is_said_to_be_that() {
     let folder = folder("run_path");
-    let arm = armgen_instance::built();
-    let robot = &arm.robot().name;
+    let arm = robot();
+    let robot = &arm.name;
     let expect = "expect:\n  - {quantity: stops, at_most: 1}\n";
     let file = folder.join("path.yaml");
     fs::write(&file, format!("robot: {robot}\ntitle: A path\npath: way.txt\nsampling: 0.01\n{expect}")).expect("a file");
@@ -143,7 +151,7 @@ fn a_path_is_no_experiment_and_no_file_that_is_read_is_written_over() {
     fs::create_dir_all(&out).expect("a folder");
     let input = for_the_built_robot(&out, "own_postures.svg", 0.0);
     let before = fs::read(&input).expect("the file");
-    let mut program = Command::new(env!("CARGO_BIN_EXE_armgen"));
+    let mut program = Command::new(env!("CARGO_BIN_EXE_lab"));
     let output = program.arg("run").args([&own, &input]).arg("--out").arg(&out).output().expect("the program runs");
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(err(&output).contains("own_postures.svg is not written"), "{}", err(&output));
@@ -160,4 +168,38 @@ fn no_experiment_writes_over_the_files_of_another() {
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("twin/posture.yaml is not run") && err(&output).contains("rename it"), "{}", err(&output));
     assert!(out(&output).contains("2 of 2 results as expected"), "{output:?}");
+}
+
+#[test]
+fn the_built_robot_moves_and_leaves_figures_and_logs() {
+    let folder = folder("run_demonstration");
+    let output = Command::new(env!("CARGO_BIN_EXE_lab")).args(["run", "--out"]).arg(&folder).output().expect("the program runs");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = out(&output);
+    assert!(text.contains("spectral radius"), "{text}");
+    let written = |extension: &str| -> Vec<String> {
+        let names = text.lines().map(str::trim).filter(|line| line.ends_with(extension));
+        names.map(|name| fs::read_to_string(name).expect("it is written")).collect()
+    };
+    let (figures, logs) = (written(".svg"), written(".csv"));
+    assert!(!figures.is_empty() && figures.len() == logs.len(), "{text}");
+    for figure in figures {
+        assert!(figure.starts_with("<svg") && figure.trim_end().ends_with("</svg>"));
+        assert!(!figure.contains("NaN"));
+    }
+    for log in logs {
+        let mut lines = log.lines();
+        let columns = lines.next().expect("a header").split(',').count();
+        assert!(lines.clone().count() > 100);
+        assert!(lines.all(|line| line.split(',').filter(|cell| cell.parse::<f64>().is_ok_and(f64::is_finite)).count() == columns));
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_an_error() {
+    let file = folder("unwritable").join("file");
+    fs::write(&file, "").expect("a file");
+    let output = Command::new(env!("CARGO_BIN_EXE_lab")).args(["run", "--out"]).arg(&file).output().expect("the program runs");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(err(&output).contains("cannot write"), "{}", err(&output));
 }

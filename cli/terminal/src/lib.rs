@@ -1,13 +1,24 @@
-//! Standard output and error. Colour only on a terminal; whoever closes the pipe early has read enough.
+//! What the programs of armgen share: exit codes, standard output and error, aligned tables, files in and out.
+//!
+//! Colour only on a terminal; whoever closes the pipe early has read enough.
+
+pub mod input;
+pub mod output;
+pub mod table;
 
 use std::io::{ErrorKind, IsTerminal, Write};
 
-use armgen_codegen::diagnostic::Colour;
+use armgen_description::diagnostic::Colour;
 
-use crate::{DONE, UNREADABLE};
+/// Exit code: the file is valid, or the task was done.
+pub const DONE: u8 = 0;
+/// Exit code: something is wrong inside the file, or a result is not as expected.
+pub const FAULTY: u8 = 1;
+/// Exit code: a file cannot be read, is not UTF-8 or cannot be written; options that do not go together.
+pub const UNREADABLE: u8 = 2;
 
 /// Whether a stream takes colours: a terminal that is not dumb, unless NO_COLOR is set.
-pub(crate) fn colour(stream: &impl IsTerminal) -> Colour {
+pub fn colour(stream: &impl IsTerminal) -> Colour {
     let refused = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|value| value == "dumb");
     if stream.is_terminal() && !refused && !dumb {
@@ -18,7 +29,7 @@ pub(crate) fn colour(stream: &impl IsTerminal) -> Colour {
 }
 
 /// Bold, where the stream takes colours.
-pub(crate) fn bold(text: &str, stream: &impl IsTerminal) -> String {
+pub fn bold(text: &str, stream: &impl IsTerminal) -> String {
     match colour(stream) {
         Colour::Always => format!("\u{1b}[1m{text}\u{1b}[0m"),
         Colour::Never => text.to_string(),
@@ -26,7 +37,7 @@ pub(crate) fn bold(text: &str, stream: &impl IsTerminal) -> String {
 }
 
 /// Writes to standard output and gives the exit code: a reader that has gone is no fault, a full disk is.
-pub(crate) fn print(text: &str) -> u8 {
+pub fn print(text: &str) -> u8 {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => DONE,
@@ -39,22 +50,22 @@ pub(crate) fn print(text: &str) -> u8 {
 }
 
 /// Writes to standard error; if that fails there is nobody left to tell.
-pub(crate) fn diagnose(text: &str) {
+pub fn diagnose(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
 /// `error: ...` on standard error.
-pub(crate) fn error(message: &str) {
+pub fn error(message: &str) {
     labelled("error", "31", message);
 }
 
 /// `warning: ...` on standard error.
-pub(crate) fn warning(message: &str) {
+pub fn warning(message: &str) {
     labelled("warning", "33", message);
 }
 
 /// `note: ...` on standard error.
-pub(crate) fn note(message: &str) {
+pub fn note(message: &str) {
     labelled("note", "32", message);
 }
 

@@ -2,7 +2,7 @@
 
 /// How a column stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Align {
+pub enum Align {
     /// Words.
     Left,
     /// Counts, and numbers beside words.
@@ -13,36 +13,36 @@ pub(crate) enum Align {
 
 /// Rows under a header; cells are as wide as the widest of their column.
 #[derive(Clone, Debug)]
-pub(crate) struct Table {
+pub struct Table {
     columns: Vec<(String, Align)>,
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
     /// A table with these columns.
-    pub(crate) fn new<'a>(columns: impl IntoIterator<Item = (&'a str, Align)>) -> Table {
+    pub fn new<'a>(columns: impl IntoIterator<Item = (&'a str, Align)>) -> Table {
         Table { columns: columns.into_iter().map(|(name, align)| (name.to_string(), align)).collect(), rows: Vec::new() }
     }
 
     /// Adds a row.
-    pub(crate) fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
         debug_assert_eq!(self.rows.last().map(Vec::len), Some(self.columns.len()));
     }
 
     /// Whether a cell beyond the first of its row holds something.
-    pub(crate) fn says_more_than_names(&self) -> bool {
+    pub fn says_more_than_names(&self) -> bool {
         self.rows.iter().flat_map(|row| &row[1..]).any(|cell| !cell.is_empty())
     }
 
     /// Whether a column has something in it, so that it is shown.
-    pub(crate) fn shows(&self, column: &str) -> bool {
+    pub fn shows(&self, column: &str) -> bool {
         let place = self.columns.iter().position(|(name, _)| name == column);
         place.is_some_and(|j| self.rows.iter().any(|row| !row[j].is_empty()))
     }
 
     /// The table, each line indented by two and ended by a line break; no header if no column has a name, no column that is empty.
-    pub(crate) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let header: Vec<String> = self.columns.iter().map(|(name, _)| name.clone()).collect();
         let named = header.iter().any(|name| !name.is_empty());
         let kept: Vec<usize> = (0..header.len()).filter(|&j| self.rows.iter().any(|row| !row[j].is_empty())).collect();

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use armgen_codegen::source::Source;
+use armgen_description::source::Source;
 use armgen_experiments::campaign::{groups, Job};
 use armgen_experiments::draw::{self, OutputFile};
 use armgen_experiments::model::{Record, Robot};
 use armgen_page::{Figure, Log, Run, Verdict};
 
-use crate::output::write;
-use crate::{terminal, DONE, UNREADABLE};
+use armgen_terminal::output::write;
+use armgen_terminal::{self as terminal, DONE, UNREADABLE};
 
 /// The experiments, and the figures of their groups.
 pub(super) fn of_jobs(jobs: &[Job<'_>]) -> Vec<Run> {

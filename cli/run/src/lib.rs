@@ -1,4 +1,4 @@
-//! `armgen run`: the robot that this program was built with, in motion.
+//! The command `run`: experiments on a robot, or a demonstration of it.
 //!
 //! The order: read all files; linearise every sampled loop and say which are unstable; only then move; draw; judge.
 
@@ -10,7 +10,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use armgen_codegen::source::Source;
+use armgen_description::source::Source;
 use armgen_experiments::campaign::{self, in_parallel, Job};
 use armgen_experiments::draw::{self, OutputFile};
 use armgen_experiments::model::{number, Channel, Experiment, JointQuantity, Quantity, Record, Robot, Unit};
@@ -18,12 +18,12 @@ use armgen_experiments::read::{self, Parsed};
 use armgen_experiments::run::Arm;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::output::place;
-use crate::table::{Align, Table};
-use crate::{input, terminal, DONE, FAULTY, UNREADABLE};
+use armgen_terminal::output::place;
+use armgen_terminal::table::{Align, Table};
+use armgen_terminal::{self as terminal, input, DONE, FAULTY, UNREADABLE};
 
 /// Runs the experiments for this robot; where there are none, moves it along a demonstration.
-pub(crate) fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
+pub fn run(files: &[PathBuf], out: &Path, arm: &dyn Arm, description: &Source) -> u8 {
     let Files { experiments, others, paths, read, code } = read_all(&named(files), arm.robot());
     let built = &arm.robot().name;
     for (robot, count) in &others {
